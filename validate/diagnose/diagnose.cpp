@@ -11,6 +11,7 @@
 #include <span>
 
 #include "base/in_parallel.hpp"
+#include "validate/diagnose/detail/base.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/hypothesis/rivals.hpp"
@@ -21,15 +22,8 @@ namespace {
 
 /// So many hypotheses are judged where none holds.
 constexpr int kAtLeast = 3;
-/// The model alone is fitted once more from the kWaysOut leading extensions, kBases times at most.
-constexpr std::size_t kWaysOut = 2;
+/// The model alone is fitted once more from a better start, so many times at most.
 constexpr int kBases = 2;
-/// A fit of the model alone that nearly fits goes on until it has converged, in so many rounds at most.
-constexpr int kBaseRounds = 4;
-/// The noise is measured through the model alone that often, where it leaves little more. A noisy voltage
-/// pulls a fit, and through one that it pulls less its noise is seen otherwise.
-constexpr int kMeasured = 3;
-
 /// Steps of the fits that go on with the noise measured again.
 constexpr int kOnwards = 4;
 
@@ -62,7 +56,9 @@ class Diagnoser {
     const event::WhitenedEvents prepared = result_.events;
     fit::FitOptions from{.lenient = true};
     for (int round = 0;; ++round) {
-      fit_base(from);
+      report("base", 0, 1);
+      fit_base(model_, options_, from, result_);
+      report("base", 1, 1);
       tell(first_sentence(result_, options_.adequate));
       if (stopped()) return false;
       few_wrong();
@@ -75,7 +71,9 @@ class Diagnoser {
           options_.progress);
       tell(leading_sentence(result_));
       if (stopped()) return false;
-      if (round == kBases || !better_base(from)) break;
+      const auto better = round < kBases ? better_start(stage, result_.ranked, options_) : std::nullopt;
+      if (!better) break;
+      from = *better;
       result_.events = prepared;  // the noise was measured through the worse base
     }
     try_replacements();
@@ -97,27 +95,6 @@ class Diagnoser {
            options_.progress, result_);
     return true;
   }
-  void fit_base(fit::FitOptions o) {
-    report("base", 0, 1);
-    const auto free = fit::free_parameters(model_.plant, options_.spread);
-    result_.base = fit::fit(model_.under_test(), result_.events, free, o);
-    for (int measured = 0; result_.base.failed.empty() && measured < kMeasured; ++measured) {
-      result_.events =
-          result_.events.with(fit::measure_noise_through(result_.base, model_.conventions, result_.events));
-      for (int round = 0; round == 0 || (round < kBaseRounds && unfinished(result_.base)); ++round) {
-        o = fit::continued({.lenient = true}, result_.base, free);
-        result_.base = fit::fit(model_.under_test(), result_.events, free, o);
-      }
-      const double misfit = result_.base.misfit();
-      if (misfit <= options_.adequate || misfit > thresholds::noise.believed) break;
-    }
-    require_fitted_base();
-    report("base", 1, 1);
-  }
-  /// Whether more steps of the model's fit might leave nothing but noise.
-  static bool unfinished(const fit::Fit& f) {
-    return f.failed.empty() && !f.converged && f.misfit() < thresholds::noise.believed;
-  }
   /// Where the refitted model leaves only noise, a few wrong parameters may be all that it takes.
   void few_wrong() {
     result_.wrong.reset();
@@ -134,24 +111,6 @@ class Diagnoser {
         fit::gain(result_.base, found.fit, fit::criterion) - o.each * static_cast<double>(found.wrong.size());
     result_.wrong = std::move(found);
     tell(wrong_sentence(result_));
-  }
-  void require_fitted_base() const {
-    if (!result_.base.failed.empty())
-      throw InputError({"the model cannot be fitted", model_.origin, result_.base.failed,
-                        "correct the model or leave the record out"});
-  }
-  /// Whether the model alone fits much better from where its leading extensions ended. Then these were ways
-  /// out of a poor minimum. `from` gets the better fit's values.
-  bool better_base(fit::FitOptions& from) const {
-    if (result_.ranked.empty() || result_.ranked.front().gain < thresholds::evidence.accepted) return false;
-    hypothesis::Judgement base;
-    base.hypothesis.plant = model_.plant;
-    base.hypothesis.conventions = model_.conventions;
-    base.fit = result_.base;
-    for (std::size_t k = 0; k < std::min<std::size_t>(kWaysOut, result_.ranked.size()); ++k)
-      if (result_.ranked[k].fitted) hypothesis::try_from(model_stage(), result_.ranked[k].fit, base);
-    from = fit::continued({.lenient = true}, base.fit, fit::free_parameters(model_.plant, options_.spread));
-    return fit::gain(result_.base, base.fit) > thresholds::evidence.escape * result_.ranked.front().gain;
   }
   /// Where no addition leaves only noise, an effect that is there may be of another kind.
   void try_replacements() {
@@ -181,7 +140,7 @@ class Diagnoser {
     fit::FitOptions how{.iterations = kOnwards, .lenient = true};
     result_.base =
         go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base, how);
-    require_fitted_base();
+    require_fitted(result_.base, model_);
     const hypothesis::FittedOn leading{best.gain, best.hypothesis.slot};
     each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;

@@ -9,6 +9,7 @@
 
 #include "base/constants.hpp"
 #include "validate/fit/detail/at_bounds.hpp"
+#include "validate/fit/detail/early.hpp"
 #include "validate/fit/detail/event_cost.hpp"
 #include "validate/fit/detail/input_evidence.hpp"
 #include "validate/playin/can_run.hpp"
@@ -427,10 +428,12 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   for (std::size_t i = 0; i < options.values.size(); ++i)
     parameter_value(start, free[i].id) = options.values[i];
   setting.can_exist = playin::can_exist(start);
-  Fit found = Search(setting, options).run();
+  FitOptions begun = options;
+  if (begun.start.empty()) begun.start = early_states({start, tested.conventions}, events, options);
+  Fit found = Search(setting, begun).run();
   if (found.failed.empty() || setting.lenient) return found;
   setting.lenient = setting.linear_slopes = true;
-  Fit lenient = Search(setting, options).run();
+  Fit lenient = Search(setting, begun).run();
   return lenient.failed.empty() ? lenient : found;
 }
 

@@ -1,0 +1,85 @@
+#include "validate/diagnose/detail/base.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::diagnose {
+namespace {
+
+/// The model alone is fitted once more from so many leading extensions.
+constexpr std::size_t kWaysOut = 2;
+/// A fit of the model alone that nearly fits goes on until it has converged, in so many rounds at most.
+constexpr int kBaseRounds = 4;
+/// The noise is measured through the model alone that often, where it leaves little more. A noisy voltage
+/// pulls a fit, and through one that it pulls less its noise is seen otherwise.
+constexpr int kMeasured = 3;
+
+/// Whether more steps of the model's fit might leave nothing but noise.
+bool unfinished(const fit::Fit& f) {
+  return f.failed.empty() && !f.converged && f.misfit() < thresholds::noise.believed;
+}
+
+/// The model alone as a hypothesis that frees nothing but what is free anyway.
+hypothesis::Judgement alone(const hypothesis::Stage& stage) {
+  hypothesis::Judgement j;
+  j.hypothesis.plant = stage.plant;
+  j.hypothesis.conventions = stage.conventions;
+  j.fit = stage.fit;
+  return j;
+}
+
+fit::Fit from_extensions(const hypothesis::Stage& stage, const std::vector<hypothesis::Judgement>& ranked) {
+  hypothesis::Judgement base = alone(stage);
+  for (std::size_t k = 0; k < std::min(kWaysOut, ranked.size()); ++k)
+    if (ranked[k].fitted) hypothesis::try_from(stage, ranked[k].fit, base);
+  return std::move(base.fit);
+}
+fit::Fit from_limits(const hypothesis::Stage& stage) {
+  hypothesis::Hypothesis base = alone(stage).hypothesis;
+  base.free = fit::free_parameters(stage.plant, stage.spread);
+  return hypothesis::past_blind(stage, base, stage.plant, stage.fit);
+}
+
+}  // namespace
+
+void require_fitted(const fit::Fit& base, const plant::PlantModel& model) {
+  if (!base.failed.empty())
+    throw InputError({"the model cannot be fitted", model.origin, base.failed,
+                      "correct the model or leave the record out"});
+}
+
+void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
+              Diagnosis& d) {
+  const auto free = fit::free_parameters(model.plant, options.spread);
+  d.base = fit::fit(model.under_test(), d.events, free, from);
+  for (int measured = 0; d.base.failed.empty() && measured < kMeasured; ++measured) {
+    d.events = d.events.with(fit::measure_noise_through(d.base, model.conventions, d.events));
+    for (int round = 0; round == 0 || (round < kBaseRounds && unfinished(d.base)); ++round)
+      d.base = fit::fit(model.under_test(), d.events, free, fit::continued({.lenient = true}, d.base, free));
+    if (d.base.misfit() <= options.adequate || d.base.misfit() > thresholds::noise.believed) break;
+  }
+  require_fitted(d.base, model);
+}
+
+std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage,
+                                            const std::vector<hypothesis::Judgement>& ranked,
+                                            const DiagnoseOptions& options) {
+  const auto from = [&](const fit::Fit& f) {
+    return fit::continued({.lenient = true}, f, fit::free_parameters(stage.plant, stage.spread));
+  };
+  const double leads = ranked.empty() ? 0.0 : ranked.front().gain;
+  if (leads >= thresholds::evidence.accepted)
+    if (const fit::Fit f = from_extensions(stage, ranked);
+        fit::gain(stage.fit, f) > thresholds::evidence.escape * leads)
+      return from(f);
+  const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options.adequate; };
+  if (fits(stage.fit) || (!ranked.empty() && fits(ranked.front().fit))) return std::nullopt;
+  if (const fit::Fit f = from_limits(stage);
+      fit::gain(stage.fit, f) > std::max<double>(leads, thresholds::evidence.accepted))
+    return from(f);
+  return std::nullopt;
+}
+
+}  // namespace swingbank::validate::diagnose

@@ -1,0 +1,104 @@
+#include "validate/fit/detail/early.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "validate/playin/given.hpp"
+
+namespace swingbank::validate::fit::fitting {
+namespace {
+
+constexpr double kAfterLast = 0.5;  ///< the first part ends that long after the last switching [s]
+/// An answer has run away where a value of the later part leaves so much more than one of the first [-].
+constexpr double kRunAway = 10;
+/// The instants are to blame where so much of that is gone with others [-].
+constexpr double kGone = 0.75;
+constexpr int kEarlySteps = 12;
+
+/// Whether an instant is fitted at all.
+bool is_open(const event::FitEvent& e) {
+  return !playin::is_part(e.record) && !e.record.breaker() &&
+         std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.uncertainty > 0; });
+}
+
+EventState as_prepared(const event::FitEvent& e) {
+  EventState state;
+  for (const playin::Switching& s : e.switchings) state.switchings.push_back(s.time);
+  return state;
+}
+
+double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kAfterLast; }
+
+/// The event until `until`, in white noise.
+event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until) {
+  constexpr double kBeginning = -std::numeric_limits<double>::infinity();
+  event::FitEvent e = whole.event;
+  e.record = record::stretch(std::move(e.record), kBeginning, until);
+  if (!e.clean.t.empty()) e.clean = record::stretch(std::move(e.clean), kBeginning, until);
+  for (auto* marks : {&e.smeared, &e.left_out})
+    if (!marks->empty()) marks->resize(e.record.t.size());
+  event::EventNoise noise = whole.noise;
+  noise.memory = nullptr;
+  return {{std::move(e)}, event::NoiseModel({std::move(noise)})};
+}
+
+/// chi2 per value of what an answer leaves, in white noise: until `until`, and after.
+std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::Response& answer,
+                               double until) {
+  const event::FitEvent& e = whole.event;
+  double early = 0, late = 0;
+  int first = 0, then = 0;
+  for (std::size_t k = 0; k < e.record.t.size(); ++k) {
+    if (!e.compared(k)) continue;
+    for (std::size_t c = 0; c < e.channels.size(); ++c) {
+      const double off = (answer.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
+                         whole.noise.deviation[static_cast<Eigen::Index>(c)];
+      const bool begins = e.record.t[k] <= until;
+      (begins ? early : late) += off * off;
+      ++(begins ? first : then);
+    }
+  }
+  return {early / std::max(1, first), late / std::max(1, then)};
+}
+
+/// Nothing where the event begins as it was prepared.
+std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
+                                      const event::WhitenedEvent& whole, const FitOptions& options) {
+  const event::FitEvent& e = whole.event;
+  if (!is_open(e)) return std::nullopt;
+  const double until = end_of_first_part(e);
+  const event::Playing how{.tolerance = options.tolerance, .lenient = options.lenient};
+  const auto [early, late] = left(whole, event::play(tested, e, {}, {}, how), until);
+  if (late < kRunAway * early) return std::nullopt;
+  FitOptions o{.iterations = kEarlySteps, .tolerance = options.tolerance, .lenient = options.lenient};
+  o.brief = true;
+  o.start_stands = true;
+  o.errors = false;
+  o.start = {as_prepared(e)};
+  const Fit f = fit(tested, first_part(whole, until), {}, o);
+  if (!f.failed.empty()) return std::nullopt;
+  const EventState& state = f.events.front().state;
+  const double left_then = left(whole, event::play(tested, e, state, {}, how), until).second;
+  return left_then < (1 - kGone) * late ? std::optional(state) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
+                                     const event::WhitenedEvents& events, const FitOptions& options) {
+  std::vector<EventState> states;
+  for (const event::FitEvent& e : events) states.push_back(as_prepared(e));
+  bool any = false;
+  try {
+    for (std::size_t e = 0; e < events.size(); ++e)
+      if (auto state = early_state(tested, events.whitened(e), options)) {
+        states[e] = std::move(*state);
+        any = true;
+      }
+  } catch (const InputError&) {  // the search says why
+    return {};
+  }
+  return any ? states : std::vector<EventState>{};
+}
+
+}  // namespace swingbank::validate::fit::fitting
