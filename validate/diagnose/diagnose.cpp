@@ -71,7 +71,7 @@ class Diagnoser {
           options_.progress);
       tell(leading_sentence(result_));
       if (stopped()) return false;
-      const auto better = round < kBases ? better_start(stage, result_.ranked, options_) : std::nullopt;
+      const auto better = round < kBases ? better_start(stage, result_) : std::nullopt;
       if (!better) break;
       from = *better;
       result_.events = prepared;  // the noise was measured through the worse base

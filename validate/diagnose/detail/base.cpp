@@ -63,21 +63,18 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
   require_fitted(d.base, model);
 }
 
-std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage,
-                                            const std::vector<hypothesis::Judgement>& ranked,
-                                            const DiagnoseOptions& options) {
+std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, const Diagnosis& d) {
   const auto from = [&](const fit::Fit& f) {
     return fit::continued({.lenient = true}, f, fit::free_parameters(stage.plant, stage.spread));
   };
-  const double leads = ranked.empty() ? 0.0 : ranked.front().gain;
+  const double leads = d.ranked.empty() ? 0.0 : std::max(0.0, d.ranked.front().gain);
   if (leads >= thresholds::evidence.accepted)
-    if (const fit::Fit f = from_extensions(stage, ranked);
+    if (const fit::Fit f = from_extensions(stage, d.ranked);
         fit::gain(stage.fit, f) > thresholds::evidence.escape * leads)
       return from(f);
-  const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options.adequate; };
-  if (fits(stage.fit) || (!ranked.empty() && fits(ranked.front().fit))) return std::nullopt;
-  if (const fit::Fit f = from_limits(stage);
-      fit::gain(stage.fit, f) > std::max<double>(leads, thresholds::evidence.accepted))
+  const double by_inputs = std::max(d.torque.explains(d.base), d.field.explains(d.base));
+  if (by_inputs - leads < thresholds::evidence.accepted) return std::nullopt;
+  if (const fit::Fit f = from_limits(stage); fit::gain(stage.fit, f) - leads > thresholds::evidence.accepted)
     return from(f);
   return std::nullopt;
 }

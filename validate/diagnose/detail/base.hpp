@@ -15,11 +15,9 @@ void require_fitted(const fit::Fit& base, const plant::PlantModel& model);
 void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
               Diagnosis& d);
 
-/// From where the model alone fits much better than `base`. Its leading extensions may have been ways out of
-/// a poor minimum; and where nothing of `ranked` leaves only noise, a limit that was never met may be one:
-/// it has no slope to be lowered by. Nothing where there is no such place.
-std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage,
-                                            const std::vector<hypothesis::Judgement>& ranked,
-                                            const DiagnoseOptions& options);
+/// From where the model alone fits much better than `d` has it. Its leading extensions may have been ways out
+/// of a poor minimum; and where an input that is free in time explains more than any of them, a limit that
+/// was never met may be one: it has no slope to be lowered by. Nothing where there is no such place.
+std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose
