@@ -199,7 +199,9 @@ class Selection {
   };
   /// Fits these alone from where the curvature foretells their optimum. A fit that ends where the curvature
   /// has it has missed nothing; any other one gets a second start, at the believed values. Of what the fit
-  /// costs beyond that with all free, the others would take off the share that the curvature foretells.
+  /// costs beyond that with all free, the others would take off the share that the curvature foretells. A
+  /// limit costs no more once it is not met, so that the curvature foretells too much of its believed value:
+  /// then what is left beside the others is no less than they leave on the curvature.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Foretold fixed = foretold(set, kExactly), soft = foretold(set);
     FitOptions o = kSearch;
@@ -220,7 +222,8 @@ class Selection {
       if (better(other, r.fit)) r.fit = std::move(other);
     }
     r.cost = penalised(r.fit);
-    if (r.cost > most && fixed.excess > 0) r.cost = most + (r.cost - most) * soft.excess / fixed.excess;
+    if (const double over = r.cost - most; over > 0 && fixed.excess > 0)
+      r.cost = most + std::max(over * soft.excess / fixed.excess, std::min(over, soft.excess));
     return r;
   }
   /// The best of this size, of those that the curvature likes best.
