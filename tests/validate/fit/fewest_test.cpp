@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
@@ -55,6 +57,22 @@ TEST(Fewest, AValueThatIsOffByAPercentIsRight) {
 }
 TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
+/// Unit 2 of IEEE 14 as `change` has it, and the record of one fault.
+std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
+    const std::function<void(sim::grid::Grid&)>& change) {
+  const auto run =
+      test::simulate("ieee14_genrou", sim::Conventions::psse(), 5, 2.0, 2.1, 240, {0.0, 0.1}, change);
+  const auto at = std::ranges::find(run.grid.plants, "2", &sim::plant::Plant::name) - run.grid.plants.begin();
+  plant::PlantModel model;
+  model.plant = run.grid.plants[static_cast<std::size_t>(at)];
+  model.plant.bus = model.plant.generator = -1;
+  model.conventions = sim::Conventions::psse();
+  model.record_base.mva = model.plant.mva;
+  auto events = event::prepare_events(model, {test::record_of(run, static_cast<int>(at), 4, 1e-3)},
+                                      {.measured_states = false});
+  return {std::move(model), std::move(events)};
+}
+
 /// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
 /// by the same factor: the gain behind them does what they do.
 TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
@@ -65,16 +83,7 @@ TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
       block.p[static_cast<std::size_t>(esst4b.parameter_index(limit))] *= 50;
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)->controls.push_back(std::move(block));
   };
-  const auto run =
-      test::simulate("ieee14_genrou", sim::Conventions::psse(), 5, 2.0, 2.1, 240, {0.0, 0.1}, exciter);
-  const auto at = std::ranges::find(run.grid.plants, "2", &sim::plant::Plant::name) - run.grid.plants.begin();
-  plant::PlantModel model;
-  model.plant = run.grid.plants[static_cast<std::size_t>(at)];
-  model.plant.bus = model.plant.generator = -1;
-  model.conventions = sim::Conventions::psse();
-  model.record_base.mva = model.plant.mva;
-  const auto events = event::prepare_events(model, {test::record_of(run, static_cast<int>(at), 4, 1e-3)},
-                                            {.measured_states = false});
+  auto [model, events] = unit_behind_a_fault(exciter);
   std::vector<FreeParameter> free;
   for (const FreeParameter& f : free_parameters(model.plant, 0.5)) {
     const std::string name = sim::plant::parameter_name(model.plant, f.id).text();
@@ -87,6 +96,24 @@ TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
   ASSERT_EQ(found.alternatives.size(), 1U);
   EXPECT_EQ(found.alternatives[0].named, std::vector<std::string>{"ESST4B.KPM"});
   EXPECT_EQ(found.alternatives[0].instead, (std::vector<std::string>{"ESST4B.KPR", "ESST4B.KIR"}));
+}
+
+/// A ceiling that is believed a fifth too high is not met there, and costs no more than one that just is not.
+TEST(Fewest, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
+  const sim::Effect& sexs = *sim::library::compiled().find("SEXS");
+  const auto exciter = [&](sim::grid::Grid& grid) {
+    std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
+        ->controls.push_back({&sexs, {0.1, 10, 20, 0.05, -4.0, 2.6}});
+  };
+  auto [model, events] = unit_behind_a_fault(exciter);
+  const int ceiling = sexs.parameter_index("EMAX");
+  const auto free = free_parameters(model.plant, 0.2);
+  FitOptions from{.lenient = true, .values = values_of(model.plant, free)};
+  model.plant.controls.back().p[static_cast<std::size_t>(ceiling)] *= 1.2;
+  const Fit all = fit(model.under_test(), events, free, from);
+  const Fewest found = fewest(model.under_test(), events, free, {.all = &all});
+  ASSERT_EQ(found.wrong.size(), 1U);
+  EXPECT_EQ(found.wrong[0].fit.full_name(), "SEXS.EMAX");
 }
 
 TEST(FewestFull, NamesThreeThatAreWrong) {
