@@ -9,7 +9,6 @@
 #include <random>
 
 #include "sim/library/library.hpp"
-#include "sim/plant/block_text.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/compare/report.hpp"
 
@@ -183,15 +182,8 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
 /// its own noise and says nothing of when the fault began: taken for white it puts the fault 5 ms too late.
 TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
   const auto converter = [](sim::grid::Grid& grid) {
-    Problems problems;
-    const auto block = [&](const char* name, const char* values) {
-      const auto* effect = sim::library::compiled().find(name);
-      sim::plant::Block b{effect, effect->standard_parameters()};
-      sim::plant::set_parameters(b, values, name, problems);
-      return b;
-    };
     sim::plant::Plant& plant = grid.plants[3];
-    plant.machine = block("REGCA1", "");
+    plant.machine = test::block("REGCA1", "");
     plant.controls = {
         block(
             "REPCA1",
@@ -199,7 +191,6 @@ TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
         block(
             "REECA1",
             "QFLAG=1,Vdip=0.88,dbd1=-0.05,dbd2=0.05,Kqv=2,Kqi=0.09,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
-    problems.raise();
   };
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0006, 2.1131, 480,
                                            {0.005, 0.03}, converter);

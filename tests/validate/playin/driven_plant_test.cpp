@@ -216,18 +216,10 @@ TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) { expect_linear(); }
 /// At rest the errors of a converter's regulators are zero, where their integrals' limits have a corner.
 TEST_F(DrivenPlantTest, LinearConverterAnswersASmallStep) {
   model_.plant.controls.clear();
-  Problems problems;
-  const auto block = [&](const char* name, const char* values) {
-    const auto* effect = sim::library::compiled().find(name);
-    sim::plant::Block b{effect, effect->standard_parameters()};
-    sim::plant::set_parameters(b, values, name, problems);
-    return b;
-  };
-  model_.plant.machine = block("REGCA1", "");
+  model_.plant.machine = test::block("REGCA1", "");
   model_.plant.controls = {
-      block("REPCA1", "RefFlag=1,Kp=2,Ki=1,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
-      block("REECA1", "QFLAG=1,Kqi=0.1,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
-  problems.raise();
+      test::block("REPCA1", "RefFlag=1,Kp=2,Ki=1,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
+      test::block("REECA1", "QFLAG=1,Kqi=0.1,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
   expect_linear();
 }
 TEST_F(DrivenPlantTest, AddedInputIsPiecewiseLinear) {

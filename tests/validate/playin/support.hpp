@@ -10,6 +10,7 @@
 
 #include "base/constants.hpp"
 #include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
 #include "sim/reference/reference.hpp"
 #include "validate/playin/voltage_curve.hpp"
 #include "validate/record/record.hpp"
@@ -30,6 +31,16 @@ std::vector<std::string> messages(F action) {
     for (const auto& p : error.problems()) all.push_back(p.sentence());
   }
   return all;
+}
+
+/// An effect with these values ("Kp=2,Ki=1") and standard ones.
+inline sim::plant::Block block(const char* name, const char* values) {
+  Problems problems;
+  const sim::Effect* effect = sim::library::compiled().find(name);
+  sim::plant::Block b{effect, effect->standard_parameters()};
+  sim::plant::set_parameters(b, values, name, problems);
+  problems.raise();
+  return b;
 }
 
 struct Simulated {

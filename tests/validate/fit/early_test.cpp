@@ -1,0 +1,43 @@
+// Where a search begins in an event whose answer runs away from its instants.
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/support.hpp"
+#include "validate/event/event.hpp"
+#include "validate/fit/noise.hpp"
+
+namespace swingbank::validate::fit {
+namespace {
+
+/// A converter that regulates Q through two integrals and the voltage behind them: what half a sample of
+/// the fault does to Q grows for eight seconds. From the middle of the sample intervals the search ended at
+/// 1,800.
+TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
+  const auto converter = [](sim::grid::Grid& grid) {
+    sim::plant::Plant& plant = grid.plants[3];
+    plant.machine = test::block("REGCA1", "");
+    plant.controls = {
+        block(
+            "REPCA1",
+            "RefFlag=0,Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
+        test::block("REECA1",
+                    "QFLAG=1,Vdip=0.75,dbd1=-0.05,dbd2=0.05,Kqv=2,Kqi=0.1,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,"
+                    "Imax=2,QMax=2,QMin=-2,PMAX=2")};
+  };
+  const test::Simulated s =
+      test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.014, 2.1, 480, {0.0, 0.02}, converter);
+  plant::PlantModel model;
+  model.plant = s.grid.plants[3];
+  model.conventions = s.grid.conventions;
+  const record::Record record = test::record_of(s, 3, 8, 0.001);
+  model.record_base = record.base;
+  const auto events = event::prepare_events(model, {record});
+  const Fit white = fit(model.under_test(), events, {});
+  const auto slow = events.with(remember_noise(white, model.conventions, events));
+  const Fit f = fit(model.under_test(), slow, {});
+  EXPECT_LT(f.misfit(), 1.2);
+  EXPECT_NEAR(f.events[0].state.switchings[0], s.t_on, 1e-3);
+  EXPECT_NEAR(f.events[0].state.switchings[1], s.t_off, 1e-3);
+}
+
+}  // namespace
+}  // namespace swingbank::validate::fit
