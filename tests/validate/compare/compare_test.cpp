@@ -185,10 +185,10 @@ TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
     sim::plant::Plant& plant = grid.plants[3];
     plant.machine = test::block("REGCA1", "");
     plant.controls = {
-        block(
+        test::block(
             "REPCA1",
             "RefFlag=0,Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
-        block(
+        test::block(
             "REECA1",
             "QFLAG=1,Vdip=0.88,dbd1=-0.05,dbd2=0.05,Kqv=2,Kqi=0.09,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
   };

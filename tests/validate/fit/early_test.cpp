@@ -16,7 +16,7 @@ TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
     sim::plant::Plant& plant = grid.plants[3];
     plant.machine = test::block("REGCA1", "");
     plant.controls = {
-        block(
+        test::block(
             "REPCA1",
             "RefFlag=0,Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
         test::block("REECA1",

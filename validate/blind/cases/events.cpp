@@ -66,7 +66,8 @@ BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw) {
   for (const sim::plant::Plant& plant : grid.plants) total += plant.generation.real();
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const double p = grid.plants[i].generation.real();
-    if (!std::ranges::count(world.recorded(), static_cast<int>(i)) && p > 0.01 * total && p < 0.12 * total) small.push_back(i);
+    if (!std::ranges::count(world.recorded(), static_cast<int>(i)) && p > 0.01 * total && p < 0.12 * total)
+      small.push_back(i);
   }
   if (!world.controlled() || small.empty() || draw.coin()) return draw_load_step(world, start, draw);
   const sim::plant::Plant& lost = grid.plants[small[draw.below(small.size())]];

@@ -98,8 +98,8 @@ void write_blind_case(const BlindCase& made, const BlindConfig& config, const st
              model_file(made.model, name, sim::Conventions::psse(made.conventions.frequency),
                         "Plant of a blind case, as its owner believes it to be"));
   if (made.other) {
-    write_file(partial / "other.toml", model_file(*made.other, name + "/2", made.conventions,
-                                                  "The unit recorded with it, as it is"));
+    write_file(partial / "other.toml",
+               model_file(*made.other, name + "/2", made.conventions, "The unit recorded with it, as it is"));
     write_file(partial / "point.toml", point_file(made));
   }
   for (std::size_t e = 0; e < made.records.size(); ++e)

@@ -11,8 +11,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// The same as `white` where the noise of the voltage, as the plant answers it, is in the cost; `white` itself
-/// where that hardly matters.
+/// The same as `white` where the noise of the voltage, as the plant answers it, is in the cost; `white`
+/// itself where that hardly matters.
 fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const event::WhitenedEvents& events) {
   const auto slow = events.with(fit::remember_noise(white, model.conventions, events));
   if (!slow.noise(0).memory) return white;

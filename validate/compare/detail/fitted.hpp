@@ -5,9 +5,9 @@
 
 namespace swingbank::validate::compare {
 
-/// How instants and start are fitted. Noise is white, or what the plant makes of the voltage's noise is counted
-/// too: behind a regulator that integrates it moves P and Q by many times their own noise, and taken for white
-/// it would decide where the instants go.
+/// How instants and start are fitted. Noise is white, or what the plant makes of the voltage's noise is
+/// counted too: behind a regulator that integrates it moves P and Q by many times their own noise, and taken
+/// for white it would decide where the instants go.
 enum class Fitted {
   in_white_noise,
   in_slow_noise,
@@ -17,8 +17,8 @@ enum class Fitted {
 /// Sets switchings, playback and left_out of an event whose record is set. Its instants and its start are
 /// fitted, and the model stays as it is. Samples that a filter has smeared over a jump are not played in.
 /// Throws InputError where the model cannot follow the record.
-void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps, Fitted how,
-                 EventComparison& e);
+void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
+                 Fitted how, EventComparison& e);
 
 /// Sets EventComparison::doubt of an event that was played in by its voltage.
 void add_doubt(const plant::PlantModel& model, EventComparison& e);

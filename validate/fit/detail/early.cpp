@@ -8,7 +8,7 @@
 namespace swingbank::validate::fit::fitting {
 namespace {
 
-constexpr double kAfterLast = 0.5;  ///< the first part ends that long after the last switching [s]
+constexpr double kFirstPart = 0.5;  ///< the first part ends that long after the last switching [s]
 /// An answer has run away where a value of the later part leaves so much more than one of the first [-].
 constexpr double kRunAway = 10;
 /// The instants are to blame where so much of that is gone with others [-].
@@ -27,7 +27,7 @@ EventState as_prepared(const event::FitEvent& e) {
   return state;
 }
 
-double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kAfterLast; }
+double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kFirstPart; }
 
 /// The event until `until`, in white noise.
 event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until) {

@@ -202,7 +202,8 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
 }
 
 /// A part of the plant becomes a unit of its own at the same bus, with values and controls of its own. Not
-/// where an instrument's error is hidden: it would be one of the sum, which no hypothesis about one unit says.
+/// where an instrument's error is hidden: it would be one of the sum, which no hypothesis about one unit
+/// says.
 void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   const double share = config.conditions.second_unit_share;
   const bool instrument =
