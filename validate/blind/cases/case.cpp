@@ -17,6 +17,7 @@ using Scales = std::vector<std::optional<double>>;
 constexpr int kAttempts = 60;        ///< whole worlds drawn before giving up
 constexpr int kEventTries = 12;      ///< draws of one event within a world
 constexpr double kDip = 0.05;        ///< a fault that moves V by less at the plant is drawn again [pu]
+constexpr double kNoVoltage = 0.02;  ///< so is one that leaves less, which no angle can be told of [pu]
 constexpr double kUntripped = 0.02;  ///< deviation of the speed below which no governor trips a unit [pu]
 constexpr double kSizeMet = 0.1;     ///< a size is met within that part of it
 constexpr int kSizeTries = 8;        ///< simulations of all events while a size is sought
@@ -119,7 +120,8 @@ class Maker {
       try {
         const sim::reference::ReferenceRun fine = run(world_.plain(), event);
         const double* v = fine.at(0, 0);
-        if (fault && v[0] - *std::min_element(v, v + fine.samples) < kDip) continue;
+        const double least = *std::min_element(v, v + fine.samples);
+        if (fault && (v[0] - least < kDip || least < kNoVoltage)) continue;
         plain_.push_back(measured(fine, target(world_.plain()), event, conditions_,
                                   world_.plain().conventions.frequency,
                                   seed_ + static_cast<std::uint64_t>(k)));

@@ -211,6 +211,12 @@ TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
   EXPECT_NEAR(value(wrong.truth, "REPCA1", "Ki"), std::pow(10.0, wrong.hidden[0].scale), 1e-12);
   EXPECT_THAT(wrong.hidden[0].kind->answers, testing::ElementsAre("REPCA1.Ki"));
 }
+/// A plant that feeds in a current has no voltage of its own beside a bolted fault.
+TEST(BlindConverter, AFaultLeavesAVoltageThatHasAnAngle) {
+  const BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
+  const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
+  for (const record::Record& record : made.records) EXPECT_GT(*std::ranges::min_element(record.V), 0.01);
+}
 TEST(BlindConditions, NoneTakesNoDraw) {
   const BlindConfig config = tiny();
   BlindConfig unused = config;
