@@ -14,13 +14,13 @@ namespace {
 
 using Scales = std::vector<std::optional<double>>;
 
-constexpr int kAttempts = 60;        ///< whole worlds drawn before giving up
-constexpr int kEventTries = 12;      ///< draws of one event within a world
-constexpr double kDip = 0.05;        ///< a fault that moves V by less at the plant is drawn again [pu]
-constexpr double kNoVoltage = 0.02;  ///< so is one that leaves less, which no angle can be told of [pu]
-constexpr double kUntripped = 0.02;  ///< deviation of the speed below which no governor trips a unit [pu]
-constexpr double kSizeMet = 0.1;     ///< a size is met within that part of it
-constexpr int kSizeTries = 8;        ///< simulations of all events while a size is sought
+constexpr int kAttempts = 60;           ///< whole worlds drawn before giving up
+constexpr int kEventTries = 12;         ///< draws of one event within a world
+constexpr double kDip = 0.05;           ///< a fault that moves V by less at the plant is drawn again [pu]
+constexpr double kLeftByAFault = 0.02;  ///< so is one that leaves less, which no angle can be told of [pu]
+constexpr double kUntripped = 0.02;     ///< deviation of the speed below which no governor trips a unit [pu]
+constexpr double kSizeMet = 0.1;        ///< a size is met within that part of it
+constexpr int kSizeTries = 8;           ///< simulations of all events while a size is sought
 
 constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
 
@@ -121,7 +121,7 @@ class Maker {
         const sim::reference::ReferenceRun fine = run(world_.plain(), event);
         const double* v = fine.at(0, 0);
         const double least = *std::min_element(v, v + fine.samples);
-        if (fault && (v[0] - least < kDip || least < kNoVoltage)) continue;
+        if (fault && (v[0] - least < kDip || least < kLeftByAFault)) continue;
         plain_.push_back(measured(fine, target(world_.plain()), event, conditions_,
                                   world_.plain().conventions.frequency,
                                   seed_ + static_cast<std::uint64_t>(k)));
