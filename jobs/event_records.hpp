@@ -105,10 +105,7 @@ struct Reading {
     if (from) model.reading.from = *from;
     if (until) model.reading.until = *until;
     std::optional<validate::event::MeasuredPoint> at;
-    if (!point.empty()) {
-      at = validate::event::load_point(point, model.origin);
-      model.plant.beyond = validate::event::at_point(*at).beyond;
-    }
+    if (!point.empty()) at = validate::event::load_point(point, model);
     using validate::record::Component;
     for (const auto c : {Component::exciter, Component::governor, Component::machine})
       if (component == validate::record::component_name(c)) {

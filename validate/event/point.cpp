@@ -172,6 +172,12 @@ sim::plant::Plant at_point(const MeasuredPoint& point) {
   return plant;
 }
 
+MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& tried) {
+  MeasuredPoint point = load_point(file, tried.origin);
+  tried.plant.beyond = at_point(point).beyond;
+  return point;
+}
+
 namespace {
 
 /// A unit behind the point with what the record shows there, made ready for its model.

@@ -36,6 +36,8 @@ struct MeasuredPoint {
 /// with every fault of it: unknown keys, units that cannot be read, the tried one missing, shares that leave
 /// nothing.
 MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried);
+/// The same for a model that was read, whose control, if it measures elsewhere, does so at the point then.
+MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& tried);
 
 /// The record moved from the point to the units' bus, by its own V, P and Q.
 record::Record behind_collector(record::Record record, const std::vector<Collector>& collector);

@@ -182,15 +182,7 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
 /// its own noise and says nothing of when the fault began: taken for white it puts the fault 5 ms too late.
 TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
   const auto converter = [](sim::grid::Grid& grid) {
-    sim::plant::Plant& plant = grid.plants[3];
-    plant.machine = test::block("REGCA1", "");
-    plant.controls = {
-        test::block(
-            "REPCA1",
-            "RefFlag=0,Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0"),
-        test::block(
-            "REECA1",
-            "QFLAG=1,Vdip=0.88,dbd1=-0.05,dbd2=0.05,Kqv=2,Kqi=0.09,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
+    test::put_converter(grid, "Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9", "Vdip=0.88,Kqi=0.09");
   };
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0006, 2.1131, 480,
                                            {0.005, 0.03}, converter);

@@ -43,6 +43,19 @@ inline sim::plant::Block block(const char* name, const char* values) {
   return b;
 }
 
+/// The fourth plant a converter that regulates Q through two integrals, with the voltage behind them; these
+/// values besides.
+inline void put_converter(sim::grid::Grid& grid, const std::string& plant_control,
+                          const std::string& electrical_control) {
+  const std::string outer = "RefFlag=0,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0,";
+  const std::string inner =
+      "QFLAG=1,dbd1=-0.05,dbd2=0.05,Kqv=2,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2,";
+  sim::plant::Plant& plant = grid.plants[3];
+  plant.machine = block("REGCA1", "");
+  plant.controls = {block("REPCA1", (outer + plant_control).c_str()),
+                    block("REECA1", (inner + electrical_control).c_str())};
+}
+
 struct Simulated {
   sim::grid::Grid grid;
   double t_on, t_off;

@@ -42,9 +42,8 @@ class Maker {
       : config_(config), spec_(spec), draw_(draw), world_(config, spec.hidden, draw) {
     made_.spec = spec;
     made_.noise = config.noise[draw.below(config.noise.size())];
-    const auto instrument = [](const BlindKind* kind) { return kind->side == "measurement"; };
-    conditions_ =
-        draw_conditions(config, std::ranges::any_of(spec.hidden, instrument), world_.controlled(), draw);
+    conditions_ = draw_conditions(config, std::ranges::any_of(spec.hidden, &BlindKind::of_instrument),
+                                  world_.controlled(), draw);
     made_.pmu_filter = conditions_.filter != Filter::none;
     made_.voltage_noise = made_.noise * conditions_.voltage_noise;
     made_.conditions = told(conditions_, config);

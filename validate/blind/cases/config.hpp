@@ -28,6 +28,8 @@ struct BlindKind {
   std::vector<std::string> answers;  ///< names a verdict may give it; of values all, as EFFECT.PARAM
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< scale runs through the logarithm of the parameters
+  /// Whether it is an error of the instrument.
+  [[nodiscard]] bool of_instrument() const { return side == "measurement"; }
   double limit = 0;  ///< detection limit: size (docs/blind-test.md) from which it is asked for [noise]
 };
 

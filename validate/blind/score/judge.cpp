@@ -70,13 +70,9 @@ BlindVerdict verdict_of(const diagnose::Diagnosis& d) {
 }  // namespace
 
 SeenCase read_seen_case(const fs::path& folder) {
-  const fs::path model = folder / "model.toml", together = folder / "point.toml";
-  SeenCase e{plant::load_plant_model(model), {}};
+  SeenCase e{plant::load_plant_model(folder / "model.toml"), {}};
   std::optional<event::MeasuredPoint> point;
-  if (fs::exists(together)) {
-    point = event::load_point(together, model);
-    e.model.plant.beyond = event::at_point(*point).beyond;
-  }
+  if (const fs::path file = folder / "point.toml"; fs::exists(file)) point = event::load_point(file, e.model);
   for (const auto& file : event_files(folder)) {
     record::Record record = record::read_record(file, e.model.record_base);
     e.records.push_back(point ? event::of_tried_unit(*point, std::move(record)) : std::move(record));

@@ -22,22 +22,23 @@ bool unfinished(const fit::Fit& f) {
 }
 
 /// The model alone as a hypothesis that frees nothing but what is free anyway.
-hypothesis::Judgement alone(const hypothesis::Stage& stage) {
-  hypothesis::Judgement j;
-  j.hypothesis.plant = stage.plant;
-  j.hypothesis.conventions = stage.conventions;
-  j.fit = stage.fit;
-  return j;
+hypothesis::Hypothesis alone(const hypothesis::Stage& stage) {
+  hypothesis::Hypothesis h;
+  h.plant = stage.plant;
+  h.conventions = stage.conventions;
+  return h;
 }
 
 fit::Fit from_extensions(const hypothesis::Stage& stage, const std::vector<hypothesis::Judgement>& ranked) {
-  hypothesis::Judgement base = alone(stage);
+  hypothesis::Judgement base;
+  base.hypothesis = alone(stage);
+  base.fit = stage.fit;
   for (std::size_t k = 0; k < std::min(kWaysOut, ranked.size()); ++k)
     if (ranked[k].fitted) hypothesis::try_from(stage, ranked[k].fit, base);
   return std::move(base.fit);
 }
 fit::Fit from_limits(const hypothesis::Stage& stage) {
-  hypothesis::Hypothesis base = alone(stage).hypothesis;
+  hypothesis::Hypothesis base = alone(stage);
   base.free = fit::free_parameters(stage.plant, stage.spread);
   return hypothesis::past_blind(stage, base, stage.plant, stage.fit);
 }

@@ -215,7 +215,8 @@ TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
 TEST(BlindConverter, AFaultLeavesAVoltageThatHasAnAngle) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
   const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
-  for (const record::Record& record : made.records) EXPECT_GT(*std::ranges::min_element(record.V), 0.01);
+  for (const record::Record& record : made.records)
+    EXPECT_GT(*std::ranges::min_element(record.V), 0.02 - 1e-3);  // ten times the noise
 }
 TEST(BlindConditions, NoneTakesNoDraw) {
   const BlindConfig config = tiny();

@@ -206,9 +206,7 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
 /// says.
 void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   const double share = config.conditions.second_unit_share;
-  const bool instrument =
-      std::ranges::any_of(hidden_, [](const BlindKind* kind) { return kind->side == "measurement"; });
-  if (!(share > 0 && draw.coin(share)) || instrument) return;
+  if (!(share > 0 && draw.coin(share)) || std::ranges::any_of(hidden_, &BlindKind::of_instrument)) return;
   const double part = draw.uniform(0.3, 0.7);
   sim::plant::Plant& plant = grid_.plants[static_cast<std::size_t>(plant_)];
   sim::plant::Plant other = plant;
