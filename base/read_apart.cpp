@@ -10,10 +10,9 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <nlohmann/json.hpp>
 
 #include "base/child.hpp"
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/own_command.hpp"
 #include "base/problem.hpp"
 #include "base/until_done.hpp"

@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/until_done.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"

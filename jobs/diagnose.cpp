@@ -1,9 +1,7 @@
 // swingbank diagnose: which physical effect does the model of a plant lack?
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"

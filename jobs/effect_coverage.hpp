@@ -2,10 +2,10 @@
 // What `swingbank effects --coverage` prints: how much of .dyr files the effects cover.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "sim/grid/coverage.hpp"
 
 namespace swingbank::jobs {

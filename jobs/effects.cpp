@@ -5,9 +5,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/json.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/effect_coverage.hpp"
 #include "sim/laws/law.hpp"

@@ -10,11 +10,11 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/course.hpp"
 #include "jobs/told_instants.hpp"

@@ -7,11 +7,11 @@
 #include <csignal>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/child.hpp"
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/run_lock.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"

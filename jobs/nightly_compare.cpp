@@ -18,12 +18,12 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "base/json.hpp"
 #include "base/median.hpp"
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/config.hpp"
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/sealed_text.hpp"
 
 namespace swingbank::mpi::draw {

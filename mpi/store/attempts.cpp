@@ -7,10 +7,9 @@
 
 #include <cerrno>
 #include <ctime>
-#include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/sealed_text.hpp"
 #include "base/until_done.hpp"
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
 #include "mpi/store/manifest.hpp"

@@ -1,8 +1,8 @@
 #include "mpi/store/hdf5_apart.hpp"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "mpi/store/hdf5_file.hpp"
 

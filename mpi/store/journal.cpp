@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_text.hpp"
 #include "base/until_done.hpp"

@@ -10,10 +10,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "base/child.hpp"
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/until_done.hpp"
 
 namespace swingbank::mpi::store {

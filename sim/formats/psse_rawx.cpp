@@ -1,9 +1,9 @@
 // The reader of .rawx: the tables of version 35 as JSON. Every row becomes the record that a .raw would have,
 // so that one reader knows the equipment. Source: PSS/E data format manual, "Extensible Power Flow Data
 // File".
-#include <nlohmann/json.hpp>
 #include <span>
 
+#include "base/json.hpp"
 #include "sim/formats/detail/psse_raw.hpp"
 
 namespace swingbank::sim::formats::psse {

@@ -6,8 +6,8 @@
 
 #include <csignal>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/publish_hashed.hpp"
 #include "base/sealed_file.hpp"

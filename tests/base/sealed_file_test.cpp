@@ -4,9 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 
 namespace swingbank {

@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "validate/blind/cases/plan.hpp"
 #include "validate/blind/score/judge.hpp"
 #include "validate/calibrate/side_by_side.hpp"

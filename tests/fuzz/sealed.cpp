@@ -2,8 +2,7 @@
 // header and arrays.
 #include <xxhash.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.hpp"
 #include "base/sealed_file.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/in_a_file.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A file's namespace is its folder: swingbank::validate::fit in validate/fit and validate/fit/detail. Two rooms are what
 # all others stand on and have their parent's name: base is swingbank, sim/core is swingbank::sim. A folder that holds
-# rooms holds no source.
+# rooms holds no source. JSON is read through base/json.hpp, which alone includes the library.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
@@ -33,4 +33,8 @@ while IFS=: read -r file opened; do
     failed=1
   fi
 done < <(git grep --untracked '^namespace swingbank' -- "${sources[@]}")
+if git grep --untracked -n '#include <nlohmann/json.hpp>' -- '*.?pp' ':!base/json.hpp'; then
+  echo "these include the library of JSON, which takes 1e95 for a whole number: include base/json.hpp" >&2
+  failed=1
+fi
 exit "$failed"

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/constants.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
 #include "train/data/random.hpp"

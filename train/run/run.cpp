@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
 #include "train/data/random.hpp"

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/input_file.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/sealed_file.hpp"
 #include "train/run/detail/posterior.hpp"

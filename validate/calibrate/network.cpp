@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "sim/plant/usual.hpp"
 
 namespace swingbank::validate::calibrate {

@@ -1,9 +1,9 @@
 #pragma once
 // A calibration as text for the terminal and as JSON.
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/report/page.hpp"
 

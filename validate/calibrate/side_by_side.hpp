@@ -3,10 +3,10 @@
 // what each leaves of every event.
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/calibrate/curve_fit.hpp"
 #include "validate/calibrate/network.hpp"

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
+
+#include "base/json.hpp"
 
 namespace swingbank::validate::compare {
 namespace {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/page_parts.hpp"

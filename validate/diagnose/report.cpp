@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "base/constants.hpp"
+#include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_laws.hpp"

@@ -8,9 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/diagnose/report.hpp"

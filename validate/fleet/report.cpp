@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/thresholds/adequacy.hpp"
 

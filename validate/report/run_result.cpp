@@ -7,8 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <tuple>
+
+#include "base/json.hpp"
 
 namespace swingbank::validate::report {
 namespace {

@@ -5,10 +5,10 @@
 // jobs/retrain_run.hpp.
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "validate/add/add.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/side_by_side.hpp"

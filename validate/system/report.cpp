@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/constants.hpp"
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/list.hpp"

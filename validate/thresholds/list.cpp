@@ -3,7 +3,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "base/json.hpp"
 
 namespace swingbank::validate::thresholds {
 namespace {

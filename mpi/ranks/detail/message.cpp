@@ -1,10 +1,9 @@
 #include "mpi/ranks/detail/message.hpp"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/json_text.hpp"
+#include "base/json.hpp"
 
 namespace swingbank::mpi::ranks {
 

@@ -1,6 +1,6 @@
 // The reference integrator against records of ANDES (tests/reference/README.md says how they were made).
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
 namespace swingbank::sim::reference {

@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
 
 namespace swingbank::train::loop {

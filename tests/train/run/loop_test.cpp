@@ -3,9 +3,9 @@
 #include "train/loop/loop.hpp"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
 #include "tests/train/data/fixture.hpp"

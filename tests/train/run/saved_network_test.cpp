@@ -2,8 +2,8 @@
 #include "train/run/saved_network.hpp"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "base/problem.hpp"
 #include "tests/train/data/fixture.hpp"
 #include "train/loop/loop.hpp"

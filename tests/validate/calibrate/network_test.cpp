@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/calibrate/example.hpp"
 #include "tests/validate/playin/support.hpp"

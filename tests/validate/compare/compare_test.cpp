@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <random>
 
+#include "base/json.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/compare/report.hpp"

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
+
+#include "base/json.hpp"
 
 namespace swingbank::validate::compare {
 namespace {

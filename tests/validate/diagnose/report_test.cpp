@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <regex>
 
+#include "base/json.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "tests/validate/report/browser.hpp"

@@ -5,9 +5,9 @@
 
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/json.hpp"
 #include "validate/fleet/report.hpp"
 
 namespace swingbank::validate::fleet {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/report/detail/scaling.hpp"
 #include "validate/report/detail/thesis_tables.hpp"
@@ -243,7 +243,7 @@ void write_sizes(const std::function<void(const std::string&, const json&)>& wri
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     json r = result("V", "cnn", 30, 0.1 / std::sqrt(share));
     r["train_share"] = share;
-    r["train_rows"] = 4000 * share;
+    r["train_rows"] = static_cast<int>(4000 * share);
     r["processor_seconds"] = 100 * share;
     write(std::to_string(share), r);
   }

@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 
+#include "base/json.hpp"
 #include "sim/grid/attach.hpp"
 #include "tests/validate/playin/support.hpp"
 

@@ -3,8 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::thresholds {

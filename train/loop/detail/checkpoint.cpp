@@ -1,7 +1,6 @@
 #include "train/loop/detail/checkpoint.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.hpp"
 #include "base/sealed_file.hpp"
 
 namespace swingbank::train::loop {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/run_lock.hpp"
 #include "base/sealed_file.hpp"
 #include "train/direct/direct.hpp"

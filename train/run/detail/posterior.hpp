@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/json.hpp"
 #include "train/loop/loop.hpp"
 #include "train/posterior/coverage.hpp"
 #include "train/posterior/head.hpp"

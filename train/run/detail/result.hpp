@@ -1,7 +1,7 @@
 #pragma once
 // The JSON of one run; its keys stand in train/run/README.md.
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "train/run/run.hpp"
 
 namespace swingbank::train::run {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <nlohmann/json.hpp>
+
+#include "base/json.hpp"
 
 namespace swingbank::train::run {
 namespace {

@@ -4,11 +4,11 @@
 // of our integrators, switchings off the sampling grid. The files are described in docs/blind-test.md.
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "sim/network/event.hpp"
 #include "validate/blind/cases/config.hpp"
 #include "validate/plant/plant_model.hpp"

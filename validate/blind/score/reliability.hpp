@@ -1,10 +1,10 @@
 #pragma once
 // Are the probabilities true? Of all explanations that were given 80 %, four in five should be the right one.
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "base/rate.hpp"
 
 namespace swingbank::validate::blind::score {

@@ -2,10 +2,10 @@
 // The score of a blind run: verdicts against the sealed truth, as rates with their 95 % intervals.
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "base/rate.hpp"
 #include "validate/blind/score/reliability.hpp"
 #include "validate/blind/score/verdict.hpp"

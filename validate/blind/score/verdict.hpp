@@ -2,9 +2,10 @@
 // What a diagnosis said of a blind case, and the seam through which one is asked.
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "base/json.hpp"
 
 namespace swingbank::validate::blind::score {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "validate/laws/regression.hpp"
 
 namespace swingbank::validate::diagnose {
