@@ -1,16 +1,17 @@
 #pragma once
 // JSON as every source reads and writes it: nlohmann's, with whole numbers that are whole, and as text.
-#include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 /// The library casts: 1e95 as a count is undefined, 1.5 becomes 1, -1 becomes 2^64 - 1 and true becomes 1.
 /// Here a whole number is one that was written as such and fits; anything else throws type_error. Sources
-/// include this file and not the library's, so that no two of them read differently.
-template <std::integral T>
-requires(!std::same_as<T, bool>) struct nlohmann::adl_serializer<T, void> {
+/// include this file and not the library's, so that no two of them read differently; so do the precompiled
+/// headers, in which clang instantiates (and would take the library's own).
+template <class T>
+struct nlohmann::adl_serializer<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
   template <class Json>
   static void from_json(const Json& j, T& value) {
     const auto take = [&](auto number) {

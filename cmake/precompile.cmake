@@ -25,4 +25,4 @@ endfunction()
 set(standard <algorithm> <array> <cmath> <complex> <filesystem> <functional> <map> <memory> <numbers> <optional> <ranges>
   <set> <span> <string> <string_view> <utility> <vector> <fmt/format.h>)
 swingbank_precompiled(hot swingbank_hot HEADERS ${standard} <Eigen/Dense>)
-swingbank_precompiled(cold swingbank_cold HEADERS ${standard} <fstream> <sstream> <nlohmann/json.hpp>)
+swingbank_precompiled(cold swingbank_cold HEADERS ${standard} <fstream> <sstream> ${PROJECT_SOURCE_DIR}/base/json.hpp)

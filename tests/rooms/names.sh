@@ -33,7 +33,7 @@ while IFS=: read -r file opened; do
     failed=1
   fi
 done < <(git grep --untracked '^namespace swingbank' -- "${sources[@]}")
-if git grep --untracked -n '#include <nlohmann/json.hpp>' -- '*.?pp' ':!base/json.hpp'; then
+if git grep --untracked -n '<nlohmann/json.hpp>' -- '*.?pp' '*.cmake' '*CMakeLists.txt' ':!base/json.hpp'; then
   echo "these include the library of JSON, which takes 1e95 for a whole number: include base/json.hpp" >&2
   failed=1
 fi
