@@ -6,7 +6,9 @@
 #include <functional>
 
 #include "base/durable.hpp"
+#include "base/json.hpp"
 #include "base/problem.hpp"
+#include "base/sealed_text.hpp"
 #include "mpi/store/journal.hpp"
 #include "mpi/store/shard_check.hpp"
 #include "tests/mpi/store/sample_shard.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 using test::Folder;
 using test::sample_shard;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string sentence_of(const std::function<void()>& work) {
@@ -294,6 +297,21 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   const auto lines = read_journals(folder.path);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].shard, 0u);
+}
+
+TEST(JournalFile, ACountThatIsNoneIsDamageThoughTheSumIsTrue) {
+  const TwoShards folder;
+  const auto file = folder.path / "journal.jsonl";
+  const std::string text = read_text(file);
+  auto line = nlohmann::ordered_json::parse(text.substr(0, text.find('\n')));
+  line.erase("sum");
+  for (const char* count : {"1.3e95", "-1", "5.5"}) {
+    line["bytes"] = nlohmann::ordered_json::parse(count);
+    write_text(file, sealed_text(line.dump()));
+    EXPECT_THAT(sentence_of([&] { read_journals(folder.path); }),
+                AllOf(HasSubstr("damaged journal line at " + file.string() + ":1"),
+                      HasSubstr("a whole number of 0 to")));
+  }
 }
 
 TEST(JournalFile, PartsAreReadAsOne) {
