@@ -14,11 +14,6 @@ endif()
 if(SWINGBANK_ARCH)
   target_compile_options(swingbank_options INTERFACE -march=${SWINGBANK_ARCH})
 endif()
-# Below AVX-512, GCC notes of every pack of eight doubles that it is passed otherwise than by GCC 4.5 or with AVX-512
-# ("Warning Options", -Wpsabi). No pack leaves a program, and each program is compiled for one instruction set.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT SWINGBANK_ARCH STREQUAL "native")
-  target_compile_options(swingbank_options INTERFACE -Wno-psabi)
-endif()
 if(SWINGBANK_COUNT_FLOPS)
   target_compile_definitions(swingbank_options INTERFACE SWINGBANK_COUNT_FLOPS)
 endif()

@@ -1,10 +1,12 @@
 #pragma once
-// Pack<N>: N independent scenarios in one value, on the compiler's vector extension. Operators are one
-// instruction per 8 lanes on AVX-512 and are lowered to what the target has elsewhere, so every width
-// compiles on every machine.
+// Packed<S, N>: N independent scenarios in one value. As many as fill a vector register are one vector of the
+// compiler's extension; more are two halves, each by itself. So every width is fast on every processor: GCC
+// lowers a vector wider than the registers through memory.
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#ifdef __AVX512F__
+#include <type_traits>
+#ifdef __AVX__
 #include <immintrin.h>
 #endif
 
@@ -20,76 +22,208 @@ inline void count_operations(int lanes) { pack_operations += static_cast<std::ui
 inline void count_operations(int) {}
 #endif
 
-template <int N>
-struct PackTypes;  // spelled out per width: GCC 12 drops vector_size on a dependent width
-template <>
-struct PackTypes<4> {
-  typedef double Vector __attribute__((vector_size(32)));
-  typedef std::int64_t Mask __attribute__((vector_size(32)));
+/// Bytes of a vector register of the target.
+#if defined(__AVX512F__)
+inline constexpr std::size_t kRegisterBytes = 64;
+#elif defined(__AVX__)
+inline constexpr std::size_t kRegisterBytes = 32;
+#else
+inline constexpr std::size_t kRegisterBytes = 16;
+#endif
+
+template <class S, std::size_t Bytes>
+struct VectorOf;  // spelled out per width: GCC 12 drops vector_size on a dependent width
+template <class S>
+struct VectorOf<S, 16> {
+  typedef S Type __attribute__((vector_size(16)));
 };
-template <>
-struct PackTypes<8> {
-  typedef double Vector __attribute__((vector_size(64)));
-  typedef std::int64_t Mask __attribute__((vector_size(64)));
+template <class S>
+struct VectorOf<S, 32> {
+  typedef S Type __attribute__((vector_size(32)));
+};
+template <class S>
+struct VectorOf<S, 64> {
+  typedef S Type __attribute__((vector_size(64)));
 };
 
-template <int N>
-struct Pack {
-  using Vector = typename PackTypes<N>::Vector;
-  using Mask = typename PackTypes<N>::Mask;
+/// Wider than a register: two halves. S is double or float.
+template <class S, int N>
+struct Packed {
+  using Half = Packed<S, N / 2>;
+  struct Mask {
+    typename Half::Mask low, high;
+  };
   static constexpr int lanes = N;
-  Vector v;
-  Pack() = default;
-  Pack(Vector a) : v(a) {}             // NOLINT(google-explicit-constructor): a pack is its vector
-  Pack(double a) : v(a - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
-  double operator[](int lane) const { return v[lane]; }
-  void set(int lane, double a) { v[lane] = a; }
+  static constexpr bool one_register = false;
+  Half low, high;
+  Packed() = default;
+  Packed(double a) : low(a), high(a) {}  // NOLINT(google-explicit-constructor): broadcast
+  Packed(Half l, Half h) : low(l), high(h) {}
+  S operator[](int lane) const { return lane < N / 2 ? low[lane] : high[lane - N / 2]; }
+  void set(int lane, double a) { lane < N / 2 ? low.set(lane, a) : high.set(lane - N / 2, a); }
+  /// Lane l is set where bit l is.
+  static Mask mask(unsigned bits) { return {Half::mask(bits), Half::mask(bits >> (N / 2))}; }
 
-  friend Pack operator+(Pack a, Pack b) { return counted(a.v + b.v); }
-  friend Pack operator-(Pack a, Pack b) { return counted(a.v - b.v); }
-  friend Pack operator*(Pack a, Pack b) { return counted(a.v * b.v); }
-  friend Pack operator/(Pack a, Pack b) { return counted(a.v / b.v); }
-  friend Pack operator-(Pack a) { return Pack(-a.v); }
-  friend Mask operator<(Pack a, Pack b) { return a.v < b.v; }
-  friend Mask operator>(Pack a, Pack b) { return a.v > b.v; }
-  friend Mask operator<=(Pack a, Pack b) { return a.v <= b.v; }
-  friend Pack select(Mask m, Pack a, Pack b) { return Pack(m ? a.v : b.v); }
+  friend Packed operator+(Packed a, Packed b) { return {a.low + b.low, a.high + b.high}; }
+  friend Packed operator-(Packed a, Packed b) { return {a.low - b.low, a.high - b.high}; }
+  friend Packed operator*(Packed a, Packed b) { return {a.low * b.low, a.high * b.high}; }
+  friend Packed operator/(Packed a, Packed b) { return {a.low / b.low, a.high / b.high}; }
+  friend Packed operator-(Packed a) { return {-a.low, -a.high}; }
+  friend Mask operator<(Packed a, Packed b) { return {a.low < b.low, a.high < b.high}; }
+  friend Mask operator>(Packed a, Packed b) { return {a.low > b.low, a.high > b.high}; }
+  friend Mask operator<=(Packed a, Packed b) { return {a.low <= b.low, a.high <= b.high}; }
+  friend Packed select(Mask m, Packed a, Packed b) {
+    return {select(m.low, a.low, b.low), select(m.high, a.high, b.high)};
+  }
+  friend bool any_positive(Packed a) { return any_positive(a.low) || any_positive(a.high); }
+};
+
+/// One register, or less.
+template <class S, int N>
+requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
+  using Vector = typename VectorOf<S, sizeof(S) * N>::Type;
+  using Integer = std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;
+  using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;
+  static constexpr int lanes = N;
+  static constexpr bool one_register = true;
+  Vector v;
+  Packed() = default;
+  Packed(Vector a) : v(a) {}                             // NOLINT(google-explicit-constructor)
+  Packed(double a) : v(static_cast<S>(a) - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
+  S operator[](int lane) const { return v[lane]; }
+  void set(int lane, double a) { v[lane] = static_cast<S>(a); }
+  static Mask mask(unsigned bits) {
+    Mask lane_bit{};
+    for (int l = 0; l < N; ++l) lane_bit[l] = Integer(1) << l;
+    return (lane_bit & static_cast<Integer>(bits)) != 0;
+  }
+
+  friend Packed operator+(Packed a, Packed b) { return counted(a.v + b.v); }
+  friend Packed operator-(Packed a, Packed b) { return counted(a.v - b.v); }
+  friend Packed operator*(Packed a, Packed b) { return counted(a.v * b.v); }
+  friend Packed operator/(Packed a, Packed b) { return counted(a.v / b.v); }
+  friend Packed operator-(Packed a) { return Packed(-a.v); }
+  friend Mask operator<(Packed a, Packed b) { return a.v < b.v; }
+  friend Mask operator>(Packed a, Packed b) { return a.v > b.v; }
+  friend Mask operator<=(Packed a, Packed b) { return a.v <= b.v; }
+  friend Packed select(Mask m, Packed a, Packed b) { return Packed(m ? a.v : b.v); }
+  /// Whether any lane is above zero.
+  friend bool any_positive(Packed a) {
+#ifdef __AVX512F__
+    if constexpr (sizeof a == 64 && sizeof(S) == 8)
+      return _mm512_cmp_pd_mask((__m512d)a.v, _mm512_setzero_pd(), _CMP_GT_OQ) != 0;
+    else if constexpr (sizeof a == 64)
+      return _mm512_cmp_ps_mask((__m512)a.v, _mm512_setzero_ps(), _CMP_GT_OQ) != 0;
+#endif
+#ifdef __AVX__
+    if constexpr (sizeof a == 32 && sizeof(S) == 8)
+      return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a.v, _mm256_setzero_pd(), _CMP_GT_OQ)) != 0;
+    else if constexpr (sizeof a == 32)
+      return _mm256_movemask_ps(_mm256_cmp_ps((__m256)a.v, _mm256_setzero_ps(), _CMP_GT_OQ)) != 0;
+#endif
+    bool any = false;
+    for (int lane = 0; lane < N; ++lane) any |= a[lane] > 0;
+    return any;
+  }
 
  private:
-  static Pack counted(Vector v) {
+  static Packed counted(Vector v) {
     count_operations(N);
-    return Pack(v);
+    return Packed(v);
   }
 };
-
+/// N doubles.
 template <int N>
-inline Pack<N> sqrt(Pack<N> a) {
-  count_operations(N);
+using Pack = Packed<double, N>;
+
+template <class S, int N>
+inline Packed<S, N> sqrt(Packed<S, N> a) {
+  if constexpr (!Packed<S, N>::one_register) {
+    return {sqrt(a.low), sqrt(a.high)};
+  } else {
+    count_operations(N);
+    using Vector [[maybe_unused]] = typename Packed<S, N>::Vector;
 #ifdef __AVX512F__
-  if constexpr (N == 8) return Pack<N>((typename Pack<N>::Vector)_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v));
+    if constexpr (sizeof a == 64 && sizeof(S) == 8)
+      return Vector(_mm512_maskz_sqrt_pd(0xff, (__m512d)a.v));
+    else if constexpr (sizeof a == 64)
+      return Vector(_mm512_maskz_sqrt_ps(0xffff, (__m512)a.v));
 #endif
-  for (int i = 0; i < N; ++i) a.v[i] = std::sqrt(a.v[i]);
+#ifdef __AVX__
+    if constexpr (sizeof a == 32 && sizeof(S) == 8)
+      return Vector(_mm256_sqrt_pd((__m256d)a.v));
+    else if constexpr (sizeof a == 32)
+      return Vector(_mm256_sqrt_ps((__m256)a.v));
+#endif
+    for (int i = 0; i < N; ++i) a.v[i] = std::sqrt(a.v[i]);
+    return a;
+  }
+}
+
+/// Lane by lane through the C library: the same bits as for a scalar. For the few effects that need them.
+template <class S, int N>
+inline Packed<S, N> exp(Packed<S, N> a) {
+  for (int i = 0; i < N; ++i) a.set(i, std::exp(a[i]));
+  return a;
+}
+template <class S, int N>
+inline Packed<S, N> log(Packed<S, N> a) {
+  for (int i = 0; i < N; ++i) a.set(i, std::log(a[i]));
   return a;
 }
 
-/// Lane by lane through the C library: the same bits as for a double. For the few effects that need them.
-template <int N>
-inline Pack<N> exp(Pack<N> a) {
-  for (int i = 0; i < N; ++i) a.v[i] = std::exp(a.v[i]);
-  return a;
-}
-template <int N>
-inline Pack<N> log(Pack<N> a) {
-  for (int i = 0; i < N; ++i) a.v[i] = std::log(a.v[i]);
-  return a;
+/// The nearest whole number (to even). Adding 1.5 times two to the number of fraction bits leaves no room for
+/// a fraction; |a| must stay below 2^51 (double) or 2^22 (float).
+template <class S, int N>
+inline Packed<S, N> round_nearest(Packed<S, N> a) {
+  if constexpr (!Packed<S, N>::one_register) {
+    return {round_nearest(a.low), round_nearest(a.high)};
+  } else {
+    const Packed<S, N> magic(sizeof(S) == 8 ? 6755399441055744.0 : 12582912.0);
+    const typename Packed<S, N>::Vector t = a.v + magic.v;
+    return Packed<S, N>(t - magic.v);
+  }
 }
 
-/// Largest integer-valued rounding (to nearest even) by the 1.5·2^52 trick; |a| must stay below 2^51.
-template <int N>
-inline Pack<N> round_nearest(Pack<N> a) {
-  const Pack<N> magic(6755399441055744.0);
-  typename Pack<N>::Vector t = a.v + magic.v;
-  return Pack<N>(t - magic.v);
+/// The quadrant of k multiples of pi/2 applied to the sine and cosine of the remainder: s and c of the whole.
+template <class S, int N>
+inline void turn(Packed<S, N> k, Packed<S, N> sine, Packed<S, N> cosine, Packed<S, N>& s, Packed<S, N>& c) {
+  if constexpr (!Packed<S, N>::one_register) {
+    turn(k.low, sine.low, cosine.low, s.low, c.low);
+    turn(k.high, sine.high, cosine.high, s.high, c.high);
+  } else {
+    using P = Packed<S, N>;
+    using Mask = typename P::Mask;
+    constexpr int kToSign = 8 * sizeof(S) - 2;
+    const Mask q = __builtin_convertvector(k.v, Mask);
+    const Mask odd = -(q & 1);
+    const P ss = select(odd, cosine, sine), cc = select(odd, sine, cosine);
+    const Mask ssign = (q & 2) << kToSign, csign = ((q + 1) & 2) << kToSign;
+    s = P((typename P::Vector)((Mask)ss.v ^ ssign));
+    c = P((typename P::Vector)((Mask)cc.v ^ csign));
+  }
+}
+/// |a|.
+template <class S, int N>
+inline Packed<S, N> absolute(Packed<S, N> a) {
+  if constexpr (!Packed<S, N>::one_register) {
+    return {absolute(a.low), absolute(a.high)};
+  } else {
+    using Mask = typename Packed<S, N>::Mask;
+    const Mask sign = (Mask)(Packed<S, N>(-0.0).v);
+    return Packed<S, N>((typename Packed<S, N>::Vector)((Mask)a.v & ~sign));
+  }
+}
+/// |a| with the sign of b.
+template <class S, int N>
+inline Packed<S, N> with_sign(Packed<S, N> a, Packed<S, N> b) {
+  if constexpr (!Packed<S, N>::one_register) {
+    return {with_sign(a.low, b.low), with_sign(a.high, b.high)};
+  } else {
+    using Mask = typename Packed<S, N>::Mask;
+    const Mask sign = (Mask)(Packed<S, N>(-0.0).v);
+    return Packed<S, N>((typename Packed<S, N>::Vector)(((Mask)a.v & ~sign) | ((Mask)b.v & sign)));
+  }
 }
 
 /// Sine and cosine together, at most 2 ulp for |a| < 1e5 rad. Reduction by multiples of pi/2 in three
@@ -97,7 +231,6 @@ inline Pack<N> round_nearest(Pack<N> a) {
 template <int N>
 inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   using P = Pack<N>;
-  using Mask = typename P::Mask;
   const P k = round_nearest(a * P(0.63661977236758134308));
   const P r = ((a - k * P(1.57079625129699707031)) - k * P(7.54978941586159635335e-8)) -
               k * P(5.39030252995776476555e-15);
@@ -124,12 +257,7 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
                 z) *
                    z +
                (P(1.0) - P(0.5) * z);
-  const Mask q = __builtin_convertvector(k.v, Mask);
-  const Mask odd = -(q & 1);
-  const P ss = select(odd, pc, ps), cc = select(odd, ps, pc);
-  const Mask ssign = (q & 2) << 62, csign = ((q + 1) & 2) << 62;
-  s = P((typename P::Vector)((Mask)ss.v ^ ssign));
-  c = P((typename P::Vector)((Mask)cc.v ^ csign));
+  turn(k, ps, pc, s, c);
 }
 
 /// Four-quadrant arctangent, at most 2 ulp; 0 where both arguments are 0. Reduction and rational
@@ -137,10 +265,8 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
 template <int N>
 inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   using P = Pack<N>;
-  using Mask = typename P::Mask;
-  const Mask sign_bit = Mask{} + std::int64_t(1ULL << 63);
-  const P a((typename P::Vector)((Mask)y.v & ~sign_bit)), b((typename P::Vector)((Mask)x.v & ~sign_bit));
-  const Mask big = a > P(2.41421356237309504880) * b, mid = a > P(0.66) * b;
+  const P a = absolute(y), b = absolute(x);
+  const typename P::Mask big = a > P(2.41421356237309504880) * b, mid = a > P(0.66) * b;
   const P numerator = select(big, -b, select(mid, a - b, a));
   P denominator = select(big, a, select(mid, a + b, b));
   denominator = select(denominator > P(0.0), denominator, P(1.0));
@@ -160,7 +286,7 @@ inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
               P(1.945506571482613964425e2);
   P r = offset + (t + t * (z * p / q));
   r = select(x < P(0.0), P(constants::pi) - r, r);
-  return P((typename P::Vector)((Mask)r.v | ((Mask)y.v & sign_bit)));
+  return with_sign(r, y);
 }
 
 }  // namespace swingbank::sim

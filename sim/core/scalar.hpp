@@ -14,10 +14,12 @@ constexpr int kDirections = 8;
 using D8 = Dual<double, kDirections>;
 using P4 = Pack<4>;
 using P8 = Pack<8>;
-using D8P8 = Dual<P8, kDirections>;  ///< eight scenarios with eight sensitivities each
+/// Scenarios with sensitivities that ride together: more than a register holds would leave the first cache.
+constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
+using DualPack = Dual<Pack<kDualLanes>, kDirections>;
 
 /// Every scalar an effect is instantiated for. The one place to extend.
-using Scalars = std::tuple<double, P4, P8, D8, D8P8>;
+using Scalars = std::tuple<double, P4, P8, D8, DualPack>;
 
 inline void sincos(double a, double& s, double& c) {
   s = std::sin(a);
@@ -71,8 +73,8 @@ inline T clamp(const T& a, const T& low, const T& high) {
 
 /// The plain value of any scalar (lane 0 of a pack): for messages and branches in double code only.
 inline double value_of(double a) { return a; }
-template <int N>
-inline double value_of(const Pack<N>& a) {
+template <class S, int N>
+inline double value_of(const Packed<S, N>& a) {
   return a[0];
 }
 template <class T, int N>
@@ -82,15 +84,6 @@ inline double value_of(const Dual<T, N>& a) {
 
 /// Whether any lane is above zero: to leave out what no lane needs, as long as lanes without it add nothing.
 inline bool any_positive(double a) { return a > 0.0; }
-template <int N>
-inline bool any_positive(const Pack<N>& a) {
-#ifdef __AVX512F__
-  if constexpr (N == 8) return _mm512_cmp_pd_mask((__m512d)a.v, _mm512_setzero_pd(), _CMP_GT_OQ) != 0;
-#endif
-  bool any = false;
-  for (int lane = 0; lane < N; ++lane) any |= a[lane] > 0.0;
-  return any;
-}
 template <class T, int N>
 inline bool any_positive(const Dual<T, N>& a) {
   return any_positive(a.a);

@@ -16,13 +16,7 @@ constexpr std::string_view instruction_set() {
   return "baseline";
 #endif
 }
-constexpr int widest() {
-#if defined(__AVX512F__)
-  return 8;
-#else
-  return 4;
-#endif
-}
+constexpr int widest() { return kRegisterBytes == 64 ? 8 : 4; }
 }  // namespace
 
 namespace detail {
@@ -96,14 +90,15 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 }
 
 Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
-  if (options.lanes == 0) options.lanes = options.sensitivities ? 8 : widest();
+  if (options.lanes == 0) options.lanes = options.sensitivities ? kDualLanes : widest();
   impl_->options = options;
   refuse_far_regulation(grid);
   if (options.sensitivities) {
-    if (options.lanes != 8)
+    if (options.lanes != kDualLanes)
       throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
-                        "sensitivities are built for 8", "choose 8, or 0"});
-    impl_->engine = std::make_unique<detail::EngineOf<D8P8>>(grid, options);
+                        fmt::format("sensitivities are built for {} on this processor", kDualLanes),
+                        fmt::format("choose {}, or 0", kDualLanes)});
+    impl_->engine = std::make_unique<detail::EngineOf<DualPack>>(grid, options);
     return;
   }
   switch (options.lanes) {

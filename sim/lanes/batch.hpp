@@ -22,7 +22,7 @@ struct BatchOptions {
   int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 46); 0: the widest in double of this build
   /// A run ends where a rotor angle has moved by so much against another's of the same island since the start
   double lose_at = constants::pi;  ///< [rad]
-  bool sensitivities = false;      ///< carry derivatives along Job::seeds; always 8 lanes
+  bool sensitivities = false;      ///< carry derivatives along Job::seeds, in kDualLanes lanes
 };
 
 /// A parameter a sensitivity is wanted for. The step control weighs the sensitivity's error times `scale`

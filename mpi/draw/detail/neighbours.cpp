@@ -6,21 +6,19 @@
 #include <limits>
 #include <numeric>
 
+#include "sim/core/pack.hpp"
+
 namespace swingbank::mpi::draw {
 
 namespace {
-constexpr std::size_t kAxes = 4;          ///< gridded at most: 3^4 cells are visited
-constexpr double kWorthwhile = 3.0;       ///< an axis shorter than this many distances does not separate
-constexpr unsigned kBits = 16;            ///< of a cell number per axis
-constexpr std::size_t kPointsAtOnce = 8;  ///< points of a block
-constexpr std::size_t kTell = 4;          ///< axes after which most blocks are known to be far
-using Eight = double __attribute__((vector_size(kPointsAtOnce * sizeof(double))));
+constexpr std::size_t kAxes = 4;     ///< gridded at most: 3^4 cells are visited
+constexpr double kWorthwhile = 3.0;  ///< an axis shorter than this many distances does not separate
+constexpr unsigned kBits = 16;       ///< of a cell number per axis
+constexpr int kPointsAtOnce = 8;     ///< points of a block
+constexpr std::size_t kTell = 4;     ///< axes after which most blocks are known to be far
+using Block = sim::Pack<kPointsAtOnce>;
 
-bool any_below(const Eight& sums, double limit) {
-  for (std::size_t k = 0; k < kPointsAtOnce; ++k)
-    if (sums[k] < limit) return true;
-  return false;
-}
+bool any_below(Block sums, double limit) { return any_positive(Block(limit) - sums); }
 }  // namespace
 
 Neighbours::Neighbours(std::vector<double> low, std::vector<double> width, double distance)
@@ -49,12 +47,12 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
   const std::size_t n = order_.size();
   const std::vector<double>& blocks = found->second.blocks;
   for (const double *p = blocks.data(), *end = p + blocks.size(); p != end; p += n * kPointsAtOnce) {
-    Eight sums{};
+    Block sums(0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      Eight d;
+      Block d;
       std::memcpy(&d, p + i * kPointsAtOnce, sizeof d);
-      d -= x[i];
-      sums += d * d;
+      d = d - Block(x[i]);
+      sums = sums + d * d;
       if (i + 1 == kTell && !any_below(sums, limit)) break;
     }
     if (any_below(sums, limit)) return true;

@@ -150,10 +150,10 @@ TEST(LawFile, DualsEqualCentralDifferences) {
     for (std::size_t j = 0; j < p.size(); ++j) {
       std::vector<D8> dual(p.begin(), p.end());
       dual[j].d[0] = 1.0;
-      std::vector<D8P8> packed(p.begin(), p.end());
-      packed[j].d[3] = P8(1.0);
+      std::vector<DualPack> packed(p.begin(), p.end());
+      packed[j].d[3] = Pack<kDualLanes>(1.0);
       const auto exact = outputs<D8>(*law, dual, test::ControlBench::rated(), disturbed());
-      const auto lanes = outputs<D8P8>(*law, packed, test::ControlBench::rated(), disturbed());
+      const auto lanes = outputs<DualPack>(*law, packed, test::ControlBench::rated(), disturbed());
       const double h = 1e-6 * std::max(1e-2, std::abs(p[j]));
       auto up = p, down = p;
       up[j] += h;
@@ -165,7 +165,8 @@ TEST(LawFile, DualsEqualCentralDifferences) {
         // the quotient's own rounding: 1e-16 of values up to 1e2 over h = 1e-8
         EXPECT_NEAR(exact[i].d[0], quotient, 1e-6 * (10.0 + std::abs(quotient)))
             << law->name << " output " << i << " by " << law->parameters[j].name;
-        EXPECT_NEAR(lanes[i].d[3][5], exact[i].d[0], 1e-12 * (1.0 + std::abs(exact[i].d[0]))) << law->name;
+        EXPECT_NEAR(lanes[i].d[3][kDualLanes - 1], exact[i].d[0], 1e-12 * (1.0 + std::abs(exact[i].d[0])))
+            << law->name;
       }
     }
   }
