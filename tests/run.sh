@@ -9,8 +9,8 @@
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
 #     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
-#                     each fuzz target runs for 10 s (in the nightly run for minutes), and the tests of the rooms that
-#                     read files run under both sanitizers
+#                     what computes in packs is compiled for AVX2 whatever the processor, each fuzz target runs for 10 s
+#                     (in the nightly run for minutes), and the tests of the rooms that read files run under both sanitizers
 # PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -96,6 +96,16 @@ each_alone() {
   return 1
 }
 
+# Most processors have no AVX-512. What computes in packs must compile for them without a warning wherever the check
+# runs: the packs' own tests, the batched kernel, the playback's sensitivities. Where the processor can, the tests run.
+for_avx2() {
+  local folder=$source_folder/build/ci-x86-64-v3
+  cmake --preset ci -S "$source_folder" -B "$folder" -DSWINGBANK_ARCH=x86-64-v3 >"$folder.log" &&
+    cmake --build "$folder" --target test_sim_core swingbank_sim_lanes swingbank_validate_playin >>"$folder.log" 2>&1 ||
+    { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
+  ! grep -qw avx2 /proc/cpuinfo || "$folder/bin/test_sim_core" --gtest_brief=1
+}
+
 # What starts threads, under the thread sanitizer: seven seconds, or for ever where threads disturb one another.
 threads() {
   local log=$source_folder/build/tsan.log
@@ -122,6 +132,8 @@ if ((ci)); then
   check_format || failed+=(clang-format)
 fi
 if ((ci)); then
+  say "packs for AVX2"
+  for_avx2 || failed+=(avx2)
   say "fuzz targets"
   bash "$source_folder/tests/fuzz/run.bash" 10 || failed+=(fuzz)
   say "readers' tests under the sanitizers"
