@@ -188,11 +188,13 @@ void describe_angle(const record::Record& r, Signals& s) {
   s.angle_rate =
       median_in(s.event && s.onset >= 2 ? until(turns, s.onset - 1) : std::span<const double>(turns)) /
       r.step();
-  // Over 0.1 s, so that noise does not count.
-  const auto apart = std::max<std::size_t>(1, static_cast<std::size_t>(0.1 * r.rate()));
+  // Over 0.1 s, so that noise does not count, or over half of a shorter record.
+  const auto apart = std::clamp<std::size_t>(static_cast<std::size_t>(0.1 * r.rate()), 1,
+                                             std::max<std::size_t>(theta.size() / 2, 1));
   std::vector<double> fast;
   for (std::size_t k = 0; k + apart < theta.size(); ++k)
     fast.push_back(std::abs(theta[k + apart] - theta[k]) / (static_cast<double>(apart) * r.step()));
+  if (fast.empty()) return;
   const auto rank = static_cast<std::ptrdiff_t>(fast.size() * 70 / 100);
   std::ranges::nth_element(fast, fast.begin() + rank);
   s.fast_angle = fast[static_cast<std::size_t>(rank)];

@@ -3,118 +3,21 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "validate/record/detail/build.hpp"
+#include "validate/record/detail/cells.hpp"
 #include "validate/record/detail/playback.hpp"
+#include "validate/record/detail/stamp.hpp"
 #include "validate/record/detail/text.hpp"
-#include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
 namespace {
-
-using Cells = std::vector<std::string_view>;
-
-std::string_view unquoted(std::string_view s) {
-  constexpr std::string_view blank = " \t\r\"";
-  const auto first = s.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return s.substr(first, s.find_last_not_of(blank) - first + 1);
-}
-
-/// Cells of a line; a separator between quotes is text, and blanks separate in any number.
-Cells split(std::string_view line, char separator) {
-  Cells cells;
-  if (separator == ' ') {
-    for (std::string_view rest = unquoted(line); !rest.empty(); rest = unquoted(rest)) {
-      const auto end = std::min(rest.find_first_of(" \t"), rest.size());
-      cells.push_back(unquoted(rest.substr(0, end)));
-      rest.remove_prefix(end);
-    }
-    return cells;
-  }
-  std::size_t begin = 0;
-  bool quoted = false;
-  for (std::size_t at = 0; at <= line.size(); ++at) {
-    if (at < line.size() && line[at] == '"') quoted = !quoted;
-    if (at < line.size() && (quoted || line[at] != separator)) continue;
-    cells.push_back(unquoted(line.substr(begin, at - begin)));
-    begin = at + 1;
-  }
-  return cells;
-}
-
-/// What stands most often on the header line.
-char separator_of(std::string_view line) {
-  char best = ',';
-  std::size_t most = split(line, best).size();
-  for (const char c : {';', '\t'})
-    if (const auto n = split(line, c).size(); n > most) best = c, most = n;
-  return best;
-}
-
-/// Ways to say that there is no value.
-bool says_missing(std::string_view cell) {
-  const std::string word = normalised(cell);
-  return cell.empty() || word == "nan" || word == "na" || word == "null" || word == "none" || word == "bad" ||
-         word == "missing" || cell == "-" || cell == "--";
-}
-
-/// Codes that instruments write instead of a value.
-bool is_code(double v) {
-  for (const double code : {-999.0, 9999.0, 99999.0, 999999.0})
-    if (std::abs(v) == std::abs(code) && (v > 0 || code == -999.0 || v < -999.0)) return true;
-  return std::abs(v) >= 1e30;
-}
-
-struct Number {
-  double value = kNoValue;
-  int decimals = 0;
-  bool ok = false, comma = false, point = false;
-};
-
-/// A number; decimal commas where commas do not separate.
-Number parse_number(std::string_view cell, char separator) {
-  Number n;
-  std::string text;
-  const auto comma = cell.find(',');
-  if (separator != ',' && comma != std::string_view::npos && cell.find('.') == std::string_view::npos) {
-    text = cell;
-    text[comma] = '.';
-    cell = text;
-    n.comma = true;
-  }
-  if (cell.starts_with('+') && cell.size() > 1 && cell[1] != '-') cell.remove_prefix(1);
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), n.value);
-  n.ok = !cell.empty() && error == std::errc{} && end == cell.data() + cell.size();
-  if (const auto point = cell.find('.'); point != std::string_view::npos) {
-    n.point = !n.comma;
-    n.decimals = static_cast<int>(std::min(cell.find_first_of("eE"), cell.size()) - point - 1);
-    if (cell.find_first_of("eE") != std::string_view::npos) n.decimals = 0;
-  }
-  if (!n.ok) n.value = kNoValue;
-  return n;
-}
-
-/// Do blanks separate the values? So they do where three lines are numbers that nothing else separates.
-bool by_blanks(std::string_view text) {
-  int found = 0;
-  for (int n = 0; n < 50 && !text.empty(); ++n) {
-    const auto end = text.find('\n');
-    const std::string_view line = unquoted(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
-    const Cells cells = split(line, ' ');
-    if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }) &&
-        ++found == 3)
-      return true;
-  }
-  return false;
-}
 
 class CsvReader {
  public:
@@ -123,7 +26,7 @@ class CsvReader {
 
   Record read() {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // byte order mark of spreadsheet programs
-    blanks_ = by_blanks(text_);
+    top_ = find_top(text_, options_.columns);
     read_header();
     RawRecord raw;
     raw.about.name = name_;
@@ -131,8 +34,8 @@ class CsvReader {
                                ? fmt::format("{}:{}", name_, header_lines_.front())
                                : fmt::format("{}:{}-{}", name_, header_lines_.front(), header_lines_.back());
     headings();
-    for (auto& h : headings_)
-      if (h.meaning && h.meaning->quantity == Quantity::time && !h.meaning->unit) take_seconds(h, raw.about);
+    refuse_tall(at);
+    one_time(raw.about);
     chosen_ = choose_columns(headings_, options_, base_, at, raw.about, problems_);
     for (const auto i : chosen_)
       if (headings_[i].meaning->quantity == Quantity::time && stamped(i))
@@ -166,19 +69,26 @@ class CsvReader {
 
   /// A line of values: its first cell is a number or a stamp, or most cells are numbers.
   [[nodiscard]] bool is_data(const Cells& cells) const {
-    if (parse_number(cells[0], separator_).ok || parse_stamp(cells[0])) return true;
+    if (parse_number(cells[0], top_.separator).ok || parse_stamp(cells[0])) return true;
     const auto numbers = std::ranges::count_if(
-        cells, [&](auto c) { return parse_number(c, separator_).ok || says_missing(c); });
+        cells, [&](auto c) { return parse_number(c, top_.separator).ok || says_missing(c); });
     const auto empty = std::ranges::count_if(cells, [](auto c) { return c.empty(); });
     return 2 * (numbers - empty) > static_cast<std::ptrdiff_t>(cells.size()) - empty;
   }
 
-  /// Lines before the first values, at most 6; a line of a single cell (a title) is passed over.
+  /// Lines before the heading that may belong to it: names of stations, numbers of phasors.
+  [[nodiscard]] bool belongs_to_header(const Cells& cells) const {
+    constexpr int kAbove = 5;
+    return top_.line + 1 - number_ <= kAbove && cells.size() > 1 &&
+           std::ranges::none_of(cells, [&](auto c) { return parse_number(c, top_.separator).ok; });
+  }
+
+  /// The heading and the lines about it, at most 6, up to the first values.
   void read_header() {
     std::string_view line;
     while (next(line)) {
-      if (header_.empty()) separator_ = blanks_ ? ' ' : separator_of(line);
-      const Cells cells = split(line, separator_);
+      const Cells cells = split(line, top_.separator);
+      if (number_ <= top_.line && !belongs_to_header(cells)) continue;
       const bool data = is_data(cells);
       if (data && header_.empty() && by_number()) {
         header_.emplace_back(cells.size());  // headings without names: the map counts them
@@ -193,9 +103,7 @@ class CsvReader {
         pending_ = cells;
         break;
       }
-      if (header_.size() == 1 && header_.front().size() == 1) header_.clear(), header_lines_.clear();
-      if (header_.empty()) separator_ = blanks_ ? ' ' : separator_of(line);
-      header_.push_back(split(line, separator_));
+      header_.push_back(cells);
       header_lines_.push_back(number_);
     }
     if (header_.empty())
@@ -257,10 +165,46 @@ class CsvReader {
     });
   }
 
-  /// "Time" without a unit, and with numbers.
-  static void take_seconds(Heading& h, Record& about) {
-    h.meaning->unit = Unit::second;
-    about.notes.push_back(fmt::format("The column '{}' names no unit: it was taken for seconds.", h.name));
+  /// A table with one measurement a line: a name, a time, a value.
+  void refuse_tall(const std::string& where) {
+    constexpr std::string_view kNames =
+        "id name tag tagname point pointid pointtag pointname signal signalid signalname signaltag channel channelname "
+        "measurement measurementid variable parameter quantity sensor attribute device key series metric";
+    constexpr std::string_view kValues = "value values val reading measurement data wert valeur valor valore";
+    std::string name, value;
+    for (const Heading& h : headings_) {
+      if (h.meaning && h.meaning->quantity != Quantity::time) return;
+      const std::string word = normalised(h.name);
+      if (name.empty() && is_word_of(word, kNames))
+        name = h.name;
+      else if (value.empty() && is_word_of(word, kValues))
+        value = h.name;
+    }
+    if (name.empty() || value.empty() || !options_.columns.empty()) return;
+    problems_.add(
+        "a tall table", where,
+        fmt::format("it has one measurement a line ('{}' says of what, '{}' how much)", name, value),
+        "export a column for each quantity and a line for each time (a pivot table)");
+    problems_.raise();
+  }
+
+  /// Of several times the first one counts; the fraction of the second that C37.118 counts is kept beside it.
+  void one_time(Record& about) {
+    std::string first;
+    for (std::size_t i = 0; i < headings_.size(); ++i) {
+      auto& [name, meaning, unit] = headings_[i];
+      if (is_word_of(normalised(name.substr(0, name.find_first_of("([")).substr(0, name.find('_'))),
+                     "fracsec fracsecond fractionofsecond fractionofseconds fracseconds"))
+        fraction_ = i;
+      if (!meaning || meaning->quantity != Quantity::time || !meaning->terminal.empty()) continue;
+      if (first.empty()) {
+        first = name;
+      } else if (!options_.columns.contains("t")) {
+        about.notes.push_back(fmt::format(
+            "Of the times '{}' and '{}' the first is read: --columns \"t=…\" chooses.", first, name));
+        meaning.reset();
+      }
+    }
   }
 
   void headings() {
@@ -272,7 +216,7 @@ class CsvReader {
       const std::string_view cell = header_cell(quantities, i);
       auto m = column_meaning(cell, units ? header_cell(*units, i) : std::string_view{});
       if (stations && !header_cell(*stations, i).empty()) station = header_cell(*stations, i);
-      if (m && m->quantity == Quantity::time && !m->unit && stamped(i)) m->unit = Unit::stamp;
+      if (m && m->quantity == Quantity::time && stamped(i)) m->unit = Unit::stamp;
       if (m && stations && m->terminal.empty() && m->quantity != Quantity::time) m->terminal = station;
       headings_.push_back(
           {std::string(cell), m, std::string(units ? header_cell(*units, i) : std::string_view{})});
@@ -290,7 +234,7 @@ class CsvReader {
     }
     std::string_view line;
     if (!next(line)) return false;
-    cells_ = split(line, separator_);
+    cells_ = split(line, top_.separator);
     return true;
   }
 
@@ -316,6 +260,12 @@ class CsvReader {
                                                : value(column, cells_[chosen_[c]], sample, faults);
       column.values.push_back(v);
     }
+    if (!fraction_) return;
+    const double part = ragged ? kNoValue : parse_number(cells_[*fraction_], top_.separator).value;
+    if (!ragged && !std::isfinite(part))
+      faults.add(headings_[*fraction_].name, fmt::format("'{}'", cells_[*fraction_]), sample,
+                 "this is no number", "export it again");
+    fractions_.push_back(part);
   }
 
   /// Is nothing but blank lines left?
@@ -336,21 +286,29 @@ class CsvReader {
       first_ = s;
       raw.about.start = cell;
     }
-    decimals_ = std::max(decimals_, s->decimals);
-    return static_cast<double>(s->day - first_->day) * 86400 + (s->second - first_->second);
+    resolution_ = std::min(resolution_, s->resolution);
+    // Minutes alone go on at the hour.
+    if (s->in_hour && s->second < last_in_hour_ - 1800) hours_ += 3600;
+    last_in_hour_ = s->in_hour ? s->second : 0;
+    return hours_ + static_cast<double>(s->day - first_->day) * 86400 + (s->second - first_->second);
   }
 
   double value(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
     const char* const mend = "fill it at the source, cut the record before it, or export it again";
-    const Number n = parse_number(cell, separator_);
-    commas_ = commas_ || n.comma;
-    points_ = points_ || n.point;
+    const Number n = parse_number(cell, top_.separator);
+    commas_ = commas_ || (n.ok && n.comma);
+    points_ = points_ || (n.ok && n.point);
     const auto what = [&] { return fmt::format("{} = '{}'", column.name, cell); };
     const bool time = column.meaning.quantity == Quantity::time;
     if (says_missing(cell) && !time)
       faults.lose(column.name, what(), sample, "the value is missing", mend);
     else if (says_missing(cell))
       faults.add(column.name, what(), sample, "the value is missing", mend);
+    else if (n.ambiguous)
+      faults.add(column.name, what(), sample, "the comma may divide thousands or decimals",
+                 "export it without marks of thousands, or with semicolons between the columns");
+    else if (!n.ok && is_word(cell) && !time)
+      take_word(column, cell, sample, faults);
     else if (!n.ok)
       faults.add(column.name, what(), sample, "this is no number", mend);
     else if (!std::isfinite(n.value))
@@ -358,10 +316,17 @@ class CsvReader {
     else if (!time && is_code(n.value))
       faults.lose(column.name, what(), sample, "instruments write this where a value is missing", mend);
     else {
-      if (time) decimals_ = std::max(decimals_, n.decimals);
+      if (time && n.decimals > 0) resolution_ = std::min(resolution_, std::pow(10.0, -n.decimals));
       return n.value;
     }
     return kNoValue;
+  }
+
+  /// A word where a number belongs is a missing value; which words these were is noted.
+  void take_word(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
+    faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "this is no number",
+                "fill it at the source, cut the record before it, or export it again");
+    if (words_.try_emplace(std::string(cell), 0).first->second++ == 0) word_at_.emplace(cell, lines_[sample]);
   }
 
   /// UTC of the first stamp, where its zone is known.
@@ -374,10 +339,42 @@ class CsvReader {
       raw.about.epoch = static_cast<double>(first_->day) * 86400 + first_->second;
   }
 
-  void finish_times(RawRecord& raw) const {
-    if (decimals_ > 0 && decimals_ < 9) raw.time_resolution = std::pow(10.0, -decimals_);
-    for (const auto& c : raw.columns)  // whole milliseconds are a rounding too
-      if (decimals_ == 0 && c.meaning.unit == Unit::millisecond) raw.time_resolution = 1;
+  void finish_times(RawRecord& raw) {
+    const auto time =
+        std::ranges::find(raw.columns, Quantity::time, [](const auto& c) { return c.meaning.quantity; });
+    const auto unit = time->meaning.unit;
+    if (std::isfinite(resolution_))
+      raw.time_resolution = resolution_;
+    else if (std::ranges::any_of(time->values, [](double v) { return v != std::round(v); }))
+      raw.time_resolution = 0;
+    else if (unit == Unit::millisecond || unit == Unit::microsecond || unit == Unit::nanosecond ||
+             (!unit && !time->values.empty() && time->values.front() > 5e11))
+      raw.time_resolution = 1;  // whole milliseconds are a rounding too
+    if (fraction_) add_fractions(time->values, raw);
+    for (const auto& [word, count] : words_)
+      raw.about.notes.push_back(fmt::format("'{}' stands for {} {}, the first at {}:{}: taken for no value.",
+                                            word, count, count == 1 ? "number" : "numbers", name_,
+                                            word_at_.at(word)));
+  }
+
+  /// Fractions are seconds, or counts of a clock that has as many in a second as the record shows at its
+  /// wraps.
+  void add_fractions(std::vector<double>& t, RawRecord& raw) {
+    const std::string name = headings_[*fraction_].name;
+    double most = 0;
+    for (const double v : fractions_)
+      if (std::isfinite(v)) most = std::max(most, v);
+    const auto told = unit_in(Quantity::time, name, headings_[*fraction_].unit);
+    double scale = told ? to_record_units({Quantity::time, told, false, {}, false}, 1, base_) : 0;
+    if (!told && most < 1) scale = 1;
+    for (const double clock : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 16777216.0, 1e8, 1e9})
+      if (scale == 0 && most < clock && most >= 0.8 * clock) scale = 1 / clock;
+    if (scale == 0 || most * scale > 1)
+      problems_.add(fmt::format("column '{}'", name), name_,
+                    fmt::format("values of up to {:g}: how many make a second is not known", most),
+                    "name its unit, such as FRACSEC_us, or give the times in one column");
+    if (most >= 1 && scale > 0) raw.time_resolution = scale;
+    for (std::size_t k = 0; k < t.size() && k < fractions_.size(); ++k) t[k] += scale * fractions_[k];
   }
 
   std::string_view text_;
@@ -385,17 +382,21 @@ class CsvReader {
   RecordBase base_;
   ReadOptions options_;
   Problems problems_;
-  char separator_ = ',';
+  TableTop top_;
   std::vector<Cells> header_;
   std::vector<int> header_lines_;
   std::size_t width_ = 0;
   std::vector<Heading> headings_;
   std::vector<std::size_t> chosen_;
   Cells pending_, cells_;  ///< the first line of values, and the present one
-  bool started_ = false, commas_ = false, points_ = false, blanks_ = false;
+  bool started_ = false, commas_ = false, points_ = false;
   std::optional<Stamp> first_;
-  int decimals_ = 0;
-  std::vector<int> lines_;  ///< file line of each sample
+  double resolution_ = std::numeric_limits<double>::infinity();  ///< finest of the times, in their own unit
+  double hours_ = 0, last_in_hour_ = 0;                          ///< of stamps of minutes and seconds alone
+  std::optional<std::size_t> fraction_;                          ///< column of FRACSEC
+  std::vector<double> fractions_;
+  std::map<std::string, int> words_, word_at_;  ///< in place of numbers, how often, and the first line
+  std::vector<int> lines_;                      ///< file line of each sample
   int number_ = 0;
 };
 

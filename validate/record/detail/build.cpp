@@ -10,6 +10,8 @@
 
 #include "base/constants.hpp"
 #include "validate/record/detail/bridge.hpp"
+#include "validate/record/detail/clock.hpp"
+#include "validate/record/detail/frames.hpp"
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
@@ -80,8 +82,19 @@ void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {
                    "give V as a magnitude and theta as its angle; are their columns swapped?");
 }
 
+/// Whether a frequency in mHz counts from nominal: its values are nowhere near that.
+bool is_deviation(const RawColumn& column, const RecordBase& base) {
+  if (column.meaning.unit != Unit::millihertz || column.meaning.deviation) return false;
+  return std::ranges::none_of(column.values, [&](double v) { return std::abs(v) > 250 * base.frequency; });
+}
+
 void convert(RawRecord& raw, const RecordBase& base) {
   for (RawColumn& column : raw.columns) {
+    if (is_deviation(column, base)) {
+      column.meaning.deviation = true;
+      raw.about.notes.push_back(
+          fmt::format("The column '{}' was taken for the deviation from nominal frequency.", column.name));
+    }
     for (double& v : column.values) v = to_record_units(column.meaning, v, base);
     if (column.meaning.quantity == Quantity::time)
       raw.time_resolution = std::abs(to_record_units({Quantity::time, column.meaning.unit, false, {}, false},
@@ -89,10 +102,11 @@ void convert(RawRecord& raw, const RecordBase& base) {
   }
 }
 
-std::vector<double>& times_of(RawRecord& raw) {
-  return std::ranges::find(raw.columns, Quantity::time, [](const RawColumn& c) { return c.meaning.quantity; })
-      ->values;
+RawColumn& time_of(RawRecord& raw) {
+  return *std::ranges::find(raw.columns, Quantity::time,
+                            [](const RawColumn& c) { return c.meaning.quantity; });
 }
+std::vector<double>& times_of(RawRecord& raw) { return time_of(raw).values; }
 
 /// Seconds since an epoch: reports could not show them.
 void begin_at_zero(RawRecord& raw, Record& about) {
@@ -121,13 +135,6 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
     c.values.resize(last);
     c.values.erase(c.values.begin(), c.values.begin() + static_cast<std::ptrdiff_t>(first));
   }
-}
-
-/// Do two rows hold the same values, apart from the time?
-bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b) {
-  return std::ranges::all_of(raw.columns, [&](const RawColumn& c) {
-    return c.meaning.quantity == Quantity::time || c.values[a] == c.values[b];
-  });
 }
 
 /// Whether a frame without this quantity is none: what drives a model must be there. Of a component, and of
@@ -235,9 +242,10 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
     std::vector<double> values = at_places(column.values, rows.place);
     if (const auto filled = fill_unmeasured(values, rows); !filled.empty()) {
       const bool compared = q != Quantity::f;
-      r.notes.push_back(fmt::format("{} has no value in {} of {} frames, the first at t = {:.4g} s{}.",
-                                    column.name, filled.size(), values.size(), rows.t[filled.front()],
-                                    compared ? ": their voltage is used, and they are not compared" : ""));
+      r.notes.push_back(fmt::format(
+          "{} has no value in {} of {} frames (empty, a word or a code such as 9999 or 1e308), the first at t = {:.4g} s{}.",
+          column.name, filled.size(), values.size(), rows.t[filled.front()],
+          compared ? ": their voltage is used, and they are not compared" : ""));
       if (compared) unmeasured.resize(values.size(), 0);
       for (const std::size_t k : filled)
         if (compared) unmeasured[k] = 1;
@@ -354,6 +362,19 @@ void SampleFaults::shift(std::size_t first) {
     }
 }
 
+void SampleFaults::keep_rows(std::vector<std::size_t> rows) {
+  const auto place = [&](std::size_t row) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin());
+  };
+  for (auto* faults : {&faults_, &missing_}) {
+    for (Fault& f : *faults) f.first = place(f.first), f.last = place(f.last + 1);
+    std::erase_if(*faults, [](const Fault& f) { return f.first == f.last; });
+    for (Fault& f : *faults) --f.last;
+  }
+  const Where where = std::move(where_);
+  where_ = [where, rows = std::move(rows)](std::size_t a, std::size_t b) { return where(rows[a], rows[b]); };
+}
+
 void SampleFaults::add_to(std::vector<Fault>& faults, Fault fault) {
   // Several columns may run in step: look for this subject's last fault among the recent ones.
   const std::size_t recent = std::min<std::size_t>(faults.size(), 2 * kQuantities);
@@ -407,11 +428,15 @@ void SampleFaults::tell(Problems& problems, const std::string& file) const {
 
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
                     Problems problems, const std::string& file) {
+  settle_clock(raw);
+  convert(raw, base);
+  drop_repeats(raw, faults);
+  lose_zero_frames(raw, faults);
   Record r = std::move(raw.about);
   r.base = base;
-  convert(raw, base);
   begin_at_zero(raw, r);
   cut_rows(raw, options, faults);
+  if (check_clock(times_of(raw), time_of(raw).meaning, options, file, problems)) problems.raise();
   const EvenRows rows = settle(raw, options, r, faults);
   faults.tell(problems, file);
   if (rows.place.size() < kFewestSamples)

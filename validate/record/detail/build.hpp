@@ -17,6 +17,8 @@ struct Heading {
   std::string name;  ///< as the file writes it
   std::optional<ColumnMeaning> meaning;
   std::string unit = {};  ///< as another header line writes it
+  /// Whether the heading, or the line of units, names a unit in brackets that is not known.
+  [[nodiscard]] bool unknown_unit() const;
 };
 
 /// Faults of single samples. Neighbouring samples with the same fault become one sentence.
@@ -38,6 +40,8 @@ class SampleFaults {
   void keep(std::size_t first, std::size_t last);
   /// Samples are counted from `first` on.
   void shift(std::size_t first);
+  /// Only these samples are left, and are counted from 0.
+  void keep_rows(std::vector<std::size_t> rows);
   [[nodiscard]] std::string where(std::size_t sample) const { return where_(sample, sample); }
   /// Adds them to `problems`, in order; a long list is cut.
   void tell(Problems& problems, const std::string& file) const;

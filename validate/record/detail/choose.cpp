@@ -271,9 +271,9 @@ class Mapper {
                                                             : unit_in(m->quantity, h.name, h.unit);
     if (!named.unit.empty()) m->unit = unit_in(m->quantity, {}, named.unit);
     if (same && h.meaning->deviation) m->deviation = true;
-    if (m->quantity == Quantity::time && !m->unit) m->unit = same ? h.meaning->unit : Unit::second;
+    m->unknown_unit = !m->unit && (!named.unit.empty() || h.unknown_unit());
     m->negated = named.negated;
-    if (!m->unit)
+    if (!m->unit && (m->quantity != Quantity::time || m->unknown_unit))
       problems_.add(
           fmt::format("column '{}'", h.name), where_, "its unit is missing or not known",
           fmt::format("give it: {} = \"{} [unit]\", as in {}", word, h.name, names_of(m->quantity)));
@@ -301,6 +301,14 @@ bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const 
 }
 
 }  // namespace
+
+bool Heading::unknown_unit() const {
+  const auto open = name.find_first_of("([");
+  const std::string_view inside = !unit.empty()               ? std::string_view(unit)
+                                  : open == std::string::npos ? std::string_view()
+                                                              : std::string_view(name).substr(open + 1);
+  return !normalised(inside).empty() && !is_clock_word(inside) && !is_unit(inside);
+}
 
 /// Whether what is tried does not do without the quantity.
 static bool is_asked_for(Quantity q, const ReadOptions& options) {
@@ -342,7 +350,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     const bool told = std::ranges::any_of(about.named, [wanted = meaning->quantity](const auto& word) {
       return quantity_of(word)->quantity == wanted;
     });
-    if (!meaning->unit && !told)
+    if (!meaning->unit && !told && (meaning->quantity != time || meaning->unknown_unit))
       problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
                        std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");

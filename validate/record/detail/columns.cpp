@@ -1,14 +1,8 @@
 #include "validate/record/detail/columns.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <regex>
-
-#include "base/constants.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -24,11 +18,35 @@ constexpr Alias kAliases[] = {
     {"t", Quantity::time},
     {"time", Quantity::time},
     {"timestamp", Quantity::time},
+    {"timetag", Quantity::time},
     {"datetime", Quantity::time},
     {"utc", Quantity::time},
     {"timeutc", Quantity::time},
     {"utctime", Quantity::time},
+    {"localtime", Quantity::time},
+    {"elapsedtime", Quantity::time},
+    {"relativetime", Quantity::time},
+    {"simulationtime", Quantity::time},
+    {"epoch", Quantity::time},
+    {"unixtime", Quantity::time},
+    {"soc", Quantity::time},
+    {"secondofcentury", Quantity::time},
     {"domain", Quantity::time},
+    {"zeit", Quantity::time},
+    {"uhrzeit", Quantity::time},
+    {"zeitstempel", Quantity::time},
+    {"datumuhrzeit", Quantity::time},
+    {"temps", Quantity::time},
+    {"heure", Quantity::time},
+    {"horodatage", Quantity::time},
+    {"tempo", Quantity::time},
+    {"ora", Quantity::time},
+    {"dataora", Quantity::time},
+    {"tiempo", Quantity::time},
+    {"hora", Quantity::time},
+    {"fechahora", Quantity::time},
+    {"datahora", Quantity::time},
+    {"время", Quantity::time},
     {"v", Quantity::V},
     {"u", Quantity::V},
     {"ug", Quantity::V},
@@ -118,101 +136,66 @@ constexpr Alias kAliases[] = {
     {"currentangle", Quantity::phi},
 };
 
-struct UnitName {
-  std::string_view name;  ///< normalised
-  Unit unit;
-};
-constexpr UnitName kUnits[] = {
-    {"s", Unit::second},       {"sec", Unit::second},       {"seconds", Unit::second},
-    {"ms", Unit::millisecond}, {"us", Unit::microsecond},   {"pu", Unit::pu},
-    {"kv", Unit::kilovolt},    {"kvll", Unit::kilovolt},    {"v", Unit::volt},
-    {"vll", Unit::volt},       {"kvln", Unit::kilovolt_ln}, {"vln", Unit::volt_ln},
-    {"rad", Unit::radian},     {"radians", Unit::radian},   {"deg", Unit::degree},
-    {"degree", Unit::degree},  {"degrees", Unit::degree},   {"°", Unit::degree},
-    {"hz", Unit::hertz},       {"mw", Unit::megawatt},      {"mvar", Unit::megavar},
-    {"mvars", Unit::megavar},  {"ka", Unit::kiloampere},    {"a", Unit::ampere},
-    {"amps", Unit::ampere},
-};
-
 /// Headings that are a unit and yet say what they are.
 constexpr struct {
   std::string_view name;
   Quantity quantity;
   Unit unit;
 } kUnitHeadings[] = {
+    {"seconds", Quantity::time, Unit::second},
+    {"sec", Quantity::time, Unit::second},
+    {"sekunden", Quantity::time, Unit::second},
+    {"segundos", Quantity::time, Unit::second},
+    {"secondes", Quantity::time, Unit::second},
+    {"secondi", Quantity::time, Unit::second},
+    {"ms", Quantity::time, Unit::millisecond},
+    {"msec", Quantity::time, Unit::millisecond},
+    {"milliseconds", Quantity::time, Unit::millisecond},
+    {"us", Quantity::time, Unit::microsecond},
+    {"usec", Quantity::time, Unit::microsecond},
+    {"microseconds", Quantity::time, Unit::microsecond},
+    {"nanoseconds", Quantity::time, Unit::nanosecond},
+    {"minutes", Quantity::time, Unit::minute},
+    {"hours", Quantity::time, Unit::hour},
+    {"cycles", Quantity::time, Unit::cycle},
     {"mw", Quantity::P, Unit::megawatt},
     {"mvar", Quantity::Q, Unit::megavar},
     {"hz", Quantity::f, Unit::hertz},
     {"kv", Quantity::V, Unit::kilovolt},
 };
 
-bool fits(Quantity q, Unit u) {
-  switch (q) {
-    case Quantity::time:
-      return u == Unit::second || u == Unit::millisecond || u == Unit::microsecond;
-    case Quantity::V:
-      return u == Unit::pu || u == Unit::kilovolt || u == Unit::volt || u == Unit::kilovolt_ln ||
-             u == Unit::volt_ln;
-    case Quantity::theta:
-    case Quantity::phi:
-      return u == Unit::radian || u == Unit::degree;
-    case Quantity::f:
-      return u == Unit::pu || u == Unit::hertz;
-    case Quantity::P:
-      return u == Unit::pu || u == Unit::megawatt;
-    case Quantity::Q:
-      return u == Unit::pu || u == Unit::megavar;
-    case Quantity::I:
-      return u == Unit::pu || u == Unit::kiloampere || u == Unit::ampere;
-    case Quantity::Pm:
-    case Quantity::Pref:
-      return u == Unit::pu || u == Unit::megawatt;
-    case Quantity::Efd:
-      return u == Unit::pu || u == Unit::volt || u == Unit::kilovolt;
-    case Quantity::Ifd:
-      return u == Unit::pu || u == Unit::ampere || u == Unit::kiloampere;
-    case Quantity::speed:
-    case Quantity::Vs:
-    case Quantity::Vref:
-    case Quantity::gate:
-      return u == Unit::pu;
-  }
-  return false;
-}
-
 const Alias* find_alias(std::string_view name) {
   const auto found = std::ranges::find(kAliases, name, &Alias::name);
   return found == std::end(kAliases) ? nullptr : &*found;
 }
-std::optional<Unit> find_unit(std::string_view text) {
-  const std::string name = normalised(text);
-  const auto found = std::ranges::find(kUnits, name, &UnitName::name);
-  return found == std::end(kUnits) ? std::nullopt : std::optional(found->unit);
-}
-
-ColumnMeaning meaning(const Alias& alias, std::optional<Unit> unit) {
+/// `named`: the unit as the file writes it.
+ColumnMeaning meaning(const Alias& alias, std::string_view named) {
+  std::optional<Unit> unit = find_unit(named);
   if (unit && !fits(alias.quantity, *unit)) unit.reset();
-  return {alias.quantity, unit, alias.deviation, {}, false};
+  ColumnMeaning m{alias.quantity, unit, alias.deviation, {}, false};
+  m.unknown_unit = !unit && !normalised(named).empty() && !is_clock_word(named);
+  return m;
 }
 
 /// "V (kV)" or "P [MW]": the part before, and the unit inside.
 std::optional<ColumnMeaning> bracketed(std::string_view heading) {
   const char last = heading.empty() ? '\0' : heading.back();
   if (last != ')' && last != ']') return std::nullopt;
-  const auto open = heading.rfind(last == ')' ? '(' : '[');
+  const auto open = heading.find(last == ')' ? '(' : '[');
   if (open == std::string_view::npos) return std::nullopt;
   const Alias* alias = find_alias(normalised(heading.substr(0, open)));
   if (!alias) return std::nullopt;
-  return meaning(*alias, find_unit(heading.substr(open + 1, heading.size() - open - 2)));
+  return meaning(*alias, heading.substr(open + 1, heading.size() - open - 2));
 }
 
-/// "V_kV_ln", "theta deg", "P/MW": the longest ending that is a unit.
+/// "V_kV_ln", "theta deg", "P/MW", "Time, s", "time in ms": the longest ending that is a unit.
 std::optional<ColumnMeaning> suffixed(std::string_view heading) {
-  for (std::size_t at = heading.find_first_of("_ /-"); at != std::string_view::npos;
-       at = heading.find_first_of("_ /-", at + 1)) {
+  constexpr std::string_view between = "_ /-,";
+  for (std::size_t at = heading.find_first_of(between); at != std::string_view::npos;
+       at = heading.find_first_of(between, at + 1)) {
     const Alias* alias = find_alias(normalised(heading.substr(0, at)));
     const auto unit = find_unit(heading.substr(at + 1));
-    if (alias && unit && fits(alias->quantity, *unit)) return meaning(*alias, unit);
+    if (alias && unit && fits(alias->quantity, *unit)) return meaning(*alias, heading.substr(at + 1));
   }
   return std::nullopt;
 }
@@ -221,28 +204,21 @@ std::optional<ColumnMeaning> without_terminal(std::string_view heading, std::str
   if (const auto m = bracketed(heading)) return m;
   if (const auto m = suffixed(heading)) return m;
   const std::string name = normalised(heading);
-  if (const Alias* alias = find_alias(name)) return meaning(*alias, find_unit(unit));
+  if (const Alias* alias = find_alias(name)) return meaning(*alias, unit);
   for (const auto& u : kUnitHeadings)
     if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}, false};
   // A name we know with something behind it that is no unit: better asked about than left out.
-  if (const Alias* alias = find_alias(normalised(heading.substr(0, heading.find('_')))))
-    return meaning(*alias, std::nullopt);
+  if (const auto at = heading.find('_'); at != std::string_view::npos)
+    if (const Alias* alias = find_alias(normalised(heading.substr(0, at))))
+      return meaning(*alias, heading.substr(at + 1));
   return std::nullopt;
 }
 
 }  // namespace
 
-std::string normalised(std::string_view text) {
-  std::string name;
-  for (const char c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80)
-      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
-
 std::optional<ColumnMeaning> quantity_of(std::string_view word) {
   const Alias* alias = find_alias(normalised(word));
-  return alias ? std::optional(meaning(*alias, std::nullopt)) : std::nullopt;
+  return alias ? std::optional(meaning(*alias, {})) : std::nullopt;
 }
 
 std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit) {
@@ -293,8 +269,6 @@ std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::strin
   return std::nullopt;
 }
 
-bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
-
 std::string_view word_of(Quantity q) {
   constexpr std::string_view words[kQuantities] = {"t",   "V", "theta", "f",  "P",    "Q",  "speed", "Efd",
                                                    "Ifd", "I", "phi",   "Vs", "Vref", "Pm", "Pref",  "gate"};
@@ -309,68 +283,6 @@ std::string names_of(Quantity q) {
       "Vref_pu",       "Pm_pu, Pm_MW",        "Pref_pu, Pref_MW",     "gate_pu",
   };
   return std::string(names[static_cast<int>(q)]);
-}
-
-bool needs_kv(Quantity quantity, Unit unit) {
-  if (quantity == Quantity::Efd || quantity == Quantity::Ifd) return false;
-  return unit == Unit::kilovolt || unit == Unit::volt || unit == Unit::kilovolt_ln || unit == Unit::volt_ln ||
-         unit == Unit::kiloampere || unit == Unit::ampere;
-}
-
-std::string_view needs_base(Quantity quantity, Unit unit) {
-  if (unit == Unit::pu) return {};
-  return quantity == Quantity::Efd ? "efd_base" : quantity == Quantity::Ifd ? "ifd_base" : "";
-}
-
-namespace {
-
-/// Field voltage and current: the record's own unit (pu, V, A) to the model's pu.
-double field_units(const ColumnMeaning& column, double v, double base) {
-  const Unit unit = column.unit.value_or(Unit::pu);
-  if (unit == Unit::kilovolt || unit == Unit::kiloampere) v *= 1e3;
-  return base > 0 ? v / base : v;
-}
-
-}  // namespace
-
-double to_record_units(const ColumnMeaning& column, double v, const RecordBase& base) {
-  const bool nominal_is_one =
-      (column.quantity == Quantity::f || column.quantity == Quantity::speed) && !column.deviation;
-  if (column.negated) v = -v;
-  if (column.quantity == Quantity::Efd) return field_units(column, v, base.efd);
-  if (column.quantity == Quantity::Ifd) return field_units(column, v, base.ifd);
-  switch (column.unit.value_or(Unit::pu)) {
-    case Unit::second:
-    case Unit::stamp:
-    case Unit::radian:
-      return v;
-    case Unit::pu:
-      return nominal_is_one ? v - 1 : v;
-    case Unit::millisecond:
-      return v * 1e-3;
-    case Unit::microsecond:
-      return v * 1e-6;
-    case Unit::kilovolt:
-      return v / base.kv;
-    case Unit::volt:
-      return v * 1e-3 / base.kv;
-    case Unit::kilovolt_ln:
-      return v * std::numbers::sqrt3 / base.kv;
-    case Unit::volt_ln:
-      return v * 1e-3 * std::numbers::sqrt3 / base.kv;
-    case Unit::degree:
-      return v * constants::pi / 180;
-    case Unit::hertz:
-      return v / base.frequency - (column.deviation ? 0 : 1);
-    case Unit::megawatt:
-    case Unit::megavar:
-      return v / base.mva;
-    case Unit::kiloampere:
-      return v * std::numbers::sqrt3 * base.kv / base.mva;
-    case Unit::ampere:
-      return v * 1e-3 * std::numbers::sqrt3 * base.kv / base.mva;
-  }
-  return v;
 }
 
 }  // namespace swingbank::validate::record

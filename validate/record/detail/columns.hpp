@@ -5,32 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "validate/record/detail/units.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::record {
-
-enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi, Vs, Vref, Pm, Pref, gate };
-constexpr int kQuantities = 16;
-/// Whether only components are driven by it or compared with it: such columns of other records are left out.
-constexpr bool is_inner(Quantity q) { return q >= Quantity::Vs; }
-enum class Unit {
-  second,
-  millisecond,
-  microsecond,
-  stamp,
-  pu,
-  kilovolt,
-  volt,
-  kilovolt_ln,
-  volt_ln,
-  radian,
-  degree,
-  hertz,
-  megawatt,
-  megavar,
-  kiloampere,
-  ampere
-};
 
 struct ColumnMeaning {
   Quantity quantity;
@@ -38,6 +16,9 @@ struct ColumnMeaning {
   bool deviation = false;    ///< values are deviations from nominal (speed), not 1 at nominal (omega)
   std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
   bool negated = false;      ///< the file's values have the other sign
+  /// A unit is named, and it is none of the quantity's: values of a time without a unit may tell it, of a
+  /// time with an unknown one they may not.
+  bool unknown_unit = false;
 };
 
 /// What a heading means: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" where another header
@@ -55,9 +36,6 @@ std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::st
 /// "32/1".
 std::optional<ColumnMeaning> psse_channel(std::string_view heading);
 
-/// Is the text a unit we know ("kV", "deg.", "p.u.")?
-bool is_unit(std::string_view text);
-
 /// The quantity's name in a map of columns: "V".
 std::string_view word_of(Quantity q);
 
@@ -66,13 +44,5 @@ std::string names_of(Quantity q);
 
 /// Brings a value to the record's units: s, pu, rad; frequency and speed to deviations [pu].
 double to_record_units(const ColumnMeaning& column, double value, const RecordBase& base);
-
-/// Does the quantity in that unit need base.kv?
-bool needs_kv(Quantity quantity, Unit unit);
-/// The key of the plant file under [record] that the quantity in that unit needs: "efd_base"; empty: none.
-std::string_view needs_base(Quantity quantity, Unit unit);
-
-/// Lower case, letters and digits only ("°" counts as a letter): how names are compared.
-std::string normalised(std::string_view text);
 
 }  // namespace swingbank::validate::record

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <utility>
 
 #include "base/problem.hpp"
 
@@ -99,6 +100,24 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   if (ends_with(name, ".out") || ends_with(name, ".outx"))
     refuse("an output file of PSS/E", name, "its format is not public",
            "export it as CSV in PSS/E's Python: dyntools.CHNF('run.out').csvout(outfile='run.csv')");
+  if (ends_with(name, ".toml") || bytes.substr(0, 65536).find("\n[plant]") != std::string_view::npos ||
+      bytes.starts_with("[plant]"))
+    refuse("a plant file", name, "a record was asked for", "give it as --model, and the record as --records");
+  if (ends_with(name, ".raw") || ends_with(name, ".dyr"))
+    refuse("a case of PSS/E", name, "a record was asked for",
+           "give the record as --records; swingbank plant makes a plant file of the case");
+  // A spreadsheet is a zip, too: its parts stand under xl/ (Excel) or it names its type first (LibreOffice).
+  const std::string_view begin = bytes.substr(0, 4096);
+  const bool sheet = begin.find("xl/") != std::string_view::npos ||
+                     begin.find("[Content_Types].xml") != std::string_view::npos ||
+                     begin.find("opendocument") != std::string_view::npos || ends_with(name, ".xlsx") ||
+                     ends_with(name, ".ods");
+  const std::pair<std::string_view, const char*> archives[] = {
+      {"PK\x03\x04", "a zip archive"}, {"\x1F\x8B", "a gzip archive"},   {"7z\xBC\xAF", "a 7z archive"},
+      {"BZh", "a bzip2 archive"},      {"\xFD\x37zXZ", "an xz archive"}, {"Rar!", "a rar archive"}};
+  for (const auto& [magic, what] : archives)
+    if (bytes.starts_with(magic) && !sheet)
+      refuse(what, name, "records are read as they are", "unpack it and give the record in it");
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0") || ends_with(name, ".xlsx"))
     refuse("a spreadsheet", name, "only text in columns is read", "save the sheet as CSV (UTF-8)");
   if (ends_with(name, ".psout"))

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -15,91 +13,6 @@
 
 namespace swingbank::validate::record {
 namespace {
-
-/// Reads from the front of a text; every part may fail, which leaves `ok` false.
-struct Scanner {
-  std::string_view rest;
-  bool ok = true;
-
-  long integer(std::size_t most) {
-    long v = 0;
-    const std::size_t n = std::min(rest.size(), most);
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + n, v);
-    if (error != std::errc{} || v < 0) return ok = false, 0;
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    return v;
-  }
-  bool take(std::string_view any) {
-    if (rest.empty() || any.find(rest.front()) == std::string_view::npos) return false;
-    rest.remove_prefix(1);
-    return true;
-  }
-  void expect(std::string_view any) { ok = take(any) && ok; }
-};
-
-bool day_of(long year, long month, long day, long& days) {
-  using namespace std::chrono;
-  const year_month_day date{std::chrono::year(static_cast<int>(year)),
-                            std::chrono::month(static_cast<unsigned>(month)),
-                            std::chrono::day(static_cast<unsigned>(day))};
-  if (year < 1900 || year > 2200 || !date.ok()) return false;
-  days = sys_days(date).time_since_epoch().count();
-  return true;
-}
-
-/// "2024-05-01" or "5/1/2024", and what divides it from the time.
-void scan_date(Scanner& s, Stamp& stamp) {
-  const long a = s.integer(4);
-  s.expect("-/.");
-  const long b = s.integer(2);
-  s.expect("-/.");
-  const long c = s.integer(4);
-  if (!s.ok) return;
-  s.ok = a > 31 ? day_of(a, b, c, stamp.day) : day_of(c, a, b, stamp.day) || day_of(c, b, a, stamp.day);
-  s.expect("T ");
-  while (s.take(" ")) {
-  }
-}
-
-void scan_time(Scanner& s, Stamp& stamp) {
-  const long hour = s.integer(2);
-  s.expect(":");
-  const long minute = s.integer(2);
-  s.expect(":");
-  const long second = s.integer(2);
-  double fraction = 0, digit = 0.1;
-  if (s.take(".,"))
-    for (; !s.rest.empty() && s.rest.front() >= '0' && s.rest.front() <= '9'; digit /= 10, ++stamp.decimals) {
-      fraction += digit * (s.rest.front() - '0');
-      s.rest.remove_prefix(1);
-    }
-  s.ok = s.ok && hour < 24 && minute < 60 && second < 61;
-  stamp.second = static_cast<double>(hour * 3600 + minute * 60 + second) + fraction;
-}
-
-/// "PM", "Z", "+02:00".
-void scan_end(Scanner& s, Stamp& stamp) {
-  while (s.take(" ")) {
-  }
-  if (s.rest.size() >= 2 && (s.rest[1] == 'M' || s.rest[1] == 'm') && s.rest.find_first_of("AaPp") == 0) {
-    const bool afternoon = s.rest[0] == 'P' || s.rest[0] == 'p';
-    const bool twelve = stamp.second >= 12 * 3600;
-    if (stamp.second >= 13 * 3600) s.ok = false;
-    stamp.second += (afternoon ? 12 : 0) * 3600 - (twelve ? 12 : 0) * 3600;
-    s.rest.remove_prefix(2);
-  }
-  if (s.rest.empty()) return;
-  stamp.zoned = true;
-  for (const std::string_view zone : {"Z", "z", "UTC", "GMT"})
-    if (s.rest == zone) return;
-  const bool east = s.rest.front() == '+';
-  s.expect("+-");
-  const long hours = s.integer(2);
-  s.take(":");
-  const long minutes = s.rest.empty() ? 0 : s.integer(2);
-  stamp.second -= (east ? 1 : -1) * static_cast<double>(hours * 3600 + minutes * 60);
-  s.ok = s.ok && s.rest.empty();
-}
 
 std::vector<double> steps_of(const std::vector<double>& t) {
   std::vector<double> steps(t.size() - 1);
@@ -113,6 +26,14 @@ constexpr std::size_t kMostSamples = 2'000'000;
 
 /// Times rounded more coarsely than this share of a step do not tell a lost frame.
 constexpr double kCoarsest = 0.75;
+
+/// A row that is off the grid lies less than this many steps behind the row before.
+constexpr double kFarBack = 0.98;
+
+/// A simulation writes a time twice or thrice where something switches. More rows in a row at one time, or
+/// more than this share of all rows, come of a clock that stands still.
+constexpr std::size_t kMostAtOneTime = 3;
+constexpr double kMostRepeated = 0.05;
 
 bool is_even(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
@@ -191,10 +112,11 @@ class Grid {
  public:
   Grid(const Rows& rows, const std::vector<double>& t, double step) : rows_(rows), t_(t), h_(step) {}
 
-  std::optional<EvenRows> fit(Record& about, SampleFaults& faults) {
-    if (!count()) return std::nullopt;
+  /// `first`: the row that the grid starts from; rows before it are left out.
+  std::optional<EvenRows> fit(std::size_t first_row, Record& about, SampleFaults& faults) {
+    if (!count(first_row)) return std::nullopt;
     const auto last = static_cast<double>(index_.back());
-    if (!coarse()) h_ = (t_[row_.back()] - t_.front()) / last;
+    if (!coarse()) h_ = (t_[row_.back()] - t_[row_.front()]) / last;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (moved_[i]) continue;
@@ -204,7 +126,7 @@ class Grid {
     if (!(high - low <= 1.05 * rows_.resolution + (coarse() ? 0.02 : 0.2) * h_)) return std::nullopt;
     tell(about, faults);
     EvenRows even;
-    const double first = coarse() ? (low + high) / 2 : t_.front();
+    const double first = coarse() ? (low + high) / 2 : t_[row_.front()];
     even.place.assign(index_.back() + 1, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < row_.size(); ++i) even.place[index_[i]] = static_cast<double>(row_[i]);
     for (std::size_t g = 0; g < even.place.size(); ++g) even.t.push_back(first + static_cast<double>(g) * h_);
@@ -214,11 +136,19 @@ class Grid {
  private:
   [[nodiscard]] bool coarse() const { return rows_.resolution > 0.15 * h_; }
 
+  /// Of a hundred rows one may be off the grid, and of few rows two.
+  [[nodiscard]] bool leave_out(std::size_t row) {
+    off_.push_back(row);
+    return off_.size() <= std::max<std::size_t>(2, t_.size() / 100);
+  }
+
   /// False where the rows do not stand on such a grid.
-  bool count() {
-    row_ = {0}, index_ = {0}, moved_ = {0};
-    double before = t_.front();
-    for (std::size_t k = 1; k < t_.size(); ++k) {
+  bool count(std::size_t first) {
+    row_ = {first}, index_ = {0}, moved_ = {0};
+    for (std::size_t k = 0; k < first; ++k)
+      if (!leave_out(k)) return false;
+    double before = t_[first];
+    for (std::size_t k = first + 1; k < t_.size(); ++k) {
       double dt = t_[k] - before;
       bool moved = false;
       if (!coarse() && std::abs(dt) < 0.02 * h_) {
@@ -226,22 +156,28 @@ class Grid {
           twice_.push_back(k);
           continue;
         }
-        if (k + 1 < t_.size() && std::abs(t_[k + 1] - t_[k] - 2 * h_) > 0.1 * h_) return false;
+        if (k + 1 < t_.size() && std::abs(t_[k + 1] - t_[k] - 2 * h_) > 0.1 * h_) {
+          if (!leave_out(k)) return false;
+          continue;
+        }
         moved = true;
         stuck_.push_back(k);
         dt = h_;
       }
       const double steps = std::max(std::round(dt / h_), coarse() && dt > -rows_.resolution ? 1.0 : 0.0);
       const double slack = coarse() ? 1.05 * rows_.resolution + 0.02 * h_ : 0.1 * h_ + 2.1 * rows_.resolution;
-      if (steps < 1 || steps > static_cast<double>(kMostSamples) || std::abs(dt - steps * h_) > slack)
+      if (!(std::abs(dt) < static_cast<double>(kMostSamples) * h_)) return false;
+      if (steps < 1 || std::abs(dt - steps * h_) > slack) {
+        if (dt > -kFarBack * h_ && leave_out(k)) continue;
         return false;
+      }
       index_.push_back(index_.back() + static_cast<std::size_t>(steps));
       if (index_.back() >= kMostSamples) return false;
       row_.push_back(k);
       moved_.push_back(moved);
       before = moved ? before + h_ : t_[k];
     }
-    return !row_.empty();
+    return row_.size() > 1;
   }
 
   void tell(Record& about, SampleFaults& faults) const {
@@ -255,6 +191,11 @@ class Grid {
           "{} time stamps repeat the one before although the values go on, the first at {}: these rows were taken to "
           "be one step later.",
           stuck_.size(), faults.where(stuck_.front())));
+    if (!off_.empty())
+      about.notes.push_back(fmt::format(
+          "{} {} at times between the samples ({:.6g} s apart), the first at {} (t = {:.6g} s): left out.",
+          off_.size(), off_.size() == 1 ? "row is" : "rows are", h_, faults.where(off_.front()),
+          t_[off_.front()]));
     if (coarse())
       about.notes.push_back(fmt::format(
           "Times are rounded to {:.3g} ms in the file; the samples were taken to be {:.6g} per second.",
@@ -276,8 +217,23 @@ class Grid {
   double h_;
   std::vector<std::size_t> row_, index_;  ///< rows that stay, and their places on the grid
   std::vector<char> moved_;               ///< by row that stays: its stamp was wrong
-  std::vector<std::size_t> twice_, stuck_;
+  std::vector<std::size_t> twice_, stuck_, off_;
 };
+
+/// Rows that repeat the time of the row before: how many, the first, and the most in a row.
+struct StandingClock {
+  std::size_t rows = 0, first = 0, longest = 0;
+};
+StandingClock standing(const std::vector<double>& t) {
+  StandingClock found;
+  std::size_t run = 0;
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    run = t[k] == t[k - 1] ? run + 1 : 0;
+    if (run > 0 && found.rows++ == 0) found.first = k;
+    found.longest = std::max(found.longest, run);
+  }
+  return found;
+}
 
 /// Do many steps differ, as where a simulation chose them?
 bool varies(const std::vector<double>& t) {
@@ -296,6 +252,10 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   const std::vector<double> steps = steps_of(t);
   const double length = t.back() - t.front();
   if (!(length > 0) || std::ranges::any_of(steps, [](double s) { return s < 0; })) return std::nullopt;
+  const StandingClock clock = standing(t);
+  if (clock.longest >= kMostAtOneTime ||
+      static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size()))
+    return std::nullopt;
   const auto apart = static_cast<double>(std::ranges::count_if(steps, [](double s) { return s > 1e-6; }));
   // A step stands at a time that is there twice: it needs closer samples than what moves slowly.
   const bool steps_up = std::ranges::any_of(steps, [](double s) { return s < 1e-6; });
@@ -313,10 +273,40 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
     even.place.push_back(static_cast<double>(k) + part);
   }
   about.notes.push_back(fmt::format(
-      "The file's {} samples are {:.3g} to {:.3g} s apart: they were joined by straight lines and taken {:g} times "
-      "a second.",
-      t.size(), std::ranges::min(steps), std::ranges::max(steps), 1 / h));
+      "The file's {} samples are {:.3g} to {:.3g} s apart{}: they were joined by straight lines and taken {:g} "
+      "times a second.",
+      t.size(), std::ranges::min(steps), std::ranges::max(steps),
+      clock.rows > 0 ? fmt::format(" ({} of them at the time of the one before)", clock.rows) : "", 1 / h));
   return even;
+}
+
+/// Times that many samples share, as one fault; true where there are such.
+bool tell_standing(const Rows& rows, SampleFaults& faults) {
+  const std::vector<double>& t = rows.t;
+  const StandingClock clock = standing(t);
+  if (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size()) return false;
+  const double length = t.back() - t.front();
+  // Rounding makes groups of equal times all along; a clock that stands makes one.
+  const auto apart = static_cast<double>(t.size() - clock.rows);
+  const bool rounded = clock.longest < t.size() / 4 || !(length > 0);
+  const std::string what =
+      fmt::format("{} of {} samples have the time of the sample before", clock.rows, t.size());
+  if (rounded)
+    faults.add(
+        "standing", what, clock.first,
+        rows.resolution > 0 && length > 0
+            ? fmt::format(
+                  "the times have too few digits: they are rounded to {:.3g} s, {:.0f} samples share one",
+                  rows.resolution, std::ceil(static_cast<double>(t.size()) / apart))
+            : "the times have too few digits",
+        "export the record from its source again; a spreadsheet rounds times to what it shows (mm:ss.0, "
+        "1.77E+12): give the column a format with milliseconds before you save it");
+  else
+    faults.add(
+        "standing", what, clock.first, fmt::format("the clock stands still at t = {:.6g} s", t[clock.first]),
+        fmt::format("take the stretch before it (--until {:.6g}), or export the record again with its times",
+                    t[clock.first]));
+  return true;
 }
 
 /// Every step that is not like the others.
@@ -326,17 +316,18 @@ void tell_steps(const Rows& rows, SampleFaults& faults) {
   std::vector<double> known;
   std::ranges::copy_if(steps, std::back_inserter(known), [](double s) { return std::isfinite(s); });
   if (known.empty()) return;
+  const bool stands = known.size() == steps.size() && tell_standing(rows, faults);
   const double usual = upper_median(known), resolution = rows.resolution;
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!std::isfinite(steps[k])) continue;  // already told as a value
-    if (!(steps[k] > 0)) {
+    if (steps[k] < 0 || (steps[k] == 0 && !stands)) {
       faults.add(steps[k] == 0 ? "repeated" : "backwards",
                  fmt::format("t = {:.10g} s after t = {:.10g} s", t[k + 1], t[k]), k + 1,
                  steps[k] == 0 ? "the time is repeated" : "time runs backwards",
                  "sort the record and remove repeated lines");
-    } else if (usual > 0 && std::abs(steps[k] - usual) > slack) {
+    } else if (usual > 0 && !stands && std::abs(steps[k] - usual) > slack) {
       const double missing = std::round(steps[k] / usual) - 1;
       faults.add("step", fmt::format("a step of {:.6g} s", steps[k]), k + 1,
                  fmt::format("elsewhere samples are {:.6g} s apart", usual) +
@@ -348,31 +339,22 @@ void tell_steps(const Rows& rows, SampleFaults& faults) {
 
 }  // namespace
 
-std::optional<Stamp> parse_stamp(std::string_view text) {
-  Scanner s{text};
-  Stamp stamp;
-  const auto first = text.find_first_of("-/:.");
-  if (first == std::string_view::npos) return std::nullopt;
-  if (text[first] != ':') scan_date(s, stamp);
-  scan_time(s, stamp);
-  if (s.ok) scan_end(s, stamp);
-  return s.ok ? std::optional(stamp) : std::nullopt;
-}
-
 EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults) {
   EvenRows even{rows.t, std::vector<double>(rows.t.size())};
   std::iota(even.place.begin(), even.place.end(), 0.0);
   const bool known = std::ranges::all_of(rows.t, [](double t) { return std::isfinite(t); });
   if (rows.t.size() < 2 || (known && is_even(even.t))) return even;
-  if (known && rows.uneven) return resampled(rows, about).value_or(even);
-  if (known) {
+  if (known && rows.uneven)
+    if (auto sampled = resampled(rows, about)) return *sampled;
+  if (known && !rows.uneven) {
     if (snap(even.t, rows.resolution, about)) return even;
     std::vector<std::string> leaps;
     unleap(even.t, faults, leaps);
     std::ranges::move(leaps, std::back_inserter(about.notes));
     if (is_even(even.t) || snap(even.t, rows.resolution, about)) return even;
-    for (const double h : possible_steps(even.t, rows.resolution))
-      if (auto grid = Grid(rows, even.t, h).fit(about, faults)) return *grid;
+    for (std::size_t first = 0; first < std::min<std::size_t>(3, rows.t.size() - 1); ++first)
+      for (const double h : possible_steps(even.t, rows.resolution))
+        if (auto grid = Grid(rows, even.t, h).fit(first, about, faults)) return *grid;
     if (varies(even.t))
       if (auto sampled = resampled(rows, about)) return *sampled;
   }

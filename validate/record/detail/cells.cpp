@@ -1,0 +1,216 @@
+#include "validate/record/detail/cells.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "validate/record/detail/columns.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Digits in groups of three that `mark` divides; without the marks. None: they are no such groups.
+std::optional<std::string> ungrouped(std::string_view digits, std::string_view mark) {
+  std::string all;
+  std::size_t group = 0, groups = 0;
+  while (true) {
+    const std::size_t end = std::min(digits.find(mark), digits.size());
+    const std::string_view part = digits.substr(0, end);
+    if (part.empty() || !std::ranges::all_of(part, is_digit)) return std::nullopt;
+    if (groups++ > 0 ? part.size() != 3 : part.size() > 3) return std::nullopt;
+    group = part.size();
+    all += part;
+    if (end == digits.size()) break;
+    digits.remove_prefix(end + mark.size());
+  }
+  return group == 3 && groups > 1 ? std::optional(all) : std::nullopt;
+}
+
+/// The number with a decimal point, without marks of thousands.
+std::string plain(std::string_view cell, char separator, Number& n) {
+  std::string sign;
+  if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) {
+    if (cell.front() == '-') sign = "-";
+    if (cell.size() > 1 && is_digit(cell[1]))
+      cell.remove_prefix(1);
+    else if (cell.front() == '-' || (cell.size() > 1 && cell[1] == '-'))
+      sign.clear();
+    else
+      cell.remove_prefix(1);
+  }
+  const auto comma = cell.find(','), point = cell.find('.');
+  const auto npos = std::string_view::npos;
+  // The last mark divides the decimals; one mark of another kind before it divides thousands.
+  const auto last_comma = cell.rfind(','), last_point = cell.rfind('.');
+  const bool commas_first = comma != npos && point != npos && last_comma < point;
+  const bool points_first = comma != npos && point != npos && last_point < comma;
+  std::string_view whole = cell, rest;
+  if (commas_first || (comma == npos && point != npos))
+    whole = cell.substr(0, point), rest = cell.substr(point);
+  else if (points_first || (comma != npos && point == npos && separator != ',' && comma == last_comma))
+    whole = cell.substr(0, comma), rest = cell.substr(comma);
+  for (const std::string_view mark : {",", ".", "'", "\xE2\x80\x99", " ", "\xC2\xA0", "\xE2\x80\xAF"}) {
+    if (whole.find(mark) == npos) continue;
+    const auto digits = ungrouped(whole, mark);
+    if (!digits) return sign + std::string(cell);
+    if (rest.empty() && mark == "," && comma == last_comma) {
+      n.ambiguous = true;
+      return {};
+    }
+    if (rest.empty() && mark == ".") break;
+    n.comma = rest.starts_with(',');
+    return sign + *digits + (rest.empty() ? "" : "." + std::string(rest.substr(1)));
+  }
+  if (rest.starts_with(',')) {
+    n.comma = true;
+    return sign + std::string(whole) + "." + std::string(rest.substr(1));
+  }
+  return sign + std::string(cell);
+}
+
+/// Do blanks separate the values? So they do where three lines are numbers that nothing else separates.
+bool by_blanks(std::string_view text) {
+  int found = 0;
+  for (int n = 0; n < 50 && !text.empty(); ++n) {
+    const auto end = text.find('\n');
+    const std::string_view line = unquoted(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
+    const Cells cells = split(line, ' ');
+    if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }) &&
+        ++found == 3)
+      return true;
+  }
+  return false;
+}
+
+/// What stands most often on the line.
+char separator_of(std::string_view line) {
+  char best = ',';
+  std::size_t most = split(line, best).size();
+  for (const char c : {';', '\t'})
+    if (const auto n = split(line, c).size(); n > most) best = c, most = n;
+  return best;
+}
+
+}  // namespace
+
+std::string_view unquoted(std::string_view s) {
+  constexpr std::string_view blank = " \t\r\"";
+  const auto first = s.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(blank) - first + 1);
+}
+
+Cells split(std::string_view line, char separator) {
+  Cells cells;
+  if (separator == ' ') {
+    for (std::string_view rest = unquoted(line); !rest.empty(); rest = unquoted(rest)) {
+      const auto end = std::min(rest.find_first_of(" \t"), rest.size());
+      cells.push_back(unquoted(rest.substr(0, end)));
+      rest.remove_prefix(end);
+    }
+    return cells;
+  }
+  std::size_t begin = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at <= line.size(); ++at) {
+    if (at < line.size() && line[at] == '"') quoted = !quoted;
+    if (at < line.size() && (quoted || line[at] != separator)) continue;
+    cells.push_back(unquoted(line.substr(begin, at - begin)));
+    begin = at + 1;
+  }
+  return cells;
+}
+
+Number parse_number(std::string_view cell, char separator) {
+  Number n{.value = std::numeric_limits<double>::quiet_NaN()};
+  std::string text;
+  if (cell.find_first_not_of("0123456789.eE-") != std::string_view::npos) {
+    text = plain(cell, separator, n);
+    cell = text;
+  }
+  if (n.ambiguous) return n;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), n.value);
+  n.ok = !cell.empty() && error == std::errc{} && end == cell.data() + cell.size();
+  if (const auto point = cell.find('.'); point != std::string_view::npos) {
+    n.point = !n.comma;
+    n.decimals = static_cast<int>(std::min(cell.find_first_of("eE"), cell.size()) - point - 1);
+    if (cell.find_first_of("eE") != std::string_view::npos) n.decimals = 0;
+  }
+  if (!n.ok) n.value = std::numeric_limits<double>::quiet_NaN();
+  return n;
+}
+
+bool says_missing(std::string_view cell) {
+  constexpr std::string_view kWords =
+      "nan na null none nil bad missing nodata novalue notavailable notanumber baddata badinput badquality invalid "
+      "error failed fail timeout iotimeout commfail calcfailed ptcreated shutdown intfshut scanoff notconnect "
+      "offline overrange underrange configure unavailable undefined undef empty div0 num value ref name "
+      "ndef keinwert keinedaten keinezahl fehlt ungultig fehler schlecht nichtverfugbar "
+      "nonnumerique nonnumero nonunnombre pasdedonnees pasdevaleur aucunedonnee sansvaleur manquant invalide "
+      "indisponible neun noesunnumero sindatos sinvalor nohaydatos invalido malo nodisponible "
+      "naoeumnumero semdados semvalor semvalores naodisponivel ruim nonunnumero nonunnumeroreale nessundato "
+      "nessunvalore datomancante nondisponibile mancante нечисло нетданных нетзначения нд ошибка плохое";
+  const std::string word = normalised(cell);
+  if (word.empty()) return true;
+  if (cell.find("#IND") != std::string_view::npos || cell.find("#QNAN") != std::string_view::npos ||
+      cell.find("#SNAN") != std::string_view::npos)
+    return true;  // "-1.#IND": how older programs on Windows write it
+  return is_word_of(word, kWords) || (word.starts_with("nan") && is_word(cell));
+}
+
+bool is_word(std::string_view cell) {
+  const bool letters = std::ranges::any_of(cell, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+  });
+  return letters && std::ranges::none_of(cell, is_digit) && normalised(cell).size() >= 2 &&
+         !parse_number(cell, ' ').ok;
+}
+
+bool is_code(double v) {
+  for (const double code : {-999.0, 9999.0, 99999.0, 999999.0})
+    if (std::abs(v) == std::abs(code) && (v > 0 || code == -999.0 || v < -999.0)) return true;
+  return std::abs(v) >= 1e30;
+}
+
+TableTop find_top(std::string_view text, const ColumnMap& columns) {
+  constexpr int kLines = 60;
+  const bool blanks = by_blanks(text);
+  TableTop top{.separator = ','};
+  std::size_t most = 1;
+  bool found = false;
+  const auto counts = [&](std::string_view cell) {
+    if (cell.empty() || parse_number(cell, ',').ok) return false;
+    if (column_meaning(cell)) return true;
+    return cell.size() > 1 && std::ranges::any_of(columns, [&](const auto& named) {
+             return named.second.find(cell) != std::string::npos;
+           });
+  };
+  int first = -1;
+  for (int n = 0; n < kLines && !text.empty(); ++n) {
+    const auto end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view content = unquoted(line);
+    if (content.empty() || content.front() == '#') continue;
+    for (const char separator : {',', ';', '\t', ' '}) {
+      if (blanks != (separator == ' ')) continue;
+      const Cells cells = split(line, separator);
+      std::size_t quantities = 0;
+      for (const auto cell : cells) quantities += counts(cell) ? 1 : 0;
+      if (quantities > most) most = quantities, top = {separator, n}, found = true;
+    }
+    // Without a heading that is known: the first line of several cells.
+    const char separator = blanks ? ' ' : separator_of(line);
+    if (!found && first < 0 && split(line, separator).size() > 1) top = {separator, n}, first = n;
+  }
+  return top;
+}
+
+}  // namespace swingbank::validate::record

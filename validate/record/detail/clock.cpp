@@ -1,0 +1,132 @@
+#include "validate/record/detail/clock.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/median.hpp"
+
+namespace swingbank::validate::record {
+namespace {
+
+constexpr double kDay = 86400;
+
+/// Values of clocks that count from a known instant.
+struct Clock {
+  double from, until;  ///< values between 1985 and 2128, of ticks and days between 1982 and 2100
+  Unit unit;
+  double origin;  ///< 1970-01-01 [days]
+  std::string_view what;
+};
+constexpr Clock kDays[] = {
+    {30000, 73051, Unit::day, 25569, "days since 1899-12-30, as spreadsheets count them"},
+    {723911, 767011, Unit::day, 719529, "days since year 0, as MATLAB counts them"},
+};
+constexpr Clock kUnix[] = {
+    {5e8, 5e9, Unit::second, 0, "seconds since 1970"},
+    {5e11, 5e12, Unit::millisecond, 0, "milliseconds since 1970"},
+    {5e14, 5e15, Unit::microsecond, 0, "microseconds since 1970"},
+    {7e17, 5e18, Unit::nanosecond, 0, "nanoseconds since 1970"},
+};
+
+RawColumn& time_column(RawRecord& raw) {
+  return *std::ranges::find(raw.columns, Quantity::time,
+                            [](const RawColumn& c) { return c.meaning.quantity; });
+}
+
+/// Median of the steps between finite values; NaN where there are none.
+double usual_step(const std::vector<double>& t) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < t.size(); ++k)
+    if (std::isfinite(t[k + 1] - t[k])) steps.push_back(t[k + 1] - t[k]);
+  return steps.empty() ? kNoValue : upper_median(std::move(steps));
+}
+
+template <class Clocks>
+const Clock* clock_of(const Clocks& clocks, double first) {
+  const auto* found =
+      std::ranges::find_if(clocks, [&](const Clock& c) { return first >= c.from && first < c.until; });
+  return found == std::end(clocks) ? nullptr : found;
+}
+
+/// Days of which the first is `first`, as seconds from it.
+void count_days(RawRecord& raw, RawColumn& time, double first, const Clock& clock) {
+  for (double& v : time.values) v = (v - first) * kDay;
+  raw.time_resolution *= kDay;
+  time.meaning.unit = Unit::second;
+  std::string start = utc_text((first - clock.origin) * kDay);
+  start.pop_back();  // no zone is known
+  start[start.find('T')] = ' ';
+  raw.about.start = start;
+  raw.about.notes.push_back(
+      fmt::format("The times of '{}' are {}: t = 0 is {} (zone not known).", time.name, clock.what, start));
+}
+
+}  // namespace
+
+void settle_clock(RawRecord& raw) {
+  constexpr double kMostOfASample =
+      1.2e-5;  // days: 1 s. Seconds that began so long ago come in longer steps.
+  RawColumn& time = time_column(raw);
+  auto& unit = time.meaning.unit;
+  if (unit && unit != Unit::day) return;
+  const auto at = std::ranges::find_if(time.values, [](double v) { return std::isfinite(v); });
+  const double first = at == time.values.end() ? 0 : *at;
+  const double step = usual_step(time.values);
+  if (const Clock* days = clock_of(kDays, first); days && (unit || !(step > kMostOfASample)))
+    return count_days(raw, time, first, *days);
+  if (unit) return;
+  const Clock* clock = clock_of(kUnix, first);
+  unit = clock ? clock->unit : Unit::second;
+  raw.about.notes.push_back(fmt::format("The column '{}' names no unit: it was taken for {}.", time.name,
+                                        clock ? clock->what : "seconds"));
+}
+
+bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const ReadOptions& options,
+                 const std::string& file, Problems& problems) {
+  constexpr double kLongest = 0.55, kLongestOfGovernor = 5.5;  // s: 2 samples/s, and one in 5 s
+  constexpr double kShortest = 0.5;                            // s, of a record
+  const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
+  const double step = usual_step(t);
+  if (!(step > 0)) return false;
+  if (step > (options.component == Component::governor ? kLongestOfGovernor : kLongest)) {
+    struct Smaller {
+      double factor;
+      std::string_view name, column;
+    };
+    constexpr std::array<Smaller, 3> smaller = {
+        {{1e-3, "ms", "t_ms"}, {1e-6, "microseconds", "t_us"}, {1e-9, "nanoseconds", "t_ns"}}};
+    const auto* other = step < 2 ? smaller.end() : std::ranges::find_if(smaller, [&](const Smaller& s) {
+      return plausible(step * s.factor);
+    });
+    if (other != smaller.end() && time.unit == Unit::second)
+      problems.add(
+          fmt::format("steps of {:.4g} s", step), file,
+          fmt::format("a record of {:.3g} samples/s shows no swing; in {} these would be {:.4g} samples/s",
+                      1 / step, other->name, 1 / (step * other->factor)),
+          fmt::format("are the times in {}? Name the column {}, or say so: --columns \"t=NAME [{}]\"",
+                      other->name, other->column, other->column.substr(2)));
+    else
+      problems.add(
+          fmt::format("{:.3g} samples/s", 1 / step), file,
+          "a swing of 1 Hz needs at least 10 samples/s: what happens between these samples is not known",
+          "give the record of a phasor measurement unit or fault recorder, at 10 to 120 samples/s, or "
+          "check the unit of the times");
+    return true;
+  }
+  const double length = t.back() - t.front();
+  const bool small =
+      time.unit == Unit::millisecond || time.unit == Unit::microsecond || time.unit == Unit::nanosecond;
+  if (!small || !(length < kShortest)) return false;
+  const double factor = time.unit == Unit::millisecond ? 1e3 : time.unit == Unit::microsecond ? 1e6 : 1e9;
+  if (!plausible(step * factor)) return false;
+  problems.add(fmt::format("{:.3g} s", length), file,
+               fmt::format("the record is too short; in seconds its times would be {:.4g} samples/s",
+                           1 / (step * factor)),
+               "are the times in s? Name the column t_s; otherwise give a longer record");
+  return true;
+}
+
+}  // namespace swingbank::validate::record
