@@ -60,12 +60,18 @@ class Check : Findings {
         "give a record at 25/s or more if there is one; of this one believe what is slow: inertia, governor, "
         "reactances");
   }
+  static constexpr double kShortest = 0.5;  ///< of a record that any check makes sense of [s]
+
   /// Records that were not read from a file may hold anything.
   bool complete() {
     const std::size_t n = r_.t.size();
     if (r_.samples() < record::kFewestSamples)
       refuse("too_short", fmt::format("{} samples", n),
              fmt::format("at least {} are needed", record::kFewestSamples), "give a longer record");
+    else if (const double length = r_.t.back() - r_.t.front(); length < kShortest)
+      refuse("too_short", fmt::format("{:.3g} s is too short", length),
+             "the response to an event takes seconds, and this record holds less than half a second",
+             "export it from 1 s before to 5 s after the event (--from, --until)");
     for (const auto* c : {&r_.V, &r_.theta, &r_.P, &r_.Q})
       if (c->size() != n)
         refuse("incomplete", "channels of unequal length", "V, theta, P and Q need a value per time",
@@ -79,13 +85,15 @@ class Check : Findings {
   }
 
   void dropouts() {
+    // Zeros between frames that go on as before are lost frames, and reading has bridged them.
     std::size_t zeros = 0, first = 0;
     for (std::size_t k = 0; k < r_.t.size(); ++k)
-      if (r_.V[k] == 0 && r_.theta[k] == 0 && r_.P[k] == 0 && r_.Q[k] == 0 && zeros++ == 0) first = k;
+      if (r_.V[k] == 0 && r_.P[k] == 0 && r_.Q[k] == 0 && zeros++ == 0) first = k;
     if (zeros > 0 && zeros < r_.t.size())
-      refuse("dropout",
-             fmt::format("{} samples with all channels zero, first at t = {:.4g} s", zeros, r_.t[first]),
-             "instruments write zeros where data were lost", "fill the gap at the source, or cut the record");
+      warn("dropout",
+           fmt::format("{} samples with V, P and Q exactly zero, first at t = {:.4g} s", zeros, r_.t[first]),
+           "they are played in as a fault at the terminals; instruments write zeros where data were lost",
+           "cut the record before it (--until) if there was no such fault");
     if (signals_.longest_hold >= 3)
       warn("held_samples",
            fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_hold,

@@ -246,6 +246,21 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.warnings = unit.notes;
 }
 
+/// Whether the first line that is no comment is one of columns, as records have it: no line of TOML divides
+/// three cells before a table or a value begins.
+bool is_columns(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const auto begin = line.find_first_not_of(" \t\r\xEF\xBB\xBF");
+    if (begin == std::string_view::npos || line[begin] == '#') continue;
+    if (line[begin] == '[' || line.find('=') != std::string_view::npos) return false;
+    return std::ranges::count_if(line, [](char c) { return c == ',' || c == ';' || c == '\t'; }) >= 2;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string subject(const PlantModel& model) {
@@ -260,6 +275,9 @@ PlantModel load_plant_model(const fs::path& file) {
 }
 
 PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
+  if (is_columns(text))
+    throw InputError({"a record", file.string(), "a plant file was asked for",
+                      "give the plant file (.toml) as --model, and the record as --records"});
   Config config(text, file);
   PlantModel model;
   model.origin = file.string();

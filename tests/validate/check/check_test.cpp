@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 #include "tests/validate/playin/support.hpp"
+#include "validate/check/signals.hpp"
 
 namespace swingbank::validate::check {
 namespace {
@@ -109,12 +111,6 @@ std::vector<Mistake> mistakes() {
       {"into_the_machine", "power_sign", {.edit = [](Row x) { x[3] = -x[3], x[4] = -x[4]; }}},
       {"drifting", "unsteady", {.edit = [](Row x) { x[3] += x[0] < 2 ? 0.1 * x[0] : 0.2; }}},
       {"oscillating", "unsteady", {.edit = [](Row x) { x[3] += 0.1 * std::sin(6 * x[0]); }}},
-      {"lost_samples_as_zeros",
-       "dropout",
-       {.edit =
-            [](Row x) {
-              if (x[0] > 5 && x[0] < 5.2) x = {x[0], 0, 0, 0, 0, 1};
-            }}},
   };
   return all;
 }
@@ -130,6 +126,59 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 }
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
+
+TEST(RecordCheckTest, LostSamplesAsZerosAreBridged) {
+  for (int i = 1; i <= 4; ++i) {
+    Written w;
+    w.edit = [](std::vector<double>& x) {
+      if (x[0] > 5 && x[0] < 5.2) x = {x[0], 0, 0, 0, 0, 1};
+    };
+    const record::Record r = rewritten(example(i), w);
+    EXPECT_EQ(std::ranges::count(r.lost, 1), 11) << "event " << i;
+    EXPECT_FALSE(refused(check_record(r, {100, 60}), "dropout"));
+  }
+}
+/// A fault of a third of the record, with noise.
+record::Record short_record(int samples, double rate, std::mt19937& random) {
+  std::normal_distribution<double> noise(0, 1e-4);
+  record::Record r;
+  r.name = "short.csv";
+  for (int k = 0; k < samples; ++k) {
+    const bool fault = 3 * k > samples && 3 * k < 2 * samples;
+    r.t.push_back(k / rate);
+    r.V.push_back((fault ? 0.6 : 1.0) + noise(random));
+    r.theta.push_back((fault ? -0.2 : 0.1) + noise(random));
+    r.P.push_back((fault ? 0.3 : 0.7) + noise(random));
+    r.Q.push_back((fault ? 0.9 : 0.2) + noise(random));
+  }
+  return r;
+}
+TEST(RecordCheckTest, ShortRecordsAreRefusedInOneSentence) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> samples(record::kFewestSamples, 481);
+  std::uniform_real_distribution<double> exponent(0, 6);
+  int refused_as_short = 0;
+  for (int i = 0; i < 500; ++i) {
+    const record::Record r = short_record(samples(random), std::pow(10, exponent(random)), random);
+    const double length = r.t.back() - r.t.front();
+    const auto findings = check_record(r, {100, 60});
+    if (length >= 0.5) continue;
+    ++refused_as_short;
+    ASSERT_EQ(findings.size(), 1U) << told(findings);
+    EXPECT_THAT(told(findings), ::testing::HasSubstr(fmt::format("{:.3g} s is too short", length)));
+  }
+  EXPECT_GT(refused_as_short, 200);
+}
+TEST(RecordSignalsTest, RecordsShorterThanATenthOfASecondHaveAnAngle) {
+  std::mt19937 random(2);
+  for (const double rate : {1e3, 1e4, 1e5, 1e6})
+    for (const int samples : {30, 31, 100, 481}) {
+      const record::Record r = short_record(samples, rate, random);
+      const Signals s = record_signals(r);
+      EXPECT_NEAR(s.first_angle, 0.1, 1e-3);
+      EXPECT_GE(s.fast_angle, 0) << samples << " samples at " << rate << "/s";
+    }
+}
 
 TEST(RecordCheckTest, ASlowRecordIsSaid) {
   const record::Record r = example(1);

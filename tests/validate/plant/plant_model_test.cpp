@@ -119,6 +119,12 @@ TEST_F(PlantModelTest, ValuesMustBePossibleAndConsistent) {
   EXPECT_THAT(faults(replaced(example_text(), "H = 6.54", "H = \"6.54\"")),
               ElementsAre(HasSubstr("machine.H")));
 }
+TEST_F(PlantModelTest, NamesARecordGivenInItsPlace) {
+  for (const char* text : {"t_s,V_pu,theta_rad,P_pu,Q_pu\n0,1,0,0.5,0.1\n", "Unit 4,7,1999\n8,8A,0D\n"})
+    EXPECT_THAT(test::messages([&] { parse_plant_model(text, "event.csv"); }),
+                ::testing::ElementsAre(::testing::AllOf(::testing::HasSubstr("a record at event.csv"),
+                                                        ::testing::HasSubstr("--model"))));
+}
 TEST_F(PlantModelTest, AllFaultsAtOnce) {
   const auto all =
       faults(replaced(replaced(replaced(example_text(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),

@@ -74,8 +74,8 @@ TEST(RecordTest, MissingColumnsAreAllNamed) {
                           HasSubstr("Q_pu, Q_Mvar")));
 }
 TEST(RecordTest, ColumnsNeedAKnownUnit) {
-  EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P,Q_kvar\n"),
-              ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_kvar'")));
+  EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P,Q_MVA\n"),
+              ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_MVA'")));
   EXPECT_THAT(faults_of("t_s,V_kV,theta_rad,P_pu,Q_pu\n"), ElementsAre(HasSubstr("base_kv")));
   EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"),
               ElementsAre(HasSubstr("another column gives the same quantity")));
