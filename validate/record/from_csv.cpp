@@ -188,22 +188,30 @@ class CsvReader {
     problems_.raise();
   }
 
-  /// Of several times the first one counts; the fraction of the second that C37.118 counts is kept beside it.
+  /// Of several times the first one counts, "SOC" only beside FRACSEC or alone: it may be a state of charge.
+  /// The fraction of the second that C37.118 counts is kept beside it.
   void one_time(Record& about) {
-    std::string first;
+    std::vector<std::size_t> times;
     for (std::size_t i = 0; i < headings_.size(); ++i) {
-      auto& [name, meaning, unit] = headings_[i];
-      if (is_word_of(normalised(name.substr(0, name.find_first_of("([")).substr(0, name.find('_'))),
-                     "fracsec fracsecond fractionofsecond fractionofseconds fracseconds"))
+      const auto& [name, meaning, unit] = headings_[i];
+      const std::string_view word = std::string_view(name).substr(0, name.find_first_of("([_"));
+      if (is_word_of(normalised(word), "fracsec fracsecond fractionofsecond fractionofseconds fracseconds"))
         fraction_ = i;
-      if (!meaning || meaning->quantity != Quantity::time || !meaning->terminal.empty()) continue;
-      if (first.empty()) {
-        first = name;
-      } else if (!options_.columns.contains("t")) {
-        about.notes.push_back(fmt::format(
-            "Of the times '{}' and '{}' the first is read: --columns \"t=…\" chooses.", first, name));
-        meaning.reset();
-      }
+      if (meaning && meaning->quantity == Quantity::time && meaning->terminal.empty()) times.push_back(i);
+    }
+    if (times.size() < 2 || options_.columns.contains("t")) return;
+    const auto is_charge = [&](std::size_t i) {
+      return !fraction_ && normalised(headings_[i].name) == "soc";
+    };
+    const auto first = std::ranges::find_if_not(times, is_charge);
+    const std::size_t chosen = first == times.end() ? times.front() : *first;
+    for (const std::size_t i : times) {
+      if (i == chosen) continue;
+      headings_[i].meaning.reset();
+      if (!is_charge(i))
+        about.notes.push_back(
+            fmt::format("Of the times '{}' and '{}' the first is read: --columns \"t=…\" chooses.",
+                        headings_[chosen].name, headings_[i].name));
     }
   }
 

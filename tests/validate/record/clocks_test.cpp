@@ -30,7 +30,7 @@ void expect_thirty_per_second(const Record& r) {
   expect_values(r);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_NEAR(r.rate(), 30, 1e-3);
-  EXPECT_NEAR(r.t.front(), 0, 1e-9);
+  EXPECT_NEAR(r.t.front(), 0, 1e-6);
 }
 
 struct TimeUnit {
@@ -104,6 +104,15 @@ TEST(ClockTest, SecondOfCenturyWithItsFraction) {
     expect_thirty_per_second(r);
     EXPECT_THAT(beginning(r), HasSubstr("2026-03-01T14:05:20.5"));
   }
+}
+TEST(ClockTest, FirstOfSeveralTimesIsRead) {
+  const auto both = [](double t) { return fmt::format("{:.7f},{:.3f}", t, 500 + 7 * t); };
+  const Record r = parse_record(record_text("t_s,Elapsed Time (s)", both), "r.csv", kTestBase);
+  expect_thirty_per_second(r);
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("'t_s'"), HasSubstr("'Elapsed Time (s)'"))));
+  // A battery's state of charge is no time.
+  const auto charge = [](double t) { return fmt::format("80,{:.7f}", t); };
+  expect_thirty_per_second(parse_record(record_text("SOC,t_s", charge), "r.csv", kTestBase));
 }
 TEST(ClockTest, StepsThatAreTooLongNameTheLikelyUnit) {
   EXPECT_THAT(clock_faults(record_text("t_s", [](double t) { return fmt::format("{:.3f}", 1e3 * t); })),

@@ -436,7 +436,8 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   r.base = base;
   begin_at_zero(raw, r);
   cut_rows(raw, options, faults);
-  if (check_clock(times_of(raw), time_of(raw).meaning, options, file, problems)) problems.raise();
+  if (!raw.uneven && check_clock(times_of(raw), time_of(raw).meaning, options, file, problems))
+    problems.raise();
   const EvenRows rows = settle(raw, options, r, faults);
   faults.tell(problems, file);
   if (rows.place.size() < kFewestSamples)

@@ -162,7 +162,7 @@ bool says_missing(std::string_view cell) {
   if (cell.find("#IND") != std::string_view::npos || cell.find("#QNAN") != std::string_view::npos ||
       cell.find("#SNAN") != std::string_view::npos)
     return true;  // "-1.#IND": how older programs on Windows write it
-  return is_word_of(word, kWords) || (word.starts_with("nan") && is_word(cell));
+  return is_word_of(word, kWords) || word.starts_with("nan");
 }
 
 bool is_word(std::string_view cell) {

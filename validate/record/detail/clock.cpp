@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/median.hpp"
-
 namespace swingbank::validate::record {
 namespace {
 
@@ -36,12 +34,16 @@ RawColumn& time_column(RawRecord& raw) {
                             [](const RawColumn& c) { return c.meaning.quantity; });
 }
 
-/// Median of the steps between finite values; NaN where there are none.
+/// Step between finite values that a tenth of them fall short of; NaN where there are none. Where a
+/// simulation chose them, the longer ones say little.
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < t.size(); ++k)
-    if (std::isfinite(t[k + 1] - t[k])) steps.push_back(t[k + 1] - t[k]);
-  return steps.empty() ? kNoValue : upper_median(std::move(steps));
+    if (t[k + 1] > t[k]) steps.push_back(t[k + 1] - t[k]);
+  if (steps.empty()) return kNoValue;
+  const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
+  std::ranges::nth_element(steps, at);
+  return *at;
 }
 
 template <class Clocks>
