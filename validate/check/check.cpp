@@ -60,7 +60,7 @@ class Check : Findings {
         "give a record at 25/s or more if there is one; of this one believe what is slow: inertia, governor, "
         "reactances");
   }
-  static constexpr double kShortest = 0.5;  ///< of a record that any check makes sense of [s]
+  static constexpr double kShortestChecked = 0.5;  ///< of a record that any check makes sense of [s]
 
   /// Records that were not read from a file may hold anything.
   bool complete() {
@@ -68,7 +68,7 @@ class Check : Findings {
     if (r_.samples() < record::kFewestSamples)
       refuse("too_short", fmt::format("{} samples", n),
              fmt::format("at least {} are needed", record::kFewestSamples), "give a longer record");
-    else if (const double length = r_.t.back() - r_.t.front(); length < kShortest)
+    else if (const double length = r_.t.back() - r_.t.front(); length < kShortestChecked)
       refuse("too_short", fmt::format("{:.3g} s is too short", length),
              "the response to an event takes seconds, and this record holds less than half a second",
              "export it from 1 s before to 5 s after the event (--from, --until)");

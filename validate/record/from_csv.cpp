@@ -78,8 +78,8 @@ class CsvReader {
 
   /// Lines before the heading that may belong to it: names of stations, numbers of phasors.
   [[nodiscard]] bool belongs_to_header(const Cells& cells) const {
-    constexpr int kAbove = 5;
-    return top_.line + 1 - number_ <= kAbove && cells.size() > 1 &&
+    constexpr int kLinesAbove = 5;
+    return top_.line + 1 - number_ <= kLinesAbove && cells.size() > 1 &&
            std::ranges::none_of(cells, [&](auto c) { return parse_number(c, top_.separator).ok; });
   }
 

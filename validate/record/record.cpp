@@ -174,6 +174,9 @@ Record stretch(Record r, double from, double until) {
     throw InputError({fmt::format("{} samples", kept), r.name,
                       fmt::format("the stretch asked for leaves fewer than {}", kFewestSamples),
                       "give an earlier --from or a later --until"});
+  if (const double length = r.t[last - 1] - r.t[first]; length < kShortestRecord)
+    throw InputError({fmt::format("{:.3g} s is too short", length), r.name,
+                      "the response to an event takes seconds", "give an earlier --from or a later --until"});
   const auto cut = [&](auto& values) {
     if (values.empty()) return;
     values.resize(last);

@@ -126,6 +126,15 @@ TEST(ClockTest, StepsThatAreTooLongNameTheLikelyUnit) {
   EXPECT_THAT(clock_faults(record_text("t_ms", [](double t) { return fmt::format("{:.7f}", t); })),
               ElementsAre(AllOf(HasSubstr("too short"), HasSubstr("are the times in s?"))));
 }
+TEST(ClockTest, AThirtiethOfASecondIsTooShort) {
+  const auto fast = [](double t) { return fmt::format("{:.8f}", t * 30e-4); };  // 10,000 samples/s
+  EXPECT_THAT(clock_faults(record_text("t_s", fast, 300)),
+              ElementsAre(AllOf(HasSubstr("0.0299 s is too short"), HasSubstr("1 s before to 5 s after"))));
+  const auto text = record_text(
+      "t_s", [](double t) { return fmt::format("{:.8f}", t / 64); }, 6000);  // 1920/s
+  EXPECT_THAT(clock_faults(text, {.from = 1.98, .until = 2.06}),
+              ElementsAre(HasSubstr("0.0797 s is too short")));
+}
 TEST(ClockTest, TooFewDigitsAreNamed) {
   EXPECT_THAT(
       clock_faults(record_text("Time", [](double t) { return fmt::format("05:{:04.1f}", 20 + t); })),

@@ -443,6 +443,9 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   if (rows.place.size() < kFewestSamples)
     problems.add(fmt::format("{} samples", rows.place.size()), file,
                  fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
+  else if (const double length = rows.t.back() - rows.t.front(); length > 0 && length < kShortestRecord)
+    problems.add(fmt::format("{:.3g} s is too short", length), file, "the response to an event takes seconds",
+                 "export it from 1 s before to 5 s after the event (--from, --until)");
   problems.raise();
   const std::vector<char> unmeasured = fill_channels(raw, rows, r);
   if (options.component == Component::governor && r.V.empty() && !options.part) r.V.assign(r.t.size(), 1.0);

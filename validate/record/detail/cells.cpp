@@ -180,7 +180,7 @@ bool is_code(double v) {
 }
 
 TableTop find_top(std::string_view text, const ColumnMap& columns) {
-  constexpr int kLines = 60;
+  constexpr int kLinesOfTop = 60;
   const bool blanks = by_blanks(text);
   TableTop top{.separator = ','};
   std::size_t most = 1;
@@ -193,7 +193,7 @@ TableTop find_top(std::string_view text, const ColumnMap& columns) {
            });
   };
   int first = -1;
-  for (int n = 0; n < kLines && !text.empty(); ++n) {
+  for (int n = 0; n < kLinesOfTop && !text.empty(); ++n) {
     const auto end = text.find('\n');
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);

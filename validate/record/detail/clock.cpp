@@ -88,12 +88,12 @@ void settle_clock(RawRecord& raw) {
 
 bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const ReadOptions& options,
                  const std::string& file, Problems& problems) {
-  constexpr double kLongest = 0.55, kLongestOfGovernor = 5.5;  // s: 2 samples/s, and one in 5 s
-  constexpr double kShortest = 0.5;                            // s, of a record
+  constexpr double kSlowest = 0.55, kSlowestGovernor = 5.5;  // s: 2 samples/s, and one in 5 s
+  constexpr double kShortestHere = 0.5;                      // s, of a record
   const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
   const double step = usual_step(t);
   if (!(step > 0)) return false;
-  if (step > (options.component == Component::governor ? kLongestOfGovernor : kLongest)) {
+  if (step > (options.component == Component::governor ? kSlowestGovernor : kSlowest)) {
     struct Smaller {
       double factor;
       std::string_view name, column;
@@ -121,7 +121,7 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
   const double length = t.back() - t.front();
   const bool small =
       time.unit == Unit::millisecond || time.unit == Unit::microsecond || time.unit == Unit::nanosecond;
-  if (!small || !(length < kShortest)) return false;
+  if (!small || !(length < kShortestHere)) return false;
   const double factor = time.unit == Unit::millisecond ? 1e3 : time.unit == Unit::microsecond ? 1e6 : 1e9;
   if (!plausible(step * factor)) return false;
   problems.add(fmt::format("{:.3g} s", length), file,

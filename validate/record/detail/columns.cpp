@@ -277,10 +277,22 @@ std::string_view word_of(Quantity q) {
 
 std::string names_of(Quantity q) {
   constexpr std::string_view names[kQuantities] = {
-      "t_s, t_ms",     "V_pu, V_kV, V_kV_ln", "theta_rad, theta_deg", "f_pu, f_hz",
-      "P_pu, P_MW",    "Q_pu, Q_Mvar",        "omega_pu, speed_pu",   "Efd_pu, Efd_V",
-      "Ifd_pu, Ifd_A", "I_pu, I_A, I_kA",     "phi_rad, phi_deg",     "Vs_pu",
-      "Vref_pu",       "Pm_pu, Pm_MW",        "Pref_pu, Pref_MW",     "gate_pu",
+      "t_s, t_ms, t_us, t_ns, t_min, t_h, t_cycles",
+      "V_pu, V_kV, V_kV_ln",
+      "theta_rad, theta_deg",
+      "f_pu, f_hz",
+      "P_pu, P_MW",
+      "Q_pu, Q_Mvar",
+      "omega_pu, speed_pu",
+      "Efd_pu, Efd_V",
+      "Ifd_pu, Ifd_A",
+      "I_pu, I_A, I_kA",
+      "phi_rad, phi_deg",
+      "Vs_pu",
+      "Vref_pu",
+      "Pm_pu, Pm_MW",
+      "Pref_pu, Pref_MW",
+      "gate_pu",
   };
   return std::string(names[static_cast<int>(q)]);
 }

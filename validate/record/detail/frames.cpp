@@ -36,7 +36,7 @@ std::vector<RawColumn*> phasors_of(RawRecord& raw) {
 /// Whether V and the powers go on after row `after` as they were at row `before`: closer than 0.02 pu and 5 %
 /// of the power, or than they moved in as many rows before.
 bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
-  constexpr double kVoltage = 0.02, kPower = 0.05;
+  constexpr double kVoltageGoesOn = 0.02, kPowerGoesOn = 0.05;
   const auto moved = [&](const RawColumn& c) {
     const std::size_t n = std::min(before, after - before);
     double most = 0;
@@ -49,7 +49,8 @@ bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
     if (const auto* c = find(raw, q)) power = std::max(power, std::abs(c->values[before]));
   for (const auto q : {Quantity::V, Quantity::P, Quantity::Q, Quantity::I})
     if (const auto* c = find(raw, q)) {
-      const double limit = std::max(q == Quantity::V ? kVoltage : kPower * power, 1.5 * moved(*c));
+      const double limit =
+          std::max(q == Quantity::V ? kVoltageGoesOn : kPowerGoesOn * power, 1.5 * moved(*c));
       if (!(std::abs(c->values[after] - c->values[before]) <= limit)) return false;
     }
   return true;
