@@ -43,31 +43,79 @@ class Data {
   }
 
   Comtrade read() {
+    settle_kind();
     if (out_.kind == "ASCII")
       lines();
     else
       bytes();
-    const auto found = static_cast<long>(out_.places.size());
-    if (found > c_.samples && found <= c_.samples + 1 + c_.samples / 100)
-      out_.notes.push_back(fmt::format("The data hold {} samples, the configuration says {}: all were read.",
-                                       found, c_.samples));
-    else if (found != c_.samples)
-      problems_.add(fmt::format("{} samples", out_.places.size()), out_.file,
-                    fmt::format("the configuration has {}", c_.samples), "export the record again");
+    const std::size_t read = out_.places.size(), announced = static_cast<std::size_t>(c_.samples);
+    if (read < announced || surplus_ > 0)
+      out_.notes.push_back(
+          fmt::format("The configuration announces {} samples, the data hold {}: the first {} were read.",
+                      announced, read + surplus_, read));
+    unwrap_stamps();
     times();
     faults_.tell(problems_, out_.file);
     return std::move(out_);
   }
 
  private:
+  /// Bytes of a sample whose values take `width` bytes each.
+  [[nodiscard]] std::size_t sample_size(std::size_t width) const {
+    return 8 + width * out_.channels.size() + 2 * ((static_cast<std::size_t>(c_.status) + 15) / 16);
+  }
+  /// Whether samples of that size are numbered upwards by one from the first on.
+  [[nodiscard]] bool counts_up(std::size_t size) const {
+    constexpr std::size_t kLooked = 16;
+    const std::size_t n = std::min(kLooked, dat_.size() / size);
+    for (std::size_t k = 1; k < n; ++k)
+      if (little<std::uint32_t>(dat_, k * size) != little<std::uint32_t>(dat_, (k - 1) * size) + 1)
+        return false;
+    return n > 1;
+  }
+  /// Whether the four-byte values are floats: integers that are read as such are mostly denormal or no
+  /// number.
+  [[nodiscard]] bool holds_floats() const {
+    const std::size_t size = sample_size(4), n = dat_.size() / size;
+    bool any = false;
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t c = 0; c < out_.channels.size(); ++c) {
+        const auto v = std::abs(little<float>(dat_, k * size + 8 + 4 * c));
+        if (!std::isfinite(v) || v == 0) continue;
+        if (!(v > 1e-15F && v < 1e15F)) return false;
+        any = true;
+      }
+    return any;
+  }
+  /// The data type that the data have, where the configuration names another.
+  void settle_kind() {
+    const std::string_view head = dat_.substr(0, 200);
+    const bool text = head.find_first_not_of("0123456789.,+-eE \t\r\n\x1a") == std::string_view::npos;
+    std::string kind = out_.kind;
+    if (text)
+      kind = "ASCII";
+    else if (const bool two = counts_up(sample_size(2)), four = counts_up(sample_size(4)); two != four)
+      kind = two ? "BINARY" : holds_floats() ? "FLOAT32" : out_.kind == "FLOAT32" ? out_.kind : "BINARY32";
+    if (kind == out_.kind || dat_.empty()) return;
+    out_.notes.push_back(
+        fmt::format("The configuration names the data type {}, the data are {}: they were read as such.",
+                    out_.kind, kind));
+    out_.kind = kind;
+  }
+
   void lines() {
     int number = 0;
     while (!dat_.empty()) {
       const auto fields = comtrade_fields(comtrade_line(dat_));
       ++number;
       if (fields.size() == 1 && fields[0].empty()) continue;
-      const std::size_t sample = begin(static_cast<std::size_t>(number));
+      if (is_surplus()) continue;
       const std::size_t wanted = 2 + out_.channels.size() + static_cast<std::size_t>(c_.status);
+      if (fields.size() < wanted && dat_.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
+        note_cut(fmt::format("{}:{}", out_.file, number));
+        return;
+      }
+      const std::size_t sample = begin(static_cast<std::size_t>(number));
       if (fields.size() != wanted)
         faults_.add("fields", fmt::format("{} fields", fields.size()), sample,
                     fmt::format("the configuration means {}", wanted), "export the data again");
@@ -79,27 +127,21 @@ class Data {
     }
   }
 
-  /// Missing: empty, or 99999 in 1999 (8.4).
+  /// Missing: empty, or 99999 before 2013 (8.4).
   double text_value(const ComtradeChannel& channel, std::string_view text, std::size_t sample) {
     const auto v = comtrade_number(text);
     if (!v && !text.empty())
       faults_.add(channel.id, fmt::format("{} = '{}'", channel.id, text), sample, "this is no number",
                   "export the data again");
-    return v && !(out_.revision == 1999 && *v == 99999) ? *v : kNoValue;
+    return v && !(out_.revision < 2013 && *v == 99999) ? *v : kNoValue;
   }
 
   void bytes() {
     const std::size_t width = out_.kind == "BINARY" ? 2 : 4;
-    const std::size_t size =
-        8 + width * out_.channels.size() + 2 * ((static_cast<std::size_t>(c_.status) + 15) / 16);
+    const std::size_t size = sample_size(width), n = dat_.size() / size;
     out_.sample_bytes = size;
-    const std::size_t n = dat_.size() / size;
-    if (dat_.size() % size != 0)
-      problems_.add(fmt::format("{} bytes left over", dat_.size() % size),
-                    fmt::format("{}, byte {}", out_.file, n * size),
-                    fmt::format("a sample of this configuration takes {} bytes", size),
-                    "check that .cfg and .dat belong together, and export them again");
     for (std::size_t k = 0; k < n; ++k) {
+      if (is_surplus()) continue;
       const std::size_t at = k * size;
       const std::size_t sample = begin(at);
       numbered(sample, little<std::uint32_t>(dat_, at));
@@ -107,6 +149,18 @@ class Data {
       stamps_.push_back(stamp == 0xFFFFFFFFU ? kNoValue : stamp);
       for (std::size_t c = 0; c < out_.channels.size(); ++c) add(c, binary_value(at + 8 + width * c));
     }
+    if (dat_.size() % size != 0 && n < static_cast<std::size_t>(c_.samples))
+      note_cut(fmt::format("{}, byte {}", out_.file, n * size));
+  }
+
+  /// Whether all announced samples are read; counts those beyond them.
+  bool is_surplus() {
+    if (out_.places.size() < static_cast<std::size_t>(c_.samples)) return false;
+    ++surplus_;
+    return true;
+  }
+  void note_cut(const std::string& where) {
+    out_.notes.push_back(fmt::format("The last sample ({}) is cut off and was left out.", where));
   }
 
   /// Missing: 0x8000 and 0x80000000 (8.6); a FLOAT32 that is not finite.
@@ -141,6 +195,21 @@ class Data {
     ComtradeChannel& c = out_.channels[channel];
     const double ratio = c.secondary_values ? c.primary / c.secondary : 1.0;
     c.values.push_back((c.a * x + c.b) * ratio);
+  }
+
+  /// Stamps are unsigned numbers of four bytes, which a recorder that runs for long passes.
+  void unwrap_stamps() {
+    constexpr double kWrap = 4294967296.0;
+    double turns = 0, before = kNoValue;
+    for (double& stamp : stamps_) {
+      if (stamp < before - kWrap / 2) turns += kWrap;
+      if (std::isfinite(stamp)) before = stamp;
+      stamp += turns;
+    }
+    if (turns > 0)
+      out_.notes.push_back(
+          "The time stamps pass 2^32, the largest that the format holds, and begin at zero again: they were "
+          "continued.");
   }
 
   void times() {
@@ -181,11 +250,24 @@ class Data {
       for (std::size_t k = 0; k < n; ++k) out_.t[k] = static_cast<double>(k) / out_.stretches[0].rate;
   }
 
-  /// The rate counts (8.3), but a reader should know where the stamps say something else.
+  /// The rate counts (8.3), but where the stamps tell another the reader is told; where they are ten times
+  /// apart one of them is in another unit, and which is not known.
   void compare_stamps() {
     if (stamps_.size() < 2) return;
     const double stamped = (stamps_.back() - stamps_.front()) * c_.stamp, rated = out_.t.back();
-    if (std::isfinite(stamped) && stamped > 0 && std::abs(stamped - rated) > 0.01 * rated)
+    if (!(std::isfinite(stamped) && stamped > 0 && std::abs(stamped - rated) > 0.01 * rated)) return;
+    const double intervals = static_cast<double>(stamps_.size() - 1);
+    if (stamped > 9 * rated || rated > 9 * stamped)
+      problems_.add(
+          fmt::format("a sampling rate of {:.6g} per second, and time stamps of {:.6g} per second",
+                      intervals / rated, intervals / stamped),
+          out_.file,
+          fmt::format("by the rate the record lasts {:.4g} s, by its stamps {:.4g} s: one of them is "
+                      "in another unit",
+                      rated, stamped),
+          "correct the rate in the .cfg, or the time multiplier in its last line; with '0' for the number of "
+          "rates and '0' for the rate the stamps count");
+    else
       out_.notes.push_back(fmt::format(
           "The time stamps of the data span {:.6g} s, the sampling rate of the configuration {:.6g} s; the "
           "rate was taken.",
@@ -199,6 +281,7 @@ class Data {
   SampleFaults faults_;
   std::vector<double> stamps_;
   double next_number_ = 1;
+  std::size_t surplus_ = 0;  ///< samples beyond those that are announced
 };
 
 /// The section of a .cff whose heading holds `word`; `heading` becomes that line.

@@ -1,6 +1,6 @@
 #pragma once
-// COMTRADE (IEEE C37.111-1999 and -2013, IEC 60255-24): configuration and data, ASCII, BINARY, BINARY32 and
-// FLOAT32. Analogue channels only; what stands in status channels is passed over.
+// COMTRADE (IEEE C37.111-1991, -1999 and -2013, IEC 60255-24): configuration and data, ASCII, BINARY,
+// BINARY32 and FLOAT32. Analogue channels only; status channels are skipped.
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -27,7 +27,7 @@ struct ComtradeStretch {
 
 struct Comtrade {
   std::string station, device;
-  int revision = 0;                        ///< 1999 or 2013
+  int revision = 0;                        ///< 1991, 1999 or 2013
   double nominal = 0;                      ///< of the grid [Hz]
   std::string start;                       ///< date and time of the first sample, as written
   std::string kind;                        ///< "ASCII", "BINARY", "BINARY32" or "FLOAT32"
@@ -44,9 +44,11 @@ struct Comtrade {
   std::size_t sample_bytes = 0;  ///< 0: lines
 };
 
-/// Reads configuration and data; the names stand for the files in messages. Throws InputError with every
-/// fault of both: other revisions, counts that contradict each other, broken numbers,
-/// data that end early or are numbered with gaps. Lines and bytes are named.
+/// Reads configuration and data; the names stand for the files in messages. Notes what the files state
+/// wrongly and the data show: the data type, the number of samples, a last sample that is cut, stamps that
+/// passed the largest number they can hold. Throws InputError with every fault of both: unknown revisions,
+/// broken numbers, samples numbered with gaps, a rate and stamps in different units. Lines and bytes are
+/// named.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
 

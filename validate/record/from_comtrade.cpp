@@ -1,5 +1,6 @@
 // COMTRADE channels as a record: phasors as they are, waveforms by way of phasors.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,12 @@
 #include <optional>
 #include <set>
 
+#include "base/complex.hpp"
 #include "base/constants.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/phasor.hpp"
 #include "validate/record/detail/times.hpp"
+#include "validate/record/detail/waves.hpp"
 #include "validate/record/formats.hpp"
 
 namespace swingbank::validate::record {
@@ -19,118 +22,101 @@ namespace {
 
 constexpr double kFewestPerCycle = 8;  ///< samples of a waveform
 
-/// 0, 1, 2 for phases a, b, c in their usual spellings; 3 for a voltage between two phases.
-std::optional<std::size_t> phase_of(std::string_view text) {
-  static const std::map<std::string, std::size_t, std::less<>> names = {
-      {"a", 0},  {"an", 0}, {"ag", 0}, {"r", 0},   {"rn", 0},  {"l1", 0},  {"l1n", 0}, {"1", 0},  {"b", 1},
-      {"bn", 1}, {"bg", 1}, {"s", 1},  {"sn", 1},  {"l2", 1},  {"l2n", 1}, {"2", 1},   {"c", 2},  {"cn", 2},
-      {"cg", 2}, {"t", 2},  {"tn", 2}, {"l3", 2},  {"l3n", 2}, {"3", 2},   {"ab", 3},  {"bc", 3}, {"ca", 3},
-      {"rs", 3}, {"st", 3}, {"tr", 3}, {"l12", 3}, {"l23", 3}, {"l31", 3}};
-  const auto found = names.find(normalised(text));
-  return found == names.end() ? std::nullopt : std::optional(found->second);
-}
-
-struct Wave {
-  const ComtradeChannel* channel;
-  bool voltage;
-  std::size_t phase;
-  double scale;  ///< to kV or kA
+/// The positive sequence of three waveforms [kV to neutral, kA].
+struct Sequence {
+  std::vector<double> t;
+  std::vector<Complex> x;
 };
 
-/// A phase voltage or current of which the unit and the phase are known.
-std::optional<Wave> wave_of(const ComtradeChannel& c) {
-  const std::string unit = normalised(c.unit), id = normalised(c.id);
-  const bool volt = unit == "v" || unit == "kv", ampere = unit == "a" || unit == "ka";
-  if (!volt && !ampere) return std::nullopt;
-  auto phase = phase_of(c.phase);
-  if (!phase && id.size() > 1 && std::string_view(volt ? "vue" : "i").find(id[0]) != std::string_view::npos)
-    phase = phase_of(std::string_view(id).substr(1));
-  if (!phase) return std::nullopt;
-  return Wave{&c, volt, *phase, unit[0] == 'k' ? 1.0 : 1e-3};
-}
-
-/// The three phases of a kind, or a problem.
-class Choice {
- public:
-  Choice(const std::vector<Wave>& waves, const Comtrade& comtrade, const ReadOptions& options,
-         Problems& problems)
-      : waves_(waves), file_(comtrade.file), options_(options), problems_(problems) {}
-
-  std::array<const Wave*, 3> phases(bool voltage) {
-    const char* const kind = voltage ? "voltage" : "current";
-    std::array<const Wave*, 3> chosen{};
-    std::set<std::string> components;
-    bool twice = false;
-    for (const Wave& w : waves_) {
-      if (w.voltage != voltage || w.phase > 2) continue;
-      components.insert(w.channel->component);
-      if (!options_.terminal.empty() && w.channel->component != options_.terminal && several(voltage))
-        continue;
-      twice = twice || chosen[w.phase];
-      chosen[w.phase] = &w;
+/// A channel's values in kV or kA; where there is none, the negative sum of the two others.
+std::vector<double> samples_of(const WaveSet& set, std::size_t phase, SampleFaults& faults) {
+  if (const Wave* w = set.waves[phase]) {
+    std::vector<double> samples = w->channel->values;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      if (!std::isfinite(samples[k]))
+        faults.add(w->channel->id, w->channel->id, k, "the value is marked missing",
+                   "cut the record before it, or export it again");
+      samples[k] *= w->scale * (w->phase.reversed ? -1 : 1);
     }
-    std::string names;
-    for (const auto& c : components) names += (names.empty() ? "" : ", ") + c;
-    if (twice)
-      problems_.add(fmt::format("several three-phase {}s", kind), file_, "their circuits are " + names,
-                    "choose one: FILE#CIRCUIT");
-    else if (!chosen[0] || !chosen[1] || !chosen[2])
-      problems_.add(
-          fmt::format("no three-phase {}", kind), file_,
-          std::ranges::any_of(waves_, [&](const Wave& w) { return w.voltage == voltage && w.phase == 3; })
-              ? "voltages between phases are not read"
-              : fmt::format("waveforms need channels of phases A, B and C in {}",
-                            voltage ? "V or kV" : "A or kA"),
-          "export all three, from phase to neutral");
-    return twice ? std::array<const Wave*, 3>{} : chosen;
+    return samples;
   }
-
- private:
-  /// More than one channel of a phase: then the circuit's name decides.
-  [[nodiscard]] bool several(bool voltage) const {
-    int count[3] = {};
-    for (const Wave& w : waves_)
-      if (w.voltage == voltage && w.phase < 3) ++count[w.phase];
-    return *std::ranges::max_element(count) > 1;
+  std::vector<double> sum;
+  for (const std::size_t other : {(phase + 1) % 3, (phase + 2) % 3}) {
+    const std::vector<double> values = samples_of(set, other, faults);
+    sum.resize(values.size(), 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) sum[k] -= values[k];
   }
-  const std::vector<Wave>& waves_;
-  const std::string& file_;
-  const ReadOptions& options_;
-  Problems& problems_;
-};
+  return sum;
+}
 
-PhasorTrack phasors(const std::array<const Wave*, 3>& phases, const Comtrade& comtrade, double nominal,
-                    double rate, SampleFaults& faults) {
+Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nominal, double rate,
+                     SampleFaults& faults, Problems& problems) {
   Waveforms w;
   w.rate = static_cast<double>(comtrade.t.size() - 1) / (comtrade.t.back() - comtrade.t.front());
+  std::array<std::string, 3> names;
   for (std::size_t p = 0; p < 3; ++p) {
-    const ComtradeChannel& c = *phases[p]->channel;
-    w.skew[p] = c.skew;
-    for (std::size_t k = 0; k < c.values.size(); ++k) {
-      if (!std::isfinite(c.values[k]))
-        faults.add(c.id, c.id, k, "the value is marked missing",
-                   "cut the record before it, or export it again");
-      w.samples[p].push_back(c.values[k] * phases[p]->scale);
-    }
+    const Wave* wave = set.waves[p];
+    w.skew[p] = wave ? wave->channel->skew : 0;
+    names[p] = wave ? wave->channel->id : std::string("the third");
+    w.samples[p] = samples_of(set, p, faults);
   }
-  PhasorTrack track = positive_sequence(w, nominal, rate);
+  PhasorTrack track = phase_phasors(w, nominal, rate);
+  if (const auto fault = sequence_fault(track.x, names))
+    problems.add(fault->what, comtrade.file,
+                 fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
+                             names[1], names[2]),
+                 fault->remedy + " (the channels' names and phases stand in the .cfg)");
   // Times and angles count from the record's first sample, which may be none of those that are used.
   const double begin = comtrade.t.front();
-  for (double& t : track.t) t += begin;
-  for (auto& x : track.x) x *= std::polar(1.0, -constants::turn * nominal * begin);
-  return track;
+  Sequence sequence;
+  for (std::size_t k = 0; k < track.t.size(); ++k) {
+    sequence.t.push_back(track.t[k] + begin);
+    sequence.x.push_back(positive_sequence({track.x[0][k], track.x[1][k], track.x[2][k]}, set.between) *
+                         std::polar(1.0, -constants::turn * nominal * begin));
+  }
+  return sequence;
+}
+
+/// Which channels became which quantity, where that is not three phases to neutral.
+void note_set(const WaveSet& set, bool voltage, Record& about) {
+  if (set.between)
+    about.notes.emplace_back(
+        "The voltages are those between phases: the positive sequence to neutral is theirs over sqrt(3), 30 "
+        "degrees later.");
+  for (std::size_t p = 0; p < 3; ++p)
+    if (!set.waves[p])
+      about.notes.push_back(
+          fmt::format("The {} {} is not recorded: it is the negative sum of the two others{}.",
+                      voltage ? "voltage" : "current of phase",
+                      voltage ? std::array{"AB", "BC", "CA"}[p] : std::array{"A", "B", "C"}[p],
+                      voltage ? "" : ", which holds where no current flows to ground"));
 }
 
 RawColumn column(std::string name, Quantity q, Unit u, std::vector<double> values) {
   return {std::move(name), {q, u, false, {}, false}, std::move(values)};
 }
 
+/// A circuit that is asked for must be one of the file's.
+void check_terminal(const std::vector<Wave>& waves, const ReadOptions& options, const std::string& file,
+                    Problems& problems) {
+  std::set<std::string> circuits;
+  for (const Wave& w : waves)
+    if (!w.circuit.empty()) circuits.insert(w.circuit);
+  const auto same = [&](const std::string& c) { return normalised(c) == normalised(options.terminal); };
+  if (options.terminal.empty() || std::ranges::any_of(circuits, same)) return;
+  problems.add(fmt::format("no circuit '{}'", options.terminal), file,
+               circuits.empty() ? "neither the channels' circuits nor their names tell one"
+                                : fmt::format("the file has {}", fmt::join(circuits, ", ")),
+               circuits.empty() ? "leave it off the file's name" : "choose one of them");
+}
+
 Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, Record about,
                       const RecordBase& base, const ReadOptions& options) {
   Problems problems;
   SampleFaults faults([&](std::size_t first, std::size_t last) { return comtrade.where(first, last); });
-  Choice choice(waves, comtrade, options, problems);
-  const auto v = choice.phases(true), i = choice.phases(false);
+  check_terminal(waves, options, comtrade.file, problems);
+  const auto v = choose_waves(waves, true, options, comtrade.file, problems);
+  const auto i = choose_waves(waves, false, options, comtrade.file, problems);
   if (!(base.kv > 0))
     problems.add("waveforms", comtrade.file, "the model names no base_kv for records",
                  "add base_kv (line to line) under [record] in the plant file");
@@ -159,8 +145,11 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
                  "export the record at a higher rate");
   faults.tell(problems, comtrade.file);
   problems.raise();
-  const PhasorTrack voltage = phasors(v, comtrade, base.frequency, rate, faults);
-  const PhasorTrack current = phasors(i, comtrade, base.frequency, rate, faults);
+  about.terminal = v->circuit;
+  note_set(*v, true, about);
+  note_set(*i, false, about);
+  const Sequence voltage = sequence_of(*v, comtrade, base.frequency, rate, faults, problems);
+  const Sequence current = sequence_of(*i, comtrade, base.frequency, rate, faults, problems);
   RawRecord raw;
   std::vector<double> size, angle, p, q;
   for (std::size_t k = 0; k < voltage.t.size(); ++k) {

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <regex>
+#include <string>
 
 #include "base/capitals.hpp"
 #include "validate/record/detail/text.hpp"
@@ -29,6 +31,10 @@ class Config {
     if (!station() || !channels()) return std::move(c_);
     rates();
     times();
+    if (without_side_)
+      c_.about.notes.push_back(
+          "Revision 1991 of COMTRADE does not state the side of the instrument transformers: the values were "
+          "taken as primary.");
     return std::move(c_);
   }
 
@@ -59,23 +65,22 @@ class Config {
 
   bool station() {
     const Fields f = next();
-    if (f.size() < 3 || f[2].empty()) {
-      fault("a configuration without revision", "that is COMTRADE of 1991; 1999 and 2013 are read",
-            "export it as COMTRADE 1999 or 2013");
-      return false;
-    }
     c_.about.station = f[0];
-    c_.about.device = f[1];
+    c_.about.device = f.size() > 1 ? f[1] : "";
+    if (f.size() < 3 || f[2].empty()) {
+      c_.about.revision = 1991;  // names no revision
+      return true;
+    }
     const double year = number(f, 2, "revision year");
     // Recorders write years in which they were made: there is one form between 1991's and 2013's.
     const bool between = year > 1991 && year<2013, later = year> 2013 && year < 2100;
-    c_.about.revision = between ? 1999 : later || year == 2013 ? 2013 : 0;
+    c_.about.revision = year == 1991 ? 1991 : between ? 1999 : later || year == 2013 ? 2013 : 0;
     if (c_.about.revision != 0 && c_.about.revision != year)
       c_.about.notes.push_back(
           fmt::format("The configuration names the revision {:.0f}, which there is not: it was read as {}.",
                       year, c_.about.revision));
     if (c_.about.revision == 0)
-      fault(fmt::format("revision '{}'", f[2]), "1999 and 2013 are read",
+      fault(fmt::format("revision '{}'", f[2]), "1991, 1999 and 2013 are read",
             "export it as COMTRADE 1999 or 2013");
     return c_.about.revision != 0;
   }
@@ -92,6 +97,11 @@ class Config {
   bool channels() {
     const Fields f = next();
     const long analogue = f.size() > 1 ? count(f[1], 'A') : -1, status = f.size() > 2 ? count(f[2], 'D') : -1;
+    if (analogue == 0 && status >= 0) {
+      fault("no analogue channels", fmt::format("the record holds {} status channels only", status),
+            "export the voltages and currents, or the phasors, too");
+      return false;
+    }
     if (analogue < 1 || status < 0 ||
         number(f, 0, "number of channels") != static_cast<double>(analogue + status)) {
       fault("the numbers of channels", "total, analogue (with A) and status (with D) must agree",
@@ -107,9 +117,10 @@ class Config {
   void channel() {
     const Fields f = next();
     if (ended_) return;
-    if (f.size() < 13) {
-      fault(fmt::format("analogue channel with {} fields", f.size()), "there must be 13",
-            "export the configuration again");
+    const bool old = c_.about.revision == 1991 && f.size() < kFields;  // without ratio and side
+    if (f.size() < (old ? kFieldsOf1991 : kFields)) {
+      fault(fmt::format("analogue channel with {} fields", f.size()),
+            fmt::format("there must be {}", old ? kFieldsOf1991 : kFields), "export the configuration again");
       return;
     }
     const double numbered = number(f, 0, "channel number");
@@ -129,6 +140,11 @@ class Config {
     c.a = number(f, 5, "multiplier a");
     c.b = number(f, 6, "offset b");
     c.skew = 1e-6 * (f[7].empty() ? 0.0 : number(f, 7, "skew"));
+    if (old) {
+      without_side_ = true;
+      c_.about.channels.push_back(std::move(c));
+      return;
+    }
     c.primary = number(f, 10, "primary ratio");
     c.secondary = number(f, 11, "secondary ratio");
     const std::string side = capitals(f[12]);
@@ -167,7 +183,7 @@ class Config {
   void times() {
     const std::string_view first = comtrade_line(rest_);
     ++number_;
-    c_.about.start = trim(first);
+    c_.about.start = c_.about.revision == 1991 ? start_of_1991(trim(first)) : std::string(trim(first));
     // Stamps are in microseconds, or nanoseconds where the dates have so many digits (2013, 7.4.7).
     const auto point = first.rfind('.');
     std::size_t digits = 0;
@@ -178,24 +194,54 @@ class Config {
     const Fields kind = next();
     c_.about.kind = kind.empty() ? "" : capitals(kind[0]);
     const auto& k = c_.about.kind;
-    if (k != "ASCII" && k != "BINARY" && (c_.about.revision == 1999 || (k != "BINARY32" && k != "FLOAT32")))
-      fault(fmt::format("data type '{}'", k),
-            c_.about.revision == 1999 ? "1999 has ASCII and BINARY"
-                                      : "there are ASCII, BINARY, BINARY32 and FLOAT32",
+    const bool wide = k == "BINARY32" || k == "FLOAT32";
+    if (k != "ASCII" && k != "BINARY" && !wide)
+      fault(fmt::format("data type '{}'", k), "there are ASCII, BINARY, BINARY32 and FLOAT32",
             "export the data again");
-    const double multiplier = number(next(), 0, "time multiplier");
+    if (wide && c_.about.revision < 2013)
+      c_.about.notes.push_back(fmt::format(
+          "The data type {} came with revision 2013, the configuration is of {}.", k, c_.about.revision));
+    const double multiplier = time_multiplier();
     c_.stamp = (digits > 6 ? 1e-9 : 1e-6) * multiplier;
     if (!(multiplier > 0))
       fault("the time multiplier", "it must be positive", "export the configuration again");
   }
 
+  /// The last line, which came in 1999.
+  double time_multiplier() {
+    const bool given = !trim(rest_.substr(0, rest_.find('\n'))).empty();
+    if (given) return number(next(), 0, "time multiplier");
+    if (c_.about.revision > 1991)
+      c_.about.notes.push_back(fmt::format(
+          "The configuration ends without the time multiplier ({}:{}): it was taken as 1.", name_, number_));
+    return 1;
+  }
+
+  /// "03/13/26,14:05:20.0" has the month first; the later revisions write "13/03/2026,14:05:20.0".
+  std::string start_of_1991(std::string_view text) {
+    const Fields date_and_time = comtrade_fields(text);
+    static const std::regex form(R"((\d{1,2})/(\d{1,2})/(\d{2}|\d{4}))");
+    std::cmatch part;
+    const std::string_view date = date_and_time[0];
+    if (!std::regex_match(date.data(), date.data() + date.size(), part, form)) return std::string(text);
+    int month = std::stoi(part[1]), day = std::stoi(part[2]), year = std::stoi(part[3]);
+    const bool day_first = month > 12 && day <= 12;
+    if (day_first) std::swap(month, day);
+    if (year < 100) year += year < 70 ? 2000 : 1900;
+    c_.about.notes.push_back(fmt::format(
+        "The date {} was read as {:04}-{:02}-{:02}: {}.", date, year, month, day,
+        day_first ? "there is no such month" : "revision 1991 of COMTRADE writes the month first"));
+    return fmt::format("{:02}/{:02}/{:04}{}", day, month, year, text.substr(date.size()));
+  }
+
+  static constexpr std::size_t kFields = 13, kFieldsOf1991 = 10;
   std::string_view rest_;
   std::string name_;
   Problems& problems_;
   ComtradeConfig c_;
   int number_ = 0;
   double last_channel_ = 0;
-  bool ended_ = false;
+  bool ended_ = false, without_side_ = false;
 };
 
 }  // namespace

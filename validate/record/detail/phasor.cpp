@@ -1,5 +1,7 @@
 #include "validate/record/detail/phasor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,26 +30,63 @@ Complex fourier(const std::vector<double>& samples, double rate, double skew, do
   return sum * std::numbers::sqrt2 / (to - from);
 }
 
+constexpr double kThird = constants::turn / 3;
+
+/// Magnitudes of positive and negative sequence with the phases taken as they are given.
+struct Sequences {
+  double positive = 0, negative = 0;
+};
+Sequences sequences(const std::array<std::vector<Complex>, 3>& x, const std::array<Complex, 3>& factor) {
+  Sequences sums;
+  for (std::size_t k = 0; k < x[0].size(); ++k) {
+    const Complex a = factor[0] * x[0][k], b = factor[1] * x[1][k], c = factor[2] * x[2][k];
+    if (!std::isfinite(std::norm(a + b + c))) continue;
+    sums.positive += std::abs(a + std::polar(1.0, kThird) * b + std::polar(1.0, -kThird) * c);
+    sums.negative += std::abs(a + std::polar(1.0, -kThird) * b + std::polar(1.0, kThird) * c);
+  }
+  return sums;
+}
+
 }  // namespace
 
-PhasorTrack positive_sequence(const Waveforms& waves, double nominal, double phasors_per_second) {
+PhasorTrack phase_phasors(const Waveforms& waves, double nominal, double phasors_per_second) {
   PhasorTrack track;
   const double omega = constants::turn * nominal, cycle = 1 / nominal;
   const auto n = std::min({waves.samples[0].size(), waves.samples[1].size(), waves.samples[2].size()});
   if (n == 0) return track;
   const double end = (static_cast<double>(n) - 0.5) / waves.rate;
-  const Complex turn = std::polar(1.0, constants::turn / 3), turns[] = {1.0, turn, turn * turn};
   for (std::size_t j = 0;; ++j) {
     const double middle = (cycle - 1 / waves.rate) / 2 + static_cast<double>(j) / phasors_per_second;
     if (middle + cycle / 2 > end + 1e-9) return track;
-    Complex x = 0;
-    for (std::size_t p = 0; p < 3; ++p)
-      x +=
-          turns[p] / 3.0 *
-          fourier(waves.samples[p], waves.rate, waves.skew[p], omega, middle - cycle / 2, middle + cycle / 2);
     track.t.push_back(middle);
-    track.x.push_back(x);
+    for (std::size_t p = 0; p < 3; ++p)
+      track.x[p].push_back(fourier(waves.samples[p], waves.rate, waves.skew[p], omega, middle - cycle / 2,
+                                   middle + cycle / 2));
   }
+}
+
+Complex positive_sequence(const std::array<Complex, 3>& x, bool between) {
+  const Complex sum = x[0] + std::polar(1.0, kThird) * x[1] + std::polar(1.0, -kThird) * x[2];
+  return between ? sum * std::polar(1 / (3 * std::numbers::sqrt3), -constants::turn / 12) : sum / 3.0;
+}
+
+std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex>, 3>& x,
+                                            const std::array<std::string, 3>& names) {
+  const Sequences as_is = sequences(x, {1.0, 1.0, 1.0});
+  if (as_is.positive >= as_is.negative) return std::nullopt;
+  for (std::size_t p = 0; p < 3; ++p) {  // a reversed phase leaves a third to the positive sequence
+    std::array<Complex, 3> factor{1.0, 1.0, 1.0};
+    factor[p] = -1.0;
+    if (const Sequences s = sequences(x, factor); s.positive > 4 * s.negative)
+      return SequenceFault{fmt::format("{} has the other sign than {} and {}", names[p], names[(p + 1) % 3],
+                                       names[(p + 2) % 3]),
+                           fmt::format("reverse {}: its leads are exchanged", names[p])};
+  }
+  return SequenceFault{
+      "phase sequence is A-C-B",
+      fmt::format("exchange the names of {} and {}: two leads are exchanged, or the grid's phases follow one "
+                  "another in the order A-C-B, and then so of voltages and currents",
+                  names[1], names[2])};
 }
 
 }  // namespace swingbank::validate::record
