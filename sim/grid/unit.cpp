@@ -147,6 +147,7 @@ class UnitReader {
   void tell_dispatch() {
     const network::Bus& bus = bus_at(generator().bus);
     if (!generator().in_service || !(bus.vm > 0)) return;
+    unit_.dispatch = {generator().p * net().base_mva, generator().q * net().base_mva, bus.vm};
     plant::Plant plant = unit_.plant;
     plant.generation = {generator().p, generator().q};
     try {
@@ -303,7 +304,18 @@ class UnitReader {
     if (at < survey_.branch_line.size()) faults_of(survey_.branch_line[at], kTransformerLines);
     neighbours(measured_at);
     add_transformer(net().branches[at], line_of(survey_.branch_line, at));
-    unit_.kv = bus_at(net().bus_index(measured_at)).kv;
+    const network::Bus& there = bus_at(net().bus_index(measured_at));
+    unit_.kv = there.kv;
+    if (unit_.dispatch) dispatch_behind(net().branches[at], there);
+  }
+  /// What is left of the dispatch behind the transformer, less its losses.
+  void dispatch_behind(const network::Branch& b, const network::Bus& there) {
+    Dispatch& d = *unit_.dispatch;
+    const bool machine_first = b.from == generator().bus;
+    const double current = std::hypot(d.P, d.Q) / net().base_mva / d.V * (machine_first ? b.tap : 1.0);
+    d.P -= current * current * b.r * net().base_mva;
+    d.Q -= current * current * b.x * net().base_mva;
+    d.V = there.vm;
   }
   /// A control that measures elsewhere does so, in a plant file, where the record was taken.
   void tell_far() {

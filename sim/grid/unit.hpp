@@ -30,15 +30,23 @@ struct UnitChoice {
   bool dyd = false;  ///< `dyr` is a .dyd of PSLF (formats::survey_dyd), whatever its name
 };
 
+/// What a unit delivers in its case, at the bus where it is measured.
+struct Dispatch {
+  double P = 0, Q = 0;  ///< [MW], [Mvar]
+  double V = 0;         ///< [pu]
+  friend bool operator==(const Dispatch&, const Dispatch&) = default;
+};
+
 /// The unit's plant, without a network: `bus` and `generator` of it are -1.
 struct Unit {
   plant::Plant plant;
   int bus = 0;
   std::string id, bus_name;
   double frequency = 60.0, system_mva = 100.0;
-  double kv = 0.0;                    ///< nominal voltage where it is measured [kV]; 0: not given
-  std::vector<std::string> standard;  ///< names of effects that have their standard values
-  std::vector<std::string> notes;     ///< what was taken how, and what was not
+  std::optional<Dispatch> dispatch = {};  ///< none: out of service, or no voltage in the case
+  double kv = 0.0;                        ///< nominal voltage where it is measured [kV]; 0: not given
+  std::vector<std::string> standard;      ///< names of effects that have their standard values
+  std::vector<std::string> notes;         ///< what was taken how, and what was not
 };
 
 /// Throws InputError with what is wrong with the records of this unit alone: an unknown bus or unit, unknown

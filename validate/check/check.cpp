@@ -13,6 +13,7 @@
 #include "validate/check/detail/findings.hpp"
 #include "validate/check/detail/jumps.hpp"
 #include "validate/check/detail/mistakes.hpp"
+#include "validate/check/detail/power.hpp"
 #include "validate/check/signals.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -104,9 +105,15 @@ class Check : Findings {
 
   void event() {
     const double length = r_.t.back() - r_.t.front();
-    if (length < 2)
+    if (length < 1)
       refuse("too_short", fmt::format("{:.3g} s", length),
-             "a response to an event cannot be judged from less than 2 s", "give a longer record");
+             "a response to an event cannot be judged from less than 1 s", "give a longer record");
+    else if (length < 2)
+      warn(
+          "short_record", fmt::format("{:.3g} s of record", length),
+          "subtransient and transient reactances and a fast voltage regulator can be judged by it; inertia only "
+          "roughly, governor and stabiliser not",
+          "export at least 5 s after the event where that is possible");
     if (!signals_.event) {
       refuse(
           "no_event", "no event",
@@ -338,42 +345,11 @@ class Check : Findings {
 
   [[nodiscard]] double machine_per_record() const { return plant_.mva > 0 ? r_.base.mva / plant_.mva : 1.0; }
 
-  /// Factors by which P and Q may be wrong, and what to do about each.
-  struct Base {
-    double factor;  ///< true value = value * factor
-    std::string why, remedy;
-  };
-  [[nodiscard]] std::vector<Base> bases() const {
-    const std::string set = "set base_mva under [record] in the plant file to ";
-    std::vector<Base> all{
-        {1 / r_.base.mva, "P and Q are in MW and Mvar but were taken as pu",
-         "name the columns P_MW and Q_Mvar"},
-        {r_.base.mva, "P and Q are in pu but were taken as MW and Mvar", "name the columns P_pu and Q_pu"},
-        {1e3, "P and Q are off by 1000", "give P_MW and Q_Mvar"},
-        {1e-3, "P and Q are off by 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
-    if (plant_.mva > 0 && !near(plant_.mva, r_.base.mva, 0.3))
-      all.push_back({plant_.mva / r_.base.mva,
-                     fmt::format("P and Q are in pu on the machine's {:g} MVA, not on {:g} MVA", plant_.mva,
-                                 r_.base.mva),
-                     set + fmt::format("{:g}", plant_.mva)});
-    if (!near(r_.base.mva, 100, 0.3))
-      all.push_back({100 / r_.base.mva,
-                     fmt::format("P and Q are in pu on 100 MVA, not on {:g} MVA", r_.base.mva), set + "100"});
-    return all;
-  }
-
   void power() {
-    const double s = std::hypot(signals_.P.level, signals_.Q.level), on_machine = s * machine_per_record();
-    if (on_machine <= 1.6) return;
-    const std::string what =
-        fmt::format("{:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant_.mva);
-    for (const auto& b : bases())
-      if (b.factor < 1 && within(on_machine * b.factor, 0.05, 1.2)) {
-        refuse("wrong_base", what, "likely " + b.why, b.remedy);
-        return;
-      }
-    refuse("wrong_base", what, "no machine runs at that",
-           "check the units of P and Q, base_mva of the record and of the plant");
+    if (const auto doubt = base_doubt(r_, plant_, {signals_.P.level, signals_.Q.level}))
+      refuse("wrong_base", doubt->what, doubt->why, doubt->remedy);
+    else if (const auto apart = dispatch_doubt(r_, plant_, {signals_.P.level, signals_.Q.level}))
+      warn("dispatch", apart->what, apart->why, apart->remedy);
   }
 
   void jumps() {
@@ -454,8 +430,8 @@ class Check : Findings {
   /// X'' of machines is 0.1 to 0.4 pu, with a step-up transformer up to 0.6.
   void reactance(double x) {
     if (!(plant_.mva > 0) || within(x, 0.08, 0.8)) return;
-    const Base* best = nullptr;
-    const std::vector<Base> all = bases();
+    const BaseSlip* best = nullptr;
+    const std::vector<BaseSlip> all = base_slips(r_, plant_);
     const auto distance = [](double z) { return std::abs(std::log(z / 0.25)); };
     for (const auto& b : all)  // P times factor makes X over factor
       if (distance(x / b.factor) < (best ? distance(x / best->factor) : std::log(2.5))) best = &b;
@@ -476,7 +452,8 @@ class Check : Findings {
 }  // namespace
 
 PlantFacts plant_facts(const plant::PlantModel& model) {
-  return {model.plant.mva, model.record_base.frequency, !model.plant.machine.effect->converter};
+  return {model.plant.mva, model.record_base.frequency, !model.plant.machine.effect->converter,
+          model.dispatch};
 }
 
 std::vector<Finding> check_record(const record::Record& record, const PlantFacts& plant) {

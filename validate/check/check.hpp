@@ -1,6 +1,7 @@
 #pragma once
 // Is a readable record what it says it is? Wrong units, bases and columns are recognised before anything is
 // said about physics.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct PlantFacts {
   double frequency = 60.0;  ///< nominal [Hz]
   bool synchronous =
       true;  ///< a machine, whose current jumps as its reactance says; a converter's follows its control
+  std::optional<sim::grid::Dispatch> dispatch = {};  ///< what it delivers in its case
 };
 PlantFacts plant_facts(const plant::PlantModel& model);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "validate/check/readings.hpp"
 #include "validate/playin/component.hpp"
 
 namespace swingbank::validate::check {
@@ -21,7 +22,14 @@ void read_into(RecordSet& set, const std::string& file, const plant::PlantModel&
                  "rename one of them");
   std::vector<std::string> warnings = record.notes;
   if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant) && !record.breaker()) {
-    for (const auto& [kind, severity, problem] : check_record(record, plant_facts(model))) {
+    std::vector<Finding> findings = check_record(record, plant_facts(model));
+    const auto says = [&](std::string_view kind) {
+      return std::ranges::any_of(findings, [&](const Finding& f) { return f.kind == kind; });
+    };
+    if (std::ranges::none_of(findings, [](const Finding& f) { return f.severity == Severity::refuse; }))
+      if (auto better = better_reading(record, model); better && !says(better->kind))
+        findings.push_back(std::move(*better));
+    for (const auto& [kind, severity, problem] : findings) {
       if (severity == Severity::refuse)
         add_all({problem}, problems);
       else

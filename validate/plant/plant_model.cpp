@@ -242,6 +242,7 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.plant = unit.plant;
   model.bus = unit.bus;
   model.id = unit.id;
+  model.dispatch = unit.dispatch;
   note_standard(model, unit.standard);
   model.warnings = unit.notes;
 }
@@ -292,6 +293,9 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   model.record_base.kv = config.optional<double>("record.base_kv", 0.0, {kSmallest, 1e9, "kV"});
   model.record_base.efd = config.optional<double>("record.efd_base", 0.0, {kSmallest, 1e9, "V or pu"});
   model.record_base.ifd = config.optional<double>("record.ifd_base", 0.0, {kSmallest, 1e9, "A or pu"});
+  if (config.has("dispatch"))
+    model.dispatch = {config.require<double>("dispatch.P_MW"), config.require<double>("dispatch.Q_Mvar"),
+                      config.require<double>("dispatch.V_pu", {kSmallest, 10.0, "pu"})};
   model.reading.staged = read_staged_events(config);
   for (const auto& word : config.keys("record.columns"))
     model.reading.columns[word] = config.require<std::string>("record.columns." + word);
@@ -328,6 +332,7 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.plant.name = model.name;
   model.bus = unit.bus;
   model.id = unit.id;
+  model.dispatch = unit.dispatch;
   model.conventions = conventions;
   model.conventions.frequency = unit.frequency;
   model.record_base.frequency = unit.frequency;

@@ -24,6 +24,8 @@ struct PlantModel {
   std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
   int bus = 0;                                   ///< number in its case; 0: not given
   std::string id = "1";                          ///< the machine's, there
+  /// What it delivers in its case; none: not known. Records are held against it, nothing starts from it.
+  std::optional<sim::grid::Dispatch> dispatch = {};
   /// Parameters ("SEXS.TE") that the file leaves to their standard values (`standard = true`).
   std::vector<std::string> standard = {};
   /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.

@@ -77,6 +77,7 @@ struct Record {
   std::vector<std::string> notes;        ///< what reading did that a reader of results must know
   std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if made otherwise
   AngleSource angle = AngleSource::measured;
+  bool per_unit_power = true;              ///< P and Q, or the current, were written in pu; false: in MW or A
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
   Component component = Component::plant;  ///< what it is read for
   std::vector<StagedEvent> staged;         ///< what was done to the plant while it ran

@@ -96,6 +96,12 @@ TEST_F(PlantFileTest, KeepsNameBasesAndConventions) {
     }
 }
 
+TEST_F(PlantFileTest, KeepsTheDispatchOfItsCase) {
+  PlantModel m = example();
+  EXPECT_FALSE(again(m).dispatch);
+  m.dispatch = {650.125, -207.1, 0.984};
+  EXPECT_EQ(again(m).dispatch, m.dispatch);
+}
 TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
   PlantModel m = example();
   m.reading.columns = {{"V", "NORTH.BUS1.VPM [kV]"}, {"P", "-LINE \"1\" [MW]"}};

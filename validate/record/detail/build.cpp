@@ -12,6 +12,7 @@
 #include "validate/record/detail/bridge.hpp"
 #include "validate/record/detail/clock.hpp"
 #include "validate/record/detail/frames.hpp"
+#include "validate/record/detail/phases.hpp"
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
@@ -429,11 +430,17 @@ void SampleFaults::tell(Problems& problems, const std::string& file) const {
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
                     Problems problems, const std::string& file) {
   settle_clock(raw);
+  combine_phases(raw, base, file);
+  const bool per_unit_power = std::ranges::all_of(raw.columns, [](const RawColumn& c) {
+    return (c.meaning.quantity != Quantity::P && c.meaning.quantity != Quantity::I) ||
+           c.meaning.unit == Unit::pu;
+  });
   convert(raw, base);
   drop_repeats(raw, faults);
   lose_zero_frames(raw, faults);
   Record r = std::move(raw.about);
   r.base = base;
+  r.per_unit_power = per_unit_power;
   begin_at_zero(raw, r);
   cut_rows(raw, options, faults);
   if (!raw.uneven && check_clock(times_of(raw), time_of(raw).meaning, options, file, problems))

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "validate/record/detail/build.hpp"
+#include "validate/record/detail/phases.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -328,6 +329,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     for (auto& h : headings)
       if (h.meaning && is_inner(h.meaning->quantity)) h.meaning.reset();
   Mapper(headings, options, where, about, problems).apply();
+  keep_needed_phases(headings);
   const Terminals terminals = choose_terminals(headings, options, where, about, problems);
   about.terminal = terminals.voltage == terminals.power || terminals.power.empty() ? terminals.voltage
                    : terminals.voltage.empty()                                     ? terminals.power
@@ -335,6 +337,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
   std::vector<std::size_t> chosen;
   std::set<std::string> others;
   Present used{};
+  std::set<std::pair<std::size_t, std::size_t>> phases;
   for (std::size_t i = 0; i < headings.size(); ++i) {
     const auto& [name, meaning, unit] = headings[i];
     if (!meaning) {
@@ -350,7 +353,8 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     const bool told = std::ranges::any_of(about.named, [wanted = meaning->quantity](const auto& word) {
       return quantity_of(word)->quantity == wanted;
     });
-    if (!meaning->unit && !told && (meaning->quantity != time || meaning->unknown_unit))
+    if (!meaning->unit && !told && !is_unit_in_values(headings[i]) &&
+        (meaning->quantity != time || meaning->unknown_unit))
       problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
                        std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");
@@ -371,7 +375,9 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
     }
-    if (std::exchange(used[q], true))
+    const bool again = used[q] && !meaning->phase;
+    used[q] = true;
+    if (again || (meaning->phase && !phases.emplace(q, meaning->phase->number).second))
       problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
                    "leave one of " + names_of(meaning->quantity) + ", or say which: --columns");
     chosen.push_back(i);

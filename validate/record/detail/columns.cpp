@@ -4,6 +4,8 @@
 #include <map>
 #include <regex>
 
+#include "validate/record/detail/phases.hpp"
+
 namespace swingbank::validate::record {
 namespace {
 
@@ -207,6 +209,7 @@ std::optional<ColumnMeaning> without_terminal(std::string_view heading, std::str
   if (const Alias* alias = find_alias(name)) return meaning(*alias, unit);
   for (const auto& u : kUnitHeadings)
     if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}, false};
+  if (auto m = phase_meaning(heading, unit)) return m;
   // A name we know with something behind it that is no unit: better asked about than left out.
   if (const auto at = heading.find('_'); at != std::string_view::npos)
     if (const Alias* alias = find_alias(normalised(heading.substr(0, at))))

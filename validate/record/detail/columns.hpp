@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "validate/record/detail/phase.hpp"
 #include "validate/record/detail/units.hpp"
 #include "validate/record/record.hpp"
 
@@ -19,6 +20,7 @@ struct ColumnMeaning {
   /// A unit is named, and it is none of the quantity's: values of a time without a unit may tell it, of a
   /// time with an unknown one they may not.
   bool unknown_unit = false;
+  std::optional<Phase> phase = {};  ///< of one phase of three; none: the positive sequence
 };
 
 /// What a heading means: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" where another header

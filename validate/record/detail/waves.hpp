@@ -8,19 +8,10 @@
 #include <vector>
 
 #include "validate/record/comtrade.hpp"
+#include "validate/record/detail/phase.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::record {
-
-/// A phase: 0, 1, 2 for a, b, c; of a voltage between two phases 0, 1, 2 for ab, bc, ca.
-struct Phase {
-  std::size_t number = 0;
-  bool between = false;   ///< of two phases
-  bool reversed = false;  ///< ba, cb, ac
-  friend bool operator==(const Phase&, const Phase&) = default;
-};
-/// The phase in its usual spellings: "A", "an", "L1", "R", "U", "ab", "L1L2".
-std::optional<Phase> phase_of(std::string_view text);
 
 struct Wave {
   const ComtradeChannel* channel;

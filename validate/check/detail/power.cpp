@@ -1,0 +1,95 @@
+#include "validate/check/detail/power.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace swingbank::validate::check {
+namespace {
+
+/// Is x near target, to a share of it?
+bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
+
+}  // namespace
+
+std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plant) {
+  const double base = r.base.mva;
+  std::vector<BaseSlip> all{r.per_unit_power
+                                ? BaseSlip{1 / base, "P and Q are in MW and Mvar but were taken as pu",
+                                           "name the columns P_MW and Q_Mvar"}
+                                : BaseSlip{base, "P and Q are in pu but were taken as MW and Mvar",
+                                           "name the columns P_pu and Q_pu"},
+                            {1e3, "P and Q are off by 1000", "give P_MW and Q_Mvar"},
+                            {1e-3, "P and Q are off by 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
+  if (!r.per_unit_power) return all;  // no base is in them
+  const std::string set = "set base_mva under [record] in the plant file to ";
+  if (plant.mva > 0 && !near(plant.mva, base, 0.3))
+    all.push_back(
+        {plant.mva / base,
+         fmt::format("P and Q are in pu on the machine's {:g} MVA, not on {:g} MVA", plant.mva, base),
+         set + fmt::format("{:g}", plant.mva)});
+  if (!near(base, 100, 0.3))
+    all.push_back(
+        {100 / base, fmt::format("P and Q are in pu on 100 MVA, not on {:g} MVA", base), set + "100"});
+  return all;
+}
+
+std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant, Complex power) {
+  constexpr double kMost = 1.6, kNoSlip = 100;  // pu of the machine; slips of units are by a thousand
+  const double on_machine = std::abs(power) * (plant.mva > 0 ? r.base.mva / plant.mva : 1.0);
+  if (on_machine <= kMost) return std::nullopt;
+  if (!r.per_unit_power && plant.mva > 0 && on_machine < kNoSlip) {
+    const double mw = power.real() * r.base.mva;
+    const bool systems = near(plant.mva, r.base.mva, 1e-9);
+    return Doubt{
+        fmt::format("P = {:.4g} MW is {:.2g} times base_mva = {:g}", mw, mw / plant.mva, plant.mva),
+        systems ? "base_mva in [plant] is probably the system's base"
+                : "base_mva in [plant] is not that machine's, or the record is of another unit or of several",
+        "write the machine's MVA"};
+  }
+  const std::string what =
+      fmt::format("{:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant.mva);
+  for (const BaseSlip& slip : base_slips(r, plant))
+    if (slip.factor < 1 && on_machine * slip.factor >= 0.05 && on_machine * slip.factor <= 1.2)
+      return Doubt{what, "likely " + slip.why, slip.remedy};
+  return Doubt{what, "no machine runs at that",
+               "check the units of P and Q, base_mva of the record and of the plant"};
+}
+
+std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& plant, Complex power) {
+  if (!plant.dispatch || !(plant.mva > 0)) return std::nullopt;
+  constexpr double kApartP = 0.2, kApartQ = 0.35;  // pu of the machine
+  const Complex there(plant.dispatch->P, plant.dispatch->Q), here = r.base.mva * power;
+  if (std::abs(here.real() - there.real()) <= kApartP * plant.mva &&
+      std::abs(here.imag() - there.imag()) <= kApartQ * plant.mva)
+    return std::nullopt;
+  const double ratio = std::abs(here) / std::abs(there);
+  const auto is_ratio = [&](double target) { return near(ratio, target, 0.05); };
+  Doubt doubt{
+      fmt::format("before the event P = {:.4g} MW and Q = {:.4g} Mvar, in the case {:.4g} MW and {:.4g} Mvar "
+                  "(apparent power {:.2f} times the case's)",
+                  here.real(), here.imag(), there.real(), there.imag(), ratio),
+      "the unit ran at another point than in the case, or the record is of another unit or base",
+      "compare bus, unit and bases with the case"};
+  if (is_ratio(1)) {
+    doubt.why =
+        "the apparent power is that of the case and its angle is not: wrong signs of P and Q, or a power-factor angle "
+        "given as the angle of the current (phi), have this effect";
+    doubt.remedy =
+        "give P and Q, or the angle of the current's phasor against the same reference as the voltage's";
+  } else if (is_ratio(1.0 / 3)) {
+    doubt.why = "a third of the case's is the power of one phase";
+    doubt.remedy = "give the power of all three phases";
+  } else if (is_ratio(std::numbers::sqrt3) || is_ratio(1 / std::numbers::sqrt3)) {
+    doubt.why = "sqrt(3) lies between voltages to neutral and between phases";
+    doubt.remedy = "check base_kv and the voltage from which P and Q were computed";
+  } else if (r.per_unit_power && !near(plant.mva, r.base.mva, 0.05) &&
+             (is_ratio(plant.mva / r.base.mva) || is_ratio(r.base.mva / plant.mva))) {
+    doubt.why = fmt::format("that is the ratio of the bases, {:g} and {:g} MVA", plant.mva, r.base.mva);
+    doubt.remedy = "check base_mva under [record] of the plant file";
+  }
+  return doubt;
+}
+
+}  // namespace swingbank::validate::check

@@ -1,0 +1,198 @@
+#include "validate/check/readings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "validate/check/detail/mistakes.hpp"
+#include "validate/playin/play_in.hpp"
+#include "validate/playin/voltage_curve.hpp"
+
+namespace swingbank::validate::check {
+namespace {
+
+struct Hypothesis {
+  const char *kind, *words, *why, *remedy;
+  Reinterpret reinterpret;
+  bool scales = false;  ///< P and Q become others in size
+};
+const std::vector<Hypothesis>& hypotheses() {
+  constexpr double kPhases = 3;
+  static const std::vector<Hypothesis> list = {
+      {"angle_sign", "the sign of the angle reversed", "an angle that counts lagging as positive is mirrored",
+       "check it; --columns theta=-NAME reverses it",
+       [](const Reading& x) {
+         return Reading{x.V, -x.theta, x.P, x.Q};
+       }},
+      {"angle_sign", "the signs of the angle and of Q reversed",
+       "the phasors may be conjugates: angle and Q count lagging and absorbed as positive",
+       "check them; --columns theta=-NAME,Q=-NAME reverses both",
+       [](const Reading& x) {
+         return Reading{x.V, -x.theta, x.P, -x.Q};
+       }},
+      {"q_sign", "the sign of Q reversed", "Q may count what the machine absorbs as positive",
+       "check it; --columns Q=-NAME reverses it",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, x.P, -x.Q};
+       }},
+      {"power_sign", "the signs of P and Q reversed", "P and Q may count into the machine",
+       "check them; --columns P=-NAME,Q=-NAME reverses both",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, -x.P, -x.Q};
+       }},
+      {"swapped_channels", "P and Q exchanged", "their columns may be exchanged",
+       "check the names of both columns",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, x.Q, x.P};
+       }},
+      {"one_phase", "P and Q three times as large", "P and Q may be those of one phase",
+       "give the power of all three phases",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, kPhases * x.P, kPhases * x.Q};
+       },
+       true},
+  };
+  return list;
+}
+
+/// What the model leaves of the movement of P and Q about their steady state, as a share of its power; no
+/// value where it cannot follow.
+struct Fit {
+  std::optional<double> share;
+  double rms = 0;  ///< [pu of the record's base]
+};
+
+class Readings {
+ public:
+  Readings(const record::Record& record, const plant::PlantModel& model) : r_(record), model_(model) {}
+
+  std::optional<Finding> run() {
+    const std::optional<playin::Playback> as_is = play(r_);
+    if (as_is && as_is->P.size() != r_.P.size()) return std::nullopt;
+    constexpr double kFollows = 0.1;
+    as_is_ = as_is ? fit(*as_is, r_, 0) : Fit{};
+    if (as_is_.share && *as_is_.share < kFollows) return std::nullopt;
+    if (as_is) delays(*as_is);
+    const bool mirrored = r_.angle == record::AngleSource::measured;
+    for (const Hypothesis& h : hypotheses()) {
+      if (!mirrored && std::string_view(h.kind) == "angle_sign") continue;
+      if (h.scales && !may_scale(h)) continue;
+      const record::Record other = reinterpreted(h);
+      if (const auto back = play(other)) take(fit(*back, other, 0), {h.kind, h.words, h.why, h.remedy});
+    }
+    return best();
+  }
+
+ private:
+  struct Words {
+    std::string kind, words, why, remedy;
+  };
+
+  [[nodiscard]] std::optional<playin::Playback> play(const record::Record& record) const {
+    constexpr int kStepsASample = 200;
+    try {
+      const auto switchings = playin::detect_switchings(record);
+      return playin::play_in(model_.under_test(), record, playin::VoltageCurve(record, switchings),
+                             {.tolerance = 1e-6, .step_limit = kStepsASample * record.samples()});
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  /// P and Q of the record are taken `delay` samples later than the model's.
+  [[nodiscard]] static Fit fit(const playin::Playback& back, const record::Record& r, long delay) {
+    double left = 0, moved = 0;
+    long count = 0;
+    const auto n = static_cast<long>(std::min(back.P.size(), r.P.size()));
+    for (long k = std::max(0L, -delay); k < std::min(n, n - delay); ++k) {
+      const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>(k + delay);
+      left += std::pow(back.P[i] - r.P[j], 2) + std::pow(back.Q[i] - r.Q[j], 2);
+      moved += std::pow(r.P[j] - back.start.P, 2) + std::pow(r.Q[j] - back.start.Q, 2);
+      ++count;
+    }
+    if (!(moved > 0) || !std::isfinite(left)) return {};
+    return {left / moved, std::sqrt(left / static_cast<double>(std::max(count, 1L)))};
+  }
+
+  /// P and Q late or early: the model's response is the same.
+  void delays(const playin::Playback& back) {
+    constexpr double kFarthest = 0.5;  // s
+    const auto most = static_cast<long>(std::min(kFarthest * r_.rate(), r_.samples() / 4.0));
+    Fit least;
+    long at = 0;
+    for (long d = -most; d <= most; ++d)
+      if (const Fit f = fit(back, r_, d); f.share && (!least.share || *f.share < *least.share))
+        least = f, at = d;
+    if (at == 0) return;
+    const double ms = 1e3 * static_cast<double>(std::abs(at)) * r_.step();
+    take(least,
+         {"time_skew",
+          fmt::format("P and Q {:.0f} ms {} ({} samples)", ms, at > 0 ? "earlier" : "later", std::abs(at)),
+          fmt::format("they may be stamped {} than the voltage", at > 0 ? "later" : "earlier"),
+          "shift their time stamps, if another clock or filter explains it"});
+  }
+
+  /// The power becomes one that the machine can have, and is not that of the case as it is.
+  [[nodiscard]] bool may_scale(const Hypothesis& h) const {
+    double p = 0, q = 0;
+    constexpr std::size_t kFirst = 5;
+    for (std::size_t k = 0; k < kFirst; ++k) p += r_.P[k] / kFirst, q += r_.Q[k] / kFirst;
+    const Reading x = h.reinterpret({1, 0, p, q});
+    if (std::hypot(x.P, x.Q) * r_.base.mva > 1.2 * model_.plant.mva) return false;
+    if (!model_.dispatch) return true;
+    const double mw = p * r_.base.mva;
+    return std::abs(mw - model_.dispatch->P) > std::abs(x.P * r_.base.mva - model_.dispatch->P);
+  }
+
+  [[nodiscard]] record::Record reinterpreted(const Hypothesis& h) const {
+    record::Record other = r_;
+    for (std::size_t k = 0; k < r_.t.size(); ++k) {
+      const Reading x = h.reinterpret({r_.V[k], r_.theta[k], r_.P[k], r_.Q[k]});
+      other.theta[k] = x.theta;
+      other.P[k] = x.P;
+      other.Q[k] = x.Q;
+    }
+    other.theta_as_written.clear();
+    return other;
+  }
+
+  void take(const Fit& fit, Words words) {
+    if (!fit.share || (best_.share && *best_.share <= *fit.share)) return;
+    best_ = fit;
+    words_ = std::move(words);
+  }
+
+  [[nodiscard]] std::optional<Finding> best() const {
+    constexpr double kLeft = 1.0 / 16, kCloser = 3;  // share of the movement's power; ratio of rms
+    if (!best_.share || *best_.share > kLeft) return std::nullopt;
+    const double closer =
+        as_is_.share ? std::sqrt(*as_is_.share / *best_.share) : std::numeric_limits<double>::infinity();
+    if (closer < kCloser) return std::nullopt;
+    const std::string what =
+        as_is_.share
+            ? fmt::format("with {} the model follows P and Q {:.0f} times closer", words_.words, closer)
+            : fmt::format("the model cannot follow the record, but with {} it does", words_.words);
+    return Finding{words_.kind,
+                   as_is_.share ? Severity::warn : Severity::refuse,
+                   {what, r_.name, words_.why + "; the record was left as it is", words_.remedy}};
+  }
+
+  const record::Record& r_;
+  const plant::PlantModel& model_;
+  Fit as_is_, best_;
+  Words words_;
+};
+
+}  // namespace
+
+std::optional<Finding> better_reading(const record::Record& record, const plant::PlantModel& model) {
+  if (record.component != record::Component::plant || record.angle == record::AngleSource::none ||
+      !record.staged.empty() || record.P.size() != record.t.size() || record.Q.size() != record.t.size())
+    return std::nullopt;
+  return Readings(record, model).run();
+}
+
+}  // namespace swingbank::validate::check
