@@ -29,6 +29,18 @@ std::string_view without_unit(std::string_view heading) {
   return heading.substr(0, at);
 }
 
+/// Lower case, with one '_' for whatever stands between words: "VB_A" is no "VBA".
+std::string parted(std::string_view text) {
+  std::string all;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      all += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!all.empty() && all.back() != '_')
+      all += '_';
+  if (all.ends_with('_')) all.pop_back();
+  return all;
+}
+
 double median_finite(const std::vector<double>& values) {
   std::vector<double> finite;
   std::ranges::copy_if(values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
@@ -191,17 +203,17 @@ class Combination {
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit) {
   static const std::string
       phase =
-          "(l?[123]|l1l2|l2l3|l3l1|l12|l23|l31|ab|bc|ca|ba|cb|ac|rs|st|tr|uv|vw|wu|[abcrstuvw][ng]|[abcrstuvw])",
-      quantity = "(voltage|volt|v|u|e|current|i)", end = "(?:(magnitude|mag|m|rms|pm)|(angle|ang|a|pa))?",
-      middle = "(?:(magnitude|mag|rms)|(angle|ang))";
+          "(l?[123]|l1_?l2|l2_?l3|l3_?l1|l12|l23|l31|ab|bc|ca|ba|cb|ac|rs|st|tr|uv|vw|wu|[abcrstuvw][ng]|[abcrstuvw])",
+      quantity = "(voltage|volt|v|u|e|current|i)", end = "(?:_?(magnitude|mag|m|rms|pm)|_?(angle|ang|a|pa))?",
+      middle = "_?(?:(magnitude|mag|rms)|(angle|ang))", of_phase = "_?(?:phase|ph)?_?";
   struct Form {
     std::regex form;
     std::size_t quantity, phase, size, turned;
   };
-  static const Form forms[] = {{std::regex(quantity + "(?:phase|ph)?" + phase + end), 1, 2, 3, 4},
-                               {std::regex("(?:phase|ph)" + phase + quantity + end), 2, 1, 3, 4},
-                               {std::regex(quantity + middle + "(?:phase|ph)?" + phase), 1, 4, 2, 3}};
-  const std::string name = normalised(without_unit(heading));
+  static const Form forms[] = {{std::regex(quantity + of_phase + phase + end), 1, 2, 3, 4},
+                               {std::regex("(?:phase|ph)_?" + phase + "_?" + quantity + end), 2, 1, 3, 4},
+                               {std::regex(quantity + middle + of_phase + phase), 1, 4, 2, 3}};
+  const std::string name = parted(without_unit(heading));
   std::smatch part;
   const auto form =
       std::ranges::find_if(forms, [&](const Form& f) { return std::regex_match(name, part, f.form); });
@@ -217,7 +229,7 @@ std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string
                  angle = current ? Quantity::phi : Quantity::theta;
   const bool turns =
       angled || (!sized && unit_in(angle, heading, unit) && !unit_in(magnitude, heading, unit));
-  const bool bare = normalised(without_unit(heading)) == normalised(heading);
+  const bool bare = without_unit(heading).size() == heading.size();
   const auto named = unit_in(turns ? angle : magnitude, bare ? "" : heading, unit);
   if (!sized && !angled && !named) return std::nullopt;  // "Va" alone may be anything
   ColumnMeaning m{turns ? angle : magnitude, named, false, {}, false};
