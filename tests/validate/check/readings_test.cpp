@@ -1,8 +1,11 @@
 // Records that are read otherwise than they are meant, told by the model; and those held against the case.
 #include "validate/check/readings.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <numbers>
 
 #include "tests/validate/playin/support.hpp"
 
@@ -44,7 +47,7 @@ TEST_F(ReadingsTest, MirroredAngleIsReported) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, "angle_sign");
   EXPECT_THAT(found->problem.sentence(), AllOf(HasSubstr("the sign of the angle reversed"),
-                                               HasSubstr("left as it was"), HasSubstr("theta=-NAME")));
+                                               HasSubstr("left as it is"), HasSubstr("theta=-NAME")));
   for (double& q : r.Q) q = -q;
   EXPECT_THAT(better_reading(r, model)->problem.sentence(), HasSubstr("of the angle and of Q reversed"));
 }
@@ -108,7 +111,7 @@ TEST_F(DispatchTest, PowerFactorAngleIsReported) {
   for (std::size_t k = 0; k < r.t.size();
        ++k) {  // P + jQ = V I e^j(theta - phi), phi being that of the power
     const Complex s0(sound.P[k], sound.Q[k]);
-    const Complex made = std::polar(std::abs(s0), sound.theta[k] + 0.8 - std::arg(s0));
+    const Complex made = std::polar(std::abs(s0), 1.3 - std::arg(s0));
     r.P[k] = made.real(), r.Q[k] = made.imag();
   }
   EXPECT_THAT(told(r), AllOf(HasSubstr("1.00 times"), HasSubstr("power-factor angle")));
