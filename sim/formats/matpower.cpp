@@ -9,6 +9,7 @@
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::formats {
 namespace {
@@ -224,11 +225,9 @@ class CaseReader {
     if (b.from == b.to && b.from >= 0)
       problems_.add("a branch from bus " + text_of(row.values[0]) + " to itself", where(row),
                     "it joins nothing", "correct the bus numbers");
-    if (b.r == 0.0 && b.x == 0.0)
-      problems_.add("r = x = 0", where(row), "a branch without impedance has no admittance",
-                    "merge the two buses or give an impedance");
     if (b.from < 0 || b.to < 0) return;
     b.circuit = std::to_string(++branches_between_[std::minmax(b.from, b.to)]);
+    network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + where(row) + ")");
     network_.branches.push_back(std::move(b));
   }
 

@@ -95,11 +95,8 @@ struct TwoPort {
 
 }  // namespace
 
-void EpcReader::some_impedance(network::Branch& b, const Fields& f) {
-  if (b.r != 0.0 || b.x != 0.0) return;
-  b.x = kNoImpedance;
-  network_.remark("branches without impedance get X = " + shortest(kNoImpedance) + " pu",
-                  ends_text(at(b.from).number, at(b.to).number) + " (" + f.where() + ")");
+void EpcReader::raise_impedance(network::Branch& b, const Fields& f) {
+  network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
 }
 
 void EpcReader::branch(const Row& row) {
@@ -130,7 +127,7 @@ void EpcReader::branch(const Row& row) {
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", of.where(), "it joins nothing",
                   "correct the bus numbers");
   if (b.from < 0 || b.to < 0) return;
-  some_impedance(b, f);
+  raise_impedance(b, f);
   const std::tuple key{b.from, b.to, b.circuit};
   if (!parts_.contains(key)) order_.push_back(key);
   parts_[key].push_back({std::move(b), section, of.line()});
@@ -212,7 +209,7 @@ void EpcReader::two_windings(Fields& of, Fields& f, int from, int to, bool on) {
   b.tap = static_cast<double>(t1 / t2);
   b.shift = angle(f, kAngleP, "anglp") - angle(f, kAngleS, "angls");
   b.shunt_from = magnetising(f, from);
-  some_impedance(b, f);
+  raise_impedance(b, f);
   network_.branches.push_back(std::move(b));
 }
 
@@ -222,6 +219,7 @@ int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const st
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
   star.name = "STAR " + ends_text(at(ends[0]).number, at(ends[1]).number) + "-" +
               std::to_string(at(ends[2]).number) + " " + circuit;
+  for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
   star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
   star.type = on ? network::BusType::load : network::BusType::isolated;
   star.vm = at(ends[0]).vm;
@@ -260,7 +258,7 @@ void EpcReader::three_windings(Fields& of, Fields& f, const std::array<int, 3>& 
     b.tap = static_cast<double>(turns[i]);
     b.shift = shift[i];
     if (i == 0) b.shunt_from = magnetising(f, ends[0]);
-    some_impedance(b, f);
+    raise_impedance(b, f);
     network_.branches.push_back(std::move(b));
   }
 }

@@ -34,9 +34,10 @@ struct RawOptions {
 /// above every bus of the file, and each winding a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance
 /// correction tables at the present tap or angle; switched shunt (BINIT as a fixed shunt, with its steps and
 /// band where MODSW is 1, with a remark where it is controlled in another way); remote regulation (IREG,
-/// RMPCT). With a remark: branches without impedance get one of kNoImpedance, dc lines, FACTS and GNE devices
-/// and induction machines become the power that the file's voltages say they draw, and what settle_generators
-/// and settle_islands say. Passed over, because they change nothing in the equations: lines that begin with
+/// RMPCT). With a remark: branches without impedance get one (raise_impedance), dc lines, FACTS and GNE
+/// devices and induction machines become the power that the file's voltages say they draw, and what
+/// settle_generators and settle_islands say. Passed over, because they change nothing in the equations: lines
+/// that begin with
 /// '@!', system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line
 /// groupings, ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps
 /// stay where they are), substations whose buses are in one piece. Distributed generation inside a load is
@@ -54,8 +55,6 @@ network::Network read_raw(const std::filesystem::path& file, const RawOptions& o
 /// The same from a text; `name` stands for the file in messages, and says by its ending whether it is a
 /// .rawx.
 network::Network parse_raw(const std::string& text, const std::string& name, const RawOptions& options = {});
-/// Reactance of a branch that has no impedance in the file [pu].
-constexpr double kNoImpedance = 1e-6;
 
 /// A case as far as it can be read, for those who want single units of it.
 struct RawSurvey {

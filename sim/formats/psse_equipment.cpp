@@ -249,16 +249,13 @@ void RawReader::branch(const Record& record) {
     b.transformer = ratio != 0.0 || b.shift != 0.0;
     b.tap = ratio == 0.0 ? 1.0 : ratio;
   }
-  some_impedance(b.r, b.x, from, to, f);
+  raise_impedance(b, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
 }
 
-/// What has no impedance gets next to none.
-void RawReader::some_impedance(double r, double& x, int from, int to, const Fields& f) {
-  if (r != 0.0 || x != 0.0) return;
-  x = kNoImpedance;
-  network_.remark("branches without impedance get X = " + shortest(kNoImpedance) + " pu",
-                  std::to_string(from) + "-" + std::to_string(to) + " (" + f.where() + ")");
+void RawReader::raise_impedance(network::Branch& b, const Fields& f) {
+  if (b.from >= 0 && b.to >= 0)
+    network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
 }
 
 // A closed switch is a line of its reactance; NSTAT, the ratings and the kind of switch change nothing.
@@ -275,7 +272,7 @@ void RawReader::switching_device(const Record& record) {
   if (b.from == b.to && b.from >= 0)
     problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
-  some_impedance(b.r, b.x, from, to, f);
+  raise_impedance(b, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
 }
 

@@ -154,7 +154,7 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   b.x = static_cast<double>(z.imag() * t2 * t2);
   b.tap = static_cast<double>(t1 / t2);
   b.shift = static_cast<double>(w1.number(2, "ANG1", 0.0L) / kDegrees);
-  some_impedance(b.r, b.x, at(from).number, at(to).number, impedance);
+  raise_impedance(b, impedance);
   note_table(w1, 1, network_.branches.size());
   b.shunt_from = magnetising(head, w1, code, mva, at(from));
   if (from == to)
@@ -169,6 +169,7 @@ int RawReader::star_point(Fields& head, Fields& impedances, const std::array<int
   // Above every number of the file, in order of the transformers.
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
   star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + head.text(3, "1");
+  for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
   star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
   star.type = in_service ? network::BusType::load : network::BusType::isolated;
   star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
@@ -218,7 +219,7 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
     const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31));
     b.r = none ? 0.0 : static_cast<double>(z[i].real());
     b.x = none ? 0.0 : static_cast<double>(z[i].imag());
-    some_impedance(b.r, b.x, at(ends[i]).number, at(star).number, impedances);
+    raise_impedance(b, impedances);
     b.tap = static_cast<double>(turns(code.cw, at(ends[i]).kv, w, names[i], problems_));
     b.shift = static_cast<double>(w.number(2, "ANG", 0.0L) / kDegrees);
     note_table(w, i + 1, network_.branches.size());
@@ -291,8 +292,7 @@ void RawReader::correct_impedances() {
     b.r = z.real();
     b.x = z.imag();
     network_.remark("impedances are corrected for the present tap or angle, which stays",
-                    std::to_string(at(b.from).number) + "-" + std::to_string(at(b.to).number) + " by " +
-                        shortest(factor.real()) + " (" + c.where + ")");
+                    network_.branch_text(b) + " by " + shortest(factor.real()) + " (" + c.where + ")");
   }
 }
 

@@ -6,13 +6,21 @@
 
 #include "base/problem.hpp"
 #include "sim/network/connectivity.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::network {
 namespace {
 
 using Entries = std::vector<Eigen::Triplet<Complex>>;
 
-void add_branch(const Branch& b, Entries& entries) {
+/// A branch without its series impedance leaves its charging and shunts.
+void add_branch(const Branch& b, TiesIn ties, Entries& entries) {
+  if (ties == TiesIn::equations && is_tie(b)) {
+    const Complex half(0.0, 0.5 * b.b);
+    entries.emplace_back(b.from, b.from, half / (b.tap * b.tap) + b.shunt_from);
+    entries.emplace_back(b.to, b.to, half + b.shunt_to);
+    return;
+  }
   const BranchEnd from = branch_end(b, true), to = branch_end(b, false);
   entries.emplace_back(b.from, b.from, from.own);
   entries.emplace_back(b.from, b.to, from.other);
@@ -20,11 +28,11 @@ void add_branch(const Branch& b, Entries& entries) {
   entries.emplace_back(b.to, b.to, to.own);
 }
 
-Entries branches_and_shunts(const Network& network, const Topology& topology) {
+Entries branches_and_shunts(const Network& network, const Topology& topology, TiesIn ties) {
   Entries entries;
   for (std::size_t i = 0; i < network.branches.size(); ++i)
     if (network.branches[i].in_service && !std::ranges::binary_search(topology.open, static_cast<int>(i)))
-      add_branch(network.branches[i], entries);
+      add_branch(network.branches[i], ties, entries);
   for (const Shunt& s : network.shunts) entries.emplace_back(s.bus, s.bus, s.admittance);
   return entries;
 }
@@ -36,8 +44,23 @@ Eigen::SparseMatrix<Complex> matrix(const Network& network, const Entries& entri
   return y;
 }
 
-/// Throws if a part of the network is left without a generator: nothing sets its voltage.
-void check_supplied(const Network& network, const Topology& topology) {
+/// Throws if nothing sets the voltages of a network, or of a part of it where nothing is tripped.
+void check_supplied(const Network& network, const Topology& topology, const std::vector<int>& dead) {
+  if (dead.empty()) return;
+  const bool tripped = !topology.open.empty() || !topology.tripped.empty();
+  const auto live =
+      std::ranges::count_if(network.buses, [](const Bus& b) { return b.type != BusType::isolated; });
+  if (tripped && static_cast<std::ptrdiff_t>(dead.size()) < live) return;
+  throw InputError({bus_list(network, dead) + (dead.size() == 1 ? " is" : " are") + " islanded",
+                    network.origin,
+                    tripped ? "with what is tripped no generator is left"
+                            : "no path through branches in service leads to a generator",
+                    tripped ? "trip less" : "close a branch, or remove what is cut off"});
+}
+
+}  // namespace
+
+std::vector<int> dead_buses(const Network& network, const Topology& topology) {
   const auto island = islands(network, topology.open);
   std::vector<char> supplied(network.buses.size(), 0);  // by island; there are no more islands than buses
   for (std::size_t k = 0; k < network.generators.size(); ++k) {
@@ -46,18 +69,11 @@ void check_supplied(const Network& network, const Topology& topology) {
     if (g.in_service && at >= 0 && !std::ranges::binary_search(topology.tripped, static_cast<int>(k)))
       supplied[static_cast<std::size_t>(at)] = 1;
   }
-  std::vector<int> dark;
+  std::vector<int> dead;
   for (std::size_t i = 0; i < island.size(); ++i)
-    if (island[i] >= 0 && !supplied[static_cast<std::size_t>(island[i])]) dark.push_back(static_cast<int>(i));
-  if (dark.empty()) return;
-  const std::string why = topology.open.empty() && topology.tripped.empty()
-                              ? "no path through branches in service leads to a generator"
-                              : "with what is tripped no path leads to a generator";
-  throw InputError({bus_list(network, dark) + (dark.size() == 1 ? " is" : " are") + " islanded",
-                    network.origin, why, "trip another branch, or remove what is cut off"});
+    if (island[i] >= 0 && !supplied[static_cast<std::size_t>(island[i])]) dead.push_back(static_cast<int>(i));
+  return dead;
 }
-
-}  // namespace
 
 BranchEnd branch_end(const Branch& b, bool at_from) {
   const Complex y = 1.0 / Complex(b.r, b.x), half(0.0, 0.5 * b.b), n = std::polar(b.tap, b.shift);
@@ -70,14 +86,16 @@ Complex consumption(const Load& load, const PowerFlow& flow) {
   return load.power + load.current * vm + load.admittance * (vm * vm);
 }
 
-Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology) {
-  return matrix(network, branches_and_shunts(network, topology));
+Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topology& topology, TiesIn ties) {
+  return matrix(network, branches_and_shunts(network, topology, ties));
 }
 
 Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
-                                                const Topology& topology, const std::vector<int>& without) {
-  check_supplied(network, topology);
-  Entries entries = branches_and_shunts(network, topology);
+                                                const Topology& topology, const std::vector<int>& without,
+                                                TiesIn ties) {
+  const std::vector<int> dead = dead_buses(network, topology);
+  check_supplied(network, topology, dead);
+  Entries entries = branches_and_shunts(network, topology, ties);
   const auto squared = [&](int bus) { return std::norm(flow.voltage[static_cast<std::size_t>(bus)]); };
   for (std::size_t i = 0; i < network.loads.size(); ++i) {
     if (std::ranges::binary_search(without, static_cast<int>(i))) continue;
@@ -91,32 +109,35 @@ Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const Po
   for (std::size_t i = 0; i < network.buses.size(); ++i)
     if (network.buses[i].type == BusType::isolated)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+  for (const int bus : dead) entries.emplace_back(bus, bus, 1.0);  // V = 0, whatever stands there
   return matrix(network, entries);
 }
 
-std::vector<int> bolted_buses(const Topology& topology) {
-  std::vector<int> buses;
+std::vector<int> grounded_buses(const Network& network, const Topology& topology) {
+  std::vector<int> buses = dead_buses(network, topology);
   for (const auto& [bus, z] : topology.faults)
     if (z == Complex{}) buses.push_back(bus);
+  std::ranges::sort(buses);
+  buses.erase(std::unique(buses.begin(), buses.end()), buses.end());
   return buses;
 }
 
 ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
                       const std::vector<int>& kept, const std::vector<int>& without) {
   const auto full = dynamic_admittance(network, flow, topology, without);
-  const auto bolted = bolted_buses(topology);
+  const auto grounded = grounded_buses(network, topology);
   const auto n = static_cast<int>(network.buses.size());
   std::vector<int> keep(static_cast<std::size_t>(n), -1),
       rest(static_cast<std::size_t>(n), -1);  // new positions
   for (std::size_t k = 0; k < kept.size(); ++k) keep[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
   ReducedNetwork reduced;
-  for (const int bus : bolted)
+  for (const int bus : grounded)
     if (int& k = keep[static_cast<std::size_t>(bus)]; k >= 0)
       reduced.grounded.push_back(std::exchange(k, -1));
   std::ranges::sort(reduced.grounded);
   int others = 0;
   for (int i = 0; i < n; ++i)
-    if (keep[static_cast<std::size_t>(i)] < 0 && !std::ranges::count(bolted, i) &&
+    if (keep[static_cast<std::size_t>(i)] < 0 && !std::ranges::count(grounded, i) &&
         !std::ranges::count(kept, i))
       rest[static_cast<std::size_t>(i)] = others++;
 

@@ -9,6 +9,7 @@
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
 #include "sim/network/powerflow.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::network {
 namespace {
@@ -63,9 +64,9 @@ std::string unit_text(const Network& n, const Generator& g) {
   return "'" + g.id + "' at bus " + std::to_string(at(n, g.bus).number);
 }
 
-/// Buses that branches of next to no impedance join count as one: every one of them gets the sum of all.
+/// Buses that ties join count as one: every one of them gets the sum of all. The voltages of a file have five
+/// digits, too few for the current of a tie.
 std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, std::vector<int>& pool) {
-  constexpr double next_to_none = 1e-4;  // [pu] the voltages of a file have five digits
   pool.resize(left.size());
   std::iota(pool.begin(), pool.end(), 0);
   const auto root = [&](int i) {
@@ -73,8 +74,7 @@ std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, 
     return i;
   };
   for (const Branch& b : n.branches)
-    if (b.in_service && std::abs(Complex(b.r, b.x)) <= next_to_none)
-      pool[static_cast<std::size_t>(root(b.from))] = root(b.to);
+    if (b.in_service && is_tie(b)) pool[static_cast<std::size_t>(root(b.from))] = root(b.to);
   std::vector<Complex> sum(left.size());
   for (std::size_t i = 0; i < left.size(); ++i) {
     pool[i] = root(static_cast<int>(i));
@@ -148,8 +148,7 @@ void settle_islands(Network& n) {
     if (g.in_service) supply[static_cast<std::size_t>(g.bus)] += g.mva;
   for (std::size_t i = 0; i < n.buses.size(); ++i)
     if (n.buses[i].type == BusType::slack && supply[i] == 0.0) {
-      n.remark("slack buses without a generator in service are load buses",
-               "bus " + std::to_string(n.buses[i].number));
+      n.remark("slack buses without a generator in service are load buses", n.bus_text(static_cast<int>(i)));
       n.buses[i].type = BusType::load;
     }
   const std::vector<int> island = islands(n);
@@ -224,8 +223,7 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
   if (!finite || (worst > most && how == StandIn::checked)) {
     problems.add(at_bus.begin()->second + " without a model here", where,
                  "the file's voltages would say what it draws, but they are no solution: they leave " +
-                     pu(worst * n.base_mva) + " MVA" +
-                     (bus < 0 ? std::string() : " at bus " + std::to_string(at(n, bus).number)),
+                     pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),
                  "solve the case before it is saved, or go on with --devices file, which takes them all the "
                  "same, or with --devices none, which leaves the equipment out");
     return;
@@ -246,9 +244,8 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
 void check_finite(const Network& n, const std::string& file, Problems& problems) {
   const auto report = [&](const std::string& what, int bus, std::initializer_list<double> values) {
     if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) return;
-    problems.add(what + " at bus " + std::to_string(n.buses[static_cast<std::size_t>(bus)].number) +
-                     " is beyond the range of numbers",
-                 file, "a value or a base it is divided by is absurdly large or small",
+    problems.add(what + " at " + n.bus_text(bus) + " is beyond the range of numbers", file,
+                 "a value or a base it is divided by is absurdly large or small",
                  "correct the value or the base");
   };
   for (const Load& l : n.loads)

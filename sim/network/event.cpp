@@ -38,15 +38,9 @@ void check_overlap(const std::vector<Interval>& list, const std::string& noun, c
                      "let one end before the other starts");
 }
 
-std::string bus_name(const Network& network, int bus) {
-  return "event, bus " + std::to_string(network.buses[static_cast<std::size_t>(bus)].number);
-}
+std::string bus_name(const Network& network, int bus) { return "event, " + network.bus_text(bus); }
 std::string branch_name(const Network& network, int branch) {
-  const Branch& b = network.branches[static_cast<std::size_t>(branch)];
-  const auto number = [&](int i) {
-    return std::to_string(network.buses[static_cast<std::size_t>(i)].number);
-  };
-  return "event, branch " + number(b.from) + "-" + number(b.to) + " circuit " + b.circuit;
+  return "event, branch " + network.branch_text(network.branches[static_cast<std::size_t>(branch)]);
 }
 
 std::vector<Interval> fault_intervals(const Event& event, const Network& network, Problems& problems) {

@@ -16,7 +16,7 @@ void Network::remark(const std::string& what, const std::string& place) {
 
 int Network::bus_index(int number) const {
   for (std::size_t i = 0; i < buses.size(); ++i)
-    if (buses[i].number == number) return static_cast<int>(i);
+    if (buses[i].number == number && !buses[i].is_star()) return static_cast<int>(i);
   return -1;
 }
 
@@ -29,6 +29,27 @@ int Network::branch_index(int from, int to, const std::string& circuit) const {
     if (joins && b.circuit == circuit) return static_cast<int>(i);
   }
   return -1;
+}
+
+namespace {
+std::string star_text(const Bus& star) {
+  const auto& [first, second, third] = star.star_of;
+  return std::to_string(first) + "-" + std::to_string(second) + "-" + std::to_string(third);
+}
+}  // namespace
+
+std::string Network::bus_text(int bus) const {
+  const Bus& b = buses[static_cast<std::size_t>(bus)];
+  return b.is_star() ? "star point of " + star_text(b) : "bus " + std::to_string(b.number);
+}
+
+std::string Network::branch_text(const Branch& branch) const {
+  const Bus &from = buses[static_cast<std::size_t>(branch.from)],
+            &to = buses[static_cast<std::size_t>(branch.to)];
+  const std::string ends = to.is_star()
+                               ? "winding at bus " + std::to_string(from.number) + " of " + star_text(to)
+                               : std::to_string(from.number) + "-" + std::to_string(to.number);
+  return ends + " circuit " + branch.circuit;
 }
 
 std::vector<int> islands(const Network& network, const std::vector<int>& open) {
@@ -62,11 +83,19 @@ std::vector<int> islands(const Network& network, const std::vector<int>& open) {
 
 std::string bus_list(const Network& network, const std::vector<int>& buses) {
   constexpr std::size_t most = 20;  // a sentence, not a table
-  std::string text;
-  for (std::size_t i = 0; i < buses.size() && i < most; ++i)
-    text += (i ? ", " : "") + std::to_string(network.buses[static_cast<std::size_t>(buses[i])].number);
+  std::string numbers, stars;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < buses.size() && i < most; ++i) {
+    const Bus& bus = network.buses[static_cast<std::size_t>(buses[i])];
+    std::string& text = bus.is_star() ? stars : numbers;
+    if (!bus.is_star()) ++count;
+    text += (text.empty() ? "" : ", ") +
+            (bus.is_star() ? network.bus_text(buses[i]) : std::to_string(bus.number));
+  }
+  std::string text = numbers.empty() ? "" : (count == 1 ? "bus " : "buses ") + numbers;
+  if (!stars.empty()) text += (text.empty() ? "" : ", ") + stars;
   if (buses.size() > most) text += " and " + std::to_string(buses.size() - most) + " more";
-  return (buses.size() == 1 ? "bus " : "buses ") + text;
+  return text;
 }
 
 }  // namespace swingbank::sim::network

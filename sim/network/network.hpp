@@ -1,5 +1,6 @@
 #pragma once
 // The positive-sequence network as read from a file: everything in per unit on base_mva, angles in rad.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Bus {
   BusType type;
   double vm, va;  ///< voltage in the file: start of the power flow [pu, rad]
   int area = 1, zone = 1, owner = 1;
+  /// Numbers of the buses of a three-winding transformer whose star point this is; zeros: a bus of the file.
+  std::array<int, 3> star_of{};
+  [[nodiscard]] bool is_star() const { return star_of[0] != 0; }
 };
 /// What a load of the network stands for.
 enum class LoadKind {
@@ -90,10 +94,14 @@ struct Network {
 
   /// Notes that `what` was done at `place`.
   void remark(const std::string& what, const std::string& place);
-  /// Index of the bus with this number, or -1.
+  /// Index of the bus with this number, or -1; star points have none.
   [[nodiscard]] int bus_index(int number) const;
   /// Index of the branch between two bus numbers (either direction) with this circuit id, or -1.
   [[nodiscard]] int branch_index(int from, int to, const std::string& circuit) const;
+  /// "bus 7", "star point of 2-3-4": for messages.
+  [[nodiscard]] std::string bus_text(int bus) const;
+  /// "1-4 circuit 1", "winding at bus 2 of 2-3-4 circuit 1": for messages.
+  [[nodiscard]] std::string branch_text(const Branch& branch) const;
 };
 
 }  // namespace swingbank::sim::network

@@ -14,6 +14,7 @@
 #include "sim/network/connectivity.hpp"
 #include "sim/network/detail/regulation.hpp"
 #include "sim/network/detail/shunt_steps.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::network {
 namespace {
@@ -67,9 +68,17 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
                       "close a branch, or make isolated buses type 4"});
 }
 
+/// Newton's method on angles, magnitudes and the currents of ties. With a tie's current as an unknown its
+/// equation is linear in the voltages: a start whose voltages differ across the tie does no harm, while as a
+/// sum of powers it is the square of that difference over a small impedance.
 class Newton {
  public:
-  Newton(const Network& n, const Demand& demand) : n_(n), in_(demand), y_(bus_admittance(n)) {}
+  Newton(const Network& n, const Demand& demand)
+      : n_(n),
+        in_(demand),
+        y_(bus_admittance(n, {}, TiesIn::equations)),
+        ties_(ties(n)),
+        tie_current_(ties_.size()) {}
 
   /// Takes on the roles of the buses; the voltages stay.
   void arrange(const Roles& roles) {
@@ -85,6 +94,8 @@ class Newton {
       angle_[at(i)] = unknowns_++;
       if (role.kind != Role::holds) magnitude_[at(i)] = unknowns_++;
     }
+    bus_unknowns_ = unknowns_;
+    unknowns_ += 2 * static_cast<int>(ties_.size());
     // Which equations see the reactive power of a bus, with which factor.
     for (int i = 0; i < count; ++i) {
       const Role& role = roles[at(i)];
@@ -111,6 +122,7 @@ class Newton {
   static constexpr double kAnyStep = 1e9;  ///< [rad, pu]
   /// From the file's voltages, or flat: 1 pu, at the angles that the phase shifts alone would make.
   void start(bool flat) {
+    std::ranges::fill(tie_current_, Complex{});
     v_.resize(static_cast<Eigen::Index>(n_.buses.size()));
     const std::vector<double> shifted = flat ? angles_of_shifts() : std::vector<double>{};
     for (std::size_t i = 0; i < n_.buses.size(); ++i) {
@@ -166,6 +178,16 @@ class Newton {
         }
     return angle;
   }
+  /// Row and column of the real part of a tie's current.
+  [[nodiscard]] int tie_row(std::size_t k) const { return bus_unknowns_ + 2 * static_cast<int>(k); }
+  /// What a tie's voltages and current leave of its equation [pu]; zero where that is rounding.
+  [[nodiscard]] Complex tie_mismatch(std::size_t k) const {
+    const Tie& tie = ties_[k];
+    const Complex from = v_[tie.from] / tie.ratio;
+    const Complex rest = from - v_[tie.to] - tie.z * tie_current_[k];
+    constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+    return std::abs(rest) <= rounding * std::abs(from) ? Complex{} : rest;
+  }
   [[nodiscard]] const Role& role(int i) const { return (*roles_)[at(i)]; }
   [[nodiscard]] Complex load(int i) const {
     const double vm = std::abs(v_[i]);
@@ -175,6 +197,13 @@ class Newton {
   bool evaluate() {
     i_ = y_ * v_;
     f_ = Eigen::VectorXd::Zero(unknowns_);
+    for (std::size_t k = 0; k < ties_.size(); ++k) {
+      i_[ties_[k].from] += tie_current_[k] / std::conj(ties_[k].ratio);
+      i_[ties_[k].to] -= tie_current_[k];
+      const Complex rest = tie_mismatch(k);
+      f_[tie_row(k)] = rest.real();
+      f_[tie_row(k) + 1] = rest.imag();
+    }
     for (int i = 0; i < v_.size(); ++i) {
       if (role(i).kind == Role::out) continue;
       const Complex d = delivered(i) - role(i).generation;
@@ -194,6 +223,14 @@ class Newton {
         bus = i;
       }
     }
+    for (std::size_t k = 0; k < ties_.size(); ++k) {
+      const double size = std::abs(Complex(f_[tie_row(k)], f_[tie_row(k) + 1]) / ties_[k].z);
+      if (!std::isfinite(size)) return false;
+      if (size > worst) {
+        worst = size;
+        bus = ties_[k].from;
+      }
+    }
     worst_ = worst;
     worst_bus_ = bus;
     return true;
@@ -204,6 +241,12 @@ class Newton {
     for (int j = 0; j < y_.outerSize(); ++j)
       for (Eigen::SparseMatrix<Complex>::InnerIterator e(y_, j); e; ++e)
         meeting[e.row()] += std::abs(v_[e.row()]) * std::abs(e.value()) * std::abs(v_[j]);
+    for (std::size_t k = 0; k < ties_.size(); ++k) {
+      if (std::abs(Complex(f_[tie_row(k)], f_[tie_row(k) + 1])) > tolerance * std::abs(ties_[k].z))
+        return false;
+      for (const int end : {ties_[k].from, ties_[k].to})
+        meeting[end] += std::abs(v_[end]) * std::abs(tie_current_[k]);
+    }
     constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
     for (int i = 0; i < v_.size(); ++i) {
       double meets = meeting[i];
@@ -237,14 +280,35 @@ class Newton {
       if (role(j).kind == Role::leads)
         entries.emplace_back(magnitude_[at(j)], magnitude_[at(role(j).target)], 1.0);
     }
+    for (std::size_t k = 0; k < ties_.size(); ++k) {
+      const Tie& tie = ties_[k];
+      const int row = tie_row(k);
+      const auto in_row = [&](int column, Complex d) {
+        if (column < 0) return;
+        entries.emplace_back(row, column, d.real());
+        entries.emplace_back(row + 1, column, d.imag());
+      };
+      for (const bool at_from : {true, false}) {
+        const int end = at_from ? tie.from : tie.to;
+        const Complex v = at_from ? v_[end] / tie.ratio : -v_[end];
+        in_row(angle_[at(end)], j1 * v);
+        in_row(magnitude_[at(end)], v / std::abs(v_[end]));
+        add(end, row, v);
+        add(end, row + 1, -j1 * v);
+      }
+      in_row(row, -tie.z);
+      in_row(row + 1, -j1 * tie.z);
+    }
     Eigen::SparseMatrix<double> jacobian(unknowns_, unknowns_);
     jacobian.setFromTriplets(entries.begin(), entries.end());
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(jacobian);
     if (lu.info() != Eigen::Success) return false;
     const Eigen::VectorXd dx = lu.solve(f_);
     if (!dx.allFinite()) return false;
-    const double most = dx.size() > 0 ? dx.cwiseAbs().maxCoeff() : 0.0;
+    const double most = bus_unknowns_ > 0 ? dx.head(bus_unknowns_).cwiseAbs().maxCoeff() : 0.0;
     const double share = most > longest ? longest / most : 1.0;
+    for (std::size_t k = 0; k < ties_.size(); ++k)
+      tie_current_[k] -= share * Complex(dx[tie_row(k)], dx[tie_row(k) + 1]);
     for (int i = 0; i < v_.size(); ++i) {
       if (angle_[at(i)] < 0) continue;
       const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? share * dx[magnitude_[at(i)]] : 0.0);
@@ -257,10 +321,12 @@ class Newton {
   const Network& n_;
   const Demand& in_;
   const Roles* roles_ = nullptr;
-  Eigen::SparseMatrix<Complex> y_;
+  Eigen::SparseMatrix<Complex> y_;  ///< without ties
+  std::vector<Tie> ties_;
+  std::vector<Complex> tie_current_;        ///< into bus `to` [pu]
   std::vector<int> angle_, magnitude_;      ///< position of each bus's unknowns, or -1
   std::vector<std::vector<Row>> reactive_;  ///< per bus
-  int unknowns_ = 0;
+  int bus_unknowns_ = 0, unknowns_ = 0;
   Eigen::VectorXcd v_, i_;
   Eigen::VectorXd f_;
   double worst_ = 0.0;
@@ -440,7 +506,7 @@ PowerFlow flow_of_file(Network& network) {
   std::ranges::sort(sizes, std::greater{});
   for (const auto& [size, i] : sizes)
     network.remark("what the file's voltages leave unbalanced is drawn as constant admittance, largest first",
-                   "bus " + std::to_string(network.buses[i].number) + " " + std::to_string(size) + " MVA");
+                   network.bus_text(static_cast<int>(i)) + " " + std::to_string(size) + " MVA");
   return flow;
 }
 

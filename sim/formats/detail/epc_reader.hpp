@@ -10,6 +10,7 @@
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::formats::epc {
 
@@ -65,7 +66,7 @@ class EpcReader {
   /// Whether this identity is the first of its name; one that is not is a problem, or left out if asked for.
   bool once(const std::string& identity, const psse::Fields& fields);
   bool status(psse::Fields& f);
-  void some_impedance(network::Branch& b, const psse::Fields& f);
+  void raise_impedance(network::Branch& b, const psse::Fields& f);
   [[nodiscard]] static std::string id_of(const psse::Fields& of, std::size_t i);
   [[nodiscard]] double pu(long double mw) const { return static_cast<double>(mw / base_); }
   [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }

@@ -11,6 +11,7 @@
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
+#include "sim/network/tie.hpp"
 
 namespace swingbank::sim::formats::psse {
 
@@ -81,7 +82,7 @@ class RawReader {
   void bus(const Record& record);
   void bus_23(const Record& record);
   void bus_shunt(Fields& f, std::size_t first);
-  void some_impedance(double r, double& x, int from, int to, const Fields& f);
+  void raise_impedance(network::Branch& b, const Fields& f);
   void load(const Record& record);
   void fixed_shunt(const Record& record);
   void generator(const Record& record);

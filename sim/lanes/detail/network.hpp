@@ -91,9 +91,9 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
   if (products) {
     terminals_ = {std::vector<char>(plants_.size(), 0), std::vector<char>(plants_.size(), 0),
                   std::vector<double>(plants_.size(), 1.0)};
-    const auto bolted = network::bolted_buses(topology);
+    const auto grounded = network::grounded_buses(grid_.network, topology);
     for (std::size_t i = 0; i < plants_.size(); ++i)
-      terminals_.grounded[i] = std::ranges::count(bolted, grid_.plants[i].bus) > 0;
+      terminals_.grounded[i] = std::ranges::count(grounded, grid_.plants[i].bus) > 0;
   } else {
     const InternalMatrix& own = own_matrix();
     const InternalMatrix& matrix = own_->network.matrix(topology, own_r_, own_x_);

@@ -58,7 +58,7 @@ std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const network::To
                                                                int most) const {
   const Sparse added = network::dynamic_admittance(grid_.network, grid_.flow, topology) - own_;
   Touched touched;
-  touched.buses = network::bolted_buses(topology);
+  touched.buses = network::grounded_buses(grid_.network, topology);
   const auto each = [&](const auto& what) {
     for (int j = 0; j < added.outerSize(); ++j)
       for (Sparse::InnerIterator e(added, j); e; ++e)
@@ -105,7 +105,7 @@ std::optional<LowRank> SwitchedNetwork::change(const network::Topology& topology
   const auto touched = touch(topology, most);
   if (!touched) return {};
   if (touched->buses.empty()) return out;
-  const auto into = currents(*touched, network::bolted_buses(topology));
+  const auto into = currents(*touched, network::grounded_buses(grid_.network, topology));
   if (!into) return {};
   const Eigen::MatrixXcd v = touched->voltage * *into;
   const Eigen::MatrixXcd before = transposed_.solve(unit_currents(touched->buses));

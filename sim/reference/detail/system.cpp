@@ -24,8 +24,8 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Buses that no machine and no fault can hold to a voltage: their equations have no solution. A converter
-/// follows a voltage and makes none.
+/// Buses with generators that no machine and no fault can hold to a voltage: their equations have no
+/// solution. A converter follows a voltage and makes none.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
   std::vector<bool> held(island.size() + 1, false);
@@ -33,6 +33,7 @@ std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topolo
     if (!plant.machine.effect->converter && !std::ranges::binary_search(topology.tripped, plant.generator))
       held[island[plant.bus] + 1] = true;
   for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
+  for (const int bus : network::dead_buses(grid.network, topology)) held[island[bus] + 1] = true;  // V = 0
   held[0] = true;  // isolated buses (-1) are out of the grid
   std::vector<int> lost;
   for (int b = 0; b < static_cast<int>(island.size()); ++b)
@@ -155,19 +156,25 @@ ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& 
                       "no machine and no fault is left in that part of the grid",
                       "keep a branch to it closed, or take it out of the network"});
   build_network(grid, segment.topology);
-  build_pattern();
 }
 
 void ReferenceSystem::build_network(const grid::Grid& grid, const network::Topology& topology) {
-  for (int b : network::bolted_buses(topology)) bolted_[b] = true;
+  for (int b : network::grounded_buses(grid.network, topology)) bolted_[b] = true;
   for (int b = 0; b < buses_; ++b)
     if (grid.network.buses[b].type == network::BusType::isolated)
       bolted_[b] = true;  // out of the grid: V = 0
-  y_ = network::dynamic_admittance(grid.network, grid.flow, topology, grid.modelled_loads());
-  y_.prune([&](Eigen::Index row, Eigen::Index, const Complex&) { return !bolted_[row]; });
+  const std::vector<int> modelled = grid.modelled_loads();
+  const auto matrix = [&](network::TiesIn ties) {
+    Rows y = network::dynamic_admittance(grid.network, grid.flow, topology, modelled, ties);
+    y.prune([&](Eigen::Index row, Eigen::Index, const Complex&) { return !bolted_[row]; });
+    return y;
+  };
+  y_ = matrix(network::TiesIn::equations);
+  ties_ = network::ties(grid.network, topology);
+  build_pattern(matrix(network::TiesIn::matrix));
 }
 
-void ReferenceSystem::build_pattern() {
+void ReferenceSystem::build_pattern(const Rows& y) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](int row, int col, double value) { entries.emplace_back(row, col, value); };
   for (int b = 0; b < buses_; ++b) {
@@ -176,7 +183,7 @@ void ReferenceSystem::build_pattern() {
       add(row, row, 1.0);
       add(row + 1, row + 1, 1.0);
     }
-    for (decltype(y_)::InnerIterator it(y_, b); it; ++it) {
+    for (Rows::InnerIterator it(y, b); it; ++it) {
       const int col = bus_row(static_cast<int>(it.col()));
       add(row, col, it.value().real());
       add(row, col + 1, -it.value().imag());
@@ -341,13 +348,14 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
   for (int b = 0; b < buses_; ++b) {
     const double* v = y + bus_row(b);
     Complex current = bolted_[b] ? Complex(v[0], v[1]) : Complex();
-    for (decltype(y_)::InnerIterator it(y_, b); it; ++it) {
+    for (Rows::InnerIterator it(y_, b); it; ++it) {
       const double* w = y + bus_row(static_cast<int>(it.col()));
       current += it.value() * Complex(w[0], w[1]);
     }
     f[bus_row(b)] = current.real();
     f[bus_row(b) + 1] = current.imag();
   }
+  for (const network::Tie& tie : ties_) tie_current(tie, y, f);
   for (std::size_t u = 0; u < plants_.units().size(); ++u) {
     const Unit& unit = plants_.units()[u];
     double* dx = f + unit.first;
@@ -359,6 +367,20 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
     f[bus_row(unit.bus)] -= current.real() * scale;
     f[bus_row(unit.bus) + 1] -= current.imag() * scale;
   }
+}
+
+/// Adds the current of a tie to the sums of its buses. It is the difference of two nearly equal voltages over
+/// a small impedance: its rounding error enters both sums with opposite signs, and so no voltage.
+void ReferenceSystem::tie_current(const network::Tie& tie, const double* y, double* f) const {
+  const double *from = y + bus_row(tie.from), *to = y + bus_row(tie.to);
+  const Complex into = (Complex(from[0], from[1]) / tie.ratio - Complex(to[0], to[1])) / tie.z;
+  const auto add = [&](int bus, Complex current) {
+    if (bolted_[bus]) return;
+    f[bus_row(bus)] += current.real();
+    f[bus_row(bus) + 1] += current.imag();
+  };
+  add(tie.from, into / std::conj(tie.ratio));
+  add(tie.to, -into);
 }
 
 std::vector<double> ReferenceSystem::error_weights() const {

@@ -3,6 +3,7 @@
 //   y = [ states of plant 0, plant 1, ..., load 0, ... | Vr, Vi of bus 0, bus 1, ... ]
 //   states:  x' - f(t, x, V) = 0
 //   buses:   Y V - sum of the units' currents = 0 [pu on base_mva];  V = 0 where the fault is bolted
+//          or a trip has cut the bus off
 // and its sparse Jacobian dF/dy + a dF/dy', units by duals, network constant.
 #include <Eigen/Sparse>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "sim/grid/grid.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/network/event.hpp"
+#include "sim/network/tie.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/load_equations.hpp"
 
@@ -57,7 +59,7 @@ class ReferenceSystem {
  public:
   using Unit = ReferencePlants::Unit;
   /// `end`: until when the segment lasts [s]; effects never see a later time. Throws InputError if a part of
-  /// the grid is cut off without machine or fault.
+  /// the grid has converters and no machine or fault.
   ReferenceSystem(const grid::Grid& grid, const ReferencePlants& plants, const network::Segment& segment,
                   double end);
   [[nodiscard]] int size() const { return plants_.states() + 2 * buses_; }
@@ -100,7 +102,9 @@ class ReferenceSystem {
  private:
   bool newton(double t, double* y) const;
   void build_network(const grid::Grid& grid, const network::Topology& topology);
-  void build_pattern();
+  using Rows = Eigen::SparseMatrix<Complex, Eigen::RowMajor>;
+  void build_pattern(const Rows& y);
+  void tie_current(const network::Tie& tie, const double* y, double* f) const;
   void unit_jacobian(std::size_t unit, double t, double a, const double* y, double* values) const;
   /// Room for one evaluation: m of a plant's equations, a unit's unknowns and derivatives.
   template <class T>
@@ -125,12 +129,13 @@ class ReferenceSystem {
   int buses_;
   double last_moment_;  ///< largest time effects may see [s]
   std::vector<bool> bolted_;
-  std::vector<int> open_;                            ///< branches that carry nothing, sorted
-  std::vector<int> island_;                          ///< per bus
-  std::vector<double> connected_;                    ///< per unit: part that is connected
-  std::vector<network::Setpoint> setpoint_;          ///< per unit
-  Eigen::SparseMatrix<Complex, Eigen::RowMajor> y_;  ///< network; rows of bolted buses are empty
-  Eigen::SparseMatrix<double> constant_;             ///< dF/dy of the network, with room for the units
+  std::vector<int> open_;                    ///< branches that carry nothing, sorted
+  std::vector<int> island_;                  ///< per bus
+  std::vector<double> connected_;            ///< per unit: part that is connected
+  std::vector<network::Setpoint> setpoint_;  ///< per unit
+  Rows y_;                                   ///< network without its ties; rows of bolted buses are empty
+  std::vector<network::Tie> ties_;
+  Eigen::SparseMatrix<double> constant_;  ///< dF/dy of the network, with room for the units
   std::vector<std::vector<int>> places_;  ///< [unit]: place of each (column, row) of its block, -1: none
   mutable Scratch<double> scratch_;       ///< a system serves one thread
   mutable Scratch<D8> dual_scratch_;

@@ -186,13 +186,14 @@ TEST(PsseSwitch, WithoutReactanceGetsNextToNone) {
   const std::string good = "13,15,'@1',0.0004,";
   t.replace(t.find(good), good.size(), "13,15,'@1',0.0,");
   const network::Network n = parse_raw(t, "case.raw");
-  EXPECT_EQ(n.branches[2].x, kNoImpedance);
+  EXPECT_EQ(n.branches[2].x, network::kLeastImpedance);
   const auto said = std::ranges::find_if(n.remarks, [](const network::Remark& r) {
     return r.what.find("branches without impedance") != std::string::npos;
   });
   ASSERT_NE(said, n.remarks.end());
-  EXPECT_THAT(said->places,
-              ::testing::ElementsAre("13-15 (case.raw:" + std::to_string(line_of(t, "13,15,'@1'")) + ")"));
+  EXPECT_THAT(
+      said->places,
+      ::testing::ElementsAre("13-15 circuit @1 (case.raw:" + std::to_string(line_of(t, "13,15,'@1'")) + ")"));
 }
 
 TEST(PsseRawText, BasesBeyondTheRangeOfNumbersAreRefused) {
