@@ -317,6 +317,7 @@ int simulate(const Options& o) {
   for (int b : o.buses)
     buses.push_back(formats::read_bus(std::to_string(b), grid.network, "--buses", problems));
   problems.raise();
+  grid::note_shed_loads(grid, event);
   if (!o.changes.empty()) write_changes(o.changes, grid.network);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -408,7 +409,9 @@ int main(int argc, char** argv) {
   line.add("--z0", o.event.z0,
            "R:X, zero-sequence impedance of the grid at the fault [pu on the network's base]; needed "
            "by slg and llg");
-  line.add("--trip", o.event.trips, "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; may be repeated");
+  line.add("--trip", o.event.trips,
+           "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; of a three-winding transformer this opens the winding at FROM, "
+           "FROM:TO:THIRD:CKT:T_OPEN[:T_CLOSE] all windings; may be repeated");
   line.add("--trip-generator", o.event.generator_trips,
            "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
   line.add("--load-step", o.event.load_steps,

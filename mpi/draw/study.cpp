@@ -94,7 +94,8 @@ Study load_study(const DatasetConfig& config) {
   for (int number : config.fault.buses) allow(index_of(number, "fault.buses"));
   if (config.fault.buses.empty())
     for (std::size_t i = 0; i < network.buses.size(); ++i)
-      if (network.buses[i].type != sim::network::BusType::isolated) allow(static_cast<int>(i));
+      if (network.buses[i].type != sim::network::BusType::isolated && !network.buses[i].is_star())
+        allow(static_cast<int>(i));
   if (s.fault_buses.empty())
     problems.add("no bus to fault", config.file.string(), "fault.except leaves none of fault.buses",
                  "name more buses");

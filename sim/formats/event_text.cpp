@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace swingbank::sim::formats {
@@ -47,6 +48,33 @@ std::vector<std::string> fields(const std::string& text, std::size_t least, std:
   return {};
 }
 
+/// Branches between two buses with this circuit, or the winding at the first of them of a transformer that
+/// joins both; of three buses every winding in service of the transformer between them.
+std::vector<int> branches_named(const std::vector<std::string>& ends, const std::string& circuit,
+                                const network::Network& network) {
+  const auto bus_of = [&](int index) -> const network::Bus& {
+    return network.buses[static_cast<std::size_t>(index)];
+  };
+  std::vector<int> list, out;
+  if (ends[0] == ends[1]) return list;
+  for (std::size_t i = 0; i < network.branches.size(); ++i) {
+    const network::Branch& b = network.branches[i];
+    if (b.circuit != circuit) continue;
+    std::vector<std::string> joined{std::to_string(bus_of(b.from).number)};
+    if (bus_of(b.to).is_star())
+      for (const int number : bus_of(b.to).star_of) joined.push_back(std::to_string(number));
+    else
+      joined.push_back(std::to_string(bus_of(b.to).number));
+    const bool joins = std::ranges::all_of(
+        ends, [&](const std::string& end) { return std::ranges::count(joined, end) > 0; });
+    const bool named = ends.size() == 3         ? bus_of(b.to).is_star()
+                       : bus_of(b.to).is_star() ? joined.front() == ends.front()
+                                                : true;
+    if (joins && named) (b.in_service || ends.size() < 3 ? list : out).push_back(static_cast<int>(i));
+  }
+  return list.empty() ? out : list;
+}
+
 int bus_number(const network::Network& network, const network::Generator& g) {
   return network.buses[static_cast<std::size_t>(g.bus)].number;
 }
@@ -81,7 +109,8 @@ int generator_named(const network::Network& network, const std::string& text, co
 int read_bus(const std::string& text, const network::Network& network, const std::string& where,
              Problems& problems) {
   for (std::size_t i = 0; i < network.buses.size(); ++i)
-    if (std::to_string(network.buses[i].number) == text) return static_cast<int>(i);
+    if (!network.buses[i].is_star() && std::to_string(network.buses[i].number) == text)
+      return static_cast<int>(i);
   problems.add("no bus " + text, where, network.origin + " has no bus of that number",
                "give a bus number of that file");
   return -1;
@@ -105,32 +134,45 @@ network::BusFault read_fault(const std::string& text, const network::Network& ne
   return fault;
 }
 
-network::LineTrip read_line_trip(const std::string& text, const network::Network& network, double t_end,
-                                 const std::string& where, Problems& problems) {
-  const auto part = fields(text);
-  if (part.size() != 4 && part.size() != 5) {
-    problems.add(
-        fmt::format("{} fields", part.size()), where,
-        "a trip is FROM:TO:CKT:T_OPEN or FROM:TO:CKT:T_OPEN:T_CLOSE",
-        "give two bus numbers, the circuit's id, the instant it opens [s] and, if it does, closes [s]");
-    return {-1, 0.0, {}};
-  }
-  network::LineTrip trip{-1, number(part[3], where, problems), {}};
-  const int from = read_bus(part[0], network, where, problems),
-            to = read_bus(part[1], network, where, problems);
-  if (from >= 0 && to >= 0) {
-    const auto bus = [&](int i) { return network.buses[static_cast<std::size_t>(i)].number; };
-    trip.branch = network.branch_index(bus(from), bus(to), part[2]);
-    if (trip.branch < 0)
-      problems.add(fmt::format("no branch {}-{} circuit {}", part[0], part[1], part[2]), where,
-                   network.origin + " has no branch of that name",
+std::vector<network::LineTrip> read_line_trip(const std::string& text, const network::Network& network,
+                                              double t_end, const std::string& where, Problems& problems) {
+  const auto part = fields(text, 4, 6, "FROM:TO:CKT:T_OPEN[:T_CLOSE], or FROM:TO:THIRD:CKT:T_OPEN[:T_CLOSE]",
+                           where, problems);
+  if (part.empty()) return {};
+  const std::vector<int> pair = branches_named({part[0], part[1]}, part[2], network),
+                         three = part.size() == 4
+                                     ? std::vector<int>{}
+                                     : branches_named({part[0], part[1], part[2]}, part[3], network);
+  const bool whole = part.size() == 6 || (part.size() == 5 && pair.empty() && !three.empty());
+  if (part.size() == 5 && !pair.empty() && !three.empty())
+    problems.add(fmt::format("both a branch {}-{} circuit {} and a transformer {}-{}-{} circuit {}", part[0],
+                             part[1], part[2], part[0], part[1], part[2], part[3]),
+                 where, "the text may name either", "give T_CLOSE of the transformer, or T_OPEN alone");
+  if (!whole && pair.size() > 1)
+    problems.add(fmt::format("{} transformers {}-{} circuit {}", pair.size(), part[0], part[1], part[2]),
+                 where, "each joins a third bus", "give it too: FROM:TO:THIRD:CKT:T_OPEN");
+  const std::vector<int>& branches = whole ? three : pair;
+  const std::size_t times = whole ? 4 : 3;
+  if (branches.empty()) {
+    bool known = true;
+    for (std::size_t i = 0; i + 1 < times; ++i)
+      known = read_bus(part[i], network, where, problems) >= 0 && known;
+    if (known)
+      problems.add(fmt::format("no branch {} circuit {}",
+                               fmt::join(part.begin(), part.begin() + static_cast<long>(times) - 1, "-"),
+                               part[times - 1]),
+                   where, network.origin + " has no branch of that name",
                    "give a branch of that file with its circuit id");
   }
-  if (part.size() == 5) trip.t_close = number(part[4], where, problems);
-  if (std::max(trip.t_open, trip.t_close.value_or(0.0)) > t_end)
+  const double open = number(part[times], where, problems);
+  std::optional<double> close;
+  if (part.size() > times + 1) close = number(part[times + 1], where, problems);
+  if (std::max(open, close.value_or(0.0)) > t_end)
     problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
                  "choose earlier instants or let the run end later");
-  return trip;
+  std::vector<network::LineTrip> trips;
+  for (const int branch : branches) trips.push_back({branch, open, close});
+  return trips;
 }
 
 Complex read_impedance(const std::string& text, const std::string& where, Problems& problems) {

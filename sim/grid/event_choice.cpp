@@ -1,9 +1,13 @@
 #include "sim/grid/event_choice.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <optional>
 
 #include "sim/formats/event_text.hpp"
+#include "sim/network/admittance.hpp"
 #include "sim/network/fault_sequence.hpp"
 #include "sim/plant/equations.hpp"
 
@@ -64,7 +68,8 @@ network::Event read_event(const EventTexts& texts, const Grid& grid, double t_en
   for (const auto& text : texts.faults)
     event.faults.push_back(formats::read_fault(text, n, t_end, place(EventPart::fault, text), problems));
   for (const auto& text : texts.trips)
-    event.trips.push_back(formats::read_line_trip(text, n, t_end, place(EventPart::trip, text), problems));
+    for (const auto& trip : formats::read_line_trip(text, n, t_end, place(EventPart::trip, text), problems))
+      event.trips.push_back(trip);
   for (const auto& text : texts.generator_trips)
     event.generator_trips.push_back(
         formats::read_generator_trip(text, n, t_end, place(EventPart::generator_trip, text), problems));
@@ -80,6 +85,30 @@ network::Event read_event(const EventTexts& texts, const Grid& grid, double t_en
   choose_fault_type(texts, grid, place, event, problems);
   check_followers(grid, place, event, problems);
   return event;
+}
+
+void note_shed_loads(Grid& grid, const network::Event& event) {
+  network::Network& n = grid.network;
+  network::Remark remark{"buses that the event cuts off from every generator lose their voltage and loads",
+                         {}};
+  std::vector<int> before;
+  for (const network::Segment& segment : network::segments(event, n)) {
+    const std::vector<int> dead = network::dead_buses(n, segment.topology);
+    for (const int bus : dead) {
+      if (std::ranges::binary_search(before, bus) || n.buses[static_cast<std::size_t>(bus)].is_star())
+        continue;
+      Complex power{};
+      for (const network::Load& l : n.loads)
+        if (l.bus == bus) power += network::consumption(l, grid.flow) * n.base_mva;
+      remark.places.push_back(fmt::format("{} at {:g} s: {:.2f} MW, {:.2f} Mvar", n.bus_text(bus),
+                                          segment.start, power.real(), power.imag()));
+    }
+    before = dead;
+  }
+  if (remark.places.empty()) return;
+  constexpr std::size_t places = 4;  // as of the other changes to the case
+  spdlog::warn("{}", remark_line(remark, places));
+  n.remarks.push_back(std::move(remark));
 }
 
 }  // namespace swingbank::sim::grid

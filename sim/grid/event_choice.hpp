@@ -27,4 +27,7 @@ using EventPlace = std::function<std::string(EventPart part, const std::string& 
 network::Event read_event(const EventTexts& texts, const Grid& grid, double t_end, const EventPlace& place,
                           Problems& problems);
 
+/// Notes and warns of the loads at buses that the event cuts off from every generator.
+void note_shed_loads(Grid& grid, const network::Event& event);
+
 }  // namespace swingbank::sim::grid

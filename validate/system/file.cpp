@@ -253,6 +253,7 @@ SystemCase load_system(const fs::path& file) {
     };
     s.event = sim::grid::read_event(s.texts, s.grid, end, place, problems);
     for (const auto& p : problems.list()) c.problem("event", p.what, p.where + ": " + p.why, p.remedy);
+    if (c.sound()) sim::grid::note_shed_loads(s.grid, s.event);
   }
   c.raise();
   return s;

@@ -29,6 +29,33 @@ TEST(EventText, UnitsAndInstants) {
   EXPECT_TRUE(problems.empty());
 }
 
+TEST(EventText, ATripNamesABranchAWindingOrAWholeTransformer) {
+  RawCase c;
+  c.buses += "104,'LOW',20.0,1,1,1,1,1.0,0.0\n";
+  c.transformers = "101,102,104,'1',1,1,1\n0,0.1,100,0,0.2,100,0,0.15,100\n1.0\n1.0\n1.0\n";
+  const network::Network network = c.read();  // lines 101-103, 102-103, then the windings at 101, 102, 104
+  const auto opened = [&](const std::string& text) {
+    Problems problems;
+    std::vector<int> branches;
+    for (const auto& trip : read_line_trip(text, network, 2.0, "--trip", problems))
+      branches.push_back(trip.branch);
+    problems.raise();
+    return branches;
+  };
+  EXPECT_THAT(opened("103:101:1:1"), ::testing::ElementsAre(0));
+  EXPECT_THAT(opened("102:101:1:1"), ::testing::ElementsAre(3));
+  EXPECT_THAT(opened("104:102:1:1:1.5"), ::testing::ElementsAre(4));
+  EXPECT_THAT(opened("101:102:104:1:1"), ::testing::ElementsAre(2, 3, 4));
+  EXPECT_THAT(opened("104:101:102:1:1:1.5"), ::testing::ElementsAre(2, 3, 4));
+  EXPECT_THAT(sentences_of([&] { opened("101:105:1:1"); }), HasSubstr("no bus 105"));  // the star point
+  EXPECT_THAT(sentences_of([&] { opened("101:102:7:1"); }), HasSubstr("no branch 101-102 circuit 7"));
+  EXPECT_THAT(sentences_of([&] { opened("101:102:104:7:1:2"); }),
+              HasSubstr("no branch 101-102-104 circuit 7"));
+  EXPECT_THAT(sentences_of([&] { opened("101:102"); }), HasSubstr("2 fields"));
+  EXPECT_EQ(network.branch_text(network.branches[3]), "winding at bus 102 of 101-102-104 circuit 1");
+  EXPECT_EQ(network.bus_text(4), "star point of 101-102-104");
+}
+
 TEST(EventText, EveryFaultIsReported) {
   const network::Network network = RawCase{}.read();
   Problems problems;

@@ -45,7 +45,9 @@ BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw) {
   int bus = 0;
   do {
     bus = static_cast<int>(draw.below(network.buses.size()));
-  } while (bus == target(world).bus);  // V = 0 there would leave no angle to measure
+  } while (
+      bus == target(world).bus ||
+      network.buses[static_cast<std::size_t>(bus)].is_star());  // V = 0 there would leave no angle to measure
   BlindEvent event;
   sim::network::BusFault fault{bus, off_grid(1.5, 2.0, draw), 0.0, {}};
   fault.t_off = fault.t_on + off_grid(0.05, 0.15, draw);
