@@ -10,6 +10,7 @@
 #include "base/capitals.hpp"
 #include "sim/formats/matpower.hpp"
 #include "sim/grid/detail/dyr_models.hpp"
+#include "sim/grid/detail/step_up.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/usual.hpp"
 
@@ -87,7 +88,9 @@ class UnitReader {
                            "correct bus and id");
     if (units.size() > 1 && running.size() != 1)
       return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
-                           "their ids are " + ids, "say which one with its id");
+                           "their ids are " + ids,
+                           "say which one with its id (--id); for a record of both make a plant file of each "
+                           "and a point file for --point (configs/plants/README.md)");
     const std::size_t at = units.size() == 1 ? units[0] : running[0];
     generator_ = static_cast<int>(at);
     if (at < survey_.generator_line.size()) faults_of(survey_.generator_line[at], 1);
@@ -263,58 +266,61 @@ class UnitReader {
     }
   }
 
-  /// Transformers in service between the unit's bus and others.
-  [[nodiscard]] std::vector<std::size_t> transformers() const {
-    std::vector<std::size_t> list;
-    for (std::size_t i = 0; i < net().branches.size(); ++i) {
-      const auto& b = net().branches[i];
-      if (b.transformer && b.in_service && (b.from == generator().bus || b.to == generator().bus))
-        list.push_back(i);
+  /// Numbers of the buses that transformers in service join to the unit's bus, each once.
+  [[nodiscard]] std::set<int> transformers_to() const {
+    std::set<int> ends;
+    const int own = generator().bus;
+    for (const network::Branch& b : net().branches) {
+      if (!b.transformer || !b.in_service || (b.from != own && b.to != own)) continue;
+      const network::Bus& other = bus_at(b.from == own ? b.to : b.from);
+      if (!other.is_star()) ends.insert(other.number);
+      for (const int number : other.star_of)
+        if (other.is_star() && number != unit_.bus) ends.insert(number);
     }
-    return list;
-  }
-  [[nodiscard]] int far_end(std::size_t branch) const {
-    const auto& b = net().branches[branch];
-    return bus_at(b.from == generator().bus ? b.to : b.from).number;
+    return ends;
   }
   void tell_transformer() {
-    const auto list = transformers();
-    if (list.size() != 1) return;
+    const std::set<int> ends = transformers_to();
+    if (ends.empty() || ends.size() > 2) return;
     unit_.notes.push_back(
         fmt::format("a transformer joins bus {} to bus {}; the model ends at bus {}: for records from bus {} "
                     "give --measured-at {} (under [grid] of a plant file: measured_at)",
-                    unit_.bus, far_end(list[0]), unit_.bus, far_end(list[0]), far_end(list[0])));
+                    unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
   }
   void read_transformer(int measured_at) {
     if (measured_at == unit_.bus) return;
-    std::vector<std::size_t> between;
-    std::string ends;
-    for (const std::size_t i : transformers()) {
-      if (far_end(i) == measured_at) between.push_back(i);
-      ends += (ends.empty() ? "" : ", ") + std::to_string(far_end(i));
+    const int far = net().bus_index(measured_at);
+    StepUp first;  // between the machine and its bus
+    if (unit_.plant.transformer.effect) {
+      plant::Block& own = unit_.plant.transformer;
+      first.z = Complex(at(own, "R"), at(own, "X")) * (net().base_mva / unit_.plant.mva);
+      first.ratio = at(own, "ratio");
     }
-    if (between.size() != 1)
+    const StepUp way = far < 0 ? StepUp{} : step_up(net(), generator().bus, far, first);
+    if (!way.found()) {
+      const std::set<int> ends = transformers_to();
       return problems_.add(
-          fmt::format("{} transformers between bus {} and bus {}", between.size(), unit_.bus, measured_at),
-          net().origin,
+          fmt::format("no transformers lead from bus {} to bus {}", unit_.bus, measured_at), net().origin,
           ends.empty() ? "no transformer stands at the unit's bus"
-                       : "those at the unit's bus lead to " + ends,
-          "give a bus behind one transformer, or take the records at the unit's own bus");
-    const std::size_t at = between[0];
-    if (at < survey_.branch_line.size()) faults_of(survey_.branch_line[at], kTransformerLines);
+                       : fmt::format("those at the unit's bus lead to {}", fmt::join(ends, ", ")),
+          "give a bus behind the unit's transformers, or take the records at the unit's own bus");
+    }
+    for (const auto& stage : way.stages)
+      for (const std::size_t i : stage)
+        if (i < survey_.branch_line.size()) faults_of(survey_.branch_line[i], kTransformerLines);
     neighbours(measured_at);
-    add_transformer(net().branches[at], line_of(survey_.branch_line, at));
-    const network::Bus& there = bus_at(net().bus_index(measured_at));
-    unit_.kv = there.kv;
-    if (unit_.dispatch) dispatch_behind(net().branches[at], there);
+    passed(way, measured_at);
+    add_transformer(way);
+    unit_.kv = bus_at(far).kv;
+    if (unit_.dispatch) dispatch_behind(way.z - first.z, bus_at(far));
   }
-  /// What is left of the dispatch behind the transformer, less its losses.
-  void dispatch_behind(const network::Branch& b, const network::Bus& there) {
+  /// Moves the dispatch from the machine's bus to behind the transformers between, less their losses. `z`: of
+  /// these, on the machine's side, where the current is that of the dispatch [pu of the case's base].
+  void dispatch_behind(Complex z, const network::Bus& there) {
     Dispatch& d = *unit_.dispatch;
-    const bool machine_first = b.from == generator().bus;
-    const double current = std::hypot(d.P, d.Q) / net().base_mva / d.V * (machine_first ? b.tap : 1.0);
-    d.P -= current * current * b.r * net().base_mva;
-    d.Q -= current * current * b.x * net().base_mva;
+    const double current = std::hypot(d.P, d.Q) / net().base_mva / d.V;
+    d.P -= current * current * z.real() * net().base_mva;
+    d.Q -= current * current * z.imag() * net().base_mva;
     d.V = there.vm;
   }
   /// A control that measures elsewhere does so, in a plant file, where the record was taken.
@@ -338,8 +344,7 @@ class UnitReader {
       if (g.bus == bus && g.in_service && static_cast<int>(i) != generator_)
         problems_.add(fmt::format("generator '{}' at bus {} too", g.id, unit_.bus),
                       line_of(survey_.generator_line, i),
-                      fmt::format("what is measured at bus {} is the current of both", measured_at),
-                      "take the records at the unit's own bus");
+                      fmt::format("what is measured at bus {} is the current of both", measured_at), kOfBoth);
     }
     for (const auto& l : net().loads)
       if (l.bus == bus)
@@ -354,22 +359,37 @@ class UnitReader {
                         "model has none",
                         s.id, unit_.bus, measured_at));
   }
-  /// A branch is an ideal ratio tap:1 at its `from` side, then the impedance. STEPUP has the impedance on the
-  /// machine's side, on the machine's base.
-  void add_transformer(const network::Branch& b, const std::string& where) {
-    const bool machine_first = b.from == generator().bus;
-    const double to_machine = machine_first ? b.tap * b.tap : 1.0;
-    const double scale = to_machine * unit_.plant.mva / net().base_mva;
+  /// What joins between the transformers, whose current is then not the unit's alone.
+  void passed(const StepUp& way, int measured_at) {
+    for (std::size_t k = 1; k + 1 < way.buses.size(); ++k)
+      if (const std::string other = joins_on_the_way(net(), way, way.buses[k]); !other.empty())
+        problems_.add(
+            fmt::format("{} between bus {} and bus {}", other, unit_.bus, measured_at), net().origin,
+            fmt::format("what is measured at bus {} is not the unit's current alone", measured_at), kOfBoth);
+    if (!way.same_ratio)
+      problems_.add(fmt::format("parallel transformers of different ratios between bus {} and bus {}",
+                                unit_.bus, measured_at),
+                    net().origin, "they carry a current in circle, which the model does not have",
+                    "take the records at the unit's own bus");
+  }
+  /// STEPUP has its impedance on the machine's side, on the machine's base.
+  void add_transformer(const StepUp& way) {
+    std::string where;
+    for (const auto& stage : way.stages) {
+      where += where.empty() ? "" : ", in series with ";
+      for (std::size_t k = 0; k < stage.size(); ++k)
+        where += (k > 0 ? " parallel to " : "") + line_of(survey_.branch_line, stage[k]);
+    }
     plant::Block& block = unit_.plant.transformer;
     if (!block.effect) {
       block = {library::compiled().find("STEPUP"), {}};
       block.p = block.effect->standard_parameters();
-      at(block, "R") = at(block, "X") = 0.0;
     }
-    at(block, "R") += b.r * scale;
-    at(block, "X") += b.x * scale;
-    at(block, "ratio") = machine_first ? 1.0 / b.tap : b.tap;
-    if (b.shunt_from != Complex{})
+    const double scale = unit_.plant.mva / net().base_mva;
+    at(block, "R") = way.z.real() * scale;
+    at(block, "X") = way.z.imag() * scale;
+    at(block, "ratio") = way.ratio;
+    if (way.magnetising)
       unit_.notes.push_back("the transformer's magnetising current is left out (" + where + ")");
     unit_.notes.push_back("the transformer is that of " + where);
     block.effect->check(nullptr, block.p.data(), where, problems_);
@@ -379,6 +399,9 @@ class UnitReader {
   }
 
   static constexpr int kTransformerLines = 4;
+  static constexpr const char* kOfBoth =
+      "make a plant file of each unit, and of all of them a point file for --point "
+      "(configs/plants/README.md), or take the records at the unit's own bus";
   const UnitChoice& choice_;
   formats::RawSurvey survey_;
   formats::DyrSurvey dynamics_;

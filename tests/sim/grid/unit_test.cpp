@@ -122,9 +122,90 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
     const Complex ours = v_grid * std::polar(1.0, turn) / n + Complex(r, x) * (100.0 / 250.0) * i_machine;
     EXPECT_NEAR(std::abs(ours - v_machine), 0.0, 1e-12) << machine_first;
     c.measured_at = 101;
-    EXPECT_THAT(complaints(c), HasSubstr("0 transformers between bus 102 and bus 101"));
+    EXPECT_THAT(complaints(c), HasSubstr("no transformers lead from bus 102 to bus 101"));
     EXPECT_THAT(complaints(c), HasSubstr("lead to 103"));
   }
+}
+
+/// A unit at 102 of 250 MVA behind what `transformers` holds, with bus 104 on the way where it is named.
+formats::RawCase behind(const std::string& transformers, const std::string& buses = "") {
+  formats::RawCase raw;
+  raw.buses += buses;
+  raw.branches = "101,103,'1',0.01,0.12,0.0,250,250,250,0,0,0,0,1,1,0,1,1\n";
+  raw.transformers = transformers;
+  raw.generators =
+      "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1,100,318,0,1,1\n"
+      "102,'1',100.0,-3.0,100,-100,1.02,0,250,0,0.25,0,0,1,1,100,318,0,1,1\n";
+  return raw;
+}
+const std::string kMiddle = "104,'MIDDLE',69.0,1,1,1,1,1.0,0.0\n";
+
+TEST_F(UnitTest, TransformersInSeriesAreJoined) {
+  write(behind("102,104,0,'1',1,1,1,0,0,2,'',1\n0.003,0.09,100\n1.05\n1.0\n"
+               "103,104,0,'1',1,1,1,0,0,2,'',1\n0.002,0.05,100\n1.02\n1.0\n",
+               kMiddle)
+            .text(),
+        "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  UnitChoice c = choice(102);
+  c.measured_at = 103;
+  const Unit unit = read_unit(c);
+  double r = 0, x = 0, n = 0;
+  unit.plant.transformer.effect->get<double>().transformer.impedance(unit.plant.transformer.p.data(), r, x,
+                                                                     n);
+  // The first: ratio 1/1.05, impedance times 1.05^2; the second behind it: times 1.05^2 too, ratio 1.02.
+  EXPECT_NEAR(r, 2.5 * 1.1025 * (0.003 + 0.002), 1e-12);
+  EXPECT_NEAR(x, 2.5 * 1.1025 * (0.09 + 0.05), 1e-12);
+  EXPECT_NEAR(n, 1.02 / 1.05, 1e-12);
+  EXPECT_EQ(unit.kv, 138.0);
+  EXPECT_THAT(unit.notes, Contains(HasSubstr("in series with")));
+}
+
+TEST_F(UnitTest, TransformersInParallelAreJoined_WhenTheirRatiosAgree) {
+  const std::string one = "102,103,0,'1',1,1,1,0,0,2,'',1\n0.0,0.2,100\n1.05\n1.0\n";
+  write(behind(one + "102,103,0,'2',1,1,1,0,0,2,'',1\n0.0,0.3,100\n1.05\n1.0\n").text(),
+        "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  UnitChoice c = choice(102);
+  c.measured_at = 103;
+  const plant::Block block = read_unit(c).plant.transformer;
+  double r = 0, x = 0, n = 0;
+  block.effect->get<double>().transformer.impedance(block.p.data(), r, x, n);
+  EXPECT_NEAR(x, 2.5 * 1.1025 * 0.12, 1e-12);
+  EXPECT_NEAR(n, 1 / 1.05, 1e-12);
+  write(behind(one + "102,103,0,'2',1,1,1,0,0,2,'',1\n0.0,0.3,100\n1.0\n1.0\n").text(),
+        "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  EXPECT_THAT(complaints(c), HasSubstr("parallel transformers of different ratios"));
+}
+
+TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdCarriesNothing) {
+  const std::string three =
+      "102,103,104,'1',1,1,1,0,0,2,'',1\n0,0.10,100,0,0.20,100,0,0.30,100,1.0,0\n1.0\n1.0\n1.0\n";
+  write(behind(three, kMiddle).text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  EXPECT_THAT(read_unit(choice(102)).notes, Contains(HasSubstr("joins bus 102 to bus 103 and bus 104")));
+  UnitChoice c = choice(102);
+  c.measured_at = 103;
+  const plant::Block block = read_unit(c).plant.transformer;
+  double r = 0, x = 0, n = 0;
+  block.effect->get<double>().transformer.impedance(block.p.data(), r, x, n);
+  EXPECT_NEAR(x, 2.5 * (0.10 + 1e-6), 1e-9);  // the leg of winding 2 is zero
+  formats::RawCase loaded = behind(three, kMiddle);
+  loaded.loads += "104,'1',1,1,1,5.0,0.0,0,0,0,0,1,1,0\n";
+  write(loaded.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  EXPECT_THAT(complaints(c), HasSubstr("winding at bus 104 of 102-103-104"));
+  EXPECT_THAT(complaints(c), HasSubstr("--point"));
+  c.measured_at = 105;  // the number that the star point has inside
+  EXPECT_THAT(complaints(c), HasSubstr("no transformers lead from bus 102 to bus 105"));
+}
+
+TEST_F(UnitTest, APointFileIsNamed_WhenAnotherUnitSharesTheTransformer) {
+  formats::RawCase raw = behind("102,103,0,'1',1,1,1,0,0,2,'',1\n0.0,0.1,100\n1.0\n1.0\n");
+  raw.generators += "102,'2',50.0,-3.0,100,-100,1.02,0,250,0,0.25,0,0,1,1,100,318,0,1,1\n";
+  write(raw.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
+  EXPECT_THAT(complaints(choice(102)), ::testing::AllOf(HasSubstr("--id"), HasSubstr("--point")));
+  UnitChoice c = choice(102);
+  c.id = "1";
+  c.measured_at = 103;
+  EXPECT_THAT(complaints(c),
+              ::testing::AllOf(HasSubstr("generator '2' at bus 102 too"), HasSubstr("--point")));
 }
 
 TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
