@@ -468,46 +468,4 @@ PowerFlow solve_power_flow(const Network& network, const PowerFlowOptions& optio
   return flow;
 }
 
-std::vector<Complex> imbalance_of_file(const Network& network) {
-  Eigen::VectorXcd v(static_cast<Eigen::Index>(network.buses.size()));
-  for (std::size_t i = 0; i < network.buses.size(); ++i) {
-    const Bus& b = network.buses[i];
-    v[static_cast<Eigen::Index>(i)] = b.type == BusType::isolated ? Complex{} : std::polar(b.vm, b.va);
-  }
-  const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network) * v).conjugate());
-  std::vector<Complex> left(s.begin(), s.end());
-  for (const Load& l : network.loads) {
-    const double vm = std::abs(v[l.bus]);
-    left[at(l.bus)] += l.power + vm * (l.current + vm * l.admittance);
-  }
-  for (const Generator& g : network.generators)
-    if (g.in_service) left[at(g.bus)] -= Complex(g.p, g.q);
-  return left;
-}
-
-PowerFlow flow_of_file(Network& network) {
-  const std::vector<Complex> left = imbalance_of_file(network);
-  PowerFlow flow;
-  for (const Bus& b : network.buses)
-    flow.voltage.push_back(b.type == BusType::isolated ? Complex{} : std::polar(b.vm, b.va));
-  std::vector<double> mva(network.buses.size());
-  for (const Generator& g : network.generators)
-    if (g.in_service) mva[at(g.bus)] += g.mva;
-  for (const Generator& g : network.generators)
-    flow.generation.push_back(g.in_service ? Complex(g.p, g.q) + left[at(g.bus)] * (g.mva / mva[at(g.bus)])
-                                           : Complex{});
-  std::vector<std::pair<double, std::size_t>> sizes;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (network.buses[i].type == BusType::isolated || mva[i] > 0.0 || left[i] == Complex{}) continue;
-    const Complex admittance = -left[i] / std::norm(flow.voltage[i]);
-    network.loads.push_back({static_cast<int>(i), "~", {}, {}, admittance, 1, 1, 1, LoadKind::device});
-    sizes.emplace_back(std::abs(left[i]) * network.base_mva, i);
-  }
-  std::ranges::sort(sizes, std::greater{});
-  for (const auto& [size, i] : sizes)
-    network.remark("what the file's voltages leave unbalanced is drawn as constant admittance, largest first",
-                   network.bus_text(static_cast<int>(i)) + " " + std::to_string(size) + " MVA");
-  return flow;
-}
-
 }  // namespace swingbank::sim::network

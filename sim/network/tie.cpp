@@ -5,10 +5,10 @@
 namespace swingbank::sim::network {
 
 void raise_impedance(Network& network, double& r, double& x, const std::string& place) {
-  if (!(std::abs(Complex(r, x)) < kLeastImpedance)) return;
+  if (!(std::abs(Complex(r, x)) <= kLeastImpedance) || (r == 0.0 && x == kLeastImpedance)) return;
   r = 0.0;
   x = kLeastImpedance;
-  network.remark("branches without impedance (below 1e-06 pu) get X = 1e-06 pu", place);
+  network.remark("branches without impedance (up to 1e-06 pu) get X = 1e-06 pu", place);
 }
 
 bool is_tie(const Branch& branch) { return std::abs(Complex(branch.r, branch.x)) <= kTieImpedance; }

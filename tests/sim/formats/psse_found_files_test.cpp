@@ -120,7 +120,7 @@ TEST(FoundFiles, CorrectionTablesCountAtThePresentTap) {
   EXPECT_NEAR(with("0.85,0,0", ratios).branches[2].x, 0.12, 1e-12);  // beyond the table its end holds
   EXPECT_NEAR(with("1.05,0,15.0", angles).branches[2].r, 0.024, 1e-12);
   EXPECT_THAT(places(with("1.05,0,0", ratios), "corrected"),
-              ::testing::ElementsAre(HasSubstr("101-102 by 1.15")));
+              ::testing::ElementsAre(HasSubstr("101-102 circuit T by 1.15")));
 }
 
 TEST(FoundFiles, ACorrectionTableOfVersion34GoesOnOverLines) {

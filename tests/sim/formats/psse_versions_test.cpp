@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/network/tie.hpp"
 #include "tests/sim/formats/flatten.hpp"
 #include "tests/sim/formats/raw_case.hpp"
 

@@ -92,5 +92,29 @@ TEST(Regulation, TheFilesVoltagesStandWithWhatTheyLeaveOver) {
   for (const Complex& left : imbalance_of_file(n)) EXPECT_NEAR(std::abs(left), 0.0, 1e-12);
 }
 
+/// A file has five digits of its voltages: across a tie of 1e-6 pu they would make 10 pu.
+TEST(Regulation, TheFilesVoltagesStandAcrossATie) {
+  Network n = four_buses(kSecond, kThird);
+  const PowerFlow solved = solve_power_flow(n);
+  for (std::size_t i = 0; i < n.buses.size(); ++i)
+    n.buses[i].vm = std::abs(solved.voltage[i]), n.buses[i].va = std::arg(solved.voltage[i]);
+  n.buses.push_back(n.buses[3]);  // the load moves behind a tie of ratio 1.05
+  n.buses[4].number = 5;
+  n.buses[4].vm = n.buses[3].vm / 1.05 + 1e-5;
+  for (Load& l : n.loads)
+    if (l.bus == 3) l.bus = 4;
+  Branch tie{3, 4, "1", 0.0, 1e-6, 0.0};
+  tie.tap = 1.05;
+  n.branches.push_back(tie);
+  const std::size_t loads = n.loads.size();
+  const PowerFlow flow = flow_of_file(n);
+  EXPECT_NEAR(std::abs(flow.voltage[4]), std::abs(flow.voltage[3]) / 1.05, 1e-12);
+  for (std::size_t i = loads; i < n.loads.size(); ++i)
+    EXPECT_LT(std::abs(n.loads[i].admittance), 1e-4)
+        << n.buses[static_cast<std::size_t>(n.loads[i].bus)].number;
+  for (std::size_t i = 0; i < n.generators.size(); ++i)
+    EXPECT_NEAR(std::abs(flow.generation[i] - solved.generation[i]), 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace swingbank::sim::network

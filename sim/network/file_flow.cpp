@@ -1,0 +1,119 @@
+// The voltages of a file as the solution, and what they leave over.
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "sim/network/admittance.hpp"
+#include "sim/network/powerflow.hpp"
+#include "sim/network/tie.hpp"
+
+namespace swingbank::sim::network {
+namespace {
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+namespace {
+
+std::vector<Complex> voltages_of_file(const Network& network) {
+  std::vector<Complex> v;
+  for (const Bus& b : network.buses)
+    v.push_back(b.type == BusType::isolated ? Complex{} : std::polar(b.vm, b.va));
+  return v;
+}
+
+/// As imbalance_of_file, at other voltages.
+std::vector<Complex> imbalance_at(const Network& network, const std::vector<Complex>& voltage, TiesIn ties) {
+  const Eigen::Map<const Eigen::VectorXcd> v(voltage.data(), static_cast<Eigen::Index>(voltage.size()));
+  const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network, {}, ties) * v).conjugate());
+  std::vector<Complex> left(s.begin(), s.end());
+  for (const Load& l : network.loads) {
+    const double vm = std::abs(v[l.bus]);
+    left[at(l.bus)] += l.power + vm * (l.current + vm * l.admittance);
+  }
+  for (const Generator& g : network.generators)
+    if (g.in_service) left[at(g.bus)] -= Complex(g.p, g.q);
+  return left;
+}
+
+}  // namespace
+
+std::vector<Complex> imbalance_of_file(const Network& network) {
+  return imbalance_at(network, voltages_of_file(network), TiesIn::matrix);
+}
+
+namespace {
+
+/// Voltages and what they leave over at every bus. The voltages of a file have too few digits for the current
+/// of a tie: of buses that ties join, the first one, with a generator where one has, keeps the file's
+/// voltage; the others have the voltage that follows from it, and the ties carry to it what is left over at
+/// the others.
+struct FileSolution {
+  std::vector<Complex> voltage, left;
+};
+FileSolution solution_of_file(const Network& network) {
+  FileSolution out;
+  out.voltage = voltages_of_file(network);
+  const std::vector<Tie> all = ties(network);
+  std::vector<std::vector<std::size_t>> at_bus(network.buses.size());
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (const int end : {all[k].from, all[k].to}) at_bus[at(end)].push_back(k);
+  struct Step {
+    int bus, other;  ///< seen from `bus`, which is nearer to the first
+    std::size_t tie;
+  };
+  std::vector<Step> tree;
+  std::vector<char> known(network.buses.size(), 0);
+  std::vector<std::size_t> firsts(network.buses.size());
+  std::iota(firsts.begin(), firsts.end(), 0);
+  std::ranges::stable_partition(firsts, [&](std::size_t bus) {  // a generator balances what comes to it
+    return std::ranges::any_of(network.generators,
+                               [&](const Generator& g) { return g.in_service && at(g.bus) == bus; });
+  });
+  for (const std::size_t first : firsts) {
+    if (at_bus[first].empty() || std::exchange(known[first], 1)) continue;
+    std::vector<int> way{static_cast<int>(first)};
+    for (std::size_t k = 0; k < way.size(); ++k)
+      for (const std::size_t t : at_bus[at(way[k])]) {
+        const int other = all[t].from == way[k] ? all[t].to : all[t].from;
+        if (std::exchange(known[at(other)], 1)) continue;
+        out.voltage[at(other)] = all[t].to == other ? out.voltage[at(way[k])] / all[t].ratio
+                                                    : out.voltage[at(way[k])] * all[t].ratio;
+        way.push_back(other);
+        tree.push_back({way[k], other, t});
+      }
+  }
+  out.left = imbalance_at(network, out.voltage, TiesIn::equations);
+  for (auto step = tree.rbegin(); step != tree.rend(); ++step)
+    out.left[at(step->bus)] += std::exchange(out.left[at(step->other)], Complex{});
+  return out;
+}
+
+}  // namespace
+
+PowerFlow flow_of_file(Network& network) {
+  auto [voltage, left] = solution_of_file(network);
+  PowerFlow flow;
+  flow.voltage = std::move(voltage);
+  std::vector<double> mva(network.buses.size());
+  for (const Generator& g : network.generators)
+    if (g.in_service) mva[at(g.bus)] += g.mva;
+  for (const Generator& g : network.generators)
+    flow.generation.push_back(g.in_service ? Complex(g.p, g.q) + left[at(g.bus)] * (g.mva / mva[at(g.bus)])
+                                           : Complex{});
+  std::vector<std::pair<double, std::size_t>> sizes;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (network.buses[i].type == BusType::isolated || mva[i] > 0.0 || left[i] == Complex{}) continue;
+    const Complex admittance = -left[i] / std::norm(flow.voltage[i]);
+    network.loads.push_back({static_cast<int>(i), "~", {}, {}, admittance, 1, 1, 1, LoadKind::device});
+    sizes.emplace_back(std::abs(left[i]) * network.base_mva, i);
+  }
+  std::ranges::sort(sizes, std::greater{});
+  for (const auto& [size, i] : sizes)
+    network.remark("what the file's voltages leave unbalanced is drawn as constant admittance, largest first",
+                   network.bus_text(static_cast<int>(i)) + " " + std::to_string(size) + " MVA");
+  return flow;
+}
+
+}  // namespace swingbank::sim::network
