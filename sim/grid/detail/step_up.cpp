@@ -92,7 +92,8 @@ std::string joins_on_the_way(const network::Network& n, const StepUp& way, int b
         equipment_at(n, other).empty() && std::ranges::none_of(n.branches, [&](const network::Branch& o) {
           return &o != &b && o.in_service && (o.from == other || o.to == other);
         });
-    if (!ends_there) return "branch " + n.branch_text(b);
+    if (!ends_there)
+      return (n.buses[static_cast<std::size_t>(b.to)].is_star() ? "the " : "branch ") + n.branch_text(b);
   }
   return "";
 }
