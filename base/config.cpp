@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "base/input_file.hpp"
 
@@ -109,6 +110,61 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
   }
 }
 
+/// Parts of a dotted key. toml++ limits the depth of values to 256, but each key in them may be dotted, and
+/// its tables are destroyed by recursion.
+constexpr int kMostKeyParts = 32;
+
+/// Walks over a TOML text and counts the dots of each key outside strings and comments.
+class KeyLengths {
+ public:
+  KeyLengths(std::string_view text, const fs::path& name) : text_(text), name_(name) {}
+
+  /// Throws InputError for the first key of more than kMostKeyParts parts.
+  void check() {
+    int dots = 0;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        skip_string(c);
+        continue;
+      }
+      if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+      if (at_ == text_.size()) return;
+      if (text_[at_] == '.' && ++dots >= kMostKeyParts) refuse();
+      if (std::string_view("\n=,[]{}").find(text_[at_]) != std::string_view::npos) dots = 0;
+      step();
+    }
+  }
+
+ private:
+  void step() {
+    if (text_[at_++] == '\n') ++line_, begin_ = at_;
+  }
+  /// To behind its closing quotes, or to the end of the line where a string of one line has none.
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    const bool lines = text_.substr(at_, 3) == three;
+    at_ += lines ? 3 : 1;
+    while (at_ < text_.size()) {
+      if (!lines && text_[at_] == '\n') return;
+      if (lines ? text_.substr(at_, 3) == three : text_[at_] == quote) break;
+      if (quote == '"' && text_[at_] == '\\' && at_ + 1 < text_.size()) step();
+      step();
+    }
+    at_ = std::min(at_ + (lines ? 3 : 1), text_.size());
+    for (int more = 0; lines && more < 2 && at_ < text_.size() && text_[at_] == quote; ++more) ++at_;
+  }
+  [[noreturn]] void refuse() const {
+    throw InputError({fmt::format("a key of more than {} parts", kMostKeyParts),
+                      fmt::format("{}:{}:{}", name_.string(), line_, at_ - begin_ + 1),
+                      "tables nested so deep are not read", "write a key of fewer parts"});
+  }
+
+  std::string_view text_;
+  const fs::path& name_;
+  std::size_t at_ = 0, begin_ = 0, line_ = 1;
+};
+
 /// toml++ reads a number through a stream, which takes failing memory for a malformed number: only an error
 /// that comes again is one of the text.
 toml::table parse(const std::string& text, const std::string& name) {
@@ -125,6 +181,7 @@ Config::Config(const fs::path& file)
     : Config(read_input(file, "cannot read the config", "check the path"), file) {}
 
 Config::Config(const std::string& text, const fs::path& name) : name_(name), tree_(std::make_shared<Tree>()) {
+  KeyLengths(text, name).check();
   try {
     tree_->root = parse(text, name.string());
   } catch (const toml::parse_error& e) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/inputs_kept.hpp"
 #include "base/problem.hpp"
 #include "base/publish_hashed.hpp"
 #include "base/until_done.hpp"
@@ -139,6 +140,7 @@ void publish_and(const fs::path& file, const std::function<void(const fs::path&)
       error = waiting.get();
     }
     if (error != 0) raise_file_error(file, error, "cannot flush the file to the disk");
+    require_inputs_kept({{file, file.string()}});
     if (::rename(temporary.c_str(), file.c_str()) != 0)
       raise_file_error(file, errno, "cannot give the file its final name");
   } catch (...) {
@@ -176,6 +178,7 @@ void NewFile::write(const void* data, std::size_t bytes) {
 }
 
 void NewFile::publish() {
+  require_inputs_kept({{file_, file_.string()}});
   const fs::path temporary = temporary_name(file_);
   if (flush(fd_) != 0 || ::rename(temporary.c_str(), file_.c_str()) != 0) fail();
   if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR)

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/durable.hpp"
+#include "base/inputs_kept.hpp"
 
 namespace swingbank {
 
@@ -78,6 +79,7 @@ std::string read_input(const fs::path& file, const std::string& what, const std:
     throw InputError(unreadable(file, what, remedy));
   try {
     std::string text = read_text(file);
+    note_input(file);
     if (!text.empty()) return text;
   } catch (const InputError& error) {
     if (std::error_code ignored; fs::is_regular_file(file, ignored))

@@ -8,6 +8,7 @@
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
+#include "jobs/results.hpp"
 #include "jobs/retrain_run.hpp"
 #include "jobs/verdict.hpp"
 #include "sim/laws/law.hpp"
@@ -21,6 +22,9 @@ namespace {
 using namespace swingbank;
 using namespace swingbank::validate;
 
+constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kPage = "report.html",
+                     *kResult = "add.json", *kRetrained = "retrain.json";
+
 struct Arguments {
   std::string effect, model, out = "added", command;
   std::vector<std::string> records, laws;
@@ -31,6 +35,8 @@ struct Arguments {
   nlohmann::json told;  ///< what was done to read the records
   add::AddOptions options;
   retrain::RetrainOptions training;
+  std::shared_ptr<OutputFolder> results;  ///< from when the inputs are read
+  std::optional<fit::Fit> fitted;         ///< once the fit has ended
 };
 
 /// Law files of the command line whose effects the plant has now.
@@ -52,8 +58,11 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
   options.play_in.pre_event = events.pre_event;
   options.progress = a.options.calibrate.progress;
   const auto shown = events.measured_states ? records : compare::power_only(records);
-  return {compare::play_and_judge("submitted", before, shown, options, a.judging.by),
-          compare::play_and_judge("completed", after, shown, options, a.judging.by)};
+  std::vector<compare::Played> both = {
+      compare::play_and_judge("submitted", before, shown, options, a.judging.by),
+      compare::play_and_judge("completed", after, shown, options, a.judging.by)};
+  catch_stop_signals();  // what is left to do is written in any case
+  return both;
 }
 
 /// What a page says of one addition.
@@ -89,7 +98,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
            const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
            const std::vector<compare::Played>& played, compare::CommandPage page) {
   model.submitted.reset();
-  const std::filesystem::path folder = a.out;
+  const auto model_file = a.results->file(kModel), page_file = a.results->file(kPage);
   page.title = "An effect added: " + before.name;
   page.subtitle = fmt::format("{} of {:g} MVA; the model as it was and with what was added.",
                               plant::subject(before), before.plant.mva);
@@ -106,17 +115,19 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   result["standard_values"] = before.standard;
   result["records"] = a.told;
   result["fitness"] = compare::fitness_json(played);
-  plant::write_plant_file(folder / "model.toml", model, provenance);
-  const std::string records = plant::write_dyr_beside(folder / "model.toml", before, model);
+  plant::write_plant_file(model_file, model, provenance);
+  const plant::WrittenDyr records = plant::write_dyr_beside(model_file, before, model);
+  if (!records.file.empty()) a.results->file(records.file.filename());
   page.figures = json_text(result);
-  write_file(folder / "report.html", compare::command_html(page));
-  write_file(folder / "add.json", json_text(result, 1) + "\n");
+  write_file(page_file, compare::command_html(page));
+  write_file(a.results->file(kResult), json_text(result, 1) + "\n");
+  a.results->finish();
   if (a.json)
     fmt::print("{}\n", json_text(result, 1));
   else
-    fmt::print("{}{}\nmodel: {}\n{}\n", compare::fitness_text(played), text, (folder / "model.toml").string(),
-               records);
-  a.judging.print(folder / "report.html");
+    fmt::print("{}{}\nmodel: {}\n{}\n", compare::fitness_text(played), text, model_file.string(),
+               records.line);
+  a.judging.print(page_file);
 }
 
 /// What is wrong with options that belong together, before anything is computed.
@@ -147,13 +158,12 @@ std::optional<retrain::Retrained> retrain(const Arguments& a, const jobs::Retrai
     if (!jobs::make_network(programs, side)) return std::nullopt;
   const std::array<calibrate::NetworkEstimate, 2> estimates = {
       jobs::ask_network(programs, sides[0], a.model, a.records),
-      jobs::ask_network(programs, sides[1], (folder / "model.toml").string(), a.records)};
+      jobs::ask_network(programs, sides[1], (folder / kModel).string(), a.records)};
   return retrain::compare_networks(estimates, before, added, truth);
 }
 
 int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const plant::PlantModel& before,
                 const add::Addition& done, const std::vector<record::Record>& records) {
-  const std::filesystem::path folder = a.out;
   const auto networks = retrain(a, programs, before, done, records);
   if (!networks) {
     fmt::print(stderr, "stopped on a signal; run the same command again to go on\n");
@@ -161,18 +171,17 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
   }
   nlohmann::json result = retrain::retrained_json(*networks);
   result["command"] = a.command;
-  write_file(folder / "retrain.json", json_text(result, 1) + "\n");
+  write_file(a.results->file(kRetrained), json_text(result, 1) + "\n");
+  a.results->finish();
   if (!a.json) fmt::print("\n{}\n", terminal_report(*networks));
   return 0;
 }
 
-int run(Arguments& a) {
-  check_options(a);
-  a.judging.read();
+using Laws = std::vector<std::pair<std::string, const sim::Effect*>>;
+
+int run(Arguments& a, plant::PlantModel& model, Laws& laws) {
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
-  plant::PlantModel model = jobs::load_model_to_fit(a.model);
-  std::vector<std::pair<std::string, const sim::Effect*>> laws;
   for (const auto& file : a.laws)
     laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
   const check::Preparing preparing = a.reading.apply(model, a.records);
@@ -180,10 +189,20 @@ int run(Arguments& a) {
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
+  for (const std::filesystem::path file :
+       {std::filesystem::path(a.training.dataset), std::filesystem::path(a.truth)})
+    if (!file.empty()) note_input(file);
+  interruption_point();
+  a.results = std::make_shared<OutputFolder>(
+      a.out, "add",
+      std::vector<std::string>{kModel, kDyr, kPage, kResult, kRetrained, jobs::kInterruptedModel,
+                               "add-interrupted.json"},
+      a.judging.outputs());
   a.options.calibrate.progress =
       a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddCourse);
   if (a.until_adequate) {
     add::Completion c = add::add_until_adequate(model, records, a.options);
+    if (!c.added.empty()) a.fitted = c.added.back().with;
     keep_laws(c.model, laws);
     std::vector<std::string> provenance = {"Command: " + a.command};
     for (const auto& one : c.added)
@@ -195,6 +214,7 @@ int run(Arguments& a) {
     return played.back().fitness.exit_code(c.adequate);
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
+  a.fitted = done.with;
   keep_laws(done.model, laws);
   const bool complete = done.adequate && done.earns;
   const auto played = play_both(a, model, done.model, records);
@@ -205,9 +225,28 @@ int run(Arguments& a) {
   return played.back().fitness.exit_code(complete);
 }
 
+int run_interruptible(Arguments& a) {
+  check_options(a);
+  a.judging.read();
+  plant::PlantModel model = jobs::load_model_to_fit(a.model);
+  Laws laws;
+  try {
+    return run(a, model, laws);
+  } catch (const fit::InterruptedFit& ended) {
+    if (!a.fitted) a.fitted = ended.reached;
+  } catch (const Interrupted&) {
+    if (!a.fitted) throw;
+  }
+  plant::PlantModel reached = model;
+  reached.plant = a.fitted->plant;
+  keep_laws(reached, laws);
+  return jobs::write_interrupted(*a.results, "add", a.command, model, reached, *a.fitted);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  interrupt_on_stop_signals();
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank add");
   Arguments a;
   bool inner = true;
@@ -265,5 +304,5 @@ int main(int argc, char** argv) {
   if (!line.parse(argc, argv)) return line.end();
   c.events.measured_states = inner;
   a.command = jobs::command_line("add", argc, argv);
-  return jobs::guarded("add", [&] { return run(a); });
+  return jobs::guarded("add", [&] { return run_interruptible(a); });
 }

@@ -9,6 +9,7 @@
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
+#include "jobs/results.hpp"
 #include "jobs/verdict.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
@@ -23,7 +24,8 @@ namespace {
 using namespace swingbank;
 using namespace swingbank::validate;
 
-constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.toml";
+constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.toml", *kDyr = "model.dyr",
+                     *kCurveFit = "curve-fit.toml", *kPage = "report.html", *kResult = "calibrate.json";
 
 struct Arguments {
   std::string model, out = "calibration", method = "fit", truth, network, start, command;
@@ -32,6 +34,8 @@ struct Arguments {
   jobs::Reading reading;
   jobs::Judging judging;
   calibrate::CalibrateOptions options;
+  std::shared_ptr<OutputFolder> results;  ///< from when the inputs are read
+  std::optional<fit::Fit> fitted;         ///< once the fit has ended
 };
 
 calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& model,
@@ -48,23 +52,26 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
 std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
+  interruption_point();
   compare::CompareOptions options;
   options.jump_threshold = a.options.events.jump_threshold;
   options.play_in.pre_event = a.options.events.pre_event;
   options.progress = a.options.progress;
   const auto shown = a.options.events.measured_states ? records : compare::power_only(records);
-  return {compare::play_and_judge("submitted", before, shown, options, a.judging.by),
-          compare::play_and_judge("calibrated", after, shown, options, a.judging.by)};
+  std::vector<compare::Played> both = {
+      compare::play_and_judge("submitted", before, shown, options, a.judging.by),
+      compare::play_and_judge("calibrated", after, shown, options, a.judging.by)};
+  catch_stop_signals();  // what is left to do is written in any case
+  return both;
 }
 
-/// Writes the model under a name that says whether it holds, and the records of one that does; the model of
-/// an earlier run under the other name goes. Returns what to tell.
+/// Writes the model under a name that says whether it holds, and the records of one that does. Returns the
+/// lines for the terminal.
 std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool holds,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
   model = event::whole_model(std::move(model));
-  const std::filesystem::path folder = a.out;
-  const auto file = folder / (holds ? kModel : kBentModel);
+  const auto file = a.results->file(holds ? kModel : kBentModel);
   model.submitted.reset();
   if (!holds) model.submitted = before.plant;
   std::vector<std::string> head = provenance;
@@ -73,16 +80,14 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
                 "NOT ADEQUATE: something is missing in this model, and its parameters are bent to make up "
                 "for it. Do not use them.");
   plant::write_plant_file(file, model, head);
-  std::error_code none;
-  std::filesystem::remove(folder / (holds ? kBentModel : kModel), none);
-  if (!holds) {
-    std::filesystem::remove((folder / kModel).replace_extension(".dyr"), none);
+  if (!holds)
     return fmt::format(
         "model: {} (not adequate: its parameters are bent, do not use them)\n"
         "next: what is missing says swingbank diagnose --model {} --records ...",
         file.string(), a.model);
-  }
-  return fmt::format("model: {}\n{}", file.string(), plant::write_dyr_beside(file, before, model));
+  const plant::WrittenDyr dyr = plant::write_dyr_beside(file, before, model);
+  if (!dyr.file.empty()) a.results->file(dyr.file.filename());
+  return fmt::format("model: {}\n{}", file.string(), dyr.line);
 }
 
 /// The page, whose figures are the result's.
@@ -101,18 +106,23 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.judging, a.model, a.records);
   page.figures = json_text(result);
-  write_file(std::filesystem::path(a.out) / "report.html", compare::command_html(page));
+  write_file(a.results->file(kPage), compare::command_html(page));
 }
 
 void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
-  write_file(std::filesystem::path(a.out) / "calibrate.json", json_text(result, 1) + "\n");
+  write_file(a.results->file(kResult), json_text(result, 1) + "\n");
+  a.results->finish();
   fmt::print("{}\n", a.json ? json_text(result, 1) : text);
 }
 
-int run_baseline(const Arguments& a, const plant::PlantModel& model,
-                 const std::vector<record::Record>& records, const calibrate::Truth& truth,
-                 const nlohmann::json& told) {
+int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
+                 const calibrate::Truth& truth, const nlohmann::json& told) {
   const calibrate::CurveFit f = fit_curves(a, model, records);
+  a.fitted.emplace();
+  a.fitted->plant = f.model.plant;
+  a.fitted->parameters = f.parameters;
+  a.fitted->chi2 = f.after;
+  a.fitted->values = 1;
   const auto played = play_both(a, model, f.model, records);
   const std::string written =
       write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
@@ -132,7 +142,7 @@ int run_baseline(const Arguments& a, const plant::PlantModel& model,
   say(a, result,
       compare::fitness_text(played) +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" + written);
-  a.judging.print(std::filesystem::path(a.out) / "report.html");
+  a.judging.print(a.results->path() / kPage);
   return played.back().fitness.exit_code(f.adequate);
 }
 
@@ -163,9 +173,10 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 /// Names the parameters that must change, and writes the model with these changed.
-int run_fewest(const Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
+int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
                const nlohmann::json& told) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);
+  a.fitted = w.found.fit;
   const auto played = play_both(a, model, w.model, records);
   const std::string written =
       write_model(a, model, w.model, w.holds(), {"command: " + a.command, w.sentence});
@@ -182,18 +193,23 @@ int run_fewest(const Arguments& a, const plant::PlantModel& model, const std::ve
   say(a, result,
       compare::fitness_text(played) + compare::complete_text(w.holds(), calibrate::wrong_text(w)) + "\n" +
           written);
-  a.judging.print(std::filesystem::path(a.out) / "report.html");
+  a.judging.print(a.results->path() / kPage);
   return played.back().fitness.exit_code(w.holds());
 }
 
-int run(Arguments& a) {
-  a.judging.read();
-  plant::PlantModel model = jobs::load_model_to_fit(a.model);
+int run(Arguments& a, plant::PlantModel& model) {
   const check::Preparing preparing = a.reading.apply(model, a.records);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
   const check::RecordSet set = jobs::read_events(a.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
+  if (!a.start.empty()) note_input(a.start);
+  interruption_point();
+  a.results = std::make_shared<OutputFolder>(
+      a.out, "calibrate",
+      std::vector<std::string>{kModel, kBentModel, kDyr, kCurveFit, kPage, kResult, jobs::kInterruptedModel,
+                               "calibrate-interrupted.json"},
+      a.judging.outputs());
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
@@ -210,9 +226,11 @@ int run(Arguments& a) {
     a.options.given.push_back({"network", estimated});
   }
   const calibrate::Calibration c = calibrate::calibrate(model, records, a.options);
+  a.fitted = c.fit;
   const bool holds = c.adequacy != calibrate::Adequacy::structure_poor;
+  std::optional<calibrate::CurveFit> curve;
+  if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
-  const std::filesystem::path folder = a.out;
   std::string text =
       compare::fitness_text(played) + compare::complete_text(holds, calibrate::terminal_report(c));
   nlohmann::json result = calibrate::calibration_json(c);
@@ -222,12 +240,11 @@ int run(Arguments& a) {
   result["fitness"] = compare::fitness_json(played);
   result["statistically_complete"] = holds;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
-  if (both) {
-    const calibrate::CurveFit f = fit_curves(a, model, records);
-    plant::write_plant_file(folder / "curve-fit.toml", event::whole_model(f.model),
-                            calibrate::provenance_lines(f, model, a.command));
-    result["curve_fit"] = calibrate::curve_fit_json(f, truth);
-    ways.push_back(calibrate::way_of(f, c));
+  if (curve) {
+    plant::write_plant_file(a.results->file(kCurveFit), event::whole_model(curve->model),
+                            calibrate::provenance_lines(*curve, model, a.command));
+    result["curve_fit"] = calibrate::curve_fit_json(*curve, truth);
+    ways.push_back(calibrate::way_of(*curve, c));
   }
   if (estimate) ways.push_back(calibrate::way_of(*estimate, estimated, c));
   ways.push_back(calibrate::way_of(c));
@@ -248,8 +265,21 @@ int run(Arguments& a) {
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  a.judging.print(folder / "report.html");
+  a.judging.print(a.results->path() / kPage);
   return played.back().fitness.exit_code(holds);
+}
+
+int run_interruptible(Arguments& a) {
+  a.judging.read();
+  plant::PlantModel model = jobs::load_model_to_fit(a.model);
+  try {
+    return run(a, model);
+  } catch (const fit::InterruptedFit& ended) {
+    if (!a.fitted) a.fitted = ended.reached;
+  } catch (const Interrupted&) {
+    if (!a.fitted) throw;
+  }
+  return jobs::write_interrupted(*a.results, "calibrate", a.command, model, model, *a.fitted);
 }
 
 void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
@@ -307,6 +337,7 @@ void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  interrupt_on_stop_signals();
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank calibrate");
   Arguments a;
   bool inner = true;
@@ -315,5 +346,5 @@ int main(int argc, char** argv) {
   a.options.progress = jobs::progress_line(a.fewest ? jobs::kFewestCourse : jobs::kCalibrateCourse);
   a.options.events.measured_states = inner;
   a.command = jobs::command_line("calibrate", argc, argv);
-  return jobs::guarded("calibrate", [&] { return run(a); });
+  return jobs::guarded("calibrate", [&] { return run_interruptible(a); });
 }

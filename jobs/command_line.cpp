@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/inputs_kept.hpp"
 #include "jobs/software.hpp"
 
 namespace swingbank::jobs {
@@ -137,6 +138,7 @@ Option CommandLine::add_flag_off(const std::string& name, bool& on, const std::s
 void CommandLine::footer(const std::string& text) { parser_->app.footer(text); }
 
 bool CommandLine::parse(int argc, char** argv) {
+  keep_inputs();
   try {
     parser_->app.parse(argc, argv);
     return true;

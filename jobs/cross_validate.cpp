@@ -59,13 +59,17 @@ int main(int argc, char** argv) {
   line.add("--processes", processes,
            "processes that share the folds, each with its part of the threads (default: one "
            "per core; 1 where mpirun or srun started several)");
-  return training_main(argc, argv, line, options, [&](const train::run::RunRequest& request) {
+  const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
                         "use swingbank train"});
     if (processes < 0)
       throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work",
                         "use 1 or more"});
+    static_cast<void>(folds_of(fold, request.experiment));
+    if (!judged.empty()) static_cast<void>(folds_of(judged, request.experiment, "--judge-on"));
+  };
+  return training_main(argc, argv, line, options, check, [&](const train::run::RunRequest& request) {
     const train::runtime::Place place = train::runtime::launcher_place();
     const auto folds = train::run::share_of(folds_of(fold, request.experiment),
                                             fold == "all" ? place : train::runtime::Place{});

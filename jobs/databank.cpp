@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "base/durable.hpp"
+#include "base/inputs_kept.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
 #include "mpi/draw/databank_file.hpp"
@@ -43,6 +44,7 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
         const fs::path& out) {
   const mpi::draw::DatasetConfig config = mpi::draw::read_dataset_config(config_file, overrides);
   const mpi::draw::Study study = mpi::draw::load_study(config);
+  if (!out.empty()) require_inputs_kept({{out, "--out"}});
   const auto extension = out.extension();
   if (!out.empty() && extension != ".csv" && extension != ".h5")
     throw InputError({"output format '" + extension.string() + "'", "--out " + out.string(),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/json.hpp"
+#include "base/output_folder.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
@@ -17,11 +18,13 @@ namespace {
 using namespace swingbank;
 using namespace swingbank::validate;
 
+constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
+
 /// The law that was found, as a file; its path, empty where none was.
-std::filesystem::path write_law(const diagnose::Diagnosis& d, const std::filesystem::path& folder) {
+std::filesystem::path write_law(const diagnose::Diagnosis& d, OutputFolder& folder) {
   const laws::LawFinding* law = d.laws.found();
   if (!law) return {};
-  const auto file = folder / (law->judgement.hypothesis.name + ".toml");
+  const auto file = folder.file(law->judgement.hypothesis.name + ".toml");
   write_file(file, law->toml);
   return file;
 }
@@ -36,13 +39,14 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
   if (!jobs::quiet)
     options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
-  catch_stop_signals();
-  options.stop = stop_asked;
+  interruption_point();
+  OutputFolder results(out, "diagnose", {kPage, kResult}, judging.outputs());
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
   const bool adequate = d.verdict == diagnose::Verdict::adequate;
   compare::CompareOptions playing;
   playing.progress = options.progress;
   const auto played = diagnose::play_models(model, d, judging.by, playing);
+  catch_stop_signals();  // what is left to do is written in any case
   report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
   for (std::size_t k = 0; k < set.records.size(); ++k) {
     const record::Record& r = set.records[k];
@@ -55,21 +59,21 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   result["records"] = jobs::records_json(set);
   result["fitness"] = compare::fitness_json(played);
   result["statistically_complete"] = adequate;
-  const std::filesystem::path folder = out;
-  write_file(folder / "diagnosis.json", json_text(result, 1) + "\n");
-  write_file(folder / "report.html", diagnose::diagnosis_html(model, d, provenance, played));
-  const auto law_file = write_law(d, folder);
+  const auto page = results.file(kPage);
+  const auto law_file = write_law(d, results);
+  write_file(results.file(kResult), json_text(result, 1) + "\n");
+  write_file(page, diagnose::diagnosis_html(model, d, provenance, played));
+  results.finish();
   if (json) {
     fmt::print("{}\n", json_text(result, 1));
   } else {
     fmt::print("{}{}\nreport: {}\n", compare::fitness_text(played),
-               compare::complete_text(adequate, diagnose::diagnosis_text(d)),
-               (folder / "report.html").string());
+               compare::complete_text(adequate, diagnose::diagnosis_text(d)), page.string());
     if (!law_file.empty())
       fmt::print("law: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
                  law_file.stem().string());
   }
-  judging.print(folder / "report.html");
+  judging.print(page);
   if (d.verdict == diagnose::Verdict::interrupted) return kSubmitAgain;
   return played.back().fitness.exit_code(adequate);
 }
@@ -147,6 +151,7 @@ void declare(jobs::CommandLine& line, Command& c) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  interrupt_on_stop_signals();
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank diagnose");
   Command c;
   declare(line, c);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/course.hpp"
 #include "jobs/told_instants.hpp"
@@ -204,11 +205,15 @@ inline std::string command_line(const std::string& command, int argc, char** arg
   return line;
 }
 
-/// Runs it; bad input and failures become a message and exit code 1.
+/// Runs it; bad input and failures become a message and exit code 1, a stop before any result exit code 2.
 template <class F>
 int guarded(const std::string& command, F action) {
   try {
     return action();
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "swingbank {}: stopped by a signal before there was a result; nothing was written\n",
+               command);
+    return kSubmitAgain;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
   } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 // swingbank export: a plant file as the .dyr or .dyd records that are handed in.
 #include <fmt/format.h>
 
+#include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -26,6 +27,7 @@ int run(const Arguments& a) {
         {"no plant file", "--dyr", "something must be written", "give --dyr FILE or --dyd FILE"});
   plant::PlantModel model = plant::load_plant_model(file);
   jobs::tell(model);
+  if (!a.out.empty()) require_inputs_kept({{a.out, "--out"}});
   if (model.submitted)
     throw InputError({"a model that does not hold", file, "it comes of a calibration that was not adequate",
                       "diagnose it, and export what 'swingbank add' makes of it"});

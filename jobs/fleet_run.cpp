@@ -84,6 +84,7 @@ int tell(const jobs::FleetCommand& c, const fleet::Fleet& fleet, const std::vect
 
 int run_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed with its rank: the next run must not find it still writing
+  catch_stop_signals();                // no interruption
   for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // a soft stop lets it finish
   const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
   const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);

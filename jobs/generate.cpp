@@ -79,6 +79,10 @@ int describe_to(bool first, const std::filesystem::path& folder, const char* mor
     const mpi::store::Dataset d = mpi::store::open_dataset(folder, true);
     fmt::print("{}{}", mpi::store::describe(d), more);
     complete = d.complete;
+    if (complete && d.rows == 0)
+      throw InputError({"a dataset without rows", folder.string(),
+                        "no simulated event ended stable; the list above counts how they ended",
+                        "play one of them with swingbank simulate, or give a config of milder events"});
   });
   return complete || !first ? 0 : kSubmitAgain;
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "validate/plant/plant_file.hpp"
@@ -36,6 +37,7 @@ int run(Arguments& a) {
   a.unit.complete_records = static_cast<sim::grid::Lacking>(a.complete_records);
   if (a.measured_at > 0) a.unit.measured_at = a.measured_at;
   const sim::grid::Unit unit = sim::grid::read_unit(a.unit);
+  if (!a.out.empty()) require_inputs_kept({{a.out, "--out"}});
   const std::string files = a.unit.raw.string() + " and " + a.unit.dyr.string();
   const plant::PlantModel model = plant::model_of_unit(
       unit, a.conventions == "andes" ? sim::Conventions::andes() : sim::Conventions::psse(), files);

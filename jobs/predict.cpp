@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/inputs_kept.hpp"
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
@@ -162,10 +163,12 @@ std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimat
 
 int run(const Options& o) {
   const train::run::SavedNetwork network = train::run::SavedNetwork::load(o.network);
+  note_input(network.file());
   plant::PlantModel model = plant::load_plant_model(o.model);
   const check::Preparing preparing = o.reading.apply(model, o.records);
   require_same_machine(network.info(), model);
   std::vector<Estimated> all = read_all(o.records, model, preparing);
+  if (!o.out.empty()) require_inputs_kept({{o.out, "--out"}});
   if (o.event && all.size() > 1)
     throw InputError(
         {"one instant for several records", "--event", "each has its own", "give one record at a time"});

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
-#include <system_error>
 
+#include "base/durable.hpp"
 #include "base/own_command.hpp"
 #include "base/problem.hpp"
 
@@ -66,16 +66,9 @@ inline void print_pdf(const std::filesystem::path& page, const std::filesystem::
                                     file_url(page)};
   if (::geteuid() == 0) words.insert(words.begin(), "--no-sandbox");
   const int code = run_own(browser(), words, false, true);
-  std::error_code failed;
-  if (code == 0 && fs::exists(made)) {
-    const fs::path beside = pdf.string() + ".part";
-    fs::copy_file(made, beside, fs::copy_options::overwrite_existing, failed);
-    if (!failed) fs::rename(beside, pdf, failed);
-    if (!failed) return;
-    fs::remove(beside);
-  }
+  if (code == 0 && fs::exists(made)) return write_text(pdf, read_text(made));
   throw InputError({"the page was not printed", pdf.string(),
-                    failed ? failed.message() : fmt::format("Chromium ended with exit code {}", code),
+                    fmt::format("Chromium ended with exit code {}", code),
                     "print " + page.string() + " from a browser; all other files are written"});
 }
 

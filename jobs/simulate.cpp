@@ -9,6 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/durable.hpp"
+#include "base/inputs_kept.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
@@ -293,6 +294,13 @@ void write_changes(const std::filesystem::path& file, const network::Network& ne
   write_text(file, text);
 }
 
+std::vector<Output> outputs_of(const Options& o) {
+  std::vector<Output> outputs;
+  for (const auto& file : o.out) outputs.push_back({file, "--out"});
+  if (!o.changes.empty()) outputs.push_back({o.changes, "--changes"});
+  return outputs;
+}
+
 int simulate(const Options& o) {
   Problems problems;
   check_options(o, problems);
@@ -317,6 +325,7 @@ int simulate(const Options& o) {
   for (int b : o.buses)
     buses.push_back(formats::read_bus(std::to_string(b), grid.network, "--buses", problems));
   problems.raise();
+  require_inputs_kept(outputs_of(o));
   grid::note_shed_loads(grid, event);
   if (!o.changes.empty()) write_changes(o.changes, grid.network);
 
@@ -326,6 +335,15 @@ int simulate(const Options& o) {
   };
   const MeasuredRun run = instruments.run(grid, plants, channels, played);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (run.outcome != Outcome::stable && run.outcome != Outcome::lost_synchronism)
+    throw InputError(
+        {fmt::format("the run failed at {:g} s", run.stopped_at), o.raw + " and " + o.dyr,
+         fmt::format("{}: {}", outcome_name(run.outcome),
+                     run.outcome == Outcome::not_finite
+                         ? "a value became infinite or undefined"
+                         : "the integrator found no step that keeps its tolerance"),
+         "nothing was written; check the impedances and time constants that act at this time, or "
+         "give another --tolerance"});
   for (const std::filesystem::path file : o.out) {
     if (file.extension() == ".csv")
       write_csv(file, grid, run);

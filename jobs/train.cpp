@@ -5,10 +5,12 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank train");
   TrainingOptions options;
-  return training_main(argc, argv, line, options, [&](train::run::RunRequest request) {
+  const auto check = [&](const train::run::RunRequest& request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
                         "use swingbank cross-validate"});
+  };
+  return training_main(argc, argv, line, options, check, [&](train::run::RunRequest request) {
     request.runtime = train::runtime::set_up_runtime(options.threads);
     const train::data::ShardStream stream = options.open(request);
     const train::run::RunOutcome outcome = train::run::run(stream, request);

@@ -134,10 +134,11 @@ inline int exit_code(train::run::RunOutcome outcome) {
   return outcome == train::run::RunOutcome::stopped ? kSubmitAgain : 0;
 }
 
-/// What both programs do around their work: options, printing, signals, errors.
-template <class Work>
+/// What both programs do around their work: options, printing, signals, errors. `check` throws InputError
+/// where the request cannot be met, before the BLAS kernels and threads are measured.
+template <class Check, class Work>
 int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOptions& options,
-                  const Work& work) {
+                  const Check& check, const Work& work) {
   options.add_to(line);
   if (!line.parse(argc, argv)) return line.end();
   try {
@@ -151,9 +152,11 @@ int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOption
       fmt::print("{}\n", jobs::keep_experiment(options.experiment, options.keep).string());
       return 0;
     }
+    train::run::RunRequest request = options.request();
+    check(request);
     train::runtime::use_best_blas_kernels(argv);
     catch_stop_signals();
-    return work(options.request());
+    return work(std::move(request));
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

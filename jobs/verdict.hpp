@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/inputs_kept.hpp"
 #include "base/sha256.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -48,6 +49,10 @@ struct Judging {
     }
     if (!pdf.empty()) browser_for(pdf, problems);
     problems.raise();
+  }
+  /// Outputs beside those of the command's folder.
+  [[nodiscard]] std::vector<Output> outputs() const {
+    return pdf.empty() ? std::vector<Output>{} : std::vector<Output>{{pdf, "--pdf"}};
   }
   /// Once the page is there.
   void print(const std::filesystem::path& page) const {

@@ -31,6 +31,38 @@ TEST(StrictConfig, ReadsWhatIsThere) {
   EXPECT_NO_THROW(c.raise());
 }
 
+/// "a.a.a" of so many parts.
+std::string dotted(int parts) {
+  std::string key = "a";
+  for (int k = 1; k < parts; ++k) key += ".a";
+  return key;
+}
+
+TEST(StrictConfig, RefusesKeysOfVeryManyParts) {
+  const int many = 60'000;
+  for (const std::string& text :
+       {"x = 1\n[" + dotted(many) + "]\n", "x = 1\n" + dotted(many) + " = 1\n",
+        "x = 1\n[[" + dotted(many) + "]]\n", "x = 1\nt = {b = 1, " + dotted(many) + " = 1}\n",
+        "x = 1\nt = [{" + dotted(many) + " = 1}]\n", "x = 1\n\"b\" . 'c' . " + dotted(many) + " = 1\n"})
+    try {
+      Config c(text, "deep.toml");
+      ADD_FAILURE() << text.substr(0, 40);
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("a key of more than 32 parts at deep.toml:2:"))
+          << text.substr(0, 40);
+    }
+}
+
+TEST(StrictConfig, ReadsDotsThatBelongToNoKey) {
+  const std::string dots(100, '.');
+  Config c("[" + dotted(32) + "]\nb = '" + dots + "' # " + dots + "\nc = \"\"\"\"" + dots + "\n\\\"" + dots +
+               "\"\"\"\"\nd = [0.5, 1.5" + ", 2.5, 3.5\n]\n",
+           "c.toml");
+  EXPECT_EQ(c.require<std::string>(dotted(32) + ".b"), dots);
+  EXPECT_EQ(c.require<std::string>(dotted(32) + ".c"), "\"" + dots + "\n\"" + dots + "\"");
+  EXPECT_EQ(c.require<std::vector<double>>(dotted(32) + ".d").size(), 4U);
+}
+
 TEST(StrictConfig, AllProblemsAtOnceWithLines) {
   Config c("a = 'one'\nb = 7\nzzz = 1\n[t]\nunheard = 2\nbox = [3, 1]\nmode = 'blue'\n", "c.toml");
   c.require<std::int64_t>("a");

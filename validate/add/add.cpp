@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/in_parallel.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 #include "validate/hypothesis/grow.hpp"
@@ -102,6 +103,15 @@ fit::Fit go_on(const sim::plant::PlantUnderTest& tested, const Bench& bench,
   return fit::fit(tested, bench.seen(), free, fit::continued({}, f, free));
 }
 
+/// Throws the best of some fits that were interrupted, if any had begun.
+[[noreturn]] void throw_best(const std::vector<fit::Fit>& fits) {
+  const fit::Fit* best = nullptr;
+  for (const fit::Fit& f : fits)
+    if (!f.parameters.empty() && (best == nullptr || fit::penalised(f) < fit::penalised(*best))) best = &f;
+  if (best == nullptr) throw Interrupted{};
+  throw fit::InterruptedFit{{}, *best};
+}
+
 /// The fit with the effect: its starts screened, the best refined, the best of them finished.
 fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
                   const std::vector<fit::EventState>& states, const AddOptions& options) {
@@ -127,9 +137,14 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
         o.iterations = 10;
         o.start = states;
         o.values = fit::values_of(hypothesis::started(h, h.starts[order[k].second]), free);
-        fits[k] = fit::fit(h.under_test(), bench.seen(), free, o);
+        try {
+          fits[k] = fit::fit(h.under_test(), bench.seen(), free, o);
+        } catch (const fit::InterruptedFit& ended) {
+          fits[k] = ended.reached;
+        }
       },
       [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
+  if (interruption_asked()) throw_best(fits);
   fit::Fit best = *std::ranges::min_element(fits, fit::better);
   if (!best.failed.empty())
     throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
@@ -227,20 +242,24 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
                         " in place of ...\" with the name of what stands there, or " + remedy});
 }
 
-Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& asked,
-                    std::vector<record::Record> records, const AddOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+namespace {
+
+void work(const plant::PlantModel& model, std::vector<record::Record> records, const AddOptions& options,
+          Addition& a) {
   Bench bench(model, std::move(records), options.calibrate);
   auto before = bench.each(model.under_test(), "events with the model as it is");
   const auto states = bench.states_of(before);
-  Addition a;
-  a.hypothesis = asked;
   hypothesis::Hypothesis& hypothesis = a.hypothesis;
   a.model = model;
   a.without = fit_without(model, bench, states, options.calibrate.spread);
   if (!a.without.failed.empty())
     throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
-  a.with = fit_with(hypothesis, bench, states, options);
+  try {
+    a.with = fit_with(hypothesis, bench, states, options);
+  } catch (const fit::InterruptedFit& ended) {
+    a.with = ended.reached;
+    throw;
+  }
   if (bench.measure_noise(a.with, hypothesis.conventions)) {
     const double spread = options.calibrate.spread;
     before = bench.each(model.under_test(), "events with the model as it is");
@@ -276,6 +295,21 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
   a.model.conventions = hypothesis.conventions;
   a.prepared = bench.all();
   a.sentence = sentence_of(a);
+}
+
+}  // namespace
+
+Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& asked,
+                    std::vector<record::Record> records, const AddOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Addition a;
+  a.hypothesis = asked;
+  try {
+    work(model, std::move(records), options, a);
+  } catch (const Interrupted&) {
+    if (a.with.parameters.empty()) throw Interrupted{};
+    throw fit::InterruptedFit{{}, a.with};
+  }
   a.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return a;
 }

@@ -5,6 +5,7 @@
 
 #include "validate/add/add.hpp"
 #include "validate/diagnose/diagnose.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
@@ -45,12 +46,7 @@ void prune(Completion& c, const std::vector<record::Record>& records, const AddO
   }
 }
 
-}  // namespace
-
-Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
-                              const AddOptions& options, int most) {
-  Completion c;
-  c.model = model;
+void work(const std::vector<record::Record>& records, const AddOptions& options, int most, Completion& c) {
   diagnose::DiagnoseOptions how;
   how.spread = options.calibrate.spread;
   how.adequate = options.calibrate.adequate;
@@ -60,20 +56,21 @@ Completion add_until_adequate(const plant::PlantModel& model, const std::vector<
   while (static_cast<int>(c.added.size()) < most) {
     const diagnose::Diagnosis d =
         diagnose::diagnose(c.model, seen_of(records, options.calibrate.held_out), how);
+    if (d.verdict == diagnose::Verdict::interrupted) throw Interrupted{};
     if (d.verdict == diagnose::Verdict::adequate) {
       c.adequate = true;
       c.sentence = c.added.empty() ? d.sentence : "Adequate with " + names + ": " + d.sentence;
-      return c;
+      return;
     }
     const std::string next = next_effect(d);
     if (next.empty()) {
       c.sentence = (names.empty() ? "" : "With " + names + ": ") + d.sentence;
-      return c;
+      return;
     }
     Addition a = add_effect(c.model, find_hypothesis(c.model, next), records, options);
     if (!a.earns) {
       c.sentence = a.sentence;
-      return c;
+      return;
     }
     names += (names.empty() ? "" : ", ") + a.hypothesis.name;
     c.model = a.model;
@@ -83,10 +80,24 @@ Completion add_until_adequate(const plant::PlantModel& model, const std::vector<
     if (done) {
       c.adequate = true;
       c.sentence = "Adequate with " + names + ": nothing but noise is left in any event.";
-      return c;
+      return;
     }
   }
   c.sentence = fmt::format("{} effects were added ({}), and more than noise is left.", most, names);
+}
+
+}  // namespace
+
+Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
+                              const AddOptions& options, int most) {
+  Completion c;
+  c.model = model;
+  try {
+    work(records, options, most, c);
+  } catch (const Interrupted&) {
+    if (c.added.empty()) throw;
+    throw fit::InterruptedFit{{}, c.added.back().with};
+  }
   return c;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 
 #include "base/constants.hpp"
 #include "base/in_parallel.hpp"
@@ -14,6 +15,7 @@
 #include "validate/calibrate/detail/newton.hpp"
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/playin/can_run.hpp"
 
@@ -61,6 +63,17 @@ class Calibrating {
 
   Calibration run() {
     const auto begin = std::chrono::steady_clock::now();
+    try {
+      work();
+    } catch (const Interrupted&) {
+      throw_reached();
+    }
+    c_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return std::move(c_);
+  }
+
+ private:
+  void work() {
     before_ = each_alone(model_.plant, "events with the model as it is");
     search();
     shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
@@ -73,11 +86,19 @@ class Calibrating {
     for (const auto& f : after_) c_.states.push_back(f.state);
     learn();
     judge();
-    c_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return std::move(c_);
   }
-
- private:
+  /// Throws the best fit so far, if there is any.
+  [[noreturn]] void throw_reached() const {
+    if (!c_.fit.parameters.empty()) throw fit::InterruptedFit{{}, c_.fit};
+    const auto best = std::ranges::min_element(reached_, {}, fit::penalised);
+    if (best != reached_.end()) throw fit::InterruptedFit{{}, *best};
+    throw Interrupted{};
+  }
+  /// Keeps a fit for the case that the calibration is interrupted.
+  void reached(const fit::Fit& f) {
+    const std::lock_guard guard(reaching_);
+    if (!f.parameters.empty() && f.failed.empty() && std::isfinite(fit::penalised(f))) reached_.push_back(f);
+  }
   void tell(const std::string& what, int done, int total) const {
     if (options_.progress) options_.progress(what, done, total);
   }
@@ -155,7 +176,13 @@ class Calibrating {
           fit::FitOptions o;
           o.start = states;
           o.values = starts[k].values;
-          found[k] = fit::fit(model_.under_test(), seen_, free_, o);
+          try {
+            found[k] = fit::fit(model_.under_test(), seen_, free_, o);
+          } catch (const fit::InterruptedFit& ended) {
+            reached(ended.reached);
+            throw;
+          }
+          reached(found[k]);
         },
         [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
     for (std::size_t k = 0; k < starts.size(); ++k) {
@@ -451,6 +478,8 @@ class Calibrating {
   sim::plant::Plant whitened_through_;   ///< the plant whose memory the noise has
   std::vector<fit::EventState> states_;  ///< of the events seen, while the noise is taken back
   Eigen::VectorXd shift_;
+  std::mutex reaching_;
+  std::vector<fit::Fit> reached_;  ///< fits of all starts so far, those that were interrupted too
   Calibration c_;
 };
 

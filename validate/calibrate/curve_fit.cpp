@@ -10,6 +10,7 @@
 
 #include "base/constants.hpp"
 #include "sim/plant/usual.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -56,6 +57,8 @@ class EventResidual : public ceres::CostFunction {
         write(r.slopes[i].value, false, slopes, width, static_cast<int>(i));
     } catch (const InputError&) {
       return false;  // the search turns back
+    } catch (const Interrupted&) {
+      return false;  // nothing is thrown through Ceres
     }
     return true;
   }
@@ -98,6 +101,14 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
   if (!moving.empty() && solved.isInvertible()) back(moving, moving) = solved.inverse();
   return back;
 }
+
+/// Ends a search that is interrupted.
+class UntilInterrupted : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return interruption_asked() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+};
 
 class CurveFitting {
  public:
@@ -154,10 +165,24 @@ class CurveFitting {
     o.logging_type = ceres::SILENT;
     o.num_threads = 2;
     o.max_num_consecutive_invalid_steps = 20;
+    o.update_state_every_iteration = true;  // so that an interrupted search keeps its best point
+    UntilInterrupted until;
+    o.callbacks.push_back(&until);
     ceres::Solver::Summary summary;
     ceres::Solve(o, &problem, &summary);
     fit_.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
     fit_.converged = summary.termination_type == ceres::CONVERGENCE;
+    if (interruption_asked()) throw_reached(2 * summary.final_cost);
+  }
+  [[noreturn]] void throw_reached(double squares) {
+    fit::InterruptedFit ended;
+    ended.reached.plant = setting_.plant(z_.data());
+    for (std::size_t i = 0; i < free_.size(); ++i) add_parameter(i, std::nan(""));
+    ended.reached.parameters = fit_.parameters;
+    ended.reached.chi2 = squares;
+    for (std::size_t e = 0; e < events_.size(); ++e)
+      if (!out_[e]) ended.reached.values += events_[e].values();
+    throw ended;
   }
   /// As such tools state them: from the curvature and the residual's own size, noise taken as white.
   void intervals() {
@@ -181,22 +206,26 @@ class CurveFitting {
         inverse(curvature) * squares / std::max(1, values - static_cast<int>(n));
     for (std::size_t i = 0; i < free_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
-      fit::FittedParameter p;
-      p.where = free_[i];
-      p.block = sim::plant::block_effect(fit_.model.plant, free_[i].id.block).name;
-      p.name = record.name;
-      p.unit = record.unit;
-      p.start = setting_.start[i];
-      p.value = p.start * z_[i];
-      p.error = std::abs(p.start) * std::sqrt(covariance(at, at));
-      p.low = p.value - constants::normal95 * p.error;
-      p.high = p.value + constants::normal95 * p.error;
-      const double edge = 1e-6 * std::abs(p.start);
-      const auto range = sim::plant::search_range(record, p.start);
-      p.at_bound = p.value <= range.low + edge || p.value >= range.high - edge;
-      fit_.parameters.push_back(p);
+      add_parameter(i, std::sqrt(covariance(at, at)));
     }
+  }
+  /// `error`: relative standard error.
+  void add_parameter(std::size_t i, double error) {
+    const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
+    fit::FittedParameter p;
+    p.where = free_[i];
+    p.block = sim::plant::block_effect(fit_.model.plant, free_[i].id.block).name;
+    p.name = record.name;
+    p.unit = record.unit;
+    p.start = setting_.start[i];
+    p.value = p.start * z_[i];
+    p.error = std::abs(p.start) * error;
+    p.low = p.value - constants::normal95 * p.error;
+    p.high = p.value + constants::normal95 * p.error;
+    const double edge = 1e-6 * std::abs(p.start);
+    const auto range = sim::plant::search_range(record, p.start);
+    p.at_bound = p.value <= range.low + edge || p.value >= range.high - edge;
+    fit_.parameters.push_back(p);
   }
   void judge(const std::vector<fit::EventFit>& before) {
     double chi2[2] = {0, 0}, squares[2] = {0, 0};

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/durable.hpp"
+#include "base/inputs_kept.hpp"
 #include "base/json.hpp"
 #include "sim/plant/usual.hpp"
 
@@ -41,6 +42,7 @@ bool within_reach(double value, double low, double high, double spread) {
 }  // namespace
 
 NetworkEstimate read_estimate(const std::filesystem::path& file) {
+  note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
   if (j.is_object() && j.value("format", "") == "swingbank-estimate-1") {
     try {

@@ -11,6 +11,7 @@
 #include "base/constants.hpp"
 #include "base/durable.hpp"
 #include "base/in_parallel.hpp"
+#include "base/inputs_kept.hpp"
 #include "validate/calibrate/report.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -37,6 +38,7 @@ void require_base(double mva, const plant::PlantModel& model, const std::string&
 
 /// What `blind-test` writes: effects with their parameters by name.
 Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
+  note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
   const InputError wrong({"no truth", file.string(), "it is not what blind-test seals",
                           "give a plant file (.toml) or a truth of blind-test (.json)"});

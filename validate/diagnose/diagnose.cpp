@@ -11,6 +11,7 @@
 #include <span>
 
 #include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
 #include "validate/diagnose/detail/base.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
@@ -44,13 +45,21 @@ class Diagnoser {
 
   Diagnosis run() {
     const auto begin = std::chrono::steady_clock::now();
-    if (!(fit_all() && judge_all())) interrupt(result_);
+    try {
+      if (!(fit_all() && judge_all())) interrupt(result_);
+    } catch (const Interrupted&) {
+      if (!kept_) throw Interrupted{};
+      result_ = std::move(*kept_);
+      interrupt(result_);
+    }
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
+  [[nodiscard]] bool stopped() const { return interruption_asked() || (options_.stop && options_.stop()); }
+  /// Notes what an interruption leaves: all fits made with the same noise.
+  void keep() { kept_ = result_; }
   /// The model alone, the missing inputs, every hypothesis. False: a person has ended it.
   bool fit_all() {
     const event::WhitenedEvents prepared = result_.events;
@@ -59,16 +68,21 @@ class Diagnoser {
       report("base", 0, 1);
       fit_base(model_, options_, from, result_);
       report("base", 1, 1);
+      result_.ranked.clear();  // those of a worse base
+      result_.torque = result_.field = {};
+      keep();
       tell(first_sentence(result_, options_.adequate));
       if (stopped()) return false;
       few_wrong();
       if (stopped()) return false;
       infer_inputs();
+      keep();
       tell(side_sentence(result_));
       const hypothesis::Stage stage = model_stage();
       result_.ranked = hypothesis::try_hypotheses(
           stage, hypothesis::all_hypotheses(stage.under_test(), stage.library, stage.component()),
           options_.progress);
+      keep();
       tell(leading_sentence(result_));
       if (stopped()) return false;
       const auto better = round < kBases ? better_start(stage, result_) : std::nullopt;
@@ -86,6 +100,7 @@ class Diagnoser {
                     fit::voltage_noise(result_.base, result_.events));
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs(true);
+    keep();
     for (hypothesis::MissingInput* m : {&result_.torque, &result_.field})
       fit::count_passed(&*passed_, model_.conventions, m->fit);
     if (stopped()) return false;
@@ -151,6 +166,7 @@ class Diagnoser {
           go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, its);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
+    if (stopped()) throw Interrupted{};  // some fits still have the former noise
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
     return true;
@@ -227,7 +243,7 @@ class Diagnoser {
             .fit = result_.base,
             .spread = options_.spread,
             .threads = threads_,
-            .stop = options_.stop,
+            .stop = [this] { return stopped(); },
             .by_torque = takes_off(result_.torque),
             .by_field = takes_off(result_.field)};
   }
@@ -418,7 +434,7 @@ class Diagnoser {
     in_parallel(
         tried.size(),
         [&](std::size_t k) {
-          if (!stopped()) act(tried[k]);
+          if (!stopped()) until_interrupted([&] { act(tried[k]); });
         },
         [&](int done, std::size_t k) {
           report(what + " " + hypothesis::full_name(tried[k].hypothesis), done,
@@ -442,6 +458,7 @@ class Diagnoser {
   const plant::PlantModel& model_;
   const DiagnoseOptions& options_;
   Diagnosis result_;
+  std::optional<Diagnosis> kept_;
   std::vector<hypothesis::HeldOut> held_out_base_;
   std::optional<fit::PassedNoise> passed_;
   int threads_;

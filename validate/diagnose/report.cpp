@@ -242,7 +242,10 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
         {"file", model.origin},
         {"xxh64", fmt::format("{:016x}", model.hash)},
         {"mva", model.plant.mva}}}};
-  j["before"] = {{"rms_in_noise", std::sqrt(d.base.misfit())}, {"parameters", parameters_json(d.base)}};
+  j["before"] = {
+      {"rms_in_noise", std::sqrt(d.base.misfit())},
+      {"parameters", d.verdict == Verdict::interrupted && !d.ruling.adequate ? nlohmann::json::array()
+                                                                             : parameters_json(d.base)}};
   if (figures.after)
     j["after"] = {{"with", figures.after_name},
                   {"rms_in_noise", std::sqrt(figures.after->misfit())},
@@ -265,6 +268,8 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
 std::vector<compare::Played> play_models(const plant::PlantModel& model, const Diagnosis& d,
                                          const thresholds::Acceptance& by,
                                          const compare::CompareOptions& options) {
+  if (d.verdict == Verdict::interrupted)
+    return {{"submitted", {}, compare::not_judged(by, model.plant.mva, "the diagnosis was interrupted")}};
   std::vector<record::Record> records;
   for (const auto& e : d.events) records.push_back(e.record);
   if (std::ranges::all_of(d.events, [](const event::FitEvent& e) { return e.channels.size() <= 2; }))

@@ -236,6 +236,7 @@ class DiagnosisPage {
   }
 
   void parameters() {
+    if (!with_after() && !d_.ruling.adequate) return;  // fitted values of a model that is rejected
     page_.section("Parameters");
     const fit::Fit& last = with_after() ? *figures_.after : d_.base;
     report::Table table{

@@ -59,6 +59,11 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
   const laws::LawFinding* law = named ? nullptr : d.laws.found();
+  if (!named && !law && !d.ruling.adequate) {
+    text +=
+        "\nThe fitted values of the model are not shown: it leaves more than noise, so they mean nothing.\n";
+    return;
+  }
   const fit::Fit& fit = named ? d.ranked.front().fit : law ? law->judgement.fit : d.base;
   text += fmt::format("\n{:<10} {:<10} {:>12} {:>12} {:>26} {:>6}\n", "block", "parameter", "model", "fitted",
                       "95 % interval", "unit");

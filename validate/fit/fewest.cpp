@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 
@@ -35,6 +36,16 @@ class Selection {
       : tested_(tested), events_(events), free_(free), options_(options) {}
 
   Fewest run() {
+    try {
+      return select();
+    } catch (const Interrupted&) {
+      if (all_.parameters.empty()) throw;
+      throw InterruptedFit{{}, all_};
+    }
+  }
+
+ private:
+  Fewest select() {
     fit_all();
     learn_curvature();
     Fewest back;
@@ -80,8 +91,6 @@ class Selection {
     describe(set, rises, chosen, back);
     return back;
   }
-
- private:
   [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
   void fit_all() {
     if (options_.all) {

@@ -12,6 +12,7 @@
 #include "validate/fit/detail/early.hpp"
 #include "validate/fit/detail/event_cost.hpp"
 #include "validate/fit/detail/input_evidence.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -36,10 +37,15 @@ class Steps : public ceres::IterationCallback {
       costs_.push_back(2 * summary.cost);
     }
     out_of_reach_ = out_of_reach_ || misses();
-    return taken_ < enough_ && !out_of_reach_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    return taken_ < enough_ && !out_of_reach_ && !interruption_asked() ? ceres::SOLVER_CONTINUE
+                                                                       : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
   [[nodiscard]] int taken() const { return taken_; }
   [[nodiscard]] bool out_of_reach() const { return out_of_reach_; }
+  /// Twice Ceres' cost at the best point.
+  [[nodiscard]] double cost() const {
+    return costs_.empty() ? std::numeric_limits<double>::infinity() : costs_.back();
+  }
 
  private:
   [[nodiscard]] bool misses() const {
@@ -86,6 +92,7 @@ class Search {
       const int most = before > thresholds::noise.believed ? std::min(left, kRound) : left;
       fit.converged = solve(most, fit.iterations);
       left = options_.iterations - fit.iterations;
+      if (interruption_asked()) interrupt(std::move(fit));
       if (out_of_reach_) break;
       if (before <= thresholds::noise.believed || misfit() > 0.95 * before) break;
     }
@@ -97,6 +104,17 @@ class Search {
 
  private:
   static constexpr int kRound = 4;  ///< iterations between two looks at the misfit
+
+  /// Throws the values that were reached, without a look at the events.
+  [[noreturn]] void interrupt(Fit fit) const {
+    fit.plant = moved(setting_, z_.data());
+    collect_parameters(fit);
+    for (FittedParameter& p : fit.parameters) p.error = p.low = p.high = std::nan("");
+    fit.converged = false;
+    fit.chi2 = reached_ - fit.belief;
+    for (std::size_t e = 0; e < costs_.size(); ++e) fit.values += (*setting_.events)[e].values();
+    throw InterruptedFit{{}, std::move(fit)};
+  }
 
   /// chi2 per value, at least 1.
   double misfit() const {
@@ -118,7 +136,8 @@ class Search {
   bool solve(int iterations, int& done) {
     const int before = done;
     bool converged = search(iterations, done);
-    while (converged && done - before < iterations && !out_of_reach_ && bounds_->hold())
+    while (converged && done - before < iterations && !out_of_reach_ && !interruption_asked() &&
+           bounds_->hold())
       converged = search(iterations - (done - before), done);
     bounds_->release();
     for (EventCost* c : costs_) c->look_at(1);  // for whoever asks for slopes at the end
@@ -146,10 +165,12 @@ class Search {
     // A step that bounds cut short is tried as it is, because a search along it costs several Jacobians a
     // step.
     o.max_num_line_search_step_size_iterations = 0;
+    o.update_state_every_iteration = true;  // so that an interrupted search keeps its best point
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
     done += std::max(1, steps.taken());
     out_of_reach_ = steps.out_of_reach();
+    reached_ = steps.cost();
     for (EventCost* c : costs_) c->look_at(1);
     return summary.termination_type == ceres::CONVERGENCE;
   }
@@ -353,7 +374,8 @@ class Search {
   const Setting& setting_;
   const FitOptions& options_;
   double discrepancy_ = 1.0;
-  bool out_of_reach_ = false;  ///< of the goal
+  bool out_of_reach_ = false;                                 ///< of the goal
+  double reached_ = std::numeric_limits<double>::infinity();  ///< cost that the last search ended with
   std::vector<double> z_;
   std::vector<std::vector<double>> states_;
   std::vector<EventCost*> costs_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
 #include "validate/hypothesis/grow.hpp"
 #include "validate/hypothesis/posterior.hpp"
 #include "validate/thresholds/thresholds.hpp"
@@ -19,7 +20,7 @@ void each(const Stage& stage, const std::vector<Judgement*>& some, const std::st
       some.size(),
       [&](std::size_t k) {
         if (stage.stopped()) return;
-        act(*some[k]);
+        until_interrupted([&] { act(*some[k]); });
         some[k]->gain = fit::gain(stage.fit, some[k]->fit, fit::criterion);
       },
       [&](int done, std::size_t k) {

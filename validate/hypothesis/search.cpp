@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
 #include "validate/hypothesis/detail/starts.hpp"
 #include "validate/hypothesis/posterior.hpp"
 
@@ -48,11 +49,9 @@ class Searcher {
       const double reach = in_reach(begun);
       each(candidates, "fit ", [&](std::size_t i) {
         const Candidate& c = candidates[i];
-        if (c.nested.empty())
-          tried[i] = hopeless(c);
-        else
-          tried[i] = onward[i] && !stage_.stopped() ? near_onward(c, std::move(begun[i]), reach)
-                                                    : judgement(c, std::move(begun[i]));
+        tried[i] = c.nested.empty() ? hopeless(c) : begun_only(c, begun[i]);
+        if (!c.nested.empty() && !stage_.stopped())
+          tried[i] = onward[i] ? near_onward(c, std::move(begun[i]), reach) : judgement(c, begun[i]);
       });
     } else {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
@@ -70,8 +69,9 @@ class Searcher {
       start(kTries, fair);
       const auto onward = promising(candidates, begun, thresholds::search.fair);
       each(candidates, "fit ", [&](std::size_t i) {
-        tried[i] = onward[i] && !stage_.stopped() ? more_steps(candidates[i], begun[i])
-                                                  : judgement(candidates[i], begun[i]);
+        tried[i] = begun_only(candidates[i], begun[i]);
+        if (!stage_.stopped())
+          tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
       });
     }
     std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
@@ -83,7 +83,7 @@ class Searcher {
   template <class F>
   void each(const std::vector<Candidate>& candidates, const std::string& what, F act) const {
     in_parallel(
-        candidates.size(), act,
+        candidates.size(), [&](std::size_t i) { until_interrupted([&] { act(i); }); },
         [&](int done, std::size_t i) {
           report(what + candidates[i].hypothesis.name, done, candidates.size());
         },
@@ -95,7 +95,7 @@ class Searcher {
     in_parallel(
         all.size(),
         [&](std::size_t i) {
-          if (!stage_.stopped()) candidates[i] = starts_.of(std::move(all[i]));
+          if (!stage_.stopped()) until_interrupted([&] { candidates[i] = starts_.of(std::move(all[i])); });
         },
         [&](int done) { report("hypotheses", done, all.size()); }, stage_.threads);
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
@@ -236,6 +236,16 @@ class Searcher {
         break;
     }
     return best;
+  }
+  /// The best of the first fits, for a search that is interrupted: its evidence lacks what the errors add.
+  Judgement begun_only(const Candidate& c, const std::vector<fit::Fit>& fits) const {
+    Judgement j;
+    j.hypothesis = c.hypothesis;
+    const auto best = std::ranges::min_element(fits, fit::better);
+    if (best == fits.end() || !best->failed.empty()) return j;
+    j.fit = *best;
+    j.gain = fit::gain(stage_.fit, j.fit);
+    return j;
   }
   /// Makes a judgement of the best of the fits.
   Judgement judgement(const Candidate& c, std::vector<fit::Fit> fits) const {

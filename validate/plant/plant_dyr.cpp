@@ -58,19 +58,19 @@ std::vector<std::string> changed_blocks(const PlantModel& before, const PlantMod
   return names;
 }
 
-std::string write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
-                             const PlantModel& model) {
+WrittenDyr write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                            const PlantModel& model) {
   const auto changed = changed_blocks(before, model);
   const std::vector<std::string> head = {
       model.name,
       changed.empty() ? "nothing is changed" : fmt::format("changed or new: {}", fmt::join(changed, ", "))};
   Problems problems;
   const std::string text = dyr_text(model, head, plant_file.filename().string(), problems);
-  if (!problems.empty()) return "no .dyr: " + problems.list()[0].sentence();
+  if (!problems.empty()) return {"no .dyr: " + problems.list()[0].sentence(), {}};
   auto file = plant_file;
   file.replace_extension(".dyr");
   write_file(file, text);
-  return "records: " + file.string();
+  return {"records: " + file.string(), file};
 }
 
 }  // namespace swingbank::validate::plant

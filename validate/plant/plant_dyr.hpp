@@ -21,9 +21,12 @@ std::string dyd_text(const PlantModel& model, const std::vector<std::string>& he
 /// The names of the blocks whose values differ from `before`, and of those it does not have.
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
 
-/// Writes the records beside a plant file, its extension .dyr, with the changed ones named. Returns what was
-/// written or why nothing could be: a line for the person.
-std::string write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
-                             const PlantModel& model);
+struct WrittenDyr {
+  std::string line;            ///< for the person: what was written, or why nothing could be
+  std::filesystem::path file;  ///< empty where nothing was written
+};
+/// Writes the records beside a plant file, its extension .dyr, with the changed ones named.
+WrittenDyr write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                            const PlantModel& model);
 
 }  // namespace swingbank::validate::plant

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/constants.hpp"
+#include "base/stop_signal.hpp"
 #include "validate/playin/detail/driven_equations.hpp"
 #include "validate/playin/detail/linear_slopes.hpp"
 #include "validate/playin/detail/pairs.hpp"
@@ -161,6 +162,7 @@ class Driven {
 
   void advance(double to) {
     while (t_ < to) {
+      interruption_point();
       const double left = to - t_;
       const bool reaches = h_ >= left * (1 - 1e-12);
       const double h = reaches ? left : h_;

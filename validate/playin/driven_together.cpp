@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/problem.hpp"
+#include "base/stop_signal.hpp"
 #include "validate/playin/detail/driven_equations.hpp"
 #include "validate/playin/detail/pairs.hpp"
 
@@ -94,6 +95,7 @@ class Together {
 
   void advance(double to) {
     while (t_ < to && any()) {
+      interruption_point();
       const double left = to - t_;
       const bool reaches = h_ >= left * (1 - 1e-12);
       const double h = reaches ? left : h_;

@@ -1,4 +1,6 @@
 // Dataset and experiment files of the two networks, made from the user's dataset config.
+#include "base/config.hpp"
+
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -24,14 +26,8 @@ constexpr int kComponents = 4;                          ///< of each second
 double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
 
 toml::table read_base(const fs::path& file) {
-  try {
-    return toml::parse(read_text(file), file.string());
-  } catch (const toml::parse_error& error) {
-    std::ostringstream at;
-    at << error.source().begin;
-    throw InputError({"a dataset config that is not TOML", file.string(),
-                      std::string(error.description()) + ", " + at.str(), "correct it (configs/datasets)"});
-  }
+  static_cast<void>(Config(file));  // tells what is no TOML
+  return toml::parse(read_text(file), file.string());
 }
 
 class Base {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop_signal.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::fit::fitting {
@@ -50,6 +51,15 @@ EventCost::EventCost(const Setting& setting, std::size_t event)
 }
 
 bool EventCost::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
+  try {
+    return evaluate(blocks, residuals, jacobians);
+  } catch (const Interrupted&) {  // nothing is thrown through Ceres; the search ends and throws it again
+    last_ = {};
+    return false;
+  }
+}
+
+bool EventCost::evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   const bool has_axes = !setting_.axes.empty();
   const double *z = has_axes ? blocks[0] : nullptr, *state = blocks[has_axes ? 1 : 0];
   const Eigen::Index rows = num_residuals();

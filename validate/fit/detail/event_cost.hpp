@@ -34,6 +34,7 @@ class EventCost : public ceres::CostFunction {
   void renew() { renew_ = looked_.gone_on > 0; }
 
  private:
+  bool evaluate(double const* const* blocks, double* residuals, double** jacobians) const;
   [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const;
   void add_state_directions(std::vector<playin::Direction>& along) const;
   /// Slopes of a plant that is linear about each step are per cents off, which stops a search where columns

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/constants.hpp"
+#include "base/stop_signal.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
 
@@ -130,6 +131,7 @@ class DrivenByPower {
 
   void advance(double to) {
     while (t_ < to) {
+      interruption_point();
       const double left = to - t_;
       const bool reaches = h_ >= left * (1 - 1e-12);
       const double h = reaches ? left : h_;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/stop_signal.hpp"
+
 namespace swingbank::validate::playin {
 namespace {
 
@@ -84,6 +86,7 @@ class LinearSlopes {
       for (const Output o : run_.linear_slopes)
         slope.value[static_cast<int>(o)].reserve(run_.record->t.size());
     for (std::size_t k = 0; k < trace_.nodes.size(); ++k) {
+      interruption_point();
       const Trace::Node& node = trace_.nodes[k];
       std::swap(before_, now_);
       look_at(std::min(node.t, node.side.last_moment));

@@ -87,6 +87,11 @@ class Player {
     if (o.plants.empty()) o.plants = {0};  // none would mean all
     const sim::network::Event event = moved(event_, [&](double t) { return t - first; });
     const sim::reference::ReferenceRun run = sim::reference::run_reference(s_.grid, event, o);
+    if (run.outcome != sim::Outcome::stable && run.outcome != sim::Outcome::lost_synchronism)
+      throw InputError({fmt::format("the grid cannot be simulated beyond {:g} s", first + run.stopped_at),
+                        s_.raw.string() + " and " + s_.dyr.string(),
+                        fmt::format("the run ended with {}", sim::outcome_name(run.outcome)),
+                        "check the impedances and time constants that act at this time"});
     if (run.outcome != sim::Outcome::stable && first + run.stopped_at < out.stopped_at) {
       out.outcome = run.outcome;
       out.stopped_at = first + run.stopped_at;

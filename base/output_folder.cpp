@@ -1,0 +1,86 @@
+#include "base/output_folder.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "base/durable.hpp"
+
+namespace swingbank {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLockFile = ".swingbank-lock";
+
+fs::path list_file(const fs::path& folder, const std::string& command) {
+  return folder / (".swingbank-" + command);
+}
+
+/// Lines of "hash name". A name with a folder in it was not written by this program.
+std::map<std::string, std::string> read_list(const fs::path& file) {
+  std::map<std::string, std::string> all;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return all;
+  std::istringstream lines(read_text(file));
+  for (std::string hash, name; lines >> hash && std::getline(lines >> std::ws, name);)
+    if (fs::path(name).filename() == name && !fs::path(name).empty()) all[name] = hash;
+  return all;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vector<std::string>& names,
+                           const std::vector<Output>& others)
+    : folder_(std::move(folder)), command_(std::move(command)) {
+  earlier_ = read_list(list_file(folder_, command_));
+  std::vector<Output> outputs;
+  for (const std::string& name : names) outputs.push_back({folder_ / name, "--out"});
+  for (const auto& [name, hash] : earlier_)
+    if (std::ranges::find(names, name) == names.end()) outputs.push_back({folder_ / name, "--out"});
+  outputs.insert(outputs.end(), others.begin(), others.end());
+  require_inputs_kept(outputs);
+  std::error_code none;
+  created_ = !fs::exists(folder_, none);
+  make_folder(folder_);
+  lock_.emplace(folder_ / kLockFile,
+                LockWords{"another command works in the output folder", "--out " + folder_.string(),
+                          "wait for it, or give another folder"},
+                std::chrono::milliseconds(0));
+  earlier_ = read_list(list_file(folder_, command_));  // the holder before may have written meanwhile
+}
+
+OutputFolder::~OutputFolder() {
+  if (lock_) lock_->withdraw(true);
+  std::error_code none;
+  if (created_ && fs::is_empty(folder_, none)) fs::remove(folder_, none);
+}
+
+fs::path OutputFolder::file(const std::string& name) {
+  if (std::ranges::find(written_, name) == written_.end()) written_.push_back(name);
+  return folder_ / name;
+}
+
+void OutputFolder::finish(Earlier earlier) {
+  std::error_code none;
+  std::string list;
+  for (const auto& [name, hash] : earlier_) {
+    const fs::path file = folder_ / name;
+    if (std::ranges::find(written_, name) != written_.end() || !fs::is_regular_file(file, none) ||
+        hash_of_file(file) != hash)
+      continue;
+    if (earlier == Earlier::stay) {
+      list += hash + " " + name + "\n";
+      continue;
+    }
+    require_inputs_kept({{file, "--out"}});
+    fs::remove(file, none);
+  }
+  for (const std::string& name : written_)
+    if (fs::is_regular_file(folder_ / name, none)) list += hash_of_file(folder_ / name) + " " + name + "\n";
+  write_text(list_file(folder_, command_), list);
+}
+
+}  // namespace swingbank
