@@ -52,6 +52,7 @@ for ((i = from; i < kills; i += stride)); do
   wait $pid 2>/dev/null || true
   [ -e "$out/dataset.json" ] || began=early
   what="kill $i of $kind at $at ms"
+  if [ "$ended" = hung ]; then wrong "$what: something hung until it was ended"; fi
   "${make[@]}" --out "$out" >"$work/log" 2>&1 || wrong "$what: the next run"
   grep -q "dataset $whole" "$work/log" || wrong "$what: another hash"
   diff -r "$work/whole/shards" "$out/shards" >"$work/log" || wrong "$what: other bytes or leftovers"
