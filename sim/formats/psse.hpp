@@ -89,7 +89,9 @@ struct DyrRecord {
   std::string user{};        ///< name of a user-written model (model USRMDL and its like), otherwise empty
   Problems faults{};         ///< parameters that are no numbers: of account only if the model is used
   std::vector<int> empty{};  ///< parameters left empty, counted from 1, which are zero
-  /// Name of the equipment it is for, where a text stands in the bus number's place (`bus` is 0).
+  std::size_t codes = 0;     ///< of a user-written model: how many of PSS/E's codes `values` begin with
+  /// The text in the bus number's place (`bus` is 0): an extended bus name, or equipment without a bus (dc
+  /// lines, FACTS devices), which has no id.
   std::string equipment{};
   bool unended = false;  ///< no '/' ended it: the next record began, or the file ended
   /// A parameter in quotes that is no number: its value is 0, and whoever has no use for a text there tells
@@ -114,11 +116,12 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 /// the table they stand in with its dot.
 DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
-/// Reads a .dyr file: records end with '/', may span lines; what follows the '/' and lines that begin with
-/// '//' or '@!' are comments. A line that begins like a record (bus number, 'MODEL') ends the one before, as
-/// the file's end does; that record is then `unended`. Parameters that are no numbers are noted in the
-/// record, everything else wrong with the file is thrown together as an InputError, with line numbers. An
-/// ignored or mapped name that the file does not hold is a fault too.
+/// Reads a .dyr file: records end with '/', may span lines; what follows the '/', lines that begin with '//'
+/// or '@!' and what follows '#' or '!' in a field's place are comments; 3*0.5 is 0.5 0.5 0.5. A line that
+/// begins like a record (bus number, 'MODEL') ends the one before, as the file's end does; that record is
+/// then `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file. Parameters that are no
+/// numbers are noted in the record, everything else wrong with the file is thrown together as an InputError,
+/// with line numbers. An ignored or mapped name that the file does not hold is a fault too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
 /// The same from a text; `name` stands for the file in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,

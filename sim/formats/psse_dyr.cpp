@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <set>
 
 #include "base/capitals.hpp"
@@ -18,6 +19,33 @@ bool is_comment(const std::string& line) {
   return first != std::string::npos &&
          (line.compare(first, 2, "//") == 0 || line.compare(first, 2, "@!") == 0);
 }
+/// Characters that begin a comment where a field could begin: those of hand-made files.
+constexpr std::string_view kCommentMarks = "#!";
+
+/// Writes repeated values of Fortran's free format out: 3*0.5 is 0.5 0.5 0.5.
+void write_out_repeats(std::vector<psse::Field>& fields) {
+  constexpr std::size_t most = 1000;  // no model has as many parameters
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string& text = fields[i].text;
+    const auto star = text.find('*');
+    std::size_t count = 0;
+    if (fields[i].quoted || star == std::string::npos ||
+        std::from_chars(text.data(), text.data() + star, count).ptr != text.data() + star || count == 0 ||
+        count > most || (star + 1 < text.size() && !psse::parse_number(text.substr(star + 1))))
+      continue;
+    const psse::Field value{text.substr(star + 1), false};
+    fields[i] = value;
+    fields.insert(fields.begin() + static_cast<std::ptrdiff_t>(i), count - 1, value);
+    i += count - 1;
+  }
+}
+
+/// How many codes PSS/E writes before the parameters of a user-written model: IC, IT, NI, NC, NS, NV, and in
+/// a load's record one more.
+std::size_t codes_of(const std::string& wrapper) {
+  constexpr std::size_t of_all = 6;
+  return wrapper == "USRLOD" ? of_all + 1 : of_all;
+}
 
 class DyrReader {
  public:
@@ -25,6 +53,12 @@ class DyrReader {
       : lines_(std::move(lines)), name_(std::move(name)) {
     constexpr std::string_view mark = "\xEF\xBB\xBF";  // some editors begin a file with it
     if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
+    constexpr char end_of_file = 0x1A;  // Ctrl-Z, as DOS ended text files
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+      if (const auto at = lines_[i].find(end_of_file); at != std::string::npos) {
+        lines_[i].erase(at);
+        lines_.resize(i + 1);
+      }
     for (const auto& model : options.ignore) ignore_.insert(capitals(model));
     for (const auto& [from, to] : options.map) map_.emplace(capitals(from), capitals(to));
   }
@@ -48,7 +82,14 @@ class DyrReader {
     psse::Record open;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (is_comment(lines_[i])) continue;
-      auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_);
+      auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_, kCommentMarks);
+      write_out_repeats(piece.fields);
+      if (is_end(piece, open.fields.empty())) {
+        if (const int line = next_content(i + 1); line > 0)
+          problems_.add("records behind the end of the file", name_ + ":" + std::to_string(line),
+                        "line " + std::to_string(i + 1) + " ends it", "remove that line, or what follows it");
+        break;
+      }
       if (!open.fields.empty() && begins_record(piece)) {
         finish(open, true);
         open.fields.clear();
@@ -60,6 +101,22 @@ class DyrReader {
       open.fields.clear();
     }
     if (!open.fields.empty()) finish(open, true);
+  }
+  /// A line with Q alone ends the file, a record of 0 alone too.
+  static bool is_end(const psse::Record& line, bool between_records) {
+    if (line.fields.size() != 1) return false;
+    return psse::ends_file(line) || (between_records && line.ended && psse::ends_section(line));
+  }
+  /// Number of the first line from `i` on that holds a field, 0 if there is none.
+  [[nodiscard]] int next_content(std::size_t i) const {
+    Problems of_the_rest;
+    for (; i < lines_.size(); ++i) {
+      const int number = static_cast<int>(i) + 1;
+      if (is_comment(lines_[i])) continue;
+      const psse::Record line = psse::split(lines_[i], number, name_, of_the_rest, kCommentMarks);
+      if (!line.fields.empty() && !is_end(line, true)) return number;
+    }
+    return 0;
   }
   /// A whole number and a model's name: no model has a name among its parameters that could be taken for it.
   static bool begins_record(const psse::Record& line) {
@@ -81,23 +138,21 @@ class DyrReader {
     const std::string user_name = user ? capitals(fields.text(named_fourth ? 3 : 2, "")) : "";
     if (leave_out(model, user_name, record.line)) return;
     const bool by_name = record.fields[0].quoted && !psse::parse_number(record.fields[0].text);
-    if (by_name && fields.size() > 1) {  // of equipment that has no bus: dc lines, FACTS devices
-      DyrRecord dyr{0, mapped(model, ""), "", {}, record.line};
-      dyr.equipment = record.fields[0].text;
-      dyr.values.resize(fields.size() - 2);
-      out_.push_back(std::move(dyr));
-      return;
-    }
-    if (fields.size() < 3) {
+    if (fields.size() < (by_name ? 2 : 3)) {
       problems_.add("incomplete record", fields.where(),
                     std::string("a record is: bus number, 'MODEL', id, parameters, /") +
                         (unended ? "; none ends this one: the file may be cut off there" : ""),
                     "complete the record or remove it");
       return;
     }
-    DyrRecord dyr{
-        fields.integer(0, "bus number"), mapped(model, user_name), fields.text(2, ""), {}, record.line};
+    DyrRecord dyr{by_name ? 0 : fields.integer(0, "bus number"),
+                  mapped(model, user_name),
+                  fields.text(2, ""),
+                  {},
+                  record.line};
+    if (by_name) dyr.equipment = record.fields[0].text;
     dyr.user = dyr.model == model ? user_name : "";
+    if (user) dyr.codes = codes_of(model);
     dyr.unended = unended;
     Problems no_number;
     psse::Fields numbers(record, name_, dyr.faults), texts(record, name_, no_number);

@@ -62,13 +62,16 @@ bool ends_file(const Record& record) {
          (record.fields[0].text == "Q" || record.fields[0].text == "q");
 }
 
-Record split(const std::string& line, int number, const std::string& file, Problems& problems) {
+Record split(const std::string& line, int number, const std::string& file, Problems& problems,
+             std::string_view comment_marks) {
   Record record{number, false, {}};
   bool separated = true;  // a comma or the start of the line lies behind: the next comma means an empty field
   for (std::size_t i = 0; i < line.size();) {
     const char c = line[i];
     if (blank(c)) {
       ++i;
+    } else if (comment_marks.find(c) != std::string_view::npos) {
+      break;
     } else if (c == '/') {
       record.ended = true;
       break;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/problem.hpp"
@@ -27,8 +28,10 @@ struct Record {
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 /// The same of a text.
 std::vector<std::string> lines_of(const std::string& text);
-/// Splits one line. An open quote is reported in `problems`.
-Record split(const std::string& line, int number, const std::string& file, Problems& problems);
+/// Splits one line. An open quote is reported in `problems`. A field cannot begin with one of
+/// `comment_marks`: the line ends there.
+Record split(const std::string& line, int number, const std::string& file, Problems& problems,
+             std::string_view comment_marks = {});
 
 /// A record that begins with 0 ends a section, one that begins with Q the file.
 bool ends_section(const Record& record);

@@ -26,7 +26,8 @@ class GridMaker {
     grid_.conventions.frequency = grid_.network.frequency;
     plants();
   }
-  Grid make(const std::vector<formats::DyrRecord>& dynamics) {
+  Grid make(std::vector<formats::DyrRecord> dynamics) {
+    find_named_buses(dynamics, grid_.network);
     if (!dynamics.empty() && dynamics.back().unended) cut_off_at_ = dynamics.back().line;
     for (const formats::DyrRecord& record : dynamics) add(record);
     tell_refused();
@@ -78,6 +79,11 @@ class GridMaker {
     const bool of_load = effect && effect->slot == Slot::load;
     if (known_.contains(key) && !plant_of_.contains(key) && !of_load) return;  // it is out of service
     if (!effect) return unknown(given, where);
+    if (!given.equipment.empty())
+      return problems_.add(
+          given.model + " at '" + given.equipment + "'", where,
+          "no bus, or more than one, of " + grid_.network.origin + " has this name and base voltage",
+          "give the bus number in its place");
     if (given.unended)
       grid_.network.remark(
           "records without an end, '/', end where the next one begins or the file does",
@@ -171,7 +177,7 @@ class GridMaker {
     one.where = where;
     one.first = record.equipment.empty() ? "'" + record.id + "' at bus " + std::to_string(record.bus)
                                          : "equipment '" + record.equipment + "'";
-    one.parameters = record.values.size();
+    one.parameters = record.values.size() - std::min(record.values.size(), record.codes);
   }
   void tell_unknown() {
     for (const auto& [model, one] : unknown_) {

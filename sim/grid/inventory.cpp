@@ -93,8 +93,9 @@ Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem
   formats::RawOptions counting = options;
   counting.needs_frequency = false;  // nothing turns here
   const formats::RawSurvey survey = formats::survey_network(raw, counting);
-  const formats::DyrSurvey dynamics =
+  formats::DyrSurvey dynamics =
       formats::is_dyd(dyr) ? formats::survey_dyd(dyr).dyr : formats::survey_dyr(dyr);
+  find_named_buses(dynamics.records, survey.network);
   return InventoryTaker(survey, dynamics, dyr.string()).take();
 }
 

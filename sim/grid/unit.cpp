@@ -29,6 +29,7 @@ class UnitReader {
     } else {
       dynamics_ = formats::survey_dyr(choice.dyr);
     }
+    find_named_buses(dynamics_.records, survey_.network);
   }
   Unit read() {
     find_generator();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 
 #include "sim/formats/psse_text.hpp"
 #include "sim/library/library.hpp"
@@ -32,13 +33,8 @@ struct OtherName {
 };
 constexpr int kPslfsSt5b[] = {0, 6, 7, 8, 9, 1, 4, 5, 2, 3, 14, 15, 16, 17, 10, 11, 12, 13};
 constexpr OtherName kOtherNames[] = {
-    {"GENTPJ1", "GENTPJU1"},  // its name since PSS/E 34
-    {"REECCU1", "REECC1"},    // as a user-written model
     {"REECD", "REECD1"},
-    {"REECDU1", "REECD1"},           // as a user-written model
-    {"REGCBU1", "REGCB1"},           // likewise
     {"REPCTA1", "REPCA1"},           // of a wind plant of type 3
-    {"HYG3U1", "HYG3"},              // as a user-written model
     {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
     {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
     {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name of the type DC1 of 1981
@@ -49,16 +45,54 @@ const OtherName* other_name(std::string_view model) {
   return at == std::end(kOtherNames) ? nullptr : at;
 }
 
+/// Names of the standard model that a user-written one comes from: PSS/E ends these with U1, or with U
+/// (REGCAU1 is REGCA1, HYG3U1 is HYG3, GENQECU is GENQEC).
+std::vector<std::string> standard_names(std::string_view user_written) {
+  if (user_written.ends_with("U1")) {
+    const std::string base(user_written.substr(0, user_written.size() - 2));
+    return {base + "1", base};
+  }
+  if (user_written.ends_with("U")) return {std::string(user_written.substr(0, user_written.size() - 1))};
+  return {};
+}
+/// The effect that PSS/E knows as a user-written model in some versions only (GENTPJU1 is GENTPJ1), or
+/// nullptr.
+const Effect* effect_since_standard(const std::string& model) {
+  for (const Effect& e : library::compiled_effects())
+    for (const std::string& name : standard_names(e.dyr_name))
+      if (name == model) return &e;
+  return nullptr;
+}
+
+/// A model of a .dyr: its effect, the loads it is for, and where its columns stand if not in the effect's
+/// order.
+struct Known {
+  const Effect* effect = nullptr;
+  Reach reach = Reach::load;
+  std::span<const int> order = {};
+};
 /// The same, with the names that stand for it too: IEELAR is IEELBL for an area.
-std::pair<const Effect*, Reach> effect_of_model(std::string model) {
-  if (const OtherName* other = other_name(model)) model = other->known_as;
-  if (const Effect* own = effect_named(model)) return {own, Reach::load};
-  for (std::size_t i = 1; i < kEndings.size(); ++i) {
+Known known_by(std::string model) {
+  Known known;
+  if (const OtherName* other = other_name(model)) {
+    model = other->known_as;
+    known.order = other->order;
+  }
+  known.effect = effect_named(model);
+  if (!known.effect) known.effect = effect_since_standard(model);
+  for (std::size_t i = 1; i < kEndings.size() && !known.effect; ++i) {
     if (!model.ends_with(kEndings[i])) continue;
     const Effect* effect = effect_named(model.substr(0, model.size() - 2) + kEndings[0]);
-    if (effect && effect->slot == Slot::load) return {effect, static_cast<Reach>(i)};
+    if (effect && effect->slot == Slot::load) known = {effect, static_cast<Reach>(i), known.order};
   }
-  return {nullptr, Reach::load};
+  return known;
+}
+Known known_model(const formats::DyrRecord& record) {
+  const std::string name = name_of(record);
+  Known known = known_by(name);
+  for (const std::string& standard : standard_names(name))
+    if (!known.effect) known = known_by(standard);
+  return known;
 }
 
 /// What stands already where the effect belongs, or nullptr.
@@ -86,8 +120,33 @@ std::string compare_reactance(const plant::Plant& plant, const plant::Block& blo
 }  // namespace
 
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record) {
-  if (!record.equipment.empty()) return {nullptr, Reach::load};
-  return effect_of_model(record.user.empty() ? record.model : record.user);
+  const Known known = known_model(record);
+  return {known.effect, known.reach};
+}
+
+void find_named_buses(std::vector<formats::DyrRecord>& records, const network::Network& network) {
+  constexpr std::size_t name_width = 12;  // of an extended bus name, the base voltage follows
+  constexpr double rounding = 0.006;      // [kV] of a voltage with two decimals
+  std::map<std::string, std::vector<const network::Bus*>> named;
+  for (const network::Bus& bus : network.buses) named[bus.name].push_back(&bus);
+  const auto trimmed = [](const std::string& text) { return text.substr(0, text.find_last_not_of(' ') + 1); };
+  for (formats::DyrRecord& record : records) {
+    const std::string& text = record.equipment;
+    if (text.empty()) continue;
+    std::vector<int> found;
+    const auto blank = text.find_last_of(' ');
+    for (const std::size_t cut : {name_width, blank == std::string::npos ? text.size() : blank}) {
+      if (cut >= text.size() || !found.empty()) continue;
+      const auto name = named.find(trimmed(text.substr(0, cut)));
+      const auto kv = formats::psse::parse_number(text.substr(text.find_first_not_of(' ', cut)));
+      if (name == named.end() || !kv) continue;
+      for (const network::Bus* bus : name->second)
+        if (std::abs(bus->kv - static_cast<double>(*kv)) < rounding) found.push_back(bus->number);
+    }
+    if (found.size() != 1) continue;
+    record.bus = found[0];
+    record.equipment.clear();
+  }
 }
 
 std::string lacking_text(const std::string& dyr) {
@@ -158,19 +217,21 @@ formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
   if (effect.at_shunt) without_shunts_beside(record, *effect.at_shunt, effect.dyr_columns.size());
   for (const formats::DyrRecord::Text& text : record.texts) record.faults.add(text.fault);
   record.texts.clear();
-  constexpr std::size_t before = 6, icons = 2, cons = 3;
-  const std::size_t columns = effect.dyr_columns.size();
-  if (!record.user.empty()) {
-    if (record.values.size() == columns + before &&
-        record.values[icons] + record.values[cons] == static_cast<double>(columns))
-      record.values.erase(record.values.begin(), record.values.begin() + before);
-    record.model = record.user;
+  const std::span<const int> order = known_model(record).order;
+  constexpr std::size_t icons = 2, cons = 3;  // among the codes: how many whole numbers and constants follow
+  std::vector<double>& v = record.values;
+  if (record.codes > 0 && v.size() >= record.codes &&
+      v[icons] + v[cons] == static_cast<double>(v.size() - record.codes)) {
+    v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(record.codes));
+    const int codes = static_cast<int>(record.codes);
+    std::erase_if(record.empty, [codes](int i) { return i <= codes; });
+    for (int& i : record.empty) i -= codes;
   }
-  const OtherName* other = other_name(record.model);
-  if (other && other->order.size() == record.values.size()) {
-    const std::vector<double> theirs = record.values;
-    for (std::size_t i = 0; i < theirs.size(); ++i)
-      record.values[i] = theirs[static_cast<std::size_t>(other->order[i])];
+  record.codes = 0;
+  if (!record.user.empty()) record.model = record.user;
+  if (order.size() == v.size()) {
+    const std::vector<double> theirs = v;
+    for (std::size_t i = 0; i < theirs.size(); ++i) v[i] = theirs[static_cast<std::size_t>(order[i])];
   }
   return record;
 }

@@ -18,6 +18,9 @@ enum class Reach { load, owner, zone, area, all };
 /// The effect of a record, nullptr if there is none, and the loads it is for; names that stand for another
 /// count: IEELAR is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record);
+/// Gives records at an extended bus name (name and base voltage, 'UNIT        20.000') the number of that
+/// bus; a name that the network does not have, or has twice, stays.
+void find_named_buses(std::vector<formats::DyrRecord>& records, const network::Network& network);
 /// Why a record of an unknown model is refused, for messages.
 std::string lacking_text(const std::string& dyr);
 /// Names of the machines that have a .dyr form, for messages.

@@ -147,5 +147,44 @@ TEST(PsseDyr, TextsAmongTheParametersAreKept) {
               ::testing::HasSubstr("MODEL parameter 2 = 'A1' at t.dyr:1"));
 }
 
+TEST(PsseDyr, CtrlZAndQAndZeroEndTheFile) {
+  const std::string records = "6 'GENCLS' 1 3.0 0 /\n7 'GENCLS' 1 4.0 0.5 /\n";
+  for (const char* last : {"\x1A", "\x1A\n\x1A", "Q", " q \n", "0 /", "0 / END OF DATA\n", "0 /\nQ\n\x1A"}) {
+    const auto r = parse_dyr(records + last, "x.dyr");
+    ASSERT_EQ(r.size(), 2U) << last;
+    EXPECT_THAT(r[1].values, ElementsAre(4.0, 0.5));
+  }
+  EXPECT_THAT(sentences_of([&] { parse_dyr(records + "0 / END\n" + records, "x.dyr"); }),
+              HasSubstr("records behind the end of the file at x.dyr:4 (line 3 ends it)"));
+}
+
+TEST(PsseDyr, HashAndExclamationMarkBeginComments) {
+  const auto r = parse_dyr(
+      "# machines\n6 'GENCLS' 1 3.0 ! H\n  0.5 / # damping\n! next\n'LINE #2' 'CDC6T' 1.0 / !\n", "x.dyr");
+  ASSERT_EQ(r.size(), 2U);
+  EXPECT_THAT(r[0].values, ElementsAre(3.0, 0.5));
+  EXPECT_EQ(r[1].equipment, "LINE #2");
+}
+
+TEST(PsseDyr, RepeatCountsAreWrittenOut) {
+  const auto r = parse_dyr("6 'GENROU' 1 2*1.5 1*0.0 3 2*/\n7 'X' '*' 4*x /\n", "x.dyr");
+  ASSERT_EQ(r.size(), 2U);
+  EXPECT_THAT(r[0].values, ElementsAre(1.5, 1.5, 0.0, 3.0, 0.0, 0.0));
+  EXPECT_THAT(r[0].empty, ElementsAre(5, 6));
+  EXPECT_EQ(r[1].id, "*");
+  EXPECT_FALSE(r[1].faults.empty());
+}
+
+TEST(PsseDyr, UserWrittenModelsKeepTheirCodesCounted) {
+  const auto r = parse_dyr(
+      "2 'USRMDL' 1 'REGCAU1' 101 1 1 14 3 4 1 0.02 /\n3 'USRLOD' 1 'LINJBL' 12 1 4 8 0 5 0 1 /\n"
+      "4 'GENCLS' 1 3 0 /\n",
+      "x.dyr");
+  ASSERT_EQ(r.size(), 3U);
+  EXPECT_EQ(r[0].codes, 6U);
+  EXPECT_EQ(r[1].codes, 7U);
+  EXPECT_EQ(r[2].codes, 0U);
+}
+
 }  // namespace
 }  // namespace swingbank::sim::formats

@@ -261,5 +261,17 @@ TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
       HasSubstr("GENTPJU1 with 22 parameters"));
 }
 
+/// 'GENTPJU1' is GENTPJ1, 'GENROUU1' GENROU: the rule holds for every model, mapped ones too.
+TEST(LoadRecords, UserWrittenNamesFollowOneRule) {
+  const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
+                    values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n";
+  for (const std::string& record : {"'USRMDL' 1 'GENROUU1' 1 1 0 14 6 1" + values,
+                                    "'USRMDL' 1 'GENROUU' 1 1 0 14 6 1" + values, "'GENROUU1' 1" + values}) {
+    const Grid grid = load_from({}, infinite + record);
+    EXPECT_EQ(grid.plants[1].machine.effect->name, "GENROU");
+    EXPECT_EQ(parameter_of(grid.plants[1].machine, "Tdop"), 8.0);
+  }
+}
+
 }  // namespace
 }  // namespace swingbank::sim::grid
