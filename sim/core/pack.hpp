@@ -36,14 +36,17 @@ struct VectorOf;  // spelled out per width: GCC 12 drops vector_size on a depend
 template <class S>
 struct VectorOf<S, 16> {
   typedef S Type __attribute__((vector_size(16)));
+  typedef S InMemory __attribute__((vector_size(16), aligned(sizeof(S)), may_alias));
 };
 template <class S>
 struct VectorOf<S, 32> {
   typedef S Type __attribute__((vector_size(32)));
+  typedef S InMemory __attribute__((vector_size(32), aligned(sizeof(S)), may_alias));
 };
 template <class S>
 struct VectorOf<S, 64> {
   typedef S Type __attribute__((vector_size(64)));
+  typedef S InMemory __attribute__((vector_size(64), aligned(sizeof(S)), may_alias));
 };
 
 /// Wider than a register: two halves. S is double or float.
@@ -61,6 +64,11 @@ struct Packed {
   Packed(Half l, Half h) : low(l), high(h) {}
   S operator[](int lane) const { return lane < N / 2 ? low[lane] : high[lane - N / 2]; }
   void set(int lane, double a) { lane < N / 2 ? low.set(lane, a) : high.set(lane - N / 2, a); }
+  static Packed load(const S* from) { return {Half::load(from), Half::load(from + N / 2)}; }
+  void store(S* to) const {
+    low.store(to);
+    high.store(to + N / 2);
+  }
   /// Lane l is set where bit l is.
   static Mask mask(unsigned bits) { return {Half::mask(bits), Half::mask(bits >> (N / 2))}; }
 
@@ -82,6 +90,7 @@ struct Packed {
 template <class S, int N>
 requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   using Vector = typename VectorOf<S, sizeof(S) * N>::Type;
+  using InMemory = typename VectorOf<S, sizeof(S) * N>::InMemory;
   using Integer = std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;
   using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;
   static constexpr int lanes = N;
@@ -92,6 +101,9 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   Packed(double a) : v(static_cast<S>(a) - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
   S operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = static_cast<S>(a); }
+  // Through a vector, since GCC copies the bytes of a vector by way of integer registers.
+  static Packed load(const S* from) { return Vector(*reinterpret_cast<const InMemory*>(from)); }
+  void store(S* to) const { *reinterpret_cast<InMemory*>(to) = v; }
   static Mask mask(unsigned bits) {
     Mask lane_bit{};
     for (int l = 0; l < N; ++l) lane_bit[l] = Integer(1) << l;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -49,9 +48,7 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
   for (const double *p = blocks.data(), *end = p + blocks.size(); p != end; p += n * kPointsAtOnce) {
     Block sums(0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      Block d;
-      std::memcpy(&d, p + i * kPointsAtOnce, sizeof d);
-      d = d - Block(x[i]);
+      const Block d = Block::load(p + i * kPointsAtOnce) - Block(x[i]);
       sums = sums + d * d;
       if (i + 1 == kTell && !any_below(sums, limit)) break;
     }

@@ -37,12 +37,8 @@ struct LaneTraits<Packed<S, N>> {
   static double get(const Flat& v, int l) { return v[l]; }
   static void set(Flat& v, int l, double a) { reinterpret_cast<S*>(&v)[l] = static_cast<S>(a); }
   static typename Flat::Mask mask(unsigned bits) { return Flat::mask(bits); }
-  static Flat load(const S* v) {
-    Flat p;
-    __builtin_memcpy(&p, v, sizeof p);
-    return p;
-  }
-  static void store(const Flat& v, S* to) { __builtin_memcpy(to, &v, sizeof v); }
+  static Flat load(const S* v) { return Flat::load(v); }
+  static void store(const Flat& v, S* to) { v.store(to); }
   // Times, errors and records are double.
   static Flat load(const double* v) requires(sizeof(S) < sizeof(double)) {
     Flat p;

@@ -277,7 +277,7 @@ class LinearSlopes {
   /// Slopes of what a pack's lanes answer. The lane that nothing moves is overwritten by the next pack.
   void keep(std::size_t pack, const P8& lanes, const P8& per_move, std::size_t row) {
     const P8 slopes = (lanes - P8(lanes[kBase])) * per_move;
-    std::memcpy(slopes_.data() + row * moves_ + pack * kBase, &slopes, sizeof slopes);
+    slopes.store(slopes_.data() + row * moves_ + pack * kBase);
   }
   /// A row of these by states and by directions.
   void take(std::size_t row, P8* by_state, P8* by_direction) {
