@@ -245,6 +245,15 @@ std::string utc_text(double epoch) {
                      clock.subseconds().count());
 }
 
+void unwrap(std::vector<double>& angle) {
+  double last = kNoValue;
+  for (double& a : angle) {
+    if (!std::isfinite(a)) continue;
+    if (std::isfinite(last)) a -= constants::turn * std::round((a - last) / constants::turn);
+    last = a;
+  }
+}
+
 std::string beginning(const Record& record) {
   if (record.epoch) return utc_text(*record.epoch);
   return record.start.empty() ? std::string() : record.start + " (as written; its zone is not known)";

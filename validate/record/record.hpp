@@ -101,6 +101,9 @@ struct Record {
 
 /// The angle against nominal frequency, from zero, integrated from the record's f [rad].
 std::vector<double> angle_of_frequency(const Record& record);
+/// Adds to each angle [rad] the whole turns that bring it closest to the one before; values that are not
+/// finite stay. So plots and differences of angles make sense.
+void unwrap(std::vector<double>& angle);
 
 /// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
 constexpr int kFewestSamples = 30;

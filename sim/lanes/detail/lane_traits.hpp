@@ -2,7 +2,7 @@
 // What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to
 // mask.
 #include <cstdint>
-#ifdef __AVX512F__
+#ifdef __AVX__
 #include <immintrin.h>
 #endif
 
@@ -29,6 +29,31 @@ struct LaneTraits<double> {
   static double constant(double v) { return v; }
   static double magnitude(double v) { return std::fabs(v); }
 };
+#ifdef __AVX__
+/// Writes doubles register by register, past the caches.
+template <class S, int N>
+inline void stream_registers(const Packed<S, N>& v, double* to) {
+  if constexpr (!Packed<S, N>::one_register) {
+    stream_registers(v.low, to);
+    stream_registers(v.high, to + N / 2);
+#ifdef __AVX512F__
+  } else if constexpr (sizeof v == 64 && sizeof(S) == 8) {
+    _mm512_stream_pd(to, (__m512d)v.v);
+  } else if constexpr (sizeof v == 64) {
+    const auto halves = (__m512d)v.v;
+    _mm512_stream_pd(to, _mm512_cvtps_pd((__m256)_mm512_castpd512_pd256(halves)));
+    _mm512_stream_pd(to + 8, _mm512_cvtps_pd((__m256)_mm512_extractf64x4_pd(halves, 1)));
+#endif
+  } else if constexpr (sizeof(S) == 8) {
+    _mm256_stream_pd(to, (__m256d)v.v);
+  } else {
+    const auto floats = (__m256)v.v;
+    _mm256_stream_pd(to, _mm256_cvtps_pd(_mm256_castps256_ps128(floats)));
+    _mm256_stream_pd(to + 4, _mm256_cvtps_pd(_mm256_extractf128_ps(floats, 1)));
+  }
+}
+#endif
+
 template <class S, int N>
 struct LaneTraits<Packed<S, N>> {
   using Flat = Packed<S, N>;
@@ -49,22 +74,15 @@ struct LaneTraits<Packed<S, N>> {
     const S* from = reinterpret_cast<const S*>(&v);
     for (int l = 0; l < lanes; ++l) to[l] = from[l];
   }
-  /// Past the caches where a register is a whole line of them: records are far larger than the caches and not
-  /// read soon. Half a line would go to memory by itself, before its other half comes after all other rows.
+  /// Past the caches where a pack is whole lines of them: records are far larger than the caches and not read
+  /// soon. Half a line would go to memory by itself, before its other half comes after all other rows.
   static void stream(const Flat& v, double* to) {
-#ifdef __AVX512F__
-    if constexpr (sizeof v == 64 && sizeof(S) == 8) {
-      _mm512_stream_pd(to, (__m512d)v.v);
-    } else if constexpr (sizeof v == 64) {
-      const auto halves = (__m512d)v.v;
-      _mm512_stream_pd(to, _mm512_cvtps_pd((__m256)_mm512_castpd512_pd256(halves)));
-      _mm512_stream_pd(to + 8, _mm512_cvtps_pd((__m256)_mm512_extractf64x4_pd(halves, 1)));
-    } else {
-      store(v, to);
-    }
-#else
-    store(v, to);
+#ifdef __AVX__
+    if constexpr (N * sizeof(double) % 64 == 0)
+      stream_registers(v, to);
+    else
 #endif
+      store(v, to);
   }
   static Flat value(const Flat& v) { return v; }
   static Flat constant(const Flat& v) { return v; }

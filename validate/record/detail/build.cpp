@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/constants.hpp"
 #include "validate/record/detail/bridge.hpp"
 #include "validate/record/detail/clock.hpp"
 #include "validate/record/detail/frames.hpp"
@@ -63,16 +62,6 @@ void power_from_current(Record& r, const std::vector<double>& current, const std
     r.Q.push_back(s * std::sin(between));
   }
   r.notes.emplace_back("P and Q were computed from the voltage and current phasors.");
-}
-
-/// Angles are known up to turns; a continuous one is kept, so that plots and differences make sense.
-void unwrap(std::vector<double>& angle) {
-  double last = kNoValue;
-  for (double& a : angle) {
-    if (!std::isfinite(a)) continue;
-    if (std::isfinite(last)) a -= constants::turn * std::round((a - last) / constants::turn);
-    last = a;
-  }
 }
 
 void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {

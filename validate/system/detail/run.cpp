@@ -6,7 +6,6 @@
 #include <set>
 #include <tuple>
 
-#include "base/constants.hpp"
 #include "sim/core/window.hpp"
 #include "sim/plant/measure.hpp"
 #include "sim/reference/reference.hpp"
@@ -18,10 +17,6 @@ std::vector<double> scaled(const double* values, int n, double factor) {
   std::vector<double> out(values, values + n);
   for (double& v : out) v *= factor;
   return out;
-}
-void unwrap(std::vector<double>& angle) {
-  for (std::size_t k = 1; k < angle.size(); ++k)
-    angle[k] -= constants::turn * std::round((angle[k] - angle[k - 1]) / constants::turn);
 }
 
 /// A jump between two samples would pass for a ramp about their middle: the nearer one takes a share of it,
@@ -102,7 +97,7 @@ class Player {
       const auto from = static_cast<std::ptrdiff_t>(k) * run.samples;
       m.V = scaled(run.bus_v.data() + from, run.samples, 1);
       m.theta = scaled(run.bus_theta.data() + from, run.samples, 1);
-      unwrap(m.theta);
+      record::unwrap(m.theta);
     }
     for (const std::size_t i : members) measure(i, {first, o.rate, stride, samples});
   }
