@@ -1,5 +1,7 @@
 #include "validate/system/detail/run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
