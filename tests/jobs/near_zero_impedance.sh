@@ -32,7 +32,7 @@ largest() {
 below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 
 gsu="2,3,0,'1',1,1,1,0,0,2,'',1"
-fault=(--fault 3:1:1.1 --buses 1,2,3,4)
+fault=(--fault 3:1:1.1 --buses '1,2,3,4')
 for x in 0.0 1e-9 1e-7 1e-6; do
   case_of "tie$x" "3,4,'1',0.0,$x" "$gsu" 0.003,0.09,100 1.0 1.0
   said=$(simulate "tie$x" "${fault[@]}" 2>&1) || fail "tie of $x: $said"

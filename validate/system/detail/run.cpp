@@ -115,7 +115,7 @@ class Player {
     m.speed = channel(4, 1);
     m.Efd = channel(5, 1);
     m.Ifd = channel(6, 1);
-    unwrap(m.theta);
+    record::unwrap(m.theta);
   }
 
   /// The terminal's answer as its instruments show it, at the record's samples.
