@@ -119,8 +119,8 @@ class Readings {
 
   /// P and Q late or early: the model's response is the same.
   void delays(const playin::Playback& back) {
-    constexpr double kFarthest = 0.5;  // s
-    const auto most = static_cast<long>(std::min(kFarthest * r_.rate(), r_.samples() / 4.0));
+    constexpr double kLargestDelay = 0.5;  // s
+    const auto most = static_cast<long>(std::min(kLargestDelay * r_.rate(), r_.samples() / 4.0));
     Fit least;
     long at = 0;
     for (long d = -most; d <= most; ++d)
@@ -138,8 +138,9 @@ class Readings {
   /// The power becomes one that the machine can have, and is not that of the case as it is.
   [[nodiscard]] bool may_scale(const Hypothesis& h) const {
     double p = 0, q = 0;
-    constexpr std::size_t kFirst = 5;
-    for (std::size_t k = 0; k < kFirst; ++k) p += r_.P[k] / kFirst, q += r_.Q[k] / kFirst;
+    constexpr std::size_t kSteadySamples = 5;
+    for (std::size_t k = 0; k < kSteadySamples; ++k)
+      p += r_.P[k] / kSteadySamples, q += r_.Q[k] / kSteadySamples;
     const Reading x = h.reinterpret({1, 0, p, q});
     if (std::hypot(x.P, x.Q) * r_.base.mva > 1.2 * model_.plant.mva) return false;
     if (!model_.dispatch) return true;
@@ -166,8 +167,8 @@ class Readings {
   }
 
   [[nodiscard]] std::optional<Finding> best() const {
-    constexpr double kLeft = 1.0 / 16, kCloser = 3;  // share of the movement's power; ratio of rms
-    if (!best_.share || *best_.share > kLeft) return std::nullopt;
+    constexpr double kUnexplained = 1.0 / 16, kCloser = 3;  // share of the movement's power; ratio of rms
+    if (!best_.share || *best_.share > kUnexplained) return std::nullopt;
     const double closer =
         as_is_.share ? std::sqrt(*as_is_.share / *best_.share) : std::numeric_limits<double>::infinity();
     if (closer < kCloser) return std::nullopt;
