@@ -21,8 +21,6 @@ namespace swingbank::validate::check {
 namespace {
 
 bool within(double x, double low, double high) { return x >= low && x <= high; }
-/// Is x near target, to a share of it?
-bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
 
 double square(double x) { return x * x; }
 

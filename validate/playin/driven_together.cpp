@@ -107,7 +107,7 @@ class Together {
         std::swap(k_.front(), k_[static_cast<std::size_t>(kRoughSteps.stages - 1)]);
         P8 moved(0.0);
         equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
-        fresh_ = sim::any_positive(moved);
+        fresh_ = any_positive(moved);
       }
       if (error > 1 ? h < kLeastOfAll : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
       const double factor =

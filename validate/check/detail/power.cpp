@@ -6,12 +6,8 @@
 #include <numbers>
 
 namespace swingbank::validate::check {
-namespace {
 
-/// Is x near target, to a share of it?
 bool near(double x, double target, double share) { return std::abs(x - target) <= share * std::abs(target); }
-
-}  // namespace
 
 std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plant) {
   const double base = r.base.mva;

@@ -9,6 +9,9 @@
 
 namespace swingbank::validate::check {
 
+/// Whether x differs from target by at most a share of it.
+bool near(double x, double target, double share);
+
 /// A way in which P and Q have come to be wrong, and what to do about it.
 struct BaseSlip {
   double factor;  ///< true value = value * factor

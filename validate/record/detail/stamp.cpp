@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 12> kMonths = {
     "november novembre noviembre novembro ноябрь ноября",
     "december dezember decembre diciembre dezembro dicembre декабрь декабря"};
 /// Words of a date that say nothing new.
-constexpr std::string_view kIdle =
+constexpr std::string_view kIdleInDates =
     "de del di of the den le mon tue tues wed thu thur thurs fri sat sun monday tuesday wednesday thursday friday "
     "saturday sunday g г";
 
@@ -143,7 +143,7 @@ class Reader {
         const std::string word = normalised(p->text);
         if (const long m = month_of(word); m != 0 && month == 0)
           month = m, month_at = numbers.size();
-        else if (!is_word_of(word, kIdle))
+        else if (!is_word_of(word, kIdleInDates))
           return false;
       }
       if (numbers.size() + (month != 0 ? 1 : 0) == 3) break;

@@ -45,7 +45,7 @@ constexpr struct {
     {Unit::ampere, "a amp amps ampere amperes"},
 };
 /// Words behind a unit that change nothing; those behind a voltage that say between what it is measured.
-constexpr std::string_view kIdle =
+constexpr std::string_view kIdleBehindUnits =
     "pos positive seq sequence rms prim primary utc gmt local unix epoch since from after start trigger "
     "event 1970";
 constexpr std::string_view kLine = "ll linetoline lineline pp phasetophase phasephase phph";
@@ -115,7 +115,7 @@ std::optional<Unit> find_unit(std::string_view text) {
     const std::string word = normalised(text.substr(0, end));
     text.remove_prefix(end);
     if (unit)
-      behind += is_word_of(word, kIdle) ? std::string() : word;
+      behind += is_word_of(word, kIdleBehindUnits) ? std::string() : word;
     else if (word != "in" && !(unit = unit_named(word)))
       return std::nullopt;
   }

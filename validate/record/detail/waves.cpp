@@ -22,11 +22,11 @@ bool is_quantity(std::string_view word, bool voltage) {
 }
 
 /// "VA_G1" in words of letters and digits: "va", "g1", with the text of each as written.
-struct Words {
+struct NameParts {
   std::vector<std::string> lower, written;
 };
-Words words_of(std::string_view text) {
-  Words all;
+NameParts parts_of_name(std::string_view text) {
+  NameParts all;
   bool inside = false;
   for (const char c : text) {
     const bool part = std::isalnum(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80;
@@ -45,7 +45,7 @@ struct Named {
   std::string circuit;
 };
 /// The circuit: all words but those from `first` to before `end`, and `rest` in their place.
-std::string other_words(const Words& words, std::size_t first, std::size_t end,
+std::string other_words(const NameParts& words, std::size_t first, std::size_t end,
                         const std::string& rest = {}) {
   std::string all;
   for (std::size_t k = 0; k < words.written.size(); ++k) {
@@ -64,7 +64,7 @@ bool is_of_phasors(const std::string& word) {
 /// `known`, no other is read from it. Phases that are numbers ("V1", which may be the positive sequence) must
 /// be alone.
 std::optional<Named> named_in(std::string_view id, bool voltage, const std::optional<Phase>& known) {
-  const Words words = words_of(id);
+  const NameParts words = parts_of_name(id);
   const std::size_t n = words.lower.size();
   if (std::ranges::any_of(words.lower, is_of_phasors)) return std::nullopt;
   const auto fits = [&](std::string_view text) -> std::optional<Phase> {
