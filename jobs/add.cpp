@@ -189,8 +189,7 @@ int run(Arguments& a, plant::PlantModel& model, Laws& laws) {
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
-  for (const std::filesystem::path file :
-       {std::filesystem::path(a.training.dataset), std::filesystem::path(a.truth)})
+  for (const std::filesystem::path& file : std::vector<std::filesystem::path>{a.training.dataset, a.truth})
     if (!file.empty()) note_input(file);
   interruption_point();
   a.results = std::make_shared<OutputFolder>(

@@ -12,14 +12,13 @@
 #include "base/problem.hpp"
 #include "sim/network/admittance.hpp"
 #include "sim/network/connectivity.hpp"
+#include "sim/network/detail/index.hpp"
 #include "sim/network/detail/regulation.hpp"
 #include "sim/network/detail/shunt_steps.hpp"
 #include "sim/network/tie.hpp"
 
 namespace swingbank::sim::network {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Loads of each bus by their dependence on voltage.
 struct Demand {

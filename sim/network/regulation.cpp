@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
+#include "sim/network/detail/index.hpp"
+
 namespace swingbank::sim::network {
-namespace {
-std::size_t place(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
+namespace {}  // namespace
 
 Regulation::Regulation(const Network& network)
     : n_(network), base_(network.buses.size()), supply_(network.buses.size()) {
@@ -18,16 +18,15 @@ Regulation::Regulation(const Network& network)
   std::map<int, std::size_t> source_of;
   for (const Generator& g : n_.generators) {
     if (!g.in_service) continue;
-    supply_[place(g.bus)] += g.mva;
-    base_[place(g.bus)].generation += Complex(g.p, 0.0);
-    if (n_.buses[place(g.bus)].type == BusType::load) {
-      base_[place(g.bus)].generation += Complex(0.0, g.q);
+    supply_[at(g.bus)] += g.mva;
+    base_[at(g.bus)].generation += Complex(g.p, 0.0);
+    if (n_.buses[at(g.bus)].type == BusType::load) {
+      base_[at(g.bus)].generation += Complex(0.0, g.q);
       continue;
     }
-    const bool remote =
-        g.regulated >= 0 && g.regulated != g.bus && base_[place(g.regulated)].kind != Role::out;
-    if (base_[place(g.bus)].kind == Role::slack)
-      base_[place(g.bus)].held = remote ? n_.buses[place(g.bus)].vm : g.vset;
+    const bool remote = g.regulated >= 0 && g.regulated != g.bus && base_[at(g.regulated)].kind != Role::out;
+    if (base_[at(g.bus)].kind == Role::slack)
+      base_[at(g.bus)].held = remote ? n_.buses[at(g.bus)].vm : g.vset;
     const auto [found, fresh] = source_of.emplace(g.bus, sources_.size());
     if (fresh) sources_.push_back({g.bus, remote ? g.regulated : g.bus, g.vset});
     Source& source = sources_[found->second];
@@ -37,8 +36,8 @@ Regulation::Regulation(const Network& network)
     source.q_max += g.q_max;
   }
   for (Source& source : sources_) {
-    source.bounded = source.q_min <= source.q_max && base_[place(source.bus)].kind != Role::slack;
-    if (!(source.share > 0.0)) source.share = supply_[place(source.bus)];
+    source.bounded = source.q_min <= source.q_max && base_[at(source.bus)].kind != Role::slack;
+    if (!(source.share > 0.0)) source.share = supply_[at(source.bus)];
   }
   assign();
 }
@@ -47,7 +46,7 @@ void Regulation::assign() {
   roles_ = base_;
   std::map<int, std::vector<const Source*>> held_by;
   for (const Source& s : sources_) {
-    Role& role = roles_[place(s.bus)];
+    Role& role = roles_[at(s.bus)];
     if (role.kind == Role::slack) continue;
     role.share = s.share;
     role.held = s.held;
@@ -59,12 +58,12 @@ void Regulation::assign() {
       held_by[s.target].push_back(&s);
   }
   for (const auto& [target, sources] : held_by) {
-    const Role::Kind kind = roles_[place(target)].kind;
+    const Role::Kind kind = roles_[at(target)].kind;
     const bool itself = kind == Role::slack || kind == Role::holds;
-    if (kind == Role::slack && !(roles_[place(target)].share > 0.0)) roles_[place(target)].share = 1.0;
+    if (kind == Role::slack && !(roles_[at(target)].share > 0.0)) roles_[at(target)].share = 1.0;
     const int leader = itself ? target : sources.front()->bus;
     for (const Source* s : sources) {
-      Role& role = roles_[place(s->bus)];
+      Role& role = roles_[at(s->bus)];
       role.target = target;
       role.leader = leader;
       role.kind = s->bus == leader ? Role::leads : Role::follows;

@@ -1,0 +1,9 @@
+#pragma once
+// The number of a bus, branch or generator as an index of a vector.
+#include <cstddef>
+
+namespace swingbank::sim::network {
+
+inline std::size_t at(int number) { return static_cast<std::size_t>(number); }
+
+}  // namespace swingbank::sim::network
