@@ -7,7 +7,6 @@
 #include "sim/network/detail/index.hpp"
 
 namespace swingbank::sim::network {
-namespace {}  // namespace
 
 Regulation::Regulation(const Network& network)
     : n_(network), base_(network.buses.size()), supply_(network.buses.size()) {

@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegreeOfPhasor = std::numbers::pi / 180;
 
 /// 1.02 pu at 10 degrees of 138 kV, 80 + j20 MW; `v`, `va`, `i`, `ia`: headings of magnitudes and angles,
 /// with the phase as {}.
@@ -43,15 +43,17 @@ std::string text_of(const Streamed& s) {
   });
   text += s.others + "\n";
   const double kv = 1.02 * 138 / std::sqrt(3.0), ka = std::hypot(80.0, 20.0) / (std::sqrt(3.0) * 1.02 * 138);
-  const double lag = std::atan2(20.0, 80.0) / kDegree;
+  const double lag = std::atan2(20.0, 80.0) / kDegreeOfPhasor;
   for (int k = 0; k < 60; ++k) {
     text += fmt::format("{:.6f}", k / 60.0);
     each([&](std::size_t p) {
       const double turn = s.order * static_cast<double>(p);
-      Complex v = std::polar(kv, (10 + turn) * kDegree) + std::polar(s.unbalance * kv, -turn * kDegree);
+      Complex v = std::polar(kv, (10 + turn) * kDegreeOfPhasor) +
+                  std::polar(s.unbalance * kv, -turn * kDegreeOfPhasor);
       if (s.between) v *= std::polar(std::sqrt(3.0), std::numbers::pi / 6);
       text += fmt::format(",{:.9f},{:.9f},{:.9f},{:.9f}", std::abs(v) * s.volts,
-                          std::arg(v) / kDegree * s.degrees, ka * s.amperes, (10 - lag + turn) * s.degrees);
+                          std::arg(v) / kDegreeOfPhasor * s.degrees, ka * s.amperes,
+                          (10 - lag + turn) * s.degrees);
     });
     for (const char c : s.others)
       if (c == ',') text += ",60";
@@ -62,13 +64,13 @@ std::string text_of(const Streamed& s) {
 void expect_sequence(const Streamed& s, const RecordBase& base = kTestBase) {
   const Record r = parse_record(text_of(s), "r.csv", base);
   expect_values(r);
-  EXPECT_NEAR(r.theta[5], 10 * kDegree, 1e-6) << s.v;
+  EXPECT_NEAR(r.theta[5], 10 * kDegreeOfPhasor, 1e-6) << s.v;
 }
 
 TEST(ThreePhasePhasors, NamesAndUnits) {
   expect_sequence({});
   expect_sequence({.others = ",freq,ROCOF"});
-  expect_sequence({.degrees = kDegree});
+  expect_sequence({.degrees = kDegreeOfPhasor});
   expect_sequence({.volts = 1, .amperes = 1});
   expect_sequence({.v = "V{}_M", .va = "V{}_A", .i = "I{}_M", .ia = "I{}_A", .phases = {"A", "B", "C"}});
   expect_sequence({.v = "Ph{} Voltage Magnitude",
@@ -104,7 +106,7 @@ TEST(ThreePhasePhasors, VoltagesBetweenPhases) {
                      .leave_out = missing};
     const Record r = parse_record(text_of(s), "r.csv", kTestBase);
     EXPECT_NEAR(r.V[5], 1.02, 1e-6);
-    EXPECT_NEAR(r.theta[5], 10 * kDegree, 1e-6);
+    EXPECT_NEAR(r.theta[5], 10 * kDegreeOfPhasor, 1e-6);
   }
 }
 TEST(ThreePhasePhasors, GiveWayToThePositiveSequence) {
