@@ -29,10 +29,10 @@ std::vector<Complex> imbalance_at(const Network& network, const std::vector<Comp
   std::vector<Complex> left(s.begin(), s.end());
   for (const Load& l : network.loads) {
     const double vm = std::abs(v[l.bus]);
-    left[at(l.bus)] += l.power + vm * (l.current + vm * l.admittance);
+    left[as_index(l.bus)] += l.power + vm * (l.current + vm * l.admittance);
   }
   for (const Generator& g : network.generators)
-    if (g.in_service) left[at(g.bus)] -= Complex(g.p, g.q);
+    if (g.in_service) left[as_index(g.bus)] -= Complex(g.p, g.q);
   return left;
 }
 
@@ -57,7 +57,7 @@ FileSolution solution_of_file(const Network& network) {
   const std::vector<Tie> all = ties(network);
   std::vector<std::vector<std::size_t>> at_bus(network.buses.size());
   for (std::size_t k = 0; k < all.size(); ++k)
-    for (const int end : {all[k].from, all[k].to}) at_bus[at(end)].push_back(k);
+    for (const int end : {all[k].from, all[k].to}) at_bus[as_index(end)].push_back(k);
   struct Step {
     int bus, other;  ///< seen from `bus`, which is nearer to the first
     std::size_t tie;
@@ -68,24 +68,24 @@ FileSolution solution_of_file(const Network& network) {
   std::iota(firsts.begin(), firsts.end(), 0);
   std::ranges::stable_partition(firsts, [&](std::size_t bus) {  // a generator balances what comes to it
     return std::ranges::any_of(network.generators,
-                               [&](const Generator& g) { return g.in_service && at(g.bus) == bus; });
+                               [&](const Generator& g) { return g.in_service && as_index(g.bus) == bus; });
   });
   for (const std::size_t first : firsts) {
     if (at_bus[first].empty() || std::exchange(known[first], 1)) continue;
     std::vector<int> way{static_cast<int>(first)};
     for (std::size_t k = 0; k < way.size(); ++k)
-      for (const std::size_t t : at_bus[at(way[k])]) {
+      for (const std::size_t t : at_bus[as_index(way[k])]) {
         const int other = all[t].from == way[k] ? all[t].to : all[t].from;
-        if (std::exchange(known[at(other)], 1)) continue;
-        out.voltage[at(other)] = all[t].to == other ? out.voltage[at(way[k])] / all[t].ratio
-                                                    : out.voltage[at(way[k])] * all[t].ratio;
+        if (std::exchange(known[as_index(other)], 1)) continue;
+        out.voltage[as_index(other)] = all[t].to == other ? out.voltage[as_index(way[k])] / all[t].ratio
+                                                          : out.voltage[as_index(way[k])] * all[t].ratio;
         way.push_back(other);
         tree.push_back({way[k], other, t});
       }
   }
   out.left = imbalance_at(network, out.voltage, TiesIn::equations);
   for (auto step = tree.rbegin(); step != tree.rend(); ++step)
-    out.left[at(step->bus)] += std::exchange(out.left[at(step->other)], Complex{});
+    out.left[as_index(step->bus)] += std::exchange(out.left[as_index(step->other)], Complex{});
   return out;
 }
 
@@ -97,10 +97,11 @@ PowerFlow flow_of_file(Network& network) {
   flow.voltage = std::move(voltage);
   std::vector<double> mva(network.buses.size());
   for (const Generator& g : network.generators)
-    if (g.in_service) mva[at(g.bus)] += g.mva;
+    if (g.in_service) mva[as_index(g.bus)] += g.mva;
   for (const Generator& g : network.generators)
-    flow.generation.push_back(g.in_service ? Complex(g.p, g.q) + left[at(g.bus)] * (g.mva / mva[at(g.bus)])
-                                           : Complex{});
+    flow.generation.push_back(g.in_service
+                                  ? Complex(g.p, g.q) + left[as_index(g.bus)] * (g.mva / mva[as_index(g.bus)])
+                                  : Complex{});
   std::vector<std::pair<double, std::size_t>> sizes;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (network.buses[i].type == BusType::isolated || mva[i] > 0.0 || left[i] == Complex{}) continue;

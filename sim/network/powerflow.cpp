@@ -29,9 +29,9 @@ Demand demand_of(const Network& n) {
   const std::size_t count = n.buses.size();
   Demand d{std::vector<Complex>(count), std::vector<Complex>(count), std::vector<Complex>(count)};
   for (const Load& l : n.loads) {
-    d.power[at(l.bus)] += l.power;
-    d.current[at(l.bus)] += l.current;
-    d.admittance[at(l.bus)] += l.admittance;
+    d.power[as_index(l.bus)] += l.power;
+    d.current[as_index(l.bus)] += l.current;
+    d.admittance[as_index(l.bus)] += l.admittance;
   }
   return d;
 }
@@ -57,10 +57,10 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
 
   const auto island = islands(n);
   std::vector<char> held(n.buses.size() + 1, 0);
-  for (const int s : slacks) held[at(island[at(s)])] = 1;
+  for (const int s : slacks) held[as_index(island[as_index(s)])] = 1;
   std::vector<int> lost;
   for (std::size_t i = 0; i < island.size(); ++i)
-    if (island[i] >= 0 && !held[at(island[i])]) lost.push_back(static_cast<int>(i));
+    if (island[i] >= 0 && !held[as_index(island[i])]) lost.push_back(static_cast<int>(i));
   if (!lost.empty())
     throw InputError({bus_list(n, lost) + (lost.size() == 1 ? " is" : " are") + " islanded", n.origin,
                       "no branch in service leads to the slack bus",
@@ -83,29 +83,30 @@ class Newton {
   void arrange(const Roles& roles) {
     roles_ = &roles;
     const int count = static_cast<int>(n_.buses.size());
-    angle_.assign(at(count), -1);
-    magnitude_.assign(at(count), -1);
-    reactive_.assign(at(count), {});
+    angle_.assign(as_index(count), -1);
+    magnitude_.assign(as_index(count), -1);
+    reactive_.assign(as_index(count), {});
     unknowns_ = 0;
     for (int i = 0; i < count; ++i) {
-      const Role& role = roles[at(i)];
+      const Role& role = roles[as_index(i)];
       if (role.kind == Role::out || role.kind == Role::slack) continue;
-      angle_[at(i)] = unknowns_++;
-      if (role.kind != Role::holds) magnitude_[at(i)] = unknowns_++;
+      angle_[as_index(i)] = unknowns_++;
+      if (role.kind != Role::holds) magnitude_[as_index(i)] = unknowns_++;
     }
     bus_unknowns_ = unknowns_;
     unknowns_ += 2 * static_cast<int>(ties_.size());
     // Which equations see the reactive power of a bus, with which factor.
     for (int i = 0; i < count; ++i) {
-      const Role& role = roles[at(i)];
-      if (role.kind == Role::load) reactive_[at(i)].push_back({magnitude_[at(i)], 1.0});
+      const Role& role = roles[as_index(i)];
+      if (role.kind == Role::load) reactive_[as_index(i)].push_back({magnitude_[as_index(i)], 1.0});
       if (role.kind != Role::follows) continue;
-      reactive_[at(i)].push_back({magnitude_[at(i)], roles[at(role.leader)].share});
-      reactive_[at(role.leader)].push_back({magnitude_[at(i)], -role.share});
+      reactive_[as_index(i)].push_back({magnitude_[as_index(i)], roles[as_index(role.leader)].share});
+      reactive_[as_index(role.leader)].push_back({magnitude_[as_index(i)], -role.share});
     }
     if (v_.size() == 0) return;
     for (int i = 0; i < count; ++i)
-      if (roles[at(i)].kind == Role::holds) v_[i] = std::polar(roles[at(i)].held, std::arg(v_[i]));
+      if (roles[as_index(i)].kind == Role::holds)
+        v_[i] = std::polar(roles[as_index(i)].held, std::arg(v_[i]));
   }
 
   /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see
@@ -157,8 +158,8 @@ class Newton {
     std::vector<std::vector<std::pair<int, double>>> next(n_.buses.size());
     for (const Branch& b : n_.branches)
       if (b.in_service) {
-        next[at(b.from)].emplace_back(b.to, -b.shift);
-        next[at(b.to)].emplace_back(b.from, b.shift);
+        next[as_index(b.from)].emplace_back(b.to, -b.shift);
+        next[as_index(b.to)].emplace_back(b.from, b.shift);
       }
     std::vector<double> angle(n_.buses.size());
     std::vector<char> known(n_.buses.size(), 0);
@@ -170,9 +171,9 @@ class Newton {
         way.push_back(static_cast<int>(i));
       }
     for (std::size_t k = 0; k < way.size(); ++k)
-      for (const auto& [to, turn] : next[at(way[k])])
-        if (!std::exchange(known[at(to)], 1)) {
-          angle[at(to)] = angle[at(way[k])] + turn;
+      for (const auto& [to, turn] : next[as_index(way[k])])
+        if (!std::exchange(known[as_index(to)], 1)) {
+          angle[as_index(to)] = angle[as_index(way[k])] + turn;
           way.push_back(to);
         }
     return angle;
@@ -187,10 +188,10 @@ class Newton {
     constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
     return std::abs(rest) <= rounding * std::abs(from) ? Complex{} : rest;
   }
-  [[nodiscard]] const Role& role(int i) const { return (*roles_)[at(i)]; }
+  [[nodiscard]] const Role& role(int i) const { return (*roles_)[as_index(i)]; }
   [[nodiscard]] Complex load(int i) const {
     const double vm = std::abs(v_[i]);
-    return in_.power[at(i)] + vm * (in_.current[at(i)] + vm * in_.admittance[at(i)]);
+    return in_.power[as_index(i)] + vm * (in_.current[as_index(i)] + vm * in_.admittance[as_index(i)]);
   }
   /// Mismatches at the present voltages; false if they are not finite any more.
   bool evaluate() {
@@ -206,16 +207,18 @@ class Newton {
     for (int i = 0; i < v_.size(); ++i) {
       if (role(i).kind == Role::out) continue;
       const Complex d = delivered(i) - role(i).generation;
-      if (angle_[at(i)] >= 0) f_[angle_[at(i)]] += d.real();
-      for (const Row& r : reactive_[at(i)]) f_[r.row] += r.factor * d.imag();
-      if (role(i).kind == Role::leads) f_[magnitude_[at(i)]] += std::abs(v_[role(i).target]) - role(i).held;
+      if (angle_[as_index(i)] >= 0) f_[angle_[as_index(i)]] += d.real();
+      for (const Row& r : reactive_[as_index(i)]) f_[r.row] += r.factor * d.imag();
+      if (role(i).kind == Role::leads)
+        f_[magnitude_[as_index(i)]] += std::abs(v_[role(i).target]) - role(i).held;
     }
     double worst = 0.0;
     int bus = -1;
     for (int i = 0; i < v_.size(); ++i) {
-      if (angle_[at(i)] < 0) continue;
-      const double size = std::max(std::abs(f_[angle_[at(i)]]),
-                                   magnitude_[at(i)] >= 0 ? std::abs(f_[magnitude_[at(i)]]) : 0.0);
+      if (angle_[as_index(i)] < 0) continue;
+      const double size =
+          std::max(std::abs(f_[angle_[as_index(i)]]),
+                   magnitude_[as_index(i)] >= 0 ? std::abs(f_[magnitude_[as_index(i)]]) : 0.0);
       if (!std::isfinite(size)) return false;
       if (bus < 0 || size > worst) {
         worst = size;
@@ -250,7 +253,7 @@ class Newton {
     for (int i = 0; i < v_.size(); ++i) {
       double meets = meeting[i];
       if (role(i).kind == Role::follows) meets += meeting[role(i).leader];
-      for (const int k : {angle_[at(i)], magnitude_[at(i)]})
+      for (const int k : {angle_[as_index(i)], magnitude_[as_index(i)]})
         if (k >= 0 && std::abs(f_[k]) > std::max(tolerance, rounding * meets)) return false;
     }
     return true;
@@ -260,8 +263,8 @@ class Newton {
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int i, int column, Complex d) {
       if (column < 0) return;
-      if (angle_[at(i)] >= 0) entries.emplace_back(angle_[at(i)], column, d.real());
-      for (const Row& r : reactive_[at(i)]) entries.emplace_back(r.row, column, r.factor * d.imag());
+      if (angle_[as_index(i)] >= 0) entries.emplace_back(angle_[as_index(i)], column, d.real());
+      for (const Row& r : reactive_[as_index(i)]) entries.emplace_back(r.row, column, r.factor * d.imag());
     };
     const Complex j1(0.0, 1.0);
     for (int j = 0; j < y_.outerSize(); ++j) {
@@ -269,15 +272,16 @@ class Newton {
       for (Eigen::SparseMatrix<Complex>::InnerIterator e(y_, j); e; ++e) {
         const int i = static_cast<int>(e.row());
         const Complex flow = v_[i] * std::conj(e.value() * v_[j]);
-        add(i, angle_[at(j)], -j1 * flow);
-        add(i, magnitude_[at(j)], flow / std::abs(v_[j]));
+        add(i, angle_[as_index(j)], -j1 * flow);
+        add(i, magnitude_[as_index(j)], flow / std::abs(v_[j]));
       }
       const double vm = std::abs(v_[j]);
       const Complex own = v_[j] * std::conj(i_[j]);
-      add(j, angle_[at(j)], j1 * own);
-      add(j, magnitude_[at(j)], own / vm + in_.current[at(j)] + 2.0 * vm * in_.admittance[at(j)]);
+      add(j, angle_[as_index(j)], j1 * own);
+      add(j, magnitude_[as_index(j)],
+          own / vm + in_.current[as_index(j)] + 2.0 * vm * in_.admittance[as_index(j)]);
       if (role(j).kind == Role::leads)
-        entries.emplace_back(magnitude_[at(j)], magnitude_[at(role(j).target)], 1.0);
+        entries.emplace_back(magnitude_[as_index(j)], magnitude_[as_index(role(j).target)], 1.0);
     }
     for (std::size_t k = 0; k < ties_.size(); ++k) {
       const Tie& tie = ties_[k];
@@ -290,8 +294,8 @@ class Newton {
       for (const bool at_from : {true, false}) {
         const int end = at_from ? tie.from : tie.to;
         const Complex v = at_from ? v_[end] / tie.ratio : -v_[end];
-        in_row(angle_[at(end)], j1 * v);
-        in_row(magnitude_[at(end)], v / std::abs(v_[end]));
+        in_row(angle_[as_index(end)], j1 * v);
+        in_row(magnitude_[as_index(end)], v / std::abs(v_[end]));
         add(end, row, v);
         add(end, row + 1, -j1 * v);
       }
@@ -309,10 +313,11 @@ class Newton {
     for (std::size_t k = 0; k < ties_.size(); ++k)
       tie_current_[k] -= share * Complex(dx[tie_row(k)], dx[tie_row(k) + 1]);
     for (int i = 0; i < v_.size(); ++i) {
-      if (angle_[at(i)] < 0) continue;
-      const double vm = std::abs(v_[i]) - (magnitude_[at(i)] >= 0 ? share * dx[magnitude_[at(i)]] : 0.0);
+      if (angle_[as_index(i)] < 0) continue;
+      const double vm =
+          std::abs(v_[i]) - (magnitude_[as_index(i)] >= 0 ? share * dx[magnitude_[as_index(i)]] : 0.0);
       v_[i] = (role(i).kind == Role::holds ? role(i).held : vm) *
-              std::polar(1.0, std::arg(v_[i]) - share * dx[angle_[at(i)]]);
+              std::polar(1.0, std::arg(v_[i]) - share * dx[angle_[as_index(i)]]);
     }
     return true;
   }
@@ -389,7 +394,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
       units.push_back(k);
       mva += n.generators[k].mva;
     }
-  const bool slack = n.buses[at(bus)].type == BusType::slack;
+  const bool slack = n.buses[as_index(bus)].type == BusType::slack;
   share_freely(n, units, mva, power, generation);
   if (!slack)
     for (const std::size_t k : units) generation[k] = {n.generators[k].p, generation[k].imag()};
@@ -430,7 +435,7 @@ PowerFlow result_of(const Newton& newton, const Network& network, const PowerFlo
   flow.generation.assign(network.generators.size(), {});
   std::vector<char> done(network.buses.size(), 0);
   for (const Generator& g : network.generators)
-    if (g.in_service && !std::exchange(done[at(g.bus)], 1))
+    if (g.in_service && !std::exchange(done[as_index(g.bus)], 1))
       share_out(network, g.bus, newton.delivered(g.bus), options, flow.generation);
   return flow;
 }

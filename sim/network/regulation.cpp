@@ -17,15 +17,16 @@ Regulation::Regulation(const Network& network)
   std::map<int, std::size_t> source_of;
   for (const Generator& g : n_.generators) {
     if (!g.in_service) continue;
-    supply_[at(g.bus)] += g.mva;
-    base_[at(g.bus)].generation += Complex(g.p, 0.0);
-    if (n_.buses[at(g.bus)].type == BusType::load) {
-      base_[at(g.bus)].generation += Complex(0.0, g.q);
+    supply_[as_index(g.bus)] += g.mva;
+    base_[as_index(g.bus)].generation += Complex(g.p, 0.0);
+    if (n_.buses[as_index(g.bus)].type == BusType::load) {
+      base_[as_index(g.bus)].generation += Complex(0.0, g.q);
       continue;
     }
-    const bool remote = g.regulated >= 0 && g.regulated != g.bus && base_[at(g.regulated)].kind != Role::out;
-    if (base_[at(g.bus)].kind == Role::slack)
-      base_[at(g.bus)].held = remote ? n_.buses[at(g.bus)].vm : g.vset;
+    const bool remote =
+        g.regulated >= 0 && g.regulated != g.bus && base_[as_index(g.regulated)].kind != Role::out;
+    if (base_[as_index(g.bus)].kind == Role::slack)
+      base_[as_index(g.bus)].held = remote ? n_.buses[as_index(g.bus)].vm : g.vset;
     const auto [found, fresh] = source_of.emplace(g.bus, sources_.size());
     if (fresh) sources_.push_back({g.bus, remote ? g.regulated : g.bus, g.vset});
     Source& source = sources_[found->second];
@@ -35,8 +36,8 @@ Regulation::Regulation(const Network& network)
     source.q_max += g.q_max;
   }
   for (Source& source : sources_) {
-    source.bounded = source.q_min <= source.q_max && base_[at(source.bus)].kind != Role::slack;
-    if (!(source.share > 0.0)) source.share = supply_[at(source.bus)];
+    source.bounded = source.q_min <= source.q_max && base_[as_index(source.bus)].kind != Role::slack;
+    if (!(source.share > 0.0)) source.share = supply_[as_index(source.bus)];
   }
   assign();
 }
@@ -45,7 +46,7 @@ void Regulation::assign() {
   roles_ = base_;
   std::map<int, std::vector<const Source*>> held_by;
   for (const Source& s : sources_) {
-    Role& role = roles_[at(s.bus)];
+    Role& role = roles_[as_index(s.bus)];
     if (role.kind == Role::slack) continue;
     role.share = s.share;
     role.held = s.held;
@@ -57,12 +58,12 @@ void Regulation::assign() {
       held_by[s.target].push_back(&s);
   }
   for (const auto& [target, sources] : held_by) {
-    const Role::Kind kind = roles_[at(target)].kind;
+    const Role::Kind kind = roles_[as_index(target)].kind;
     const bool itself = kind == Role::slack || kind == Role::holds;
-    if (kind == Role::slack && !(roles_[at(target)].share > 0.0)) roles_[at(target)].share = 1.0;
+    if (kind == Role::slack && !(roles_[as_index(target)].share > 0.0)) roles_[as_index(target)].share = 1.0;
     const int leader = itself ? target : sources.front()->bus;
     for (const Source* s : sources) {
-      Role& role = roles_[at(s->bus)];
+      Role& role = roles_[as_index(s->bus)];
       role.target = target;
       role.leader = leader;
       role.kind = s->bus == leader ? Role::leads : Role::follows;

@@ -4,6 +4,6 @@
 
 namespace swingbank::sim::network {
 
-inline std::size_t at(int number) { return static_cast<std::size_t>(number); }
+inline std::size_t as_index(int number) { return static_cast<std::size_t>(number); }
 
 }  // namespace swingbank::sim::network
