@@ -17,7 +17,7 @@ interrupted() {
   pid=$!
   for _ in $(seq 6000); do
     if [[ $(readlink "/proc/$pid/exe") == *swingbank-* ]] && grep -q "SigCgt:.*[2367abef]$" "/proc/$pid/status" 2>/dev/null &&
-      grep -q -- "$words" stderr; then break; fi
+      { [[ -z $words ]] || grep -q -- "$words" stderr; }; then break; fi
     sleep 0.01
   done
   kill -INT $pid

@@ -36,6 +36,11 @@ network::Network random_network(double base, unsigned seed) {
   std::uniform_real_distribution<double> decade(-9.0, 4.0);
   const auto any = [&] { return value(random) * std::pow(10.0, decade(random)); };
   const auto positive = [&] { return std::abs(any()) + 1e-12; };
+  // Above the least impedance of a branch (sim/network/tie.hpp), which reading would mend.
+  const auto reactance = [&] {
+    const double x = any();
+    return x + std::copysign(1e-5, x);
+  };
   network::Network n;
   n.title = "random\nnumbers, 'quoted'";
   n.base_mva = base;
@@ -52,15 +57,24 @@ network::Network random_network(double base, unsigned seed) {
     const auto [q_min, q_max] = std::minmax({any(), any()});
     n.generators.push_back({i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 1, q_min,
                             q_max, positive(), positive(), i % 6 == 2 ? (i + 3) % 40 : -1, positive()});
-    n.branches.push_back(
-        {i, (i + 1) % 40, "C", any(), any(), any(), 1.0, 0.0, {any(), any()}, {any(), any()}, i % 4 != 1});
+    n.branches.push_back({i,
+                          (i + 1) % 40,
+                          "C",
+                          any(),
+                          reactance(),
+                          any(),
+                          1.0,
+                          0.0,
+                          {any(), any()},
+                          {any(), any()},
+                          i % 4 != 1});
   }
   for (int i = 0; i < 40; ++i)
     n.branches.push_back({i,
                           (i + 7) % 40,
                           "T",
                           any(),
-                          any(),
+                          reactance(),
                           0.0,
                           positive(),
                           value(random),
