@@ -66,7 +66,8 @@ FileSolution solution_of_file(const Network& network) {
   std::vector<char> known(network.buses.size(), 0);
   std::vector<std::size_t> firsts(network.buses.size());
   std::iota(firsts.begin(), firsts.end(), 0);
-  std::ranges::stable_partition(firsts, [&](std::size_t bus) {  // a generator balances what comes to it
+  // a generator balances what comes to it
+  std::stable_partition(firsts.begin(), firsts.end(), [&](std::size_t bus) {
     return std::ranges::any_of(network.generators,
                                [&](const Generator& g) { return g.in_service && as_index(g.bus) == bus; });
   });

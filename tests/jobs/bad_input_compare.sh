@@ -38,8 +38,9 @@ leaves_nothing "$out"
 disk "$work/full" 64k
 out=$work/full
 refuses "full disk" "$work/full" compare "$model" "$record"
-# A curve that was complete may stay; the report must not be there, nor anything begun.
-left=$(find "$work/full" -type f ! -name 'playback-*.csv')
+# A curve that was complete may stay, with the list by which the next run removes it; the report must not be there, nor
+# anything begun.
+left=$(find "$work/full" -type f ! -name 'playback-*.csv' ! -name '.swingbank-compare')
 [[ -z $left ]] || fail "left behind: $left"
 out=$model/report
 refuses "file in place of a folder" "$model" compare "$model" "$record"

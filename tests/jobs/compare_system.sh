@@ -10,7 +10,7 @@ code=0
   --json >"$work/printed.json" || code=$?
 ((code == 3)) || fail "exit code $code of a grid without the exciter"
 cmp "$work/printed.json" "$work/example/compare.json" || fail "--json prints something else than it writes"
-[[ $(find "$work/example" -type f | wc -l) == 3 ]] || fail "report.html, compare.json and one terminal's curves expected"
+[[ $(find "$work/example" -type f ! -name '.*' | wc -l) == 3 ]] || fail "report.html, compare.json and one terminal's curves expected"
 /usr/bin/python3 - "$work/printed.json" <<'PYTHON'
 import json, sys
 r = json.load(open(sys.argv[1]))

@@ -20,7 +20,7 @@ assert [e["switchings_found"] for e in events] == [False, True]
 assert json.load(open(sys.argv[1]))["adequate"] is False
 assert [s["t_s"] for s in events[0]["switchings"]] == [2.0, 2.1]
 PYTHON
-[[ $(find "$work/report" -type f | wc -l) == 4 ]] || fail "report.html, compare.json and two curves expected"
+[[ $(find "$work/report" -type f ! -name '.*' | wc -l) == 4 ]] || fail "report.html, compare.json and two curves expected"
 
 # refuses WORDS... : exit code 1, a sentence that holds the first argument, no file
 refuses() {

@@ -353,9 +353,9 @@ TEST_F(SystemCompare, BadInputIsNamed) {
     EXPECT_THAT(test::messages([&, &change = change] { load_system(system(change.first, change.second)); }),
                 Contains(HasSubstr(words)))
         << change.first;
-  // before the record begins, and with nothing before it
+  // before the run begins, and with nothing before it
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:-1:2.1"))); }),
-              Contains(HasSubstr("its record begins at 0 s")));
+              Contains(HasSubstr("a run starts at 0 s")));
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:0.01:2.1"))); }),
               Contains(HasSubstr("samples before the event")));
 }

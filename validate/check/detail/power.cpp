@@ -32,9 +32,10 @@ std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plan
 }
 
 std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant, Complex power) {
-  constexpr double kMost = 1.6, kNoSlip = 100;  // pu of the machine; slips of units are by a thousand
+  constexpr double kLargestMachinePower = 1.6,
+                   kNoSlip = 100;  // pu of the machine; slips of units are by a thousand
   const double on_machine = std::abs(power) * (plant.mva > 0 ? r.base.mva / plant.mva : 1.0);
-  if (on_machine <= kMost) return std::nullopt;
+  if (on_machine <= kLargestMachinePower) return std::nullopt;
   if (!r.per_unit_power && plant.mva > 0 && on_machine < kNoSlip) {
     const double mw = power.real() * r.base.mva;
     const bool systems = near(plant.mva, r.base.mva, 1e-9);

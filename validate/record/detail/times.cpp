@@ -220,12 +220,26 @@ class Grid {
   std::vector<std::size_t> twice_, stuck_, off_;
 };
 
+/// Whether more than a fifth of the steps are a tenth off the usual one.
+bool differ(const std::vector<double>& steps) {
+  const double usual = upper_median(steps);
+  const auto off = std::ranges::count_if(steps, [&](double s) { return std::abs(s - usual) > 0.1 * usual; });
+  return 5 * static_cast<std::size_t>(off) > steps.size();
+}
+
 /// Rows that repeat the time of the row before: how many, the first, and the most in a row.
 struct StandingClock {
   std::size_t rows = 0, first = 0, longest = 0;
+  /// The steps between times that differ are alike. A simulation's are not, and it repeats a time at an
+  /// event.
+  bool even = true;
 };
 StandingClock standing(const std::vector<double>& t) {
   StandingClock found;
+  std::vector<double> apart;
+  for (const double step : steps_of(t))
+    if (step > 0) apart.push_back(step);
+  found.even = apart.empty() || !differ(apart);
   std::size_t run = 0;
   for (std::size_t k = 1; k < t.size(); ++k) {
     run = t[k] == t[k - 1] ? run + 1 : 0;
@@ -235,13 +249,10 @@ StandingClock standing(const std::vector<double>& t) {
   return found;
 }
 
-/// Do many steps differ, as where a simulation chose them?
+/// Whether many steps differ, as where a simulation chose them.
 bool varies(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
-  if (std::ranges::any_of(steps, [](double s) { return s < 0; })) return false;
-  const double usual = upper_median(steps);
-  const auto off = std::ranges::count_if(steps, [&](double s) { return std::abs(s - usual) > 0.1 * usual; });
-  return 5 * static_cast<std::size_t>(off) > steps.size();
+  return std::ranges::none_of(steps, [](double s) { return s < 0; }) && differ(steps);
 }
 
 /// The rows at even instants by straight lines, as a playback of them is meant. None where they run
@@ -253,8 +264,8 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   const double length = t.back() - t.front();
   if (!(length > 0) || std::ranges::any_of(steps, [](double s) { return s < 0; })) return std::nullopt;
   const StandingClock clock = standing(t);
-  if (clock.longest >= kMostAtOneTime ||
-      static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size()))
+  if (clock.even && (clock.longest >= kMostAtOneTime ||
+                     static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size())))
     return std::nullopt;
   const auto apart = static_cast<double>(std::ranges::count_if(steps, [](double s) { return s > 1e-6; }));
   // A step stands at a time that is there twice: it needs closer samples than what moves slowly.
@@ -284,7 +295,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
 bool tell_standing(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const StandingClock clock = standing(t);
-  if (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size()) return false;
+  if (!clock.even || (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size())) return false;
   const double length = t.back() - t.front();
   // Rounding makes groups of equal times all along; a clock that stands makes one.
   const auto apart = static_cast<double>(t.size() - clock.rows);
