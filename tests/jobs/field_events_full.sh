@@ -86,7 +86,7 @@ awk -F, -v OFS=, 'NR > 1 { $4 *= 2; $5 *= 2 } { print }' "$work/fault15.csv" >"$
 cp "$work/plant.toml" "$work/twin.toml"
 printf '[[unit]]\nmodel = "plant.toml"\n[[unit]]\nmodel = "twin.toml"\nshare = 0.5\n' >"$work/point.toml"
 right both --point "$work/point.toml"
-refuses "two units taken for one" "pu of the machine's 800 MVA before the event" "$swingbank" compare \
+refuses "two units taken for one" "is 1.6 times base_mva = 800" "$swingbank" compare \
   --model "$work/plant.toml" --records "$work/both.csv" --out "$work/out"
 mapfile -t steps < <(load_steps 300 600 4 4)
 simulated ten 600 30 --trip-generator 38:300:0.3 "${steps[@]}"
