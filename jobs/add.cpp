@@ -61,7 +61,7 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
   std::vector<compare::Played> both = {
       compare::play_and_judge("submitted", before, shown, options, a.judging.by),
       compare::play_and_judge("completed", after, shown, options, a.judging.by)};
-  catch_stop_signals();  // what is left to do is written in any case
+  catch_stop_signals();  // results are written even after a stop signal
   return both;
 }
 

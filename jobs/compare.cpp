@@ -48,7 +48,7 @@ int run_system(const Command& c) {
   for (const auto& terminal : system.terminals) names.push_back("curves-" + terminal.record.name + ".csv");
   OutputFolder results(c.out, "compare", names);
   const system::SystemComparison compared = system::compare_system(system);
-  catch_stop_signals();  // what is left to do is written in any case
+  catch_stop_signals();  // results are written even after a stop signal
   const report::Provenance rows = system::system_provenance(system, c.line);
   const std::string result = system::system_json(system, compared, rows);
   const auto page = results.file(kPage);
@@ -119,7 +119,7 @@ int run(Command& c) {
     if (events.empty()) throw;
     return write_interrupted(c, results, records.size(), events);
   }
-  catch_stop_signals();  // what is left to do is written in any case
+  catch_stop_signals();  // results are written even after a stop signal
   const compare::Adequacy adequacy = compare::judge(events);
   const compare::Fitness fitness = compare::judge_fitness(events, model.plant.mva, c.judging.by);
   report::Provenance rows = compare::provenance(model, events, c.line);

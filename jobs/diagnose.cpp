@@ -46,7 +46,7 @@ int run(const std::string& model_file, const std::vector<std::string>& record_fi
   compare::CompareOptions playing;
   playing.progress = options.progress;
   const auto played = diagnose::play_models(model, d, judging.by, playing);
-  catch_stop_signals();  // what is left to do is written in any case
+  catch_stop_signals();  // results are written even after a stop signal
   report::Provenance provenance = diagnose::diagnosis_provenance(model, d, command_line);
   for (std::size_t k = 0; k < set.records.size(); ++k) {
     const record::Record& r = set.records[k];

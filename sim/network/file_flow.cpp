@@ -44,10 +44,9 @@ std::vector<Complex> imbalance_of_file(const Network& network) {
 
 namespace {
 
-/// Voltages and what they leave over at every bus. The voltages of a file have too few digits for the current
-/// of a tie: of buses that ties join, the first one, with a generator where one has, keeps the file's
-/// voltage; the others have the voltage that follows from it, and the ties carry to it what is left over at
-/// the others.
+/// Voltages, and the power mismatch at every bus. The voltages of a file have too few digits for the current
+/// of a tie. Of the buses that ties join, one keeps the file's voltage: one with a generator if there is any.
+/// The voltages of the others follow from it, and the ties carry their mismatch to it.
 struct FileSolution {
   std::vector<Complex> voltage, left;
 };

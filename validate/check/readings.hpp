@@ -1,6 +1,7 @@
 #pragma once
-// Readings of a record that the model tells apart: the angle mirrored, P and Q late, of one phase, with other
-// signs. Each is played into the model; one that fits much better is reported, and the record stays as it is.
+// Readings of a record that playback distinguishes: the angle mirrored, P and Q late, of one phase, with
+// other signs. Each is played into the model; one that fits much better is reported, and the record stays as
+// it is.
 #include <optional>
 
 #include "validate/check/check.hpp"

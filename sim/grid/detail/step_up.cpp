@@ -41,7 +41,7 @@ bool on_the_way(const StepUp& way, std::size_t branch) {
                              [&](const auto& stage) { return std::ranges::count(stage, branch) > 0; });
 }
 
-/// What stands at a bus beside branches: "" for nothing.
+/// Names the equipment at a bus other than branches; "" for none.
 std::string equipment_at(const network::Network& n, int bus) {
   for (const network::Generator& g : n.generators)
     if (g.bus == bus && g.in_service) return "generator '" + g.id + "'";

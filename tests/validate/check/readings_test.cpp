@@ -1,4 +1,4 @@
-// Records that are read otherwise than they are meant, told by the model; and those held against the case.
+// Records with wrong signs, delays or phases, found by playback; records compared with the case's dispatch.
 #include "validate/check/readings.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Time columns: units, clocks that count from a known instant, stamps in many forms, and clocks that cannot
+// Time columns: units, clocks that count from a known date, stamps in many forms, and clocks that cannot
 // be used.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

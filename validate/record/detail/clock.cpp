@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDay = 86400;
 
-/// Values of clocks that count from a known instant.
+/// Values of clocks that count from a known date.
 struct Clock {
   double from, until;  ///< values between 1985 and 2128, of ticks and days between 1982 and 2100
   Unit unit;

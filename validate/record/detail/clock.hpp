@@ -6,7 +6,7 @@ namespace swingbank::validate::record {
 
 /// Gives the time column a unit where its heading names none: its values are seconds, milliseconds,
 /// microseconds or nanoseconds since 1970, days of a spreadsheet (since 1899-12-30) or of MATLAB (since year
-/// 0), or seconds from any instant. Days count from the first sample afterwards. What was decided is noted.
+/// 0), or seconds from any time. Days count from the first sample afterwards. What was decided is noted.
 void settle_clock(RawRecord& raw);
 
 /// Adds a problem where the steps [s] are too long for any swing, or a record in ms or less is too short: the

@@ -195,7 +195,7 @@ class Combination {
   RawRecord& raw_;
   const RecordBase& base_;
   const std::string& file_;
-  std::optional<Unit> of_voltage_;  ///< where its values told it
+  std::optional<Unit> of_voltage_;  ///< where the values settled it
 };
 
 }  // namespace
