@@ -93,6 +93,11 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
   const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
   const double step = usual_step(t);
   if (!(step > 0)) return false;
+  // Where most samples share a time, these were rounded or the clock stopped, which settle_rows reports:
+  // their steps are not those of the samples.
+  std::size_t repeated = 0;
+  for (std::size_t k = 1; k < t.size(); ++k) repeated += t[k] == t[k - 1];
+  if (2 * repeated > t.size()) return false;
   if (step > (options.component == Component::governor ? kSlowestGovernor : kSlowest)) {
     struct Smaller {
       double factor;
