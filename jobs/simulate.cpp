@@ -39,7 +39,7 @@ struct Options {
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
   bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
-  std::string complete_records = "no", devices = "checked";
+  std::string complete_records = "no", devices = "checked", repeated = "refuse";
   int raw_version = 0;
   std::string start = "solved", q_limits = "enforce", switched_shunts = "fixed";
   std::filesystem::path changes;
@@ -276,7 +276,10 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   all.complete_records = o.complete_records == "zero"       ? grid::Lacking::zero
                          : o.complete_records == "standard" ? grid::Lacking::standard
                                                             : grid::Lacking::refused;
-  all.drop_refused = all.raw.drop_repeated = o.drop_refused;
+  all.drop_refused = all.raw.drop_refused = o.drop_refused;
+  all.raw.repeated = o.repeated == "keep"       ? formats::Repeated::kept
+                     : o.repeated == "voltages" ? formats::Repeated::voltages
+                                                : formats::Repeated::refused;
   all.net_generators = o.net_generators;
   all.start_from_file = o.start == "file";
   all.flow.reactive_limits = o.q_limits == "enforce";
@@ -392,7 +395,13 @@ int main(int argc, char** argv) {
       .shows_default();
   line.add_flag("--drop-refused", o.drop_refused,
                 "records of the .dyr whose values their model cannot take are left out, and equipment of the "
-                ".raw that appears a second time; each is named");
+                "network that appears a second time or at a bus that is missing; each is named");
+  line.add(
+          "--repeated", o.repeated,
+          "equipment of the network that appears a second time: refused, kept under a new id (keep), or kept "
+          "only where the file's voltages show it (voltages)")
+      .one_of({"refuse", "keep", "voltages"})
+      .shows_default();
   line.add("--devices", o.devices,
            "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
            "these are a solution (checked) or whatever they are (file), or nothing (none)")

@@ -139,6 +139,7 @@ CaseConfig read_mend(Config& c) {
   mend.start_from_file = c.choice("start", {"solved", "file"}, "solved") == "file";
   mend.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce") == "enforce";
   mend.drop_refused = c.optional<bool>("drop_refused", false);
+  mend.repeated = c.choice("repeated", {"refuse", "keep", "voltages"}, "refuse");
   mend.complete_records = c.choice("complete_records", {"no", "zero", "standard"}, "no");
   mend.devices = c.choice("devices", {"checked", "file", "none"}, "checked");
   return mend;
@@ -319,6 +320,7 @@ std::string DatasetConfig::canonical() const {
   if (mend.start_from_file) line("start", "file");
   if (!mend.reactive_limits) line("q_limits", "ignore");
   if (mend.drop_refused) line("drop_refused", true);
+  if (mend.repeated != "refuse") line("repeated", mend.repeated);
   if (mend.complete_records != "no") line("complete_records", mend.complete_records);
   if (mend.devices != "checked") line("devices", mend.devices);
   for (const auto& a : attachments) line("attach", written(a));

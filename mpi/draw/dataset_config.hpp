@@ -71,7 +71,7 @@ struct CaseConfig {
   int raw_version = 0;
   bool net_generators = false, widen_limits = false;
   bool start_from_file = false, reactive_limits = true, drop_refused = false;
-  std::string complete_records = "no", devices = "checked";
+  std::string complete_records = "no", devices = "checked", repeated = "refuse";
 };
 
 /// What the command line replaces.

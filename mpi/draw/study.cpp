@@ -30,7 +30,10 @@ sim::grid::CaseOptions case_options(const DatasetConfig& config) {
   options.complete_records = mend.complete_records == "zero"       ? Lacking::zero
                              : mend.complete_records == "standard" ? Lacking::standard
                                                                    : Lacking::refused;
-  options.drop_refused = options.raw.drop_repeated = mend.drop_refused;
+  options.drop_refused = options.raw.drop_refused = mend.drop_refused;
+  options.raw.repeated = mend.repeated == "keep"       ? sim::formats::Repeated::kept
+                         : mend.repeated == "voltages" ? sim::formats::Repeated::voltages
+                                                       : sim::formats::Repeated::refused;
   options.start_from_file = mend.start_from_file;
   options.flow.reactive_limits = mend.reactive_limits;
   return options;

@@ -125,6 +125,7 @@ void EpcReader::divide() {
 void EpcReader::rows(const char* name, Reads take) {
   for (const Section& s : sections_) {
     if (s.name != name) continue;
+    section_ = name;
     int count = 0;
     for (std::size_t at = s.first; at < s.last;) {
       if (pslf::says_nothing(lines_[at])) {
@@ -200,31 +201,11 @@ void EpcReader::finish() {
   network::isolate_idle_stars(network_, stars_);
   network::check_finite(network_, file_, problems_);
   if (!problems_.empty()) return;
-  if (!devices_.empty()) network::settle_stars(network_, stars_);
+  if (!devices_.empty() || !identities_.kept().empty()) network::settle_stars(network_, stars_);
+  network::settle_duplicates(network_, identities_.kept(), options_.repeated == Repeated::voltages, devices_);
   network::stand_in(network_, devices_, options_.devices, problems_);
   network::settle_generators(network_, [&](std::size_t i) { return place(generator_line_[i]); });
   network::settle_islands(network_);
-}
-
-int EpcReader::find_bus(int number, const psse::Fields& fields) {
-  const auto found = index_.find(number);
-  if (found != index_.end()) return found->second;
-  problems_.add("bus " + std::to_string(number) + " is not in the bus section", fields.where(),
-                "the record refers to it", "add the bus or correct the number");
-  return -1;
-}
-
-bool EpcReader::once(const std::string& identity, const psse::Fields& fields) {
-  const auto [found, fresh] = seen_.emplace(identity, fields.line());
-  if (fresh) return true;
-  const std::string first = "already on line " + std::to_string(found->second);
-  if (options_.drop_repeated)
-    network_.remark("equipment that appears a second time is left out, as asked",
-                    identity + " (" + fields.where() + ", " + first + ")");
-  else
-    problems_.add(identity + " appears twice", fields.where(), "it is " + first,
-                  "remove one, give it another id, or leave the later one out with --drop-refused");
-  return !options_.drop_repeated;
 }
 
 bool EpcReader::status(psse::Fields& f) {

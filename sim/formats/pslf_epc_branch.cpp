@@ -105,16 +105,19 @@ void EpcReader::branch(const Row& row) {
   const int from = of.integer(0, "from bus"), to = of.integer(3, "to bus");
   b.from = find_bus(from, of);
   b.to = find_bus(to, of);
-  b.circuit = id_of(of, 6);
   const int section = std::max(of.integer(7, "se", 1), 1);
   const auto value = [&](std::size_t i, const char* name) { return static_cast<double>(f.number(i, name)); };
   b.in_service = status(f);
   b.r = value(1, "resist");
   b.x = value(2, "react");
   b.b = value(3, "charge");
-  const std::string name = "branch " + ends_text(std::min(from, to), std::max(from, to)) + " circuit '" +
-                           b.circuit + "'" + (section > 1 ? " section " + std::to_string(section) : "");
-  if (!once(name, of)) return;
+  const std::string ends = "branch " + ends_text(std::min(from, to), std::max(from, to)) + " circuit",
+                    part = section > 1 ? " section " + std::to_string(section) : "";
+  const auto circuit =
+      identities_.id({network::Duplicate::Kind::branch, {from, to}}, ends, id_of(of, 6), part, of);
+  if (!circuit) return;
+  b.circuit = *circuit;
+  const std::string name = ends + " '" + b.circuit + "'" + part;
   const std::size_t second = row.starts.empty() ? 10 : row.starts[0];  // ar zone trangi tap_f tap_t ... ohm
   for (const std::size_t i : {second + 3, second + 4})
     if (const long double tap = f.number(i, "tap", 0.0L); tap != 0 && tap != 1)
@@ -174,10 +177,12 @@ void EpcReader::transformer(const Row& row) {
   const bool on = status(f);
   std::string identity = "transformer " + ends_text(from, to);
   if (tertiary > 0) identity += "-" + std::to_string(tertiary);
-  const std::string circuit = id_of(of, 6);
   if (tertiary <= 0)  // lines and transformers of two windings share their circuits
     identity = "branch " + ends_text(std::min(from, to), std::max(from, to));
-  if (!once(identity + " circuit '" + circuit + "'", of)) return;
+  network::Duplicate itself{network::Duplicate::Kind::branch, {from, to}};
+  if (tertiary > 0) itself.buses.push_back(tertiary);
+  const auto circuit = identities_.id(itself, identity + " circuit", id_of(of, 6), "", of);
+  if (!circuit) return;
   if (table > 0)
     network_.remark("impedance correction of transformers is left out",
                     ends_text(from, to) + ", table " + std::to_string(table) + " (" + of.where() + ")");
@@ -189,17 +194,17 @@ void EpcReader::transformer(const Row& row) {
                   "correct the bus numbers");
   if (ends[0] < 0 || ends[1] < 0 || (tertiary > 0 && ends[2] < 0)) return;
   if (tertiary > 0)
-    three_windings(of, f, ends, on);
+    three_windings(*circuit, f, ends, on);
   else
-    two_windings(of, f, ends[0], ends[1], on);
+    two_windings(*circuit, f, ends[0], ends[1], on);
 }
 
-void EpcReader::two_windings(Fields& of, Fields& f, int from, int to, bool on) {
+void EpcReader::two_windings(const std::string& circuit, Fields& f, int from, int to, bool on) {
   network::Branch b{};
   b.transformer = true;
   b.from = from;
   b.to = to;
-  b.circuit = id_of(of, 6);
+  b.circuit = circuit;
   b.in_service = on;
   const Impedance z = pair_impedance(f, kPsR, "ps_r", "ps_x", f.number(kTbase, "tbase"), base_, problems_);
   const long double t1 = primary(f, at(from).kv, problems_),
@@ -230,8 +235,8 @@ int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const st
   return index;
 }
 
-void EpcReader::three_windings(Fields& of, Fields& f, const std::array<int, 3>& ends, bool on) {
-  const std::string circuit = id_of(of, 6);
+void EpcReader::three_windings(const std::string& circuit, Fields& f, const std::array<int, 3>& ends,
+                               bool on) {
   const long double tbase = f.number(kTbase, "tbase"), own_pt = f.number(kTbasePt, "tbasept", 0.0L),
                     own_ts = f.number(kTbaseTs, "tbasets", 0.0L);
   const Impedance ps = pair_impedance(f, kPsR, "ps_r", "ps_x", tbase, base_, problems_),

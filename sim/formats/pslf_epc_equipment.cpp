@@ -22,7 +22,7 @@ void EpcReader::bus(const Row& row) {
   b.area = f.integer(4, "ar", 1);
   b.zone = f.integer(5, "zone", 1);
   b.owner = f.integer(12, "own", 1);
-  if (!once("bus " + std::to_string(b.number), of)) return;
+  if (!identities_.once("bus " + std::to_string(b.number), of)) return;
   const std::string where = "bus " + std::to_string(b.number) + " (" + of.where() + ")";
   if (b.number <= 0)
     problems_.add("bus number " + std::to_string(b.number), of.where(), "numbers are positive",
@@ -51,9 +51,12 @@ void EpcReader::bus(const Row& row) {
 void EpcReader::load(const Row& row) {
   Fields of(row.of, file_, problems_), f(row.says, file_, problems_);
   network::Load l{};
-  l.bus = find_bus(of.integer(0, "bus number"), of);
-  l.id = id_of(of, 3);
-  if (!once("load '" + l.id + "' at bus " + of.text(0, ""), of)) return;
+  const int number = of.integer(0, "bus number");
+  l.bus = find_bus(number, of);
+  const auto id = identities_.id({network::Duplicate::Kind::load, {number}}, "load", id_of(of, 3),
+                                 " at bus " + of.text(0, ""), of);
+  if (!id) return;
+  l.id = *id;
   const bool on = status(f);
   const auto mw = [&](std::size_t i, const char* name) { return pu(f.number(i, name, 0.0L)); };
   l.power = {mw(1, "mw"), mw(2, "mvar")};
@@ -71,15 +74,20 @@ void EpcReader::shunt(const Row& row) {
   network::Shunt s{};
   const int number = of.integer(0, "bus number");
   s.bus = find_bus(number, of);
-  s.id = id_of(of, 3);
   const bool on = status(f);
   s.admittance = {static_cast<double>(f.number(3, "pu_mw")), static_cast<double>(f.number(4, "pu_mvar"))};
   const int far = of.size() > 6 ? of.integer(4, "far bus", 0) : 0;
-  if (!once("shunt '" + s.id + "' at bus " + std::to_string(number) +
-                (far > 0 ? " of the branch to bus " + std::to_string(far) + " circuit '" + id_of(of, 7) + "'"
-                         : ""),
-            of))
+  const std::string at_branch =
+      far > 0 ? " of the branch to bus " + std::to_string(far) + " circuit '" + id_of(of, 7) + "'" : "";
+  if (far > 0) {  // its id names its end of the branch, so there is no other for it
+    if (!identities_.once("shunt '" + id_of(of, 3) + "' at bus " + std::to_string(number) + at_branch, of))
+      return;
+  } else if (const auto id = identities_.id({network::Duplicate::Kind::shunt, {number}}, "shunt",
+                                            id_of(of, 3), " at bus " + std::to_string(number), of)) {
+    s.id = *id;
+  } else {
     return;
+  }
   if (!on || s.bus < 0) return;
   if (far > 0)
     line_shunt(of, f, s.admittance);
@@ -120,14 +128,14 @@ void EpcReader::svd(const Row& row) {
   const bool on = status(f);
   const int type = f.integer(1, "ty"), regulated = f.integer(2, "regulated bus", 0);
   s.admittance = {static_cast<double>(f.number(7, "g")), static_cast<double>(f.number(8, "b"))};
-  if (!once("svd '" + id + "' at bus " + std::to_string(number), of)) return;
+  if (!identities_.once("svd '" + id + "' at bus " + std::to_string(number), of)) return;
   if (!on || s.bus < 0) return;
   s.id = id == "1" ? "SW" : "SW" + id;
   while (std::ranges::any_of(network_.shunts,
                              [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
     s.id += "+";
   if (type == 1)
-    steps_of(row, s, regulated > 0 ? find_bus(regulated, f) : s.bus, f);
+    steps_of(row, s, regulated, f);
   else if (type != 0)
     network_.remark("controlled shunts (svd) that do not step stay at b",
                     "bus " + std::to_string(number) + " (" + of.where() + ")");
@@ -141,7 +149,14 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
   const std::size_t first = row.starts.empty() ? columns : row.starts[0];
   const double band = std::abs(static_cast<double>(f.number(11, "vband", 0.0L)));
   double inductive = 0.0, capacitive = 0.0;
-  network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), regulated, 0.0, 0.0, {0.0}};
+  int held_bus = shunt.bus;
+  if (const auto found = index_.find(regulated); found != index_.end())
+    held_bus = found->second;
+  else if (regulated > 0)
+    network_.remark("switched shunts that hold a bus that is not there hold their own",
+                    "bus " + std::to_string(at(shunt.bus).number) + ": regulated bus " +
+                        std::to_string(regulated) + " (" + f.where() + ")");
+  network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), held_bus, 0.0, 0.0, {0.0}};
   for (std::size_t k = 0; k < blocks; ++k) {
     const int steps = f.integer(first + 2 * k, "n", 0);
     const double each = static_cast<double>(f.number(first + 2 * k + 1, "b of a step", 0.0L));
@@ -152,8 +167,8 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
     for (int i = 0; i < std::min(steps, most) && each != 0.0; ++i)
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
   }
-  if (s.steps.size() == 1 || regulated < 0) return;  // there is nothing to switch
-  const double held = vsched_[static_cast<std::size_t>(regulated)];
+  if (s.steps.size() == 1) return;  // there is nothing to switch
+  const double held = vsched_[static_cast<std::size_t>(held_bus)];
   s.least = held - band;
   s.most = held + band;
   std::ranges::sort(s.steps);
@@ -165,8 +180,10 @@ void EpcReader::generator(const Row& row) {
   network::Generator g{};
   const int number = of.integer(0, "bus number"), regulated = f.integer(1, "regulated bus", 0);
   g.bus = find_bus(number, of);
-  g.id = id_of(of, 3);
-  if (!once("generator '" + g.id + "' at bus " + std::to_string(number), of)) return;
+  const auto id = identities_.id({network::Duplicate::Kind::generator, {number}}, "generator", id_of(of, 3),
+                                 " at bus " + std::to_string(number), of);
+  if (!id) return;
+  g.id = *id;
   g.in_service = status(f);
   g.share = static_cast<double>(f.number(5, "qrf", 1.0L) * 100.0L);
   g.p = pu(f.number(8, "pgen"));

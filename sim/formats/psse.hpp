@@ -13,6 +13,14 @@
 
 namespace swingbank::sim::formats {
 
+/// What is done with equipment whose identity (its buses and its id) the file has already given. Buses are
+/// never kept twice.
+enum class Repeated {
+  refused,   ///< a problem; left out where RawOptions::drop_refused says so
+  kept,      ///< kept under a new id
+  voltages,  ///< kept under a new id or left out, whichever the file's voltages show
+};
+
 /// What a .raw leaves open.
 struct RawOptions {
   /// Equipment without a model here; network::stand_in.
@@ -20,7 +28,10 @@ struct RawOptions {
   std::optional<double> frequency_hz = {};  ///< where BASFRQ is missing
   bool needs_frequency = true;              ///< false: where the file has none, the network's means nothing
   int version = 0;                          ///< where REV is missing; 0: not given
-  bool drop_repeated = false;               ///< equipment that appears a second time is left out
+  /// Left out: equipment that appears a second time or at a bus that is missing, and references to an
+  /// impedance correction table that is missing and to an empty voltage band.
+  bool drop_refused = false;
+  Repeated repeated = Repeated::refused;
   RawOptions() = default;
   RawOptions(std::optional<double> hz, int rev = 0) : frequency_hz(hz), version(rev) {}
   RawOptions(double hz) : frequency_hz(hz) {}
@@ -35,15 +46,15 @@ struct RawOptions {
 /// correction tables at the present tap or angle; switched shunt (BINIT as a fixed shunt, with its steps and
 /// band where MODSW is 1, with a remark where it is controlled in another way); remote regulation (IREG,
 /// RMPCT). With a remark: branches without impedance get one (raise_impedance), dc lines, FACTS and GNE
-/// devices and induction machines become the power that the file's voltages say they draw, and what
-/// settle_generators and settle_islands say. Passed over, because they change nothing in the equations: lines
-/// that begin with
-/// '@!', system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line
-/// groupings, ratings, names of branches, vector groups, voltage limits, tap and load-flow controls (taps
-/// stay where they are), substations whose buses are in one piece. Distributed generation inside a load is
-/// taken off its P and Q, with a remark. Refused, naming section and line: buses that a substation's open
-/// switches split. Out-of-service loads and shunts are left out; what stands at an isolated bus (type 4) is
-/// out of service, as in PSS/E.
+/// devices and induction machines become the power that the file's voltages say they draw, VMSTAR not above 0
+/// is 1, SBASE1-2 not above 0 is SBASE where CZ = 1, IREG and SWREG that name a missing bus hold the own one,
+/// and what settle_generators and settle_islands say. Passed over, because they change nothing in the
+/// equations: lines that begin with '@!', what follows '#' or '!' in a field's place, system-wide data, names
+/// of areas, zones and owners, inter-area transfer, multi-section line groupings, ratings, names of branches,
+/// vector groups, voltage limits, tap and load-flow controls (taps stay where they are), substations whose
+/// buses are in one piece. Distributed generation inside a load is taken off its P and Q, with a remark.
+/// Refused, naming section and line: buses that a substation's open switches split. Out-of-service loads and
+/// shunts are left out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,

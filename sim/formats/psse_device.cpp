@@ -1,6 +1,7 @@
 // Equipment of a .raw that has no model here: dc lines, FACTS and GNE devices, induction machines. Only where
 // they stand is read; what they draw is taken from the file's solved voltages.
 #include <algorithm>
+#include <cmath>
 
 #include "sim/formats/detail/psse_raw.hpp"
 
@@ -24,10 +25,10 @@ std::vector<Record> RawReader::following(const Record& first, std::size_t count,
 }
 
 void RawReader::device(const std::string& kind, const std::string& name, const Record& record,
-                       const std::vector<int>& numbers) {
+                       const std::vector<int>& numbers, const std::vector<double>& scheduled) {
   if (units_only_) return;
   const Fields f(record, file_, problems_);
-  network::Device d{kind + " '" + name + "'", f.where(), {}};
+  network::Device d{kind + " '" + name + "'", f.where(), {}, scheduled};
   for (const int number : numbers)
     if (number != 0) d.buses.push_back(find_bus(std::abs(number), f));
   devices_.push_back(std::move(d));
@@ -38,7 +39,21 @@ void RawReader::two_terminal_dc(const Record& first) {
   const auto rows = following(first, 2, "a two-terminal dc line");
   if (rows.size() < 2 || f.integer(1, "MDC", 0) == 0) return;  // blocked
   Fields rectifier(rows[0], file_, problems_), inverter(rows[1], file_, problems_);
-  device("dc line", f.text(0, ""), first, {rectifier.integer(0, "IPR"), inverter.integer(0, "IPI")});
+  device("dc line", f.text(0, ""), first, {rectifier.integer(0, "IPR"), inverter.integer(0, "IPI")},
+         scheduled(f));
+}
+
+/// Power that a two-terminal dc line is to draw at its rectifier and its inverter. Fields: MDC (1: power,
+/// 2: current), RDC [ohm], SETVL [MW, A], VSCHD [kV]; a SETVL below 0 is the inverter's power.
+std::vector<double> RawReader::scheduled(Fields& f) const {
+  const int mode = f.integer(1, "MDC", 0);
+  const long double r = f.number(2, "RDC", 0.0L), set = f.number(3, "SETVL", 0.0L),
+                    kv = f.number(4, "VSCHD", 0.0L);
+  if ((mode != 1 && mode != 2) || !(kv > 0)) return {};
+  const long double ka = mode == 1 ? std::abs(set) / kv : std::abs(set) / 1000.0L;
+  const long double mw = mode == 1 ? std::abs(set) : ka * kv, loss = r * ka * ka;
+  const bool by_inverter = mode == 1 && set < 0;
+  return {pu(by_inverter ? mw + loss : mw), -pu(by_inverter ? mw : mw - loss)};
 }
 
 void RawReader::vsc_dc(const Record& first) {
@@ -46,11 +61,16 @@ void RawReader::vsc_dc(const Record& first) {
   const auto rows = following(first, 2, "a voltage source converter dc line");
   if (rows.size() < 2 || f.integer(1, "MDC", 1) == 0) return;
   std::vector<int> buses;
+  std::vector<double> powers;
   for (const Record& row : rows) {
     Fields converter(row, file_, problems_);
-    if (converter.integer(1, "TYPE", 0) != 0) buses.push_back(converter.integer(0, "IBUS"));
+    const int type = converter.integer(1, "TYPE", 0);  // 1: holds the dc voltage, 2: delivers DCSET [MW]
+    if (type == 0) continue;
+    buses.push_back(converter.integer(0, "IBUS"));
+    powers.push_back(type == 2 ? -pu(converter.number(3, "DCSET", 0.0L))
+                               : std::numeric_limits<double>::quiet_NaN());
   }
-  device("VSC dc line", f.text(0, ""), first, buses);
+  device("VSC dc line", f.text(0, ""), first, buses, powers);
 }
 
 void RawReader::multi_terminal_dc(const Record& first) {

@@ -20,7 +20,6 @@ bool is_comment(const std::string& line) {
          (line.compare(first, 2, "//") == 0 || line.compare(first, 2, "@!") == 0);
 }
 /// Characters that begin a comment where a field could begin: those of hand-made files.
-constexpr std::string_view kCommentMarks = "#!";
 
 /// Writes repeated values of Fortran's free format out: 3*0.5 is 0.5 0.5 0.5.
 void write_out_repeats(std::vector<psse::Field>& fields) {
@@ -82,7 +81,7 @@ class DyrReader {
     psse::Record open;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (is_comment(lines_[i])) continue;
-      auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_, kCommentMarks);
+      auto piece = psse::split(lines_[i], static_cast<int>(i) + 1, name_, problems_, psse::kCommentMarks);
       write_out_repeats(piece.fields);
       if (is_end(piece, open.fields.empty())) {
         if (const int line = next_content(i + 1); line > 0)
@@ -113,7 +112,7 @@ class DyrReader {
     for (; i < lines_.size(); ++i) {
       const int number = static_cast<int>(i) + 1;
       if (is_comment(lines_[i])) continue;
-      const psse::Record line = psse::split(lines_[i], number, name_, of_the_rest, kCommentMarks);
+      const psse::Record line = psse::split(lines_[i], number, name_, of_the_rest, psse::kCommentMarks);
       if (!line.fields.empty() && !is_end(line, true)) return number;
     }
     return 0;

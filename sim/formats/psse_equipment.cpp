@@ -14,7 +14,7 @@ void RawReader::bus(const Record& record) {
   b.name = f.text(1, "");
   b.kv = static_cast<double>(f.number(2, "BASKV", 0.0L));
   const int type = f.integer(3, "IDE", 1);
-  if (!once("bus " + std::to_string(b.number), f)) return;
+  if (!identities_.once("bus " + std::to_string(b.number), f)) return;
   const Columns& c = columns_;
   b.area = f.integer(c.bus_area, "AREA", 1);
   b.zone = f.integer(c.bus_area + 1, "ZONE", 1);
@@ -73,9 +73,12 @@ void RawReader::bus_23(const Record& record) {
 void RawReader::load(const Record& record) {
   Fields f(record, file_, problems_);
   network::Load l{};
-  l.bus = find_bus(f.integer(0, "bus number"), f);
-  l.id = f.text(1, "1");
-  if (!once("load '" + l.id + "' at bus " + f.text(0, ""), f)) return;
+  const int number = f.integer(0, "bus number");
+  l.bus = find_bus(number, f);
+  const auto id = identities_.id({network::Duplicate::Kind::load, {number}}, "load", f.text(1, "1"),
+                                 " at bus " + f.text(0, ""), f);
+  if (!id) return;
+  l.id = *id;
   const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
   const network::Bus of = l.bus < 0 ? network::Bus{} : network_.buses[static_cast<std::size_t>(l.bus)];
   l.area = f.integer(3, "AREA", of.area);
@@ -99,11 +102,14 @@ void RawReader::load(const Record& record) {
 void RawReader::fixed_shunt(const Record& record) {
   Fields f(record, file_, problems_);
   network::Shunt s{};
-  s.bus = find_bus(f.integer(0, "bus number"), f);
-  s.id = f.text(1, "1");
+  const int number = f.integer(0, "bus number");
+  s.bus = find_bus(number, f);
   const bool on = status(f.integer(2, "STATUS", 1), "STATUS", f);
   s.admittance = {pu(f.number(3, "GL", 0.0L)), pu(f.number(4, "BL", 0.0L))};
-  if (!once("fixed shunt '" + s.id + "' at bus " + f.text(0, ""), f)) return;
+  const auto id = identities_.id({network::Duplicate::Kind::shunt, {number}}, "fixed shunt", f.text(1, "1"),
+                                 " at bus " + f.text(0, ""), f);
+  if (!id) return;
+  s.id = *id;
   if (on && s.bus >= 0) network_.shunts.push_back(std::move(s));
 }
 
@@ -115,9 +121,9 @@ void RawReader::switched_shunt(const Record& record) {
   s.bus = find_bus(number, f);
   const bool on = status(f.integer(columns_.switched_status, "STAT", 1), "STAT", f);
   s.admittance = {0.0, pu(f.number(columns_.switched_binit, "BINIT", 0.0L))};
-  if (!once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " +
-                std::to_string(number),
-            f))
+  if (!identities_.once("switched shunt" + (columns_.switched_id ? " '" + id + "'" : "") + " at bus " +
+                            std::to_string(number),
+                        f))
     return;
   if (!on || s.bus < 0) return;
   s.id = id == "1" ? "SW" : "SW" + id;
@@ -141,9 +147,21 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
   network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), shunt.bus, 0.0, 0.0, {0.0}};
   s.most = static_cast<double>(f.number(band, "VSWHI", 1.0L));
   s.least = static_cast<double>(f.number(band + 1, "VSWLO", 1.0L));
-  if (const int remote = f.integer(band + 2, "SWREG", 0); remote != 0) s.regulated = find_bus(remote, f);
+  if (const int remote = f.integer(band + 2, "SWREG", 0); remote != 0) {
+    if (const auto found = index_.find(std::abs(remote)); found != index_.end())
+      s.regulated = found->second;
+    else
+      network_.remark("switched shunts that hold a bus that is not there hold their own",
+                      place + ": SWREG = " + std::to_string(remote) + " (" + f.where() + ")");
+  }
+  if (s.least > s.most && options_.drop_refused) {
+    network_.remark("switched shunts with VSWLO above VSWHI stay at BINIT, as asked",
+                    place + " (" + f.where() + ")");
+    return;
+  }
   if (s.least > s.most)
-    problems_.add(place + ": VSWLO above VSWHI", f.where(), "no voltage lies in that band", "swap them");
+    problems_.add(place + ": VSWLO above VSWHI", f.where(), "no voltage lies in that band",
+                  "swap them, or leave the shunt at BINIT with --drop-refused");
   // Version 35 has a status before each block.
   const std::size_t stride = columns_.switched_id ? 3 : 2, blocks = 8;
   double inductive = 0.0, capacitive = 0.0;
@@ -169,7 +187,6 @@ void RawReader::generator(const Record& record) {
   network::Generator g{};
   const int number = f.integer(0, "bus number");
   g.bus = find_bus(number, f);
-  g.id = f.text(1, "1");
   g.p = pu(f.number(2, "PG", 0.0L));
   g.q = pu(f.number(3, "QG", 0.0L));
   g.q_max = pu(f.number(4, "QT", 9999.0L));
@@ -185,7 +202,10 @@ void RawReader::generator(const Record& record) {
   const bool step_up = g.rt != 0.0 || g.xt != 0.0;
   const double tap = static_cast<double>(f.number(base + 5, "GTAP", 1.0L));
   g.in_service = status(f.integer(columns_.gen_status, "STAT", 1), "STAT", f);
-  if (!once("generator '" + g.id + "' at bus " + std::to_string(number), f)) return;
+  const auto id = identities_.id({network::Duplicate::Kind::generator, {number}}, "generator", f.text(1, "1"),
+                                 " at bus " + std::to_string(number), f);
+  if (!id) return;
+  g.id = *id;
   const std::string place = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
   if (units_only_ && !(g.mva > 0)) {
     problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
@@ -228,7 +248,6 @@ void RawReader::branch(const Record& record) {
   const int from = f.integer(0, "from bus"), to = std::abs(f.integer(1, "to bus"));
   b.from = find_bus(from, f);
   b.to = find_bus(to, f);
-  b.circuit = f.text(2, "1");
   const auto value = [&](std::size_t i, const char* name, std::optional<long double> fallback) {
     return static_cast<double>(f.number(i, name, fallback));
   };
@@ -239,7 +258,9 @@ void RawReader::branch(const Record& record) {
   b.shunt_from = {value(gi, "GI", 0.0L), value(gi + 1, "BI", 0.0L)};
   b.shunt_to = {value(gi + 2, "GJ", 0.0L), value(gi + 3, "BJ", 0.0L)};
   b.in_service = status(f.integer(columns_.branch_status, "ST", 1), "ST", f);
-  if (!once_branch(from, to, b.circuit, f)) return;
+  const auto circuit = circuit_of(from, to, f.text(2, "1"), f);
+  if (!circuit) return;
+  b.circuit = *circuit;
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
@@ -265,10 +286,11 @@ void RawReader::switching_device(const Record& record) {
   const int from = f.integer(0, "from bus"), to = f.integer(1, "to bus");
   b.from = find_bus(from, f);
   b.to = find_bus(to, f);
-  b.circuit = f.text(2, "1");
   b.x = static_cast<double>(f.number(3, "X"));
   b.in_service = status(f.integer(16, "STAT", 1), "STAT", f);
-  if (!once_branch(from, to, b.circuit, f)) return;
+  const auto circuit = circuit_of(from, to, f.text(2, "1"), f);
+  if (!circuit) return;
+  b.circuit = *circuit;
   if (b.from == b.to && b.from >= 0)
     problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");

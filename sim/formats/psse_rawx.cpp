@@ -126,6 +126,7 @@ void RawReader::read_json() {
 
   const auto rows = [&](const char* name, const Names& names, void (RawReader::*row)(const Record&)) {
     Table table(net, name, file_, problems_);
+    section_ = name;
     for (std::size_t i = 0; i < table.size(); ++i) {
       (this->*row)(table.record(i, names));
       generator_line_.resize(network_.generators.size(), static_cast<int>(i) + 1);
@@ -144,6 +145,7 @@ void RawReader::read_json() {
 }
 
 void RawReader::json_transformers(const nlohmann::json& net) {
+  section_ = "transformer";
   Table table(net, "transformer", file_, problems_);
   for (std::size_t i = 0; i < table.size(); ++i) {
     std::vector<Record> lines;
@@ -175,6 +177,7 @@ void RawReader::json_devices(const nlohmann::json& net) {
                                 {"ntermdcconv", "multi-terminal dc line", "name", "", {"ib"}},
                                 {"indmach", "induction machine", "imid", "stat", {"ibus"}}};
   for (const Kind& kind : kinds) {
+    section_ = kind.table;
     Table table(net, kind.table, file_, problems_);
     for (std::size_t i = 0; i < table.size(); ++i) {
       const Record record = table.record(i, {kind.name, kind.status});
@@ -185,7 +188,13 @@ void RawReader::json_devices(const nlohmann::json& net) {
         const Record bus = table.record(i, {name});
         buses.push_back(Fields(bus, file_, problems_).integer(0, name, 0));
       }
-      device(kind.kind, f.text(0, ""), record, buses);
+      std::vector<double> powers;
+      if (std::string_view(kind.table) == "twotermdc") {
+        const Record line = table.record(i, {"name", "mdc", "rdc", "setvl", "vschd"});
+        Fields of(line, file_, problems_);
+        powers = scheduled(of);
+      }
+      device(kind.kind, f.text(0, ""), record, buses, powers);
     }
   }
 }

@@ -65,12 +65,15 @@ bool ends_file(const Record& record) {
 Record split(const std::string& line, int number, const std::string& file, Problems& problems,
              std::string_view comment_marks) {
   Record record{number, false, {}};
+  constexpr std::size_t names = 4;  // fields at the beginning that may hold a name or an id
   bool separated = true;  // a comma or the start of the line lies behind: the next comma means an empty field
   for (std::size_t i = 0; i < line.size();) {
     const char c = line[i];
     if (blank(c)) {
       ++i;
-    } else if (comment_marks.find(c) != std::string_view::npos) {
+    } else if (comment_marks.find(c) != std::string_view::npos &&
+               (record.fields.empty() || !separated || record.fields.size() >= names ||
+                i + 1 == line.size() || blank(line[i + 1]))) {
       break;
     } else if (c == '/') {
       record.ended = true;

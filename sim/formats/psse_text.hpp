@@ -28,8 +28,11 @@ struct Record {
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 /// The same of a text.
 std::vector<std::string> lines_of(const std::string& text);
+/// What begins a comment at the end of a line of a .raw or .dyr, in a field's place.
+constexpr std::string_view kCommentMarks = "#!";
 /// Splits one line. An open quote is reported in `problems`. A field cannot begin with one of
-/// `comment_marks`: the line ends there.
+/// `comment_marks`: the line ends there. Of the first fields, which hold names and ids, one may do so behind
+/// a comma.
 Record split(const std::string& line, int number, const std::string& file, Problems& problems,
              std::string_view comment_marks = {});
 

@@ -45,12 +45,15 @@ long double turns(int cw, long double kv, Fields& f, const char* name, Problems&
 /// Series impedance between one pair of windings ("1-2"), in per unit on the system base and bus voltages;
 /// its fields R, X, SBASE begin at `first`.
 Impedance series(int cz, long double base, Fields& f, std::size_t first, const std::string& pair,
-                 Problems& problems, long double& mva) {
+                 network::Network& network, Problems& problems, long double& mva) {
   long double r = f.number(first, ("R" + pair).c_str(), 0.0L), x = f.number(first + 1, ("X" + pair).c_str());
   mva = f.number(first + 2, ("SBASE" + pair).c_str(), base);
   if (!(mva > 0)) {
-    problems.add("SBASE" + pair + " = " + shortest(static_cast<double>(mva)) + " MVA", f.where(),
-                 "the impedance refers to it", "give a base > 0 MVA");
+    const std::string given = "SBASE" + pair + " = " + shortest(static_cast<double>(mva)) + " MVA";
+    if (cz == 1)
+      network.remark("winding bases that are not above 0 are taken as SBASE", given + " (" + f.where() + ")");
+    else
+      problems.add(given, f.where(), "the impedance refers to it", "give a base > 0 MVA");
     mva = base;
   }
   if (cz == 3) {  // R is the load loss in W, X the magnitude of the impedance
@@ -143,11 +146,12 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   b.transformer = true;
   b.from = from;
   b.to = to;
-  b.circuit = head.text(3, "1");
-  if (!once_branch(at(from).number, at(to).number, b.circuit, head)) return;
+  const auto circuit = circuit_of(at(from).number, at(to).number, head.text(3, "1"), head);
+  if (!circuit) return;
+  b.circuit = *circuit;
   b.in_service = status(head.integer(11, "STAT", 1), "STAT", head);
   long double mva = base_;
-  const Impedance z = series(code.cz, base_, impedance, 0, "1-2", problems_, mva);
+  const Impedance z = series(code.cz, base_, impedance, 0, "1-2", network_, problems_, mva);
   const long double t1 = turns(code.cw, at(from).kv, w1, "WINDV1", problems_),
                     t2 = turns(code.cw, at(to).kv, w2, "WINDV2", problems_);
   b.r = static_cast<double>(z.real() * t2 * t2);
@@ -163,20 +167,23 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   network_.branches.push_back(std::move(b));
 }
 
-int RawReader::star_point(Fields& head, Fields& impedances, const std::array<int, 3>& ends, bool in_service) {
+int RawReader::star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
+                          bool in_service) {
   const auto number = [&](int i) { return std::to_string(at(ends[static_cast<std::size_t>(i)]).number); };
   network::Bus star{};
   // Above every number of the file, in order of the transformers.
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
-  star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + head.text(3, "1");
+  star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + circuit;
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
   star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
   star.type = in_service ? network::BusType::load : network::BusType::isolated;
   star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
   star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
-  if (!(star.vm > 0))
-    problems_.add("VMSTAR = " + shortest(star.vm) + " pu", impedances.where(),
-                  "the power flow starts from it", "give a voltage > 0 pu");
+  if (!(star.vm > 0)) {  // it changes only where the power flow starts
+    network_.remark("voltages of a star point that are not above 0 are taken as 1 pu",
+                    star.name + ": VMSTAR = " + shortest(star.vm) + " pu (" + impedances.where() + ")");
+    star.vm = 1.0;
+  }
   const int index = static_cast<int>(network_.buses.size());
   network_.buses.push_back(std::move(star));
   stars_.insert(index);
@@ -186,34 +193,36 @@ int RawReader::star_point(Fields& head, Fields& impedances, const std::array<int
 void RawReader::three_windings(std::span<const Record> rows, const std::array<int, 3>& ends) {
   Fields head(rows[0], file_, problems_), impedances(rows[1], file_, problems_);
   const Codes code = codes(head);
-  const std::string circuit = head.text(3, "1");
   const int status = head.integer(11, "STAT", 1);  // 2, 3, 4: winding 2, 3, 1 alone is out
   if (status < 0 || status > 4)
     problems_.add("STAT = " + std::to_string(status), head.where(),
                   "with three windings it is 0 (out), 1 (in) or 2, 3, 4 (winding 2, 3 or 1 out)",
                   "give one of these");
   long double mva = base_, other = base_;
-  const Impedance z12 = series(code.cz, base_, impedances, 0, "1-2", problems_, mva),
-                  z23 = series(code.cz, base_, impedances, 3, "2-3", problems_, other),
-                  z31 = series(code.cz, base_, impedances, 6, "3-1", problems_, other);
+  const Impedance z12 = series(code.cz, base_, impedances, 0, "1-2", network_, problems_, mva),
+                  z23 = series(code.cz, base_, impedances, 3, "2-3", network_, problems_, other),
+                  z31 = series(code.cz, base_, impedances, 6, "3-1", network_, problems_, other);
   const std::array<Impedance, 3> z{(z12 + z31 - z23) / 2.0L, (z12 + z23 - z31) / 2.0L,
                                    (z23 + z31 - z12) / 2.0L};
   const std::array<int, 3> out{4, 2, 3};
   const std::array<const char*, 3> names{"WINDV1", "WINDV2", "WINDV3"};
   std::string identity = "transformer " + std::to_string(at(ends[0]).number);
   for (std::size_t i = 1; i < 3; ++i) identity += "-" + std::to_string(at(ends[i]).number);
-  if (!once(identity + " circuit '" + circuit + "'", head)) return;
+  const auto circuit = identities_.id(
+      {network::Duplicate::Kind::branch, {at(ends[0]).number, at(ends[1]).number, at(ends[2]).number}},
+      identity + " circuit", head.text(3, "1"), "", head);
+  if (!circuit) return;
   if (ends[0] == ends[1] || ends[1] == ends[2] || ends[2] == ends[0])
     problems_.add("two windings at one bus", head.where(), "they would be short-circuited",
                   "correct the bus numbers");
-  const int star = star_point(head, impedances, ends, status != 0);
+  const int star = star_point(*circuit, impedances, ends, status != 0);
   for (std::size_t i = 0; i < 3; ++i) {
     Fields w(rows[2 + i], file_, problems_);
     network::Branch b{};
     b.transformer = true;
     b.from = ends[i];
     b.to = star;
-    b.circuit = circuit;
+    b.circuit = *circuit;
     b.in_service = status != 0 && status != out[i];
     // Less than the rounding of the three values it is the difference of is zero.
     const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31));
@@ -268,9 +277,12 @@ void RawReader::correct_impedances() {
   for (const Correction& c : corrections_) {
     const auto found = tables_.find(c.table);
     if (found == tables_.end() || found->second.empty()) {
-      if (!units_only_)
+      if (options_.drop_refused)
+        network_.remark("impedance correction tables that are not there are passed over, as asked",
+                        c.name + " = " + std::to_string(c.table) + " (" + c.where + ")");
+      else if (!units_only_)
         problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",
-                      "add the table or set TAB to 0");
+                      "add the table, set TAB to 0, or pass over it with --drop-refused");
       continue;
     }
     const auto& points = found->second;

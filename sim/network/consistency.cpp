@@ -1,8 +1,10 @@
 #include "sim/network/consistency.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -85,6 +87,120 @@ std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, 
   return all;
 }
 
+constexpr double kSameImbalance = 1e-6;  // [pu] two imbalances that differ by less tell nothing
+
+bool is_of(const Duplicate& d, Duplicate::Kind, const Network& n, const Branch& b) {
+  if (d.kind != Duplicate::Kind::branch || b.circuit != d.id) return false;
+  const Bus &from = at(n, b.from), &to = at(n, b.to);
+  if (d.buses.size() > 2) return std::ranges::equal(to.star_of, d.buses);
+  return (from.number == d.buses[0] && to.number == d.buses[1]) ||
+         (from.number == d.buses[1] && to.number == d.buses[0]);
+}
+/// Whether a load, shunt or generator is the duplicate.
+template <class Equipment>
+bool is_of(const Duplicate& d, Duplicate::Kind kind, const Network& n, const Equipment& e) {
+  return d.kind == kind && e.id == d.id && at(n, e.bus).number == d.buses[0];
+}
+/// Removes the equipment of which `of` holds.
+template <class Of>
+void erase_equipment(Network& n, const Of& of) {
+  using Kind = Duplicate::Kind;
+  std::erase_if(n.loads, [&](const Load& l) { return of(Kind::load, l); });
+  std::erase_if(n.shunts, [&](const Shunt& s) { return of(Kind::shunt, s); });
+  std::erase_if(n.switched, [&](const SwitchedShunt& s) { return of(Kind::shunt, s); });
+  for (Generator& g : n.generators)
+    if (of(Kind::generator, g)) g.in_service = false;
+  for (Branch& b : n.branches)
+    if (of(Kind::branch, b)) b.in_service = false;
+}
+
+/// The balance of power at the file's voltages, as a linear function of which duplicates are kept: P and Q at
+/// load buses, P at buses of generators. Buses of devices are not judged; those that ties join count as one.
+struct FileBalance {
+  Eigen::MatrixXd drawn;   ///< a column for each duplicate: what it draws [pu]
+  Eigen::VectorXd others;  ///< what everything else leaves [pu]
+
+  FileBalance(const Network& n, const std::vector<Duplicate>& duplicates,
+              const std::vector<Device>& devices) {
+    std::vector<int> pool;
+    const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
+    std::vector<BusType> kind(left.size(), BusType::load);  // by pool: the most that holds it
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      BusType& most = kind[static_cast<std::size_t>(pool[i])];
+      most = std::max(most, n.buses[i].type);
+    }
+    for (const Device& d : devices)
+      for (const int bus : d.buses)
+        if (bus >= 0) kind[static_cast<std::size_t>(pool[static_cast<std::size_t>(bus)])] = BusType::slack;
+    std::vector<std::vector<Complex>> columns;
+    for (const Duplicate& d : duplicates) {
+      Network alone = n;
+      erase_equipment(alone, [&]<class E>(Duplicate::Kind k, const E& e) { return !is_of(d, k, n, e); });
+      columns.push_back(pooled(n, imbalance_of_file(alone), pool));
+    }
+    std::vector<Eigen::VectorXd> rows;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const auto reaches = [&](const std::vector<Complex>& column) {
+        return std::abs(column[i]) > kSameImbalance;
+      };
+      if (pool[i] != static_cast<int>(i) || kind[i] > BusType::generator ||
+          std::ranges::none_of(columns, reaches))
+        continue;
+      const bool load = kind[i] == BusType::load;
+      for (const bool reactive : load ? std::vector{false, true} : std::vector{false}) {
+        Eigen::VectorXd& row = rows.emplace_back(static_cast<Eigen::Index>(columns.size()) + 1);
+        const auto part = [&](Complex c) { return reactive ? c.imag() : c.real(); };
+        for (std::size_t k = 0; k < columns.size(); ++k)
+          row[static_cast<Eigen::Index>(k)] = part(columns[k][i]);
+        row[row.size() - 1] = part(left[i]);
+      }
+    }
+    drawn.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
+    others.resize(drawn.rows());
+    for (Eigen::Index i = 0; i < drawn.rows(); ++i) {
+      const Eigen::VectorXd& row = rows[static_cast<std::size_t>(i)];
+      drawn.row(i) = row.head(drawn.cols());
+      others[i] = row[drawn.cols()] - drawn.row(i).sum();
+    }
+  }
+  /// The imbalance [pu] where duplicate k draws power, with and without it; `kept`: 1 for each that is kept.
+  [[nodiscard]] std::pair<double, double> with_and_without(Eigen::Index k, Eigen::VectorXd kept) const {
+    const auto size = [&](double of_it) {
+      kept[k] = of_it;
+      return ((others + drawn * kept).array() * (drawn.col(k).array().abs() > kSameImbalance).cast<double>())
+          .matrix()
+          .norm();
+    };
+    return {size(1.0), size(0.0)};
+  }
+  /// 1 for each duplicate that the file's voltages show: least squares, rounded, then one by one.
+  [[nodiscard]] Eigen::VectorXd shown() const {
+    Eigen::VectorXd kept = Eigen::VectorXd::Ones(drawn.cols());
+    if (drawn.rows() > 0) kept = drawn.completeOrthogonalDecomposition().solve(-others);
+    kept = kept.unaryExpr([](double share) { return share > 0.5 ? 1.0 : 0.0; });
+    constexpr int rounds = 20;
+    bool changed = true;
+    for (int round = 0; changed && round < rounds; ++round) {
+      changed = false;
+      for (Eigen::Index k = 0; k < kept.size(); ++k) {
+        const auto [with, without] = with_and_without(k, kept);
+        const double keeps = with < without + kSameImbalance ? 1.0 : 0.0;
+        changed = changed || keeps != kept[k];
+        kept[k] = keeps;
+      }
+    }
+    return kept;
+  }
+};
+
+std::string kept_as(const Duplicate& d) { return d.text + " as '" + d.id + "'"; }
+
+std::string mva(const Network& n, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g MVA", value * n.base_mva);
+  return text;
+}
+
 /// Generators of load buses: as the file's own voltages say.
 void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>& where) {
   const auto stands = [&](const Generator& g) { return g.in_service && at(n, g.bus).type == BusType::load; };
@@ -115,6 +231,40 @@ void hold_own(Network& n, Generator& g, const std::string& place) {
 }
 
 }  // namespace
+
+void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, bool by_voltages,
+                       const std::vector<Device>& devices) {
+  if (duplicates.empty()) return;
+  if (!by_voltages) {
+    for (const Duplicate& d : duplicates)
+      n.remark("equipment that appears a second time is kept under a new id, as asked", kept_as(d));
+    return;
+  }
+  const FileBalance balance(n, duplicates, devices);
+  const Eigen::VectorXd kept = balance.shown();
+  for (std::size_t i = 0; i < duplicates.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto [with, without] = balance.with_and_without(k, kept);
+    const std::string numbers =
+        ": its buses are off balance by " + mva(n, with) + " with it, " + mva(n, without) + " without it";
+    if (std::abs(with - without) < kSameImbalance)
+      n.remark(
+          "equipment that appears a second time is kept under a new id; the file's voltages do not "
+          "depend on it",
+          kept_as(duplicates[i]));
+    else if (kept[k] > 0.0)
+      n.remark("equipment that appears a second time is kept under a new id, as the file's voltages show",
+               kept_as(duplicates[i]) + numbers);
+    else
+      n.remark("equipment that appears a second time is left out, as the file's voltages show",
+               duplicates[i].text + numbers);
+  }
+  erase_equipment(n, [&]<class E>(Duplicate::Kind kind, const E& e) {
+    for (std::size_t i = 0; i < duplicates.size(); ++i)
+      if (kept[static_cast<Eigen::Index>(i)] == 0.0 && is_of(duplicates[i], kind, n, e)) return true;
+    return false;
+  });
+}
 
 void settle_generators(Network& n, const std::function<std::string(std::size_t)>& where) {
   settle_load_buses(n, where);
@@ -187,6 +337,22 @@ std::pair<double, int> worst_elsewhere(const Network& n, const std::vector<Compl
   return worst;
 }
 
+std::string megawatts(double p, const Network& n) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.2f MW", p * n.base_mva);
+  return text;
+}
+
+/// What the devices at each bus are scheduled to draw together [pu]; NaN: not known.
+std::map<int, double> schedules(const std::vector<Device>& devices) {
+  std::map<int, double> at_bus;
+  for (const Device& d : devices)
+    for (std::size_t i = 0; i < d.buses.size(); ++i)
+      at_bus[d.buses[i]] +=
+          i < d.scheduled.size() ? d.scheduled[i] : std::numeric_limits<double>::quiet_NaN();
+  return at_bus;
+}
+
 std::string power_text(Complex s, double base) {
   char text[80];
   std::snprintf(text, sizeof text, "P = %.2f MW, Q = %.2f Mvar", s.real() * base, s.imag() * base);
@@ -216,6 +382,7 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
   const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
   std::map<int, int> sharing;  // pools and how many buses of devices are in each
   for (const auto& [b, names] : at_bus) ++sharing[pool[static_cast<std::size_t>(b)]];
+  const std::map<int, double> schedule = schedules(devices);
   constexpr double most = 0.05;  // [pu] a solved case rounded to five digits leaves a tenth of it
   const auto [worst, bus] = worst_elsewhere(n, left, pool, sharing);
   const bool finite = std::ranges::all_of(
@@ -238,6 +405,14 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
     n.loads.push_back({b, id, draws, {}, {}, of.area, of.zone, of.owner, LoadKind::device});
     n.remark("equipment without a model here draws what the file's voltages say, as a constant P and Q",
              names + " at bus " + std::to_string(of.number) + ": " + power_text(draws, n.base_mva));
+    constexpr double far = 0.1;  // of the schedule, beside what the file's rounding leaves
+    if (const double scheduled = schedule.at(b);
+        sharing[pool[i]] == 1 && std::abs(draws.real() - scheduled) > most + far * std::abs(scheduled))
+      n.remark(
+          "equipment without a model here draws far from what it is scheduled to: solve the case, or "
+          "correct the schedule or the voltages",
+          names + " at bus " + std::to_string(of.number) + ": " + megawatts(draws.real(), n) +
+              " by the file's voltages, " + megawatts(scheduled, n) + " scheduled");
   }
 }
 

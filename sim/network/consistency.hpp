@@ -17,6 +17,19 @@ void settle_isolated(Network& network);
 void isolate_idle_stars(Network& network, const std::set<int>& stars);
 /// Gives star points the voltage that those of their windings make: files often leave it at its default.
 void settle_stars(Network& network, const std::set<int>& stars);
+/// Equipment whose identity the file has already given and which is kept under a new id.
+struct Duplicate {
+  enum class Kind { load, shunt, generator, branch } kind;
+  std::vector<int> buses;  ///< numbers of its buses, of a branch two or three
+  std::string id{};        ///< the new one
+  std::string text{};      ///< for remarks
+};
+struct Device;
+/// Names the duplicates that are kept. With `by_voltages` one is kept only where the file's voltages balance
+/// the powers at its buses better with it than without it; where they do not depend on it, it is kept. Buses
+/// of devices are not judged.
+void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicates, bool by_voltages,
+                       const std::vector<Device>& devices);
 /// Settles what generators in service contradict each other about, with a remark for each. At a load bus
 /// (type 1) a generator delivers its P and Q if the file's voltages show that power, else it is out of
 /// service, as in PSS/E. Generators of one bus that hold different voltages or buses hold those of the first.
@@ -30,7 +43,8 @@ void settle_islands(Network& network);
 /// Equipment without a model here: its kind and name, and the buses it stands at.
 struct Device {
   std::string name, where;
-  std::vector<int> buses;  ///< indices
+  std::vector<int> buses;           ///< indices
+  std::vector<double> scheduled{};  ///< power [pu] that it is to draw at each of them; NaN: not known
 };
 /// What stands in the place of equipment without a model.
 enum class StandIn {

@@ -68,9 +68,9 @@ inline void check_round_trip(const sim::network::Network& network) {
 template <class Read>
 bool read_both_ways(const Read& read, sim::formats::RawOptions options, sim::network::Network& strict,
                     sim::network::Network& lenient, bool& whole) {
-  options.drop_repeated = false;
+  options.drop_refused = false;
   whole = accepted([&] { strict = read(options); });
-  options.drop_repeated = true;
+  options.drop_refused = true;
   if (accepted([&] { lenient = read(options); })) return true;
   require(!whole, "what is whole is read with either option");
   return false;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "sim/formats/detail/identities.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
@@ -25,6 +26,7 @@ class EpcReader {
   /// `name` stands for the file in messages.
   EpcReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
+  EpcReader(const EpcReader&) = delete;
   network::Network read();
   RawSurvey survey();
 
@@ -56,15 +58,15 @@ class EpcReader {
   void branch(const Row& row);
   void join_sections();
   void transformer(const Row& row);
-  void two_windings(psse::Fields& of, psse::Fields& f, int from, int to, bool on);
-  void three_windings(psse::Fields& of, psse::Fields& f, const std::array<int, 3>& ends, bool on);
+  void two_windings(const std::string& circuit, psse::Fields& f, int from, int to, bool on);
+  void three_windings(const std::string& circuit, psse::Fields& f, const std::array<int, 3>& ends, bool on);
   int star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on);
   Complex magnetising(psse::Fields& f, int bus);
 
-  /// Index of the bus with this number; -1 and a problem if the file has none.
-  int find_bus(int number, const psse::Fields& fields);
-  /// Whether this identity is the first of its name; one that is not is a problem, or left out if asked for.
-  bool once(const std::string& identity, const psse::Fields& fields);
+  /// Index of the bus with this number; -1 and a problem or a remark if the file has none.
+  int find_bus(int number, const psse::Fields& fields) {
+    return identities_.bus_index(index_, number, section_, fields);
+  }
   bool status(psse::Fields& f);
   void raise_impedance(network::Branch& b, const psse::Fields& f);
   [[nodiscard]] static std::string id_of(const psse::Fields& of, std::size_t i);
@@ -85,9 +87,10 @@ class EpcReader {
   std::vector<Section> sections_;
   network::Network network_;
   Problems problems_;
+  Identities identities_{options_, network_, problems_};
+  std::string section_;  ///< whose records are being read
   std::map<int, int> index_;
   std::vector<double> vsched_;                                            ///< per bus [pu]
-  std::map<std::string, int> seen_;                                       ///< identity -> line
   std::map<std::tuple<int, int, std::string>, std::vector<Part>> parts_;  ///< of the lines: ends and circuit
   std::vector<std::tuple<int, int, std::string>> order_;                  ///< of these, as in the file
   std::vector<int> generator_line_, branch_line_;

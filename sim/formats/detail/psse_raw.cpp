@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "sim/network/consistency.hpp"
 
@@ -179,8 +180,34 @@ void RawReader::header() {
     network_.remark("BASFRQ is taken from --frequency-hz: " + shortest(frequency) + " Hz", f.where());
   columns_ = columns(version_);
   check_header(f, change, frequency);
+  check_titles();
   network_.title = without_return(lines_[at_ + 1]) + "\n" + without_return(lines_[at_ + 2]);
   at_ += 3;
+}
+
+/// Throws where a title line looks like the first bus: a title line is missing.
+void RawReader::check_titles() {
+  for (std::size_t i = at_ + 1; i <= at_ + 2; ++i) {
+    Problems ignored;
+    const Record record = split(lines_[i], static_cast<int>(i) + 1, file_, ignored);
+    const auto value = [&](std::size_t k) {
+      const bool given = k < record.fields.size() && !record.fields[k].quoted;
+      return given ? parse_number(record.fields[k].text) : std::nullopt;
+    };
+    const auto type = value(version_ == 23 ? 1 : 3), number = value(0);
+    const auto numbers = std::ranges::count_if(
+        record.fields, [](const Field& f) { return !f.quoted && parse_number(f.text); });
+    const auto vm = value(columns_.bus_voltage);  // it may be left empty
+    constexpr int least = 6;                      // of the numbers in a bus record of any version
+    if (!type || !number || *type < 1 || *type > 4 || *type != std::trunc(*type) || *number < 1 ||
+        *number != std::trunc(*number) || numbers < least || (vm && (*vm < 0 || *vm > 2)))
+      continue;
+    throw InputError({"line " + std::to_string(i + 1) + " looks like a bus record",
+                      file_ + ":" + std::to_string(i + 1),
+                      "two title lines follow the header, and this would be the " +
+                          std::string(i == at_ + 1 ? "first" : "second"),
+                      "insert the missing title line after the header; it may be empty"});
+  }
 }
 
 void RawReader::check_header(const Fields& f, int change, double frequency) {
@@ -203,7 +230,7 @@ std::optional<Record> RawReader::next() {
       ++at_;
       continue;
     }
-    Record record = split(lines_[at_], static_cast<int>(at_) + 1, file_, problems_);
+    Record record = split(lines_[at_], static_cast<int>(at_) + 1, file_, problems_, kCommentMarks);
     ++at_;
     if (!record.fields.empty()) return record;
   }
@@ -238,6 +265,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
       put_back(*record);
       return true;
     }
+    section_ = section.name;
     if (section.row) (this->*section.row)(*record);
     if (problems_.list().size() > most_faults_) problems_.raise();
     generator_line_.resize(network_.generators.size(), record->line);
@@ -253,31 +281,12 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
 // Solution settings and names of ratings: nothing in it changes the equations.
 void RawReader::system_wide(const Record&) {}
 
-int RawReader::find_bus(int number, const Fields& fields) {
-  const auto found = index_.find(number);
-  if (found != index_.end()) return found->second;
-  problems_.add("bus " + std::to_string(number) + " is not in the bus section", fields.where(),
-                "the record refers to it", "add the bus or correct the number");
-  return -1;
-}
-
-bool RawReader::once(const std::string& identity, const Fields& fields) {
-  const auto [found, fresh] = seen_.emplace(identity, fields.line());
-  if (fresh) return true;
-  const std::string first = "already on line " + std::to_string(found->second);
-  if (options_.drop_repeated)
-    network_.remark("equipment that appears a second time is left out, as asked",
-                    identity + " (" + fields.where() + ", " + first + ")");
-  else
-    problems_.add(identity + " appears twice", fields.where(), "it is " + first,
-                  "remove one, give it another id, or leave the later one out with --drop-refused");
-  return !options_.drop_repeated;
-}
-
-bool RawReader::once_branch(int from, int to, const std::string& circuit, const Fields& fields) {
-  return once("branch " + std::to_string(std::min(from, to)) + "-" + std::to_string(std::max(from, to)) +
-                  " circuit '" + circuit + "'",
-              fields);
+std::optional<std::string> RawReader::circuit_of(int from, int to, const std::string& circuit,
+                                                 const Fields& fields) {
+  return identities_.id(
+      {network::Duplicate::Kind::branch, {from, to}},
+      "branch " + std::to_string(std::min(from, to)) + "-" + std::to_string(std::max(from, to)) + " circuit",
+      circuit, "", fields);
 }
 
 bool RawReader::status(int value, const char* name, const Fields& fields) {
@@ -304,7 +313,8 @@ void RawReader::finish() {
         g.regulated = found->second;
     }
   if (!problems_.empty()) return;
-  if (!devices_.empty()) network::settle_stars(network_, stars_);
+  if (!devices_.empty() || !identities_.kept().empty()) network::settle_stars(network_, stars_);
+  network::settle_duplicates(network_, identities_.kept(), options_.repeated == Repeated::voltages, devices_);
   network::stand_in(network_, devices_, options_.devices, problems_);
   network::settle_generators(network_, [&](std::size_t i) { return generator_place(i); });
   network::settle_islands(network_);

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "sim/formats/detail/identities.hpp"
 #include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/network/consistency.hpp"
@@ -44,6 +45,7 @@ class RawReader {
   /// `name` stands for the file in messages.
   RawReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
+  RawReader(const RawReader&) = delete;
   network::Network read();
   RawSurvey survey();
   /// How many faults the file has if it is read as this version, whatever its header says; it is read no
@@ -66,6 +68,7 @@ class RawReader {
 
   void header();
   void check_header(const Fields& header, int change, double frequency);
+  void check_titles();
   /// False if the file is over ('Q' or no more lines); the latter is a fault unless only sections are missing
   /// that may be.
   bool section(const Section& section, bool may_be_missing);
@@ -96,6 +99,7 @@ class RawReader {
   void switching(Fields& f, const network::Shunt& shunt);
   void correction_table(const Record& first);
   void two_terminal_dc(const Record& first);
+  std::vector<double> scheduled(Fields& line) const;
   void vsc_dc(const Record& first);
   void multi_terminal_dc(const Record& first);
   void facts(const Record& record);
@@ -111,15 +115,14 @@ class RawReader {
   /// The `count` records after `first`, which belong to it; fewer where the section ends.
   std::vector<Record> following(const Record& first, std::size_t count, const char* what);
   void device(const std::string& kind, const std::string& name, const Record& record,
-              const std::vector<int>& numbers);
+              const std::vector<int>& numbers, const std::vector<double>& scheduled = {});
 
-  /// Index of the bus with this number; -1 and a problem if the file has none.
-  int find_bus(int number, const Fields& fields);
-  /// Whether this identity ("load '1' at bus 5") is the first of its name. One that is not is a problem, or
-  /// its record is to be left out, if that is asked for.
-  bool once(const std::string& identity, const Fields& fields);
-  /// The same for a branch, in either direction.
-  bool once_branch(int from, int to, const std::string& circuit, const Fields& fields);
+  /// Index of the bus with this number; -1 and a problem or a remark if the file has none.
+  int find_bus(int number, const Fields& fields) {
+    return identities_.bus_index(index_, number, section_, fields);
+  }
+  /// The circuit that a branch bears, in either direction: Identities::id.
+  std::optional<std::string> circuit_of(int from, int to, const std::string& circuit, const Fields& fields);
   bool status(int value, const char* name, const Fields& fields);
   double pu(long double mw) const { return static_cast<double>(mw / base_); }
   [[nodiscard]] const network::Bus& at(int bus) const {
@@ -130,7 +133,8 @@ class RawReader {
   Codes codes(Fields& head);
   void two_windings(std::span<const Record> rows, int from, int to);
   void three_windings(std::span<const Record> rows, const std::array<int, 3>& ends);
-  int star_point(Fields& head, Fields& impedances, const std::array<int, 3>& ends, bool in_service);
+  int star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
+                 bool in_service);
   /// The correction table that a winding names, kept until the tables are read.
   void note_table(Fields& winding, std::size_t number, std::size_t branch);
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
@@ -151,11 +155,12 @@ class RawReader {
   network::Network network_;
   Problems problems_;
   std::map<int, int> index_;
-  std::map<std::string, int> seen_;  ///< identity -> line
   std::vector<int> generator_line_, branch_line_;
   std::vector<std::string> places_;  ///< of the generators, where they are not lines
   bool units_only_ = false;          ///< what matters to a network alone is no fault
   RawOptions options_;
+  Identities identities_{options_, network_, problems_};
+  std::string section_;  ///< whose records are being read
   std::vector<network::Device> devices_;
   std::vector<int> regulated_;  ///< per generator: number of the bus it holds, 0: its own
   struct Correction {

@@ -303,5 +303,23 @@ TEST(Epc, ASurveyGoesOnPastFaults) {
   EXPECT_THAT(survey.faults[0].what, HasSubstr("bus 109"));
 }
 
+TEST(EpcRepairs, RepeatedLineIsKeptAndDanglingLoadLeftOutOnRequest) {
+  EpcCase c;
+  c.branches += line(103, 101, "1 0.01 0.24 0.0");
+  c.loads += bus_of(177) + " \"1 \" \"  \" : 1 5.0 1.0 0 0 0 0 1 1 400101 391231 0 0 1 0\n";
+  RawOptions options{60.0};
+  options.repeated = Repeated::kept;
+  EXPECT_THAT(sentences_of([&] { (void)parse_epc(c.text(), "case.epc", options); }),
+              HasSubstr("bus 177 is not in the bus section"));
+  options.drop_refused = true;
+  const network::Network n = parse_epc(c.text(), "case.epc", options);
+  ASSERT_EQ(n.branches.size(), 3u);
+  EXPECT_EQ(n.branches[2].circuit, "R1");
+  EXPECT_EQ(n.branches[2].x, 0.24);
+  EXPECT_THAT(places(n, "left out, as asked"), ElementsAre(HasSubstr("load record at bus 177")));
+  options.repeated = Repeated::voltages;  // the voltages are those of one line
+  EXPECT_FALSE(parse_epc(c.text(), "case.epc", options).branches[2].in_service);
+}
+
 }  // namespace
 }  // namespace swingbank::sim::formats

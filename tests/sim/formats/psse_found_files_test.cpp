@@ -11,6 +11,7 @@
 namespace swingbank::sim::formats {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// The three-bus grid of RawCase in the layout of a version before 31.
@@ -250,9 +251,10 @@ TEST(FoundFiles, WhatAppearsASecondTimeIsLeftOutIfAsked) {
     c.transformers +=
         std::string("101,102,103,'1',1,1,1\n0,") + three + ",100,0,0.1,100,0,0.1,100,1.0,0\n1.0\n1.0\n1.0\n";
   c.other["switched shunt"] = "103,1,0,1,1.5,0.5,0,100,' ',30.0\n103,1,0,1,1.5,0.5,0,100,' ',60.0\n";
-  EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("leave the later one out with --drop-refused"));
+  EXPECT_THAT(sentences_of([&] { c.read(); }),
+              AllOf(HasSubstr("--repeated voltages"), HasSubstr("--drop-refused leaves it out")));
   RawOptions options;
-  options.drop_repeated = true;
+  options.drop_refused = true;
   const network::Network n = parse_raw(c.text(), "case.raw", options);
   EXPECT_THAT(places(n, "second time is left out"), ::testing::SizeIs(8));
   EXPECT_EQ(n.buses.size(), 4u);  // with the star point
