@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/json.hpp"
+#include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -57,16 +58,56 @@ JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Pha
   return row;
 }
 
-std::string verdict(const Fitness& f, int exceed, const JudgedErrors& row) {
+/// The movement of a channel after the last switching; nothing where it is too small to be judged.
+std::optional<Movement> movement_of(const EventComparison& e, const ChannelComparison& c,
+                                    const Phases& phases, double percent, double limit) {
+  if (c.measured.size() != c.residual.size()) return std::nullopt;
+  double rest = 0, before = 0;
+  for (std::size_t k = 0; k < c.measured.size(); ++k)
+    if (phases.of(k) == Phase::pre_fault) rest += c.measured[k], ++before;
+  if (before == 0) return std::nullopt;
+  rest /= before;
+  double measured = 0, error = 0, common = 0, samples = 0;
+  for (std::size_t k = 0; k < c.measured.size(); ++k) {
+    if (phases.of(k) != Phase::post_fault) continue;
+    const double moved = c.measured[k] - rest;
+    measured += moved * moved;
+    error += c.residual[k] * c.residual[k];
+    common += moved * (moved + c.residual[k]);
+    ++samples;
+  }
+  if (samples == 0) return std::nullopt;
+  const double rms = std::sqrt(measured / samples);
+  if (rms < thresholds::movement.over_noise * c.noise || percent * rms < thresholds::movement.least)
+    return std::nullopt;
+  return Movement{e.record.name,           c.name, c.unit, rms * c.scale, 100 * std::sqrt(error / measured),
+                  100 * common / measured, limit};
+}
+
+/// The judged quantity that is nearest to its limit, or furthest beyond it.
+std::string nearest_text(const Fitness& f) {
+  const auto ratio = [](const JudgedErrors& row) {
+    return thresholds::nearest(row.errors, row.limits).ratio;
+  };
+  const JudgedErrors& row = *std::ranges::max_element(f.rows, {}, ratio);
+  const auto beyond = [](const Movement& m) { return m.error / m.limit; };
+  if (const auto m = std::ranges::max_element(f.movements, {}, beyond);
+      m != f.movements.end() && !(beyond(*m) <= ratio(row)))
+    return fmt::format(
+        "RMS error of {} after the last switching of {}, {:.3g} % of its movement of {:.3g} {}, of "
+        "which the model makes {:.0f} %, where an error of {:g} % is allowed.",
+        m->channel, m->event, m->error, m->measured, m->unit, m->share, m->limit);
   const thresholds::Nearest at = thresholds::nearest(row.errors, row.limits);
-  const auto all = 3 * f.rows.size();
-  return fmt::format(
-      "Fit for purpose: {} the limits {}. {}: {} of {} in the {} window of {}, {:.3g} % of {:g} MVA where {:g} % "
-      "is allowed.",
-      f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
-            : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
-      f.by.name, f.fit ? "Nearest" : "Furthest off", at.name, row.channel, row.window(), row.event, at.error,
-      f.mva, at.limit);
+  return fmt::format("{} of {} in the {} window of {}, {:.3g} % of {:g} MVA where {:g} % is allowed.",
+                     at.name, row.channel, row.window(), row.event, at.error, f.mva, at.limit);
+}
+
+std::string verdict(const Fitness& f, int exceed) {
+  const auto all = 3 * f.rows.size() + f.movements.size();
+  return fmt::format("Fit for purpose: {} the limits {}. {}: {}",
+                     f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
+                           : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
+                     f.by.name, f.fit ? "Nearest" : "Furthest off", nearest_text(f));
 }
 
 const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
@@ -122,13 +163,17 @@ Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
                       const thresholds::Acceptance& by) {
   Fitness f = not_judged(by, mva, "neither P nor Q is compared");
   int exceed = 0;
-  const JudgedErrors* worst = nullptr;
   for (const auto& e : events) {
     const Phases phases(e, by);
     for (const auto& c : e.channels) {
       if (!c.judged || (c.name != "P" && c.name != "Q")) continue;
+      const double percent = 100 * e.record.base.mva / mva;
+      if (auto m = movement_of(e, c, phases, percent, by.movement)) {
+        exceed += m->exceeds();
+        f.movements.push_back(std::move(*m));
+      }
       for (const Phase phase : thresholds::kPhases) {
-        JudgedErrors row = errors_of(e, c, phase, phases, 100 * e.record.base.mva / mva);
+        JudgedErrors row = errors_of(e, c, phase, phases, percent);
         if (row.samples == 0) continue;
         row.limits = by.of(c.name == "P" ? 0 : 1, phase);
         exceed += thresholds::exceeding(row.errors, row.limits);
@@ -137,13 +182,9 @@ Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
     }
   }
   if (f.rows.empty()) return f;
-  for (const auto& row : f.rows)
-    if (!worst || thresholds::nearest(row.errors, row.limits).ratio >
-                      thresholds::nearest(worst->errors, worst->limits).ratio)
-      worst = &row;
   f.not_judged.clear();
   f.fit = exceed == 0;
-  f.sentence = verdict(f, exceed, *worst);
+  f.sentence = verdict(f, exceed);
   return f;
 }
 
@@ -183,6 +224,20 @@ report::Table worst_fitness_table(const Fitness& f) {
   return table;
 }
 
+report::Table movement_table(const Fitness& f) {
+  report::Table table{
+      "Movement of P and Q after the last switching: RMS of the measured deviation from the mean before the event, and "
+      "RMS of modelled − measured in % of it. A star marks what exceeds its limit.",
+      {"event", "channel", "measured movement", "model makes", "error"},
+      {}};
+  for (const Movement& m : f.movements)
+    table.rows.push_back(
+        {m.event, m.channel, fmt::format("{:.3g} {}", m.measured, m.unit), fmt::format("{:.0f} %", m.share),
+         report::Cell(fmt::format("{:.3g} of {:g} %{}", m.error, m.limit, m.exceeds() ? " *" : ""),
+                      m.exceeds() ? 1.0 : 0.0)});
+  return table;
+}
+
 nlohmann::json fitness_json(const Fitness& f) {
   nlohmann::json j = {
       {"fit_for_purpose", f.not_judged.empty() ? nlohmann::json(f.fit) : nullptr},
@@ -191,7 +246,16 @@ nlohmann::json fitness_json(const Fitness& f) {
       {"source", f.by.source},
       {"mva", f.mva},
       {"left_out_s", {{"after_fault", f.by.after_fault}, {"after_clearing", f.by.after_clearing}}},
-      {"errors_percent_of_mva", nlohmann::json::array()}};
+      {"errors_percent_of_mva", nlohmann::json::array()},
+      {"movement", nlohmann::json::array()}};
+  for (const Movement& m : f.movements)
+    j["movement"].push_back({{"record", m.event},
+                             {"channel", m.channel},
+                             {"unit", m.unit},
+                             {"rms", number(m.measured)},
+                             {"error_percent", number(m.error)},
+                             {"made_percent", number(m.share)},
+                             {"limit_percent", m.limit}});
   for (const auto& row : f.rows) {
     nlohmann::json one = errors_json(row.errors);
     one["record"] = row.event;

@@ -23,11 +23,22 @@ struct JudgedErrors {
   [[nodiscard]] std::string_view window() const;
 };
 
+/// What P or Q of one event moves after its last switching, from its mean before the event.
+struct Movement {
+  std::string event, channel, unit;
+  double measured = 0;  ///< RMS [unit]
+  double error = 0;     ///< RMS of modelled - measured [% of `measured`]
+  double share = 0;     ///< of the measured movement that the model makes (least squares) [%]
+  double limit = 0;     ///< of `error` [%]
+  [[nodiscard]] bool exceeds() const { return !(error <= limit); }
+};
+
 struct Fitness {
   thresholds::Acceptance by;
   double mva = 0;  ///< 100 %
   std::vector<JudgedErrors> rows;
-  std::string not_judged;  ///< why there is nothing to judge; empty where there is
+  std::vector<Movement> movements;  ///< of channels that move enough to be judged (thresholds::movement)
+  std::string not_judged;           ///< why there is nothing to judge; empty where there is
   /// Every error within its limit, and at least one judged.
   bool fit = false;
   std::string sentence;  ///< "Fit for purpose: yes. ...", and the error that is nearest to its limit
@@ -48,6 +59,8 @@ Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::stri
 report::Table fitness_table(const Fitness& fitness);
 /// The same with the worst of all events in each row.
 report::Table worst_fitness_table(const Fitness& fitness);
+/// Measured movement of P and Q of each event, and how much of it the model makes.
+report::Table movement_table(const Fitness& fitness);
 nlohmann::json fitness_json(const Fitness& fitness);
 
 /// "Statistically complete: yes. ...": the other verdict, with the sentence that a command has for it.

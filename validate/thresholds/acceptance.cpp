@@ -26,7 +26,7 @@ Acceptance acceptance_of(const Preset& p, std::string name, std::string source) 
   const std::array<Errors, 3> one = {Errors{p.pre_fault_mxe, p.pre_fault_me, p.pre_fault_mae},
                                      Errors{p.fault_mxe, p.fault_me, p.fault_mae},
                                      Errors{p.post_fault_mxe, p.post_fault_me, p.post_fault_mae}};
-  return {std::move(name), std::move(source), {one, one}, p.after_fault, p.after_clearing};
+  return {std::move(name), std::move(source), {one, one}, p.after_fault, p.after_clearing, movement.error};
 }
 
 const std::vector<Acceptance>& presets() {
@@ -72,6 +72,8 @@ Acceptance read(Config& file) {
       file.optional<double>("left_out.after_fault", from ? from->after_fault : 0, {0, kMostAfterFault, "s"});
   a.after_clearing = file.optional<double>("left_out.after_clearing", from ? from->after_clearing : 0,
                                            {0, kMostAfterClearing, "s"});
+  a.movement =
+      file.optional<double>("movement.error", movement.error, {0.001, kMostPercent, "% of movement"});
   file.raise();
   return a;
 }

@@ -24,6 +24,7 @@ struct Acceptance {
   std::string name, source;                     ///< what the limits are called, and where they come from
   std::array<std::array<Errors, 3>, 2> limits;  ///< of P and of Q, by phase
   double after_fault = 0, after_clearing = 0;   ///< not compared after the first and the last switching [s]
+  double movement = 0;  ///< RMS error after the last switching [% of the RMS movement of the channel]
   /// `channel`: 0 is P, 1 is Q.
   [[nodiscard]] const Errors& of(int channel, Phase phase) const {
     return limits[static_cast<std::size_t>(channel)][static_cast<std::size_t>(phase)];

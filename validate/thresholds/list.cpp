@@ -32,6 +32,7 @@ std::vector<Threshold> all_thresholds() {
   add(parameters, all);
   add(dtr_test, all);
   add(dtr_simulation, all);
+  add(movement, all);
   return all;
 }
 

@@ -298,5 +298,20 @@ struct DtrSimulation {
                            "not compared after the last switching (RTE, DTR fiche I16, reference simulated)"};
 };
 inline constexpr DtrSimulation dtr_simulation;
+/// The error of a channel beside what the channel itself moves: a limit in % of MVA passes a unit whose whole
+/// response is missing where that response is small.
+struct Movement {
+  Threshold error{
+      "movement.error", 25, "% of movement",
+      "RMS of modelled - measured over RMS of the measured deviation from before the event, of P and of "
+      "Q after the last switching (Swingbank's own; MOD-027 asks for a guideline and sets no figure)"};
+  Threshold over_noise{
+      "movement.over_noise", 5, "noise",
+      "a channel whose RMS movement is less times its noise is not held to movement.error, of which "
+      "noise alone would then take most"};
+  Threshold least{"movement.least", 1, "% of MVA",
+                  "a channel whose RMS movement is less is not held to movement.error"};
+};
+inline constexpr Movement movement;
 
 }  // namespace swingbank::validate::thresholds

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/json.hpp"
@@ -59,6 +61,41 @@ TEST(Fitness, ErrorsAreInPercentOfTheMachinesMva) {
   EXPECT_NEAR(after.errors.mae, (50 * 2.5 + 200 * 0.5) / 250, 1e-12);
   EXPECT_EQ(row_of(f, Phase::pre_fault).errors.mxe, 0);
   EXPECT_TRUE(f.fit);
+}
+
+/// P falls by 3 % of MVA after 1.5 s, as a governor answers to a rise of frequency; the model makes `share`
+/// of it.
+EventComparison governor_event(double share) {
+  const auto moved = [](double t) { return t > 1.5 ? -0.03 * std::min(1.0, t - 1.5) : 0.0; };
+  EventComparison e = event_off_by([&](double t) { return (share - 1) * moved(t); });
+  ChannelComparison& p = e.channels.front();
+  p.unit = "MW";
+  p.scale = 50;
+  for (const double t : e.record.t) p.measured.push_back(0.6 + moved(t));
+  p.noise = 1e-3;
+  return e;
+}
+TEST(Fitness, MissingResponse_FailsByItsMovement_WhereNoLimitOfMvaDoes) {
+  const Fitness f = judge_fitness({governor_event(0)}, 50, plain_limits());
+  for (const auto& row : f.rows) EXPECT_EQ(thresholds::exceeding(row.errors, row.limits), 0);
+  EXPECT_FALSE(f.fit);
+  ASSERT_EQ(f.movements.size(), 1U);
+  EXPECT_NEAR(f.movements[0].error, 100, 1e-9);
+  EXPECT_NEAR(f.movements[0].share, 0, 1e-9);
+  EXPECT_THAT(f.sentence, HasSubstr("no. 1 of 19 errors"));
+  EXPECT_THAT(f.sentence, HasSubstr("of which the model makes 0 %, where an error of 25 % is allowed"));
+  const Fitness most = judge_fitness({governor_event(0.8)}, 50, plain_limits());
+  EXPECT_TRUE(most.fit) << most.sentence;
+  EXPECT_NEAR(most.movements[0].error, 20, 1e-9);
+  EXPECT_NEAR(most.movements[0].share, 80, 1e-9);
+  EXPECT_THAT(report::padded(movement_table(most)), HasSubstr("80 %"));
+  EXPECT_EQ(fitness_json(most)["movement"][0]["limit_percent"], 25);
+}
+TEST(Fitness, Movement_IsNotJudged_WhereNoiseOrSizeHidesIt) {
+  EventComparison noisy = governor_event(0);
+  noisy.channels.front().noise = 0.01;
+  EXPECT_TRUE(judge_fitness({noisy}, 50, plain_limits()).movements.empty());
+  EXPECT_TRUE(judge_fitness({governor_event(0)}, 500, plain_limits()).movements.empty());  // 0.3 % of MVA
 }
 
 TEST(Fitness, TheLimitItselfIsKept) {

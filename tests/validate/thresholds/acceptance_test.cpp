@@ -30,18 +30,21 @@ TEST(Acceptance, TheDefaultIsThePresetForMeasuredReferences) {
   EXPECT_EQ(a.of(0, Phase::fault).mxe, dtr_test.fault_mxe.value);
   EXPECT_EQ(a.of(1, Phase::post_fault).me, dtr_test.post_fault_me.value);
   EXPECT_EQ(a.after_clearing, 0.06);
+  EXPECT_EQ(a.movement, 25);
   EXPECT_EQ(read_acceptance("dtr-simulation").of(0, Phase::post_fault).mae, 3);
 }
 
 TEST(Acceptance, AFileMayChangeAPreset) {
   const Acceptance a = parse_acceptance(
-      std::string(kHead) + "preset = \"dtr-test\"\n[Q.fault]\nmxe = 15\n[left_out]\nafter_clearing = 0.5\n",
+      std::string(kHead) +
+          "preset = \"dtr-test\"\n[Q.fault]\nmxe = 15\n[left_out]\nafter_clearing = 0.5\n[movement]\nerror = 12\n",
       "limits.toml");
   EXPECT_EQ(a.name, "ours");
   EXPECT_EQ(a.of(1, Phase::fault).mxe, 15);
   EXPECT_EQ(a.of(0, Phase::fault).mxe, 10);
   EXPECT_EQ(a.of(1, Phase::fault).me, 5);
   EXPECT_EQ(a.after_clearing, 0.5);
+  EXPECT_EQ(a.movement, 12);
   EXPECT_EQ(a.after_fault, 0.02);
 }
 
