@@ -291,6 +291,7 @@ class Search {
       for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
       if (setting_.input != InputKind::none) fit.occam = input_occam(at_end, fit);
     }
+    const Walls walls(setting_, &discrepancy_);
     for (Eigen::Index i = 0; i < n; ++i) {
       const Axis& a = setting_.axes[static_cast<std::size_t>(i)];
       const double z = z_[static_cast<std::size_t>(i)];
@@ -306,7 +307,8 @@ class Search {
       p.error = a.slope(z) * error;
       p.low = std::max(a.low, a.value(z - constants::normal95 * error));
       p.high = std::min(a.high, a.value(z + constants::normal95 * error));
-      p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6;
+      p.held_by = walls.holding(static_cast<std::size_t>(i), z_.data());
+      p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6 || !p.held_by.empty();
       p.decided = a.spread() > 0 ? std::clamp(1 - error * error / (a.spread() * a.spread()), 0.0, 1.0) : 1.0;
       fit.parameters.push_back(p);
     }
@@ -449,7 +451,7 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   sim::plant::Plant start = tested.plant;
   for (std::size_t i = 0; i < options.values.size(); ++i)
     parameter_value(start, free[i].id) = options.values[i];
-  setting.can_exist = playin::can_exist(start);
+  setting.can_exist = playin::can_exist_beside(start, tested.plant);
   FitOptions begun = options;
   if (begun.start.empty()) begun.start = early_states({start, tested.conventions}, events, options);
   Fit found = Search(setting, begun).run();

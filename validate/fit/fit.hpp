@@ -48,7 +48,9 @@ struct FittedParameter {
   double start = 0, value = 0;
   double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
   double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
+  /// At the end of its range, or held by an ordering (X''d > Xl): the interval is then not valid.
   bool at_bound = false;
+  std::string held_by = {};  ///< that ordering, "X''d > Xl"; empty: none
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
   /// Share of the interval that the records decide; the belief decides the rest. 0: the records decide
   /// nothing, 1: all.
@@ -73,6 +75,10 @@ struct Fit {
   std::string failed;  ///< why the start could not be evaluated; empty if it could
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
+
+/// "GENROU.Xdpp (held by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is not valid."; empty
+/// where none is.
+std::string bounds_text(const std::vector<FittedParameter>& parameters);
 
 /// The cost that is minimised, where nothing but noise is left; infinite if the fit failed.
 double penalised(const Fit& f);

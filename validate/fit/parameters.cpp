@@ -11,6 +11,15 @@ std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<
   return values;
 }
 
+std::string bounds_text(const std::vector<FittedParameter>& parameters) {
+  std::string names;
+  for (const auto& p : parameters)
+    if (p.at_bound)
+      names += (names.empty() ? "" : ", ") + p.full_name() +
+               (p.held_by.empty() ? "" : " (held by " + p.held_by + ")");
+  return names.empty() ? "" : names + ": at a bound, where the 95 % interval is not valid.";
+}
+
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread) {
   const sim::Effect& effect = block_effect(plant, block);
   const auto& values = block_at(plant, block).p;

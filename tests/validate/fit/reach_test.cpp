@@ -72,6 +72,38 @@ TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
   sim::plant::Block found = f.plant.machine;
   EXPECT_LT(parameter(found, "Xdpp"), 0.8 * parameter(found, "Xl"));
 }
+/// A record of a machine with X''d = 0.8 Xl, and the fit of X''d alone.
+struct BelowLeakage {
+  ExciterExample example{0.5};
+  sim::plant::Block& machine = example.model.plant.machine;
+  event::WhitenedEvents events = [this] {
+    parameter(machine, "Xdpp") = 0.8 * parameter(machine, "Xl");
+    return answered(example, example.model.plant);
+  }();
+  [[nodiscard]] Fit fitted(const FitOptions& options = {}) const {
+    return fit(example.model.under_test(), events, example.free({"Xdpp"}), options);
+  }
+};
+TEST(FitOrderings, XdppReturnsBelowXl_WhereTheModelHasItBelow) {
+  const BelowLeakage below;
+  const double Xl = parameter(below.machine, "Xl");
+  const Fit f = below.fitted({.values = {1.2 * Xl}});
+  ASSERT_EQ(f.failed, "");
+  EXPECT_NEAR(f.parameters.front().value, 0.8 * Xl, 0.01 * Xl);
+  EXPECT_FALSE(f.parameters.front().at_bound);
+  EXPECT_EQ(bounds_text(f.parameters), "");
+}
+TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
+  BelowLeakage below;
+  const double Xl = parameter(below.machine, "Xl");
+  parameter(below.machine, "Xdpp") = 1.2 * Xl;
+  const Fit f = below.fitted();
+  ASSERT_EQ(f.failed, "");
+  EXPECT_NEAR(f.parameters.front().value, Xl, 0.02 * Xl);
+  EXPECT_TRUE(f.parameters.front().at_bound);
+  EXPECT_EQ(bounds_text(f.parameters),
+            "GENROU.Xdpp (held by X''d > Xl): at a bound, where the 95 % interval is not valid.");
+}
 /// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits: these
 /// values are where a search ended in a public case, before it was dropped for them.
 TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {

@@ -65,7 +65,7 @@ struct Setting {
   bool lenient = false;                    ///< of the search; see FitOptions
   bool linear_slopes = false;              ///< see event::Playing
   bool goes_on = false;                    ///< with slopes that foretold a step well, if lenient
-  bool can_exist = false;  ///< the plant to start from; the search then stays among such plants
+  bool can_exist = false;  ///< the start, beside `plant`; the search then stays among such plants
 };
 
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
@@ -172,6 +172,18 @@ class Walls : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
   }
   [[nodiscard]] bool empty() const { return walls_.empty(); }
+  /// The ordering that holds the axis back at z, "X''d > Xl"; empty: none.
+  [[nodiscard]] std::string holding(std::size_t axis, const double* z) const {
+    const sim::plant::Plant plant = moved(setting_, z);
+    const auto symbol = [&](int parameter) {
+      return std::string(plant.machine.effect->parameters[static_cast<std::size_t>(parameter)].symbol);
+    };
+    for (const Wall& wall : walls_)
+      if (std::ranges::count(wall.axes, static_cast<int>(axis)) > 0 &&
+          gap(plant.machine, {wall.parameters[0], wall.parameters[1]}) < wall.foot)
+        return symbol(wall.parameters[0]) + " > " + symbol(wall.parameters[1]);
+    return "";
+  }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const std::size_t n = setting_.axes.size();
     const sim::plant::Plant plant = moved(setting_, blocks[0]);

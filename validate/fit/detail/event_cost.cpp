@@ -148,7 +148,8 @@ event::RowMatrix EventCost::slopes(const double* z, const double* state) const {
 
 event::RowMatrix EventCost::values(const double* z, const double* state, bool slopes) const {
   const sim::plant::Plant plant = moved(setting_, z);
-  if (!(setting_.can_exist ? playin::can_exist(plant) : playin::can_run(plant))) return {};
+  if (!(setting_.can_exist ? playin::can_exist_beside(plant, *setting_.plant) : playin::can_run(plant)))
+    return {};
   std::vector<playin::Direction> along;
   if (slopes) {
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
