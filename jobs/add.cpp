@@ -13,6 +13,7 @@
 #include "jobs/verdict.hpp"
 #include "sim/laws/law.hpp"
 #include "validate/add/report.hpp"
+#include "validate/compare/error_table.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -110,11 +111,12 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.judging, a.model, a.records);
-  result["format"] = "swingbank-add-1";
+  result["format"] = "swingbank-add-2";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
   result["records"] = a.told;
   result["fitness"] = compare::fitness_json(played);
+  result["errors"] = compare::errors_json(played);
   plant::write_plant_file(model_file, model, provenance);
   const plant::WrittenDyr records = plant::write_dyr_beside(model_file, before, model);
   if (!records.file.empty()) a.results->file(records.file.filename());
@@ -125,8 +127,8 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   if (a.json)
     fmt::print("{}\n", json_text(result, 1));
   else
-    fmt::print("{}{}\nmodel: {}\n{}\n", compare::fitness_text(played), text, model_file.string(),
-               records.line);
+    fmt::print("{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played), text,
+               compare::error_text(played, page.unseen), model_file.string(), records.line);
   a.judging.print(page_file);
 }
 

@@ -15,6 +15,7 @@
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
 #include "validate/calibrate/wrong_parameters.hpp"
+#include "validate/compare/error_table.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -63,6 +64,14 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
       compare::play_and_judge("calibrated", after, shown, options, a.judging.by)};
   catch_stop_signals();  // results are written even after a stop signal
   return both;
+}
+
+/// Names of the records that were held out.
+std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& events) {
+  std::vector<std::string> names;
+  for (const auto& e : events)
+    if (!e.seen) names.push_back(e.record);
+  return names;
 }
 
 /// Writes the model under a name that says whether it holds, and the records of one that does. Returns the
@@ -131,17 +140,18 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   result["standard_values"] = model.standard;
   result["records"] = told;
   result["fitness"] = compare::fitness_json(played);
+  result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
   page.complete = f.adequate;
   page.sentence = f.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
-  for (const auto& e : f.events)
-    if (!e.seen) page.unseen.push_back(e.record);
+  page.unseen = unseen_of(f.events);
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) +
-          compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" + written);
+          compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
+          compare::error_text(played, unseen_of(f.events)) + "\n" + written);
   a.judging.print(a.results->path() / kPage);
   return played.back().fitness.exit_code(f.adequate);
 }
@@ -184,6 +194,7 @@ int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<r
   result["command"] = a.command;
   result["records"] = told;
   result["fitness"] = compare::fitness_json(played);
+  result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
   page.complete = w.holds();
   page.sentence = w.sentence;
@@ -192,7 +203,7 @@ int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<r
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) + compare::complete_text(w.holds(), calibrate::wrong_text(w)) + "\n" +
-          written);
+          compare::error_text(played) + "\n" + written);
   a.judging.print(a.results->path() / kPage);
   return played.back().fitness.exit_code(w.holds());
 }
@@ -231,13 +242,15 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::optional<calibrate::CurveFit> curve;
   if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
-  std::string text =
-      compare::fitness_text(played) + compare::complete_text(holds, calibrate::terminal_report(c));
+  std::string text = compare::fitness_text(played) +
+                     compare::complete_text(holds, calibrate::terminal_report(c)) + "\n" +
+                     compare::error_text(played, unseen_of(c.events));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.standard;
   result["records"] = told;
   result["fitness"] = compare::fitness_json(played);
+  result["errors"] = compare::errors_json(played);
   result["statistically_complete"] = holds;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
@@ -259,8 +272,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::vector<fit::FittedParameter> fitted;
   for (const auto& p : c.parameters) fitted.push_back(p.fit);
   page.parameters = jobs::page_parameters(fitted, c.model.plant);
-  for (const auto& e : c.events)
-    if (!e.seen) page.unseen.push_back(e.record);
+  page.unseen = unseen_of(c.events);
   for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));

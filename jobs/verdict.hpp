@@ -101,7 +101,8 @@ std::vector<validate::compare::PageParameter> page_parameters(const std::vector<
   std::vector<validate::compare::PageParameter> rows;
   for (const auto& p : fitted)
     rows.push_back({p.block, std::string(sim::plant::parameter_record(plant, p.where.id).symbol), p.unit,
-                    p.start, p.value, p.low, p.high, p.decided, p.at_bound ? "at its bound" : ""});
+                    p.start, p.value, p.low, p.high, p.decided,
+                    p.at_bound ? "at its bound: interval not valid" : ""});
   return rows;
 }
 

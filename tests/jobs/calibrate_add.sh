@@ -18,7 +18,22 @@ assert r["effect"] == "SEXS" and r["earns_its_place"] and r["adequate"], r["sent
 seen, unseen = r["events"]
 assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, False)
 assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
-assert [c["unit"] for c in unseen["channels"]] == ["MW", "Mvar"]
+assert [e["unit"] for e in r["errors"] if e["model"] == "submitted" and e["record"] == "avr_ev2.csv"] == ["MW", "Mvar"]
+PYTHON
+# the errors of the model as it was are those that compare gives
+"$swingbank" compare --model "$model" --records "$one" "$two" --out "$work/before" >/dev/null || (($? == 3 || $? == 4))
+python3 - "$work/added/add.json" "$work/before/compare.json" <<'PYTHON'
+import json, sys
+added, compared = (json.load(open(f)) for f in sys.argv[1:])
+before = {(e["record"], e["channel"]): e for e in added["errors"] if e["model"] == "submitted"}
+assert len(before) == 4, before
+for event in compared["events"]:
+    for c in event["channels"]:
+        if c["name"] not in "PQ": continue
+        own = before[event["record"], c["name"]]
+        assert own["rms"] == c["whole"]["rms_pu"] * c["units_in_pu"], (own, c["whole"])
+        assert own["noise"] == c["noise_pu"] * c["units_in_pu"], own
+        assert abs(own["rms_over_noise"] - own["rms"] / own["noise"]) < 1e-9 * own["rms_over_noise"], own
 PYTHON
 for words in 'An effect added' 'evidence' 'avr_ev2.csv (not fitted to)' 'completed'; do
   grep -qF -- "$words" "$work/added/report.html" || fail "'$words' is not on the page"
@@ -52,7 +67,7 @@ r = json.load(open(sys.argv[1]))
 model, curve, ours = r["side_by_side"]
 assert [w["way"] for w in r["side_by_side"]] == ["model", "curve fit", "calibrate"]
 assert model["truth"]["rms_relative"] == 0 and curve["truth"]["mse_raw_units"] > ours["truth"]["mse_raw_units"] > 0, curve["truth"]
-assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-1"
+assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-2"
 PYTHON
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
 cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"

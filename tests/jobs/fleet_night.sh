@@ -23,7 +23,7 @@ for name in ("p1", "p2", "p3"):
     assert p["verdict"] in ("missing", "confusable") and p["side"] == "excitation", p
     assert "SEXS" in p["effects"][:1] + p["equivalent"], p
     # the field without an exciter leaves tens of sigma; with it nothing but noise is left on events not fitted to
-    assert p["unseen_rms_in_noise_before"] > 10 and p["unseen_rms_in_noise_after"] < 1.1, p
+    assert p["unseen_normalised_rms_before"] > 10 and p["unseen_normalised_rms_after"] < 1.1, p
 rows = {r["plant"]: r for r in csv.DictReader(open(folder + "/fleet.csv"))}
 assert rows["p1"]["effects"].startswith("SEXS"), rows["p1"]
 PYTHON

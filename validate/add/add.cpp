@@ -184,6 +184,26 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
   return added;
 }
 
+/// Takes the noise of the played-in voltage back and widens the intervals for coloured noise, as calibrate
+/// does, with the priors of the hypothesis.
+void calibrate_addition(Addition& a, const std::vector<record::Record>& records, const AddOptions& options) {
+  plant::PlantModel prior = a.model;
+  prior.plant = a.hypothesis.plant;
+  calibrate::CalibrateOptions o = options.calibrate;
+  o.draws = o.starts = 0;
+  o.only_given = true;
+  o.given = {{a.hypothesis.name, a.with.plant}};
+  o.free = hypothesis::free_of(a.hypothesis, options.calibrate.spread);
+  if (options.calibrate.progress)
+    o.progress = [&](const std::string& what, int done, int total) {
+      options.calibrate.progress("sensitivities, " + what, done, total);
+    };
+  const calibrate::Calibration c = calibrate::calibrate(prior, records, o);
+  a.parameters.clear();
+  for (const auto& p : c.parameters) a.parameters.push_back(p.fit);
+  a.model.plant = c.model.plant;
+}
+
 /// The effect's values, where they are few enough for a sentence; all stand in the table of parameters.
 std::string own_values(const Addition& a) {
   constexpr int kInASentence = 6;
@@ -216,6 +236,7 @@ std::string sentence_of(const Addition& a) {
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (a.own > 0) text += " " + own_values(a) + ".";
   text += a.adequate ? " Nothing but noise is left." : " More than noise is left: something else is missing.";
+  if (const std::string bounds = fit::bounds_text(a.parameters); !bounds.empty()) text += " " + bounds;
   return text;
 }
 
@@ -244,9 +265,9 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
 
 namespace {
 
-void work(const plant::PlantModel& model, std::vector<record::Record> records, const AddOptions& options,
-          Addition& a) {
-  Bench bench(model, std::move(records), options.calibrate);
+void work(const plant::PlantModel& model, const std::vector<record::Record>& records,
+          const AddOptions& options, Addition& a) {
+  Bench bench(model, records, options.calibrate);
   auto before = bench.each(model.under_test(), "events with the model as it is");
   const auto states = bench.states_of(before);
   hypothesis::Hypothesis& hypothesis = a.hypothesis;
@@ -268,9 +289,6 @@ void work(const plant::PlantModel& model, std::vector<record::Record> records, c
   }
   hypothesis::grow(bench.seen(), options.calibrate.spread, hypothesis, a.with);
   a.own = static_cast<int>(hypothesis.free.size());
-  a.parameters = a.with.parameters;
-  // The effect's parameters stand last in a fit.
-  std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.evidence = fit::gain(a.without, a.with, fit::criterion);
   const auto refitted = bench.each({a.without.plant, model.conventions}, "events without the effect");
   const auto after = bench.each({a.with.plant, hypothesis.conventions}, "events with the effect");
@@ -293,6 +311,10 @@ void work(const plant::PlantModel& model, std::vector<record::Record> records, c
   a.earns = a.earns && a.evidence > thresholds::addition.strong;
   a.model.plant = a.with.plant;
   a.model.conventions = hypothesis.conventions;
+  a.parameters = a.with.parameters;
+  if (a.adequate) calibrate_addition(a, records, options);
+  // The effect's parameters stand last in a fit.
+  std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.prepared = bench.all();
   a.sentence = sentence_of(a);
 }
@@ -300,12 +322,12 @@ void work(const plant::PlantModel& model, std::vector<record::Record> records, c
 }  // namespace
 
 Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& asked,
-                    std::vector<record::Record> records, const AddOptions& options) {
+                    const std::vector<record::Record>& records, const AddOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Addition a;
   a.hypothesis = asked;
   try {
-    work(model, std::move(records), options, a);
+    work(model, records, options, a);
   } catch (const Interrupted&) {
     if (a.with.parameters.empty()) throw Interrupted{};
     throw fit::InterruptedFit{{}, a.with};

@@ -23,7 +23,8 @@ struct Addition {
   hypothesis::Hypothesis hypothesis;
   plant::PlantModel model;  ///< with the effect and the fitted values
   std::vector<fit::FittedParameter>
-      parameters;  ///< all parameters that were free; those of the effect come first
+      parameters;  ///< all parameters that were free, those of the effect first; as calibrate gives them
+                   ///< where nothing but noise is left
   int own = 0;     ///< how many are the effect's
   std::vector<AddedEvent> events;
   double evidence = 0;        ///< criterion() without - with, over the events seen: it earns its place above
@@ -43,7 +44,7 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
 
 /// Throws InputError as calibrate does.
 Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
-                    std::vector<record::Record> records, const AddOptions& options);
+                    const std::vector<record::Record>& records, const AddOptions& options);
 
 /// Takes out one control of a model (index into Plant::controls) and says what its evidence is with
 /// everything else refitted. The returned model lacks it.

@@ -36,10 +36,11 @@ report::Table values_table(const Addition& a) {
   for (std::size_t i = 0; i < a.parameters.size(); ++i) {
     const auto& p = a.parameters[i];
     const bool own = i < static_cast<std::size_t>(a.own);
-    t.rows.push_back({p.full_name(), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
-                      fmt::format("{:.2g}", p.error), fmt::format("{:.4g} to {:.4g}", p.low, p.high),
-                      fmt::format("{:.0f} %", 100 * p.decided),
-                      std::string(own ? "added" : "") + (p.at_bound ? " at its bound" : "")});
+    t.rows.push_back(
+        {p.full_name(), p.unit, fmt::format("{:.4g}", p.start), fmt::format("{:.4g}", p.value),
+         fmt::format("{:.2g}", p.error), fmt::format("{:.4g} to {:.4g}", p.low, p.high),
+         fmt::format("{:.0f} %", 100 * p.decided),
+         std::string(own ? "added" : "") + (p.at_bound ? " at its bound: interval not valid" : "")});
   }
   return t;
 }
@@ -61,21 +62,13 @@ json parameter_json(const fit::FittedParameter& p, bool own) {
 }  // namespace
 
 report::Table addition_table(const Addition& a) {
-  report::Table t{"Events",
-                  {"event", "", "channel", "noise", "rms before", "rms after", "misfit before", "refitted",
-                   "after", "limit"},
-                  {}};
+  report::Table t{"Events", {"event", "", "chi2/value before", "refitted", "after", "limit"}, {}};
   for (const auto& event : a.events) {
     const calibrate::EventScore& e = event.score;
-    t.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN", "all", "", "", "",
-                      fmt::format("{:.3g}", e.before), fmt::format("{:.3g}", event.refitted),
+    t.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN", fmt::format("{:.3g}", e.before),
+                      fmt::format("{:.3g}", event.refitted),
                       fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
                       fmt::format("{:.3g}", e.limit)});
-    for (const auto& c : e.channels)
-      t.rows.push_back(
-          {"", "", std::string(playin::output_name(c.channel)), fmt::format("{:.3g} {}", c.noise, c.unit),
-           fmt::format("{:.3g} {}", c.rms_before, c.unit), fmt::format("{:.3g} {}", c.rms_after, c.unit),
-           fmt::format("{:.3g}", c.misfit_before), "", fmt::format("{:.3g}", c.misfit_after), ""});
   }
   return t;
 }

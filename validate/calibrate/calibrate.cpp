@@ -53,7 +53,8 @@ class Calibrating {
       : model_(model),
         options_(options),
         out_(held_out_events(records, options.held_out)),
-        free_(chosen_parameters(model.plant, options.spread, options.fixed)) {
+        free_(options.free.empty() ? chosen_parameters(model.plant, options.spread, options.fixed)
+                                   : options.free) {
     c_.model = model;
     c_.prepared = event::prepare_events(model, std::move(records), options.events);
     for (std::size_t e = 0; e < c_.prepared.size(); ++e)
@@ -125,9 +126,10 @@ class Calibrating {
     const auto start = [&](const std::string& name, const std::vector<double>& values) {
       return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
     };
-    Starts starts = {start("model", screen.own())};
+    Starts starts;
+    if (!options_.only_given) starts.push_back(start("model", screen.own()));
     Starts closed;
-    if (options_.events.measured_states)
+    if (options_.events.measured_states && !options_.only_given)
       for (const auto& values : closed_starts(model_.under_test(), seen_, free_))
         closed.push_back(start("closed form", values));
     const auto nearest = std::ranges::min_element(closed, {}, &Start::before);
@@ -276,7 +278,7 @@ class Calibrating {
       nearest = std::min(nearest, off);
       Eigen::VectorXd step = secants.step(plain);
       step *= std::min(1.0, kLongestPull / step.cwiseAbs().maxCoeff());
-      while (step.norm() > kShortest && !playin::can_exist_beside(stepped(plant, free_, step), c_.fit.plant))
+      while (step.norm() > kShortest && !playin::can_exist_beside(stepped(plant, free_, step), model_.plant))
         step *= 0.5;
       if (step.norm() <= kShortest) break;
       plant = stepped(plant, free_, step);
@@ -360,6 +362,7 @@ class Calibrating {
       CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
       const auto range =
           sim::plant::search_range(sim::plant::parameter_record(c_.fit.plant, p.fit.where.id), p.fit.start);
+      p.fit.at_bound = p.fit.at_bound || p.fit.value <= range.low || p.fit.value >= range.high;
       p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];
@@ -433,6 +436,8 @@ class Calibrating {
                   : held              ? Adequacy::adequate
                                       : Adequacy::parameters_poor;
     c_.sentence = sentence();
+    if (const std::string bounds = fit::bounds_text(c_.fit.parameters); !bounds.empty())
+      c_.sentence += " " + bounds;
   }
   std::string sentence() const {
     const std::string left = fmt::format("chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}",
@@ -456,13 +461,11 @@ class Calibrating {
     const EventScore* worst = &c_.events.front();
     for (const auto& s : c_.events)
       if (s.after / s.limit > worst->after / worst->limit) worst = &s;
-    const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::misfit_after);
+    const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::over_noise);
     return fmt::format(
         "Something is missing in the structure: what is left survives the refit of "
-        "every parameter ({}). Most of it stands in {} of {}: {:.3g} {} rms where "
-        "the noise is {:.3g} {}. 'swingbank diagnose' looks for what is missing.",
-        left, playin::output_name(channel->channel), worst->record, channel->rms_after, channel->unit,
-        channel->noise, channel->unit);
+        "every parameter ({}). The largest part is in {} of {}. 'swingbank diagnose' looks for what is missing.",
+        left, playin::output_name(channel->channel), worst->record);
   }
 
   const plant::PlantModel& model_;

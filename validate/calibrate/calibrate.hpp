@@ -22,9 +22,11 @@ struct CalibrateOptions {
   int draws = 24;  ///< parameter sets tried as starts, unless the machine's closed form is good enough
   int starts = 2;  ///< how many of these are refined beside the model's own values
   std::uint64_t seed = 1;
-  std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
-  std::vector<std::string> fixed;     ///< "GENROU.Xl": stays as it is
-  std::vector<GivenStart> given;      ///< starts beside the model's own values and those drawn
+  std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
+  std::vector<std::string> fixed;             ///< "GENROU.Xl": stays as it is
+  std::vector<GivenStart> given;              ///< starts beside the model's own values and those drawn
+  bool only_given = false;                    ///< starts from `given` alone
+  std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
   double adequate =
       thresholds::adequacy.misfit;  ///< chi2 per value that interpolation and the played-in voltage may leave
   event::FitEventOptions events = {};
@@ -32,14 +34,14 @@ struct CalibrateOptions {
   std::function<void(const std::string& what, int done, int total)> progress = {};
 };
 
-/// One channel of one event. `scale` makes its unit of the record's pu.
+/// One channel of one event in the fit, which moves the event's own state. The errors that commands show are
+/// those of compare::error_table.
 struct ChannelScore {
   playin::Output channel;
   std::string unit;
-  double scale = 1;
-  double noise = 0;                            ///< [unit]
-  double rms_before = 0, rms_after = 0;        ///< of model - measured [unit]
-  double misfit_before = 0, misfit_after = 0;  ///< (rms / noise)^2; 1 means that nothing but noise is left
+  double scale = 1;                      ///< units in 1 pu of the record's base
+  double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]
+  double over_noise = 0;                 ///< rms_after over the noise that the fit is weighted by
 };
 struct EventScore {
   std::string record;

@@ -252,10 +252,8 @@ class CurveFitting {
     fit_.rms_before = std::sqrt(squares[0] / values);
     fit_.rms_after = std::sqrt(squares[1] / values);
     fit_.sentence = fmt::format(
-        "Curve fitting {} after {} iterations: P and Q are missed by {:.3g} pu rms instead "
-        "of {:.3g} pu; chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}.",
-        fit_.converged ? "ended" : "did not end", fit_.iterations, fit_.rms_after, fit_.rms_before,
-        fit_.before, fit_.after, fit_.limit);
+        "Curve fitting {} after {} iterations: chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}.",
+        fit_.converged ? "ended" : "did not end", fit_.iterations, fit_.before, fit_.after, fit_.limit);
   }
 
   const CurveFitOptions& options_;

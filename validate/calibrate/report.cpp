@@ -30,7 +30,7 @@ bool strained(const fit::FittedParameter& p) {
 
 std::string notes(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
-  std::string text = p.fit.at_bound ? "at its bound" : "";
+  std::string text = p.fit.at_bound ? "at its bound: interval not valid" : "";
   if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "further off than --spread believes";
   if (p.fit.decided < thresholds::parameters.identified)
     text += std::string(text.empty() ? "" : "; ") + "not identified";
@@ -125,19 +125,11 @@ report::Table parameter_table(const Calibration& c) {
 }
 
 report::Table event_table(const std::vector<EventScore>& events) {
-  report::Table t{
-      "Events",
-      {"event", "", "channel", "noise", "rms before", "rms after", "misfit before", "after", "limit"},
-      {}};
+  report::Table t{"Events", {"event", "", "chi2/value before", "after", "limit"}, {}};
   for (const auto& e : events) {
-    t.rows.push_back(
-        {e.record, e.seen ? "fitted" : "unseen", "all", "", "", "", fmt::format("{:.3g}", e.before),
-         fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"), fmt::format("{:.3g}", e.limit)});
-    for (const auto& ch : e.channels)
-      t.rows.push_back(
-          {"", "", std::string(playin::output_name(ch.channel)), fmt::format("{:.3g} {}", ch.noise, ch.unit),
-           fmt::format("{:.3g} {}", ch.rms_before, ch.unit), fmt::format("{:.3g} {}", ch.rms_after, ch.unit),
-           fmt::format("{:.3g}", ch.misfit_before), fmt::format("{:.3g}", ch.misfit_after), ""});
+    t.rows.push_back({e.record, e.seen ? "fitted" : "unseen", fmt::format("{:.3g}", e.before),
+                      fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
+                      fmt::format("{:.3g}", e.limit)});
   }
   return t;
 }
@@ -187,27 +179,13 @@ std::string terminal_report(const Calibration& c) {
 }
 
 json event_json(const EventScore& e) {
-  json j = {{"record", e.record},
-            {"seen", e.seen},
-            {"misfit_before", e.before},
-            {"misfit_after", e.after},
-            {"misfit_limit", e.limit},
-            {"adequate", e.adequate()},
-            {"noise_correlation", e.colour},
-            {"channels", json::array()}};
-  for (const auto& ch : e.channels)
-    j["channels"].push_back({{"name", playin::output_name(ch.channel)},
-                             {"unit", ch.unit},
-                             {"noise", ch.noise},
-                             {"rms_before", ch.rms_before},
-                             {"rms_after", ch.rms_after},
-                             {"misfit_before", ch.misfit_before},
-                             {"misfit_after", ch.misfit_after}});
-  return j;
+  return {{"record", e.record},           {"seen", e.seen},          {"misfit_before", e.before},
+          {"misfit_after", e.after},      {"misfit_limit", e.limit}, {"adequate", e.adequate()},
+          {"noise_correlation", e.colour}};
 }
 
 json calibration_json(const Calibration& c) {
-  json j = {{"format", "swingbank-calibrate-1"},
+  json j = {{"format", "swingbank-calibrate-2"},
             {"version", SWINGBANK_VERSION},
             {"model", c.model.origin},
             {"model_xxh64", fmt::format("{:016x}", c.model.hash)},

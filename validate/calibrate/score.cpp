@@ -90,11 +90,9 @@ EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& befor
     channel.unit = !power ? "pu" : reactive ? "Mvar" : "MW";
     channel.scale = power ? event.record.base.mva : 1.0;
     const double noise = whitened.noise.deviation[static_cast<Eigen::Index>(c)];
-    channel.noise = channel.scale * noise;
     channel.rms_before = channel.scale * rms(event, before, c);
     channel.rms_after = channel.scale * rms(event, after, c);
-    channel.misfit_before = std::pow(channel.rms_before / channel.noise, 2);
-    channel.misfit_after = std::pow(channel.rms_after / channel.noise, 2);
+    channel.over_noise = channel.rms_after / (channel.scale * noise);
     s.channels.push_back(channel);
   }
   return s;

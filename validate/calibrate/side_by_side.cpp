@@ -79,10 +79,6 @@ std::vector<const Way::Value*> all_parameters(const std::vector<Way>& ways) {
         all.push_back(&v);
   return all;
 }
-const ChannelScore* channel_of(const EventScore& event, playin::Output channel) {
-  const auto at = std::ranges::find(event.channels, channel, &ChannelScore::channel);
-  return at == event.channels.end() ? nullptr : &*at;
-}
 
 /// Every event of the calibration with another plant's parameters and a state of its own.
 std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibration& c) {
@@ -94,16 +90,11 @@ std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibrat
         EventScore& to = events[e];
         if (!own.failed.empty()) {
           to.after = std::numeric_limits<double>::infinity();
-          for (auto& ch : to.channels) ch.rms_after = ch.misfit_after = to.after;
           return;
         }
         const EventScore score = score_event(c.prepared.whitened(e), own.events.front(), own.events.front(),
                                              to.seen, pre_event_samples(c.prepared), 1.0);
         to.after = score.after;
-        for (std::size_t k = 0; k < score.channels.size(); ++k) {
-          to.channels[k].rms_after = score.channels[k].rms_after;
-          to.channels[k].misfit_after = score.channels[k].misfit_after;
-        }
       },
       [](int) {});
   return events;
@@ -122,13 +113,7 @@ Way way_of_model(const Calibration& c) {
   Way way{"model", {}, c.events};
   for (const auto& p : c.parameters)
     way.values.push_back({p.fit.full_name(), p.fit.unit, p.fit.start, p.fit.start, p.fit.start});
-  for (auto& e : way.events) {
-    e.after = e.before;
-    for (auto& ch : e.channels) {
-      ch.rms_after = ch.rms_before;
-      ch.misfit_after = ch.misfit_before;
-    }
-  }
+  for (auto& e : way.events) e.after = e.before;
   return way;
 }
 
@@ -202,29 +187,20 @@ report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth
 }
 
 report::Table events_beside(const std::vector<Way>& ways) {
-  report::Table t{"Events", {"event", "", "channel", "noise"}, {}};
+  report::Table t{"Events", {"event", ""}, {}};
   for (const auto& way : ways) t.header.push_back(way.name);
   for (std::size_t e = 0; e < ways.front().events.size(); ++e) {
     const EventScore& first = ways.front().events[e];
-    std::vector<report::Cell> row = {first.record, first.seen ? "fitted" : "UNSEEN", "chi2/value", ""};
+    std::vector<report::Cell> row = {first.record, first.seen ? "fitted" : "UNSEEN"};
     for (const auto& way : ways) row.emplace_back(fmt::format("{:.3g}", way.events[e].after));
     t.rows.push_back(std::move(row));
-    for (const auto& ch : first.channels) {
-      row = {"", "", std::string(playin::output_name(ch.channel)) + " rms",
-             fmt::format("{:.3g} {}", ch.noise, ch.unit)};
-      for (const auto& way : ways) {
-        const ChannelScore* own = channel_of(way.events[e], ch.channel);
-        row.emplace_back(own ? fmt::format("{:.3g} {}", own->rms_after, own->unit) : "");
-      }
-      t.rows.push_back(std::move(row));
-    }
   }
   return t;
 }
 
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   std::string text =
-      "Side by side (every event with its own switching instants and start; only the parameters "
+      "Side by side, chi2 per value (every event with its own switching times and start; only the parameters "
       "differ):\n" +
       aligned(events_beside(ways)) + "\n" + aligned(parameters_beside(ways, truth));
   if (truth.empty()) return text;
@@ -252,14 +228,8 @@ json beside_json(const std::vector<Way>& ways, const Truth& truth) {
                                  {"high_95", v.high},
                                  {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
     }
-    for (const auto& e : way.events) {
-      json channels = json::array();
-      for (const auto& ch : e.channels)
-        channels.push_back(
-            {{"name", playin::output_name(ch.channel)}, {"unit", ch.unit}, {"rms", ch.rms_after}});
-      j["events"].push_back(
-          {{"record", e.record}, {"seen", e.seen}, {"misfit", e.after}, {"channels", channels}});
-    }
+    for (const auto& e : way.events)
+      j["events"].push_back({{"record", e.record}, {"seen", e.seen}, {"misfit", e.after}});
     if (!truth.empty()) {
       const Distance d = distance(way, truth);
       j["truth"] = {{"parameters", d.parameters},
@@ -294,13 +264,11 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {
-  json j = {{"format", "swingbank-curve-fit-1"},
+  json j = {{"format", "swingbank-curve-fit-2"},
             {"version", SWINGBANK_VERSION},
             {"model", f.model.origin},
             {"model_xxh64", fmt::format("{:016x}", f.model.hash)},
             {"sentence", f.sentence},
-            {"rms_before_pu", f.rms_before},
-            {"rms_after_pu", f.rms_after},
             {"misfit_before", f.before},
             {"misfit_after", f.after},
             {"misfit_limit", f.limit},

@@ -112,7 +112,7 @@ struct Filling {
     c.values = values;
     if (values == 0) return c;
     c.rms = std::sqrt(square / static_cast<double>(samples));
-    c.in_noise = std::sqrt(relative / values);
+    c.normalised = std::sqrt(relative / values);
     return c;
   }
 };

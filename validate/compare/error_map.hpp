@@ -1,6 +1,6 @@
 #pragma once
-// Where a model is wrong: the residual of one channel per window of time and band of frequency, in units of
-// what noise alone would leave there.
+// Where a model is wrong: the residual of one channel per window of time and band of frequency, normalised by
+// the coloured noise of the channel.
 #include <limits>
 #include <span>
 #include <string>
@@ -44,13 +44,14 @@ struct MapCell {
   /// Independent values in the cell; 0: the window is too short for the band, nothing is known.
   int values = 0;
   double rms = 0;  ///< of the residual's part in window and band [pu]
-  /// sqrt(mean of squares, each over its variance under noise): 1 where nothing but noise is left.
-  double in_noise = std::numeric_limits<double>::quiet_NaN();
+  /// Normalised RMS: sqrt(mean of the squared components, each over its variance under coloured noise); 1
+  /// for noise alone. It is not rms / sigma: a window or band holds a part of the noise only.
+  double normalised = std::numeric_limits<double>::quiet_NaN();
   double bound = std::numeric_limits<double>::quiet_NaN();  ///< noise alone stays below; set by set_bounds()
   [[nodiscard]] bool empty() const { return values == 0; }
   /// What noise alone may leave [pu].
-  [[nodiscard]] double allowed() const { return in_noise > 0 ? rms / in_noise * bound : 0.0; }
-  [[nodiscard]] bool exceeds() const { return !empty() && in_noise > bound; }
+  [[nodiscard]] double allowed() const { return normalised > 0 ? rms / normalised * bound : 0.0; }
+  [[nodiscard]] bool exceeds() const { return !empty() && normalised > bound; }
 };
 
 /// One channel of one event.

@@ -16,12 +16,12 @@ namespace {
 double shade(const MapCell& cell) {
   if (cell.empty() || !std::isfinite(cell.bound)) return -1;
   if (!cell.exceeds()) return 0;
-  return std::clamp(0.35 + 0.65 * std::log(cell.in_noise / cell.bound) / std::log(25.0), 0.0, 1.0);
+  return std::clamp(0.35 + 0.65 * std::log(cell.normalised / cell.bound) / std::log(25.0), 0.0, 1.0);
 }
 
 report::Cell map_cell(const MapCell& cell) {
   if (cell.empty()) return {"–"};
-  return {times_noise(cell.in_noise) + (cell.exceeds() ? " *" : ""), shade(cell)};
+  return {times_noise(cell.normalised) + (cell.exceeds() ? " *" : ""), shade(cell)};
 }
 
 std::vector<std::string> columns(bool with_event) {
@@ -46,19 +46,19 @@ void add_row(report::Table& table, const LabelledMap& m, const std::string& wind
 
 void keep_worse(MapCell& worst, const MapCell& cell) {
   if (cell.empty()) return;
-  if (worst.empty() || cell.in_noise / cell.bound > worst.in_noise / worst.bound) worst = cell;
+  if (worst.empty() || cell.normalised / cell.bound > worst.normalised / worst.bound) worst = cell;
 }
 
 constexpr const char* kCaption =
-    "Residual per window of time and band of frequency in units of noise: 1 × means "
-    "that nothing but noise is left. A star marks what exceeds the bound that noise "
-    "alone keeps in all cells together; “–”: the window is too short for the band.";
+    "Normalised RMS of the residual per window of time and band of frequency: each component is divided by the "
+    "standard deviation that coloured noise gives it, so that noise alone gives 1 ×. A star marks what exceeds "
+    "the bound of noise alone, which holds for all cells together; “–”: the window is too short for the band.";
 
 }  // namespace
 
-std::string times_noise(double in_noise) {
-  if (!std::isfinite(in_noise)) return "–";
-  return in_noise < 9.95 ? fmt::format("{:.1f} ×", in_noise) : fmt::format("{:.0f} ×", in_noise);
+std::string times_noise(double ratio) {
+  if (!std::isfinite(ratio)) return "–";
+  return ratio < 9.95 ? fmt::format("{:.1f} ×", ratio) : fmt::format("{:.0f} ×", ratio);
 }
 
 report::Table map_table(const std::vector<LabelledMap>& maps) {
@@ -105,8 +105,8 @@ nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map)
       return cell.empty() || !std::isfinite(v) ? nlohmann::json(nullptr) : nlohmann::json(v);
     };
     j["rms_pu"] = number(cell.rms);
-    j["rms_in_noise"] = number(cell.in_noise);
-    j["bound_in_noise"] = number(cell.bound);
+    j["normalised_rms"] = number(cell.normalised);
+    j["normalised_bound"] = number(cell.bound);
     rows.push_back(std::move(j));
   };
   for (std::size_t w = 0; w < windows.size(); ++w) {

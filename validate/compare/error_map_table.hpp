@@ -16,17 +16,18 @@ struct LabelledMap {
   const ErrorMap* map = nullptr;
 };
 
-/// One row per event, channel and window; columns: RMS in units, then in noise over all frequencies and per
-/// band. A star marks what exceeds its bound; "–" a band the window cannot hold. The event's column is left
-/// out where all are of one event.
+/// One row per event, channel and window; columns: RMS in units, then the normalised RMS over all frequencies
+/// and per band. A star marks what exceeds its bound; "–" a band the window cannot hold. The event's column
+/// is left out where all are of one event.
 report::Table map_table(const std::vector<LabelledMap>& maps);
 /// The same with the worst of all events (furthest beyond its bound) in each cell.
 report::Table worst_map_table(const std::vector<LabelledMap>& maps);
 
-/// Rows of cells: window, band ("all" over every frequency), values, rms_pu, rms_in_noise and bound_in_noise.
+/// Rows of cells: window, band ("all" over every frequency), values, rms_pu, normalised_rms and
+/// normalised_bound.
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map);
 
 /// "0.9 ×", "85 ×", "–" where it is not known.
-std::string times_noise(double in_noise);
+std::string times_noise(double ratio);
 
 }  // namespace swingbank::validate::compare

@@ -72,7 +72,7 @@ Adequacy judge(std::vector<EventComparison>& events) {
     ++a.cells;
     a.exceeding += named.cell->exceeds() ? 1 : 0;
     a.vague += tells_nothing(named) ? 1 : 0;
-    if (!worst || named.cell->in_noise / named.cell->bound > worst->cell->in_noise / worst->cell->bound)
+    if (!worst || named.cell->normalised / named.cell->bound > worst->cell->normalised / worst->cell->bound)
       worst = &named;
   }
   a.ruling = thresholds::judged_by_cells(a.exceeding + a.vague, a.cells);
@@ -89,10 +89,10 @@ Adequacy judge(std::vector<EventComparison>& events) {
                             100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
     a.sentence +=
-        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, {} noise where {} is allowed.",
+        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
                     a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
                     worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
-                    times_noise(worst->cell->in_noise), times_noise(worst->cell->bound));
+                    times_noise(worst->cell->normalised), times_noise(worst->cell->bound));
   return a;
 }
 

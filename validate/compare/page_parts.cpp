@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/error_table.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -168,6 +169,8 @@ void verdict_part(report::Page& page, const std::vector<Played>& played, bool co
                           played[k].fitness.sentence));
   if (!played.empty() && played.back().fitness.not_judged.empty())
     page.table(worst_fitness_table(played.back().fitness));
+  if (!played.empty() && !played.back().fitness.movements.empty())
+    page.table(movement_table(played.back().fitness));
 }
 
 void panels_part(report::Page& page, const std::vector<Played>& played) {
@@ -210,33 +213,7 @@ void errors_part(report::Page& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen) {
   if (std::ranges::all_of(played, [](const Played& p) { return p.events.empty(); })) return;
   page.section("Error of each event");
-  report::Table table{
-      "Modelled − measured over the whole record: RMS in physical units, and in units of noise "
-      "(1 × means that nothing but noise is left).",
-      {"event", "channel", "noise σ"},
-      {}};
-  for (const Played& p : played) {
-    table.header.push_back(p.name);
-    table.header.push_back(p.name + ", in noise");
-  }
-  std::size_t events = 0;
-  for (const Played& p : played) events = std::max(events, p.events.size());
-  for (std::size_t e = 0; e < events; ++e) {
-    const ShownEvent shown = shown_event(played, e);
-    for (const ChannelComparison& c : shown.first().channels) {
-      const bool fitted_to = std::ranges::find(unseen, shown.first().record.name) == unseen.end();
-      std::vector<report::Cell> row = {
-          shown.first().record.name + (fitted_to ? "" : " (not fitted to)"), c.name,
-          c.noise > 0 ? fmt::format("{:.3g} {}", c.noise * c.scale, c.unit) : std::string("none")};
-      for (const Played& p : played) {
-        const ChannelComparison* m = e < p.events.size() ? find_channel(p.events[e], c.name) : nullptr;
-        row.emplace_back(m ? fmt::format("{:.3g} {}", m->whole.rms * m->scale, m->unit) : "–");
-        row.emplace_back(m ? times_noise(m->map.whole.in_noise) + (m->map.whole.exceeds() ? " *" : "") : "–");
-      }
-      table.rows.push_back(std::move(row));
-    }
-  }
-  page.table(table);
+  page.table(error_table(played, unseen));
 }
 
 void maps_part(report::Page& page, const std::vector<Played>& played) {
@@ -252,13 +229,18 @@ void maps_part(report::Page& page, const std::vector<Played>& played) {
 }
 
 void glossary_part(report::Page& page) {
-  page.section("Five words");
+  page.section("Glossary");
   page.table(
       {"",
-       {"word", "what it means here"},
-       {{"noise",
-         "What the record holds where nothing happens: the spread of the residual before the event, with its "
-         "colour. Errors “in noise” are divided by it."},
+       {"term", "definition"},
+       {{"RMS", "Root mean square of modelled − measured over all samples that are compared."},
+        {"noise σ",
+         "Standard deviation of modelled − measured before the event, of the model that is played. RMS / noise is "
+         "the quotient of the two."},
+        {"normalised RMS",
+         "Root mean square of the residual's components (frequencies in the error map, whitened samples in a fit), "
+         "each divided by the standard deviation that the coloured noise gives it. Noise alone gives 1. Its square "
+         "is chi2 per value."},
         {"cell",
          "One window of time and one band of frequency of one channel in the error map, with a bound of its "
          "own that noise alone keeps."},

@@ -24,13 +24,13 @@ void verdict_part(report::Page& page, const std::vector<Played>& played, bool co
 void panels_part(report::Page& page, const std::vector<Played>& played);
 /// Before, after, 95 % interval. Without intervals (compare) the values that the model has.
 void parameters_part(report::Page& page, const std::vector<PageParameter>& parameters);
-/// RMS and largest error of each event and channel, in units and in noise. `unseen`: names of the events that
+/// RMS, noise and their ratio of each event and channel (error_table). `unseen`: names of the events that
 /// were not fitted to.
 void errors_part(report::Page& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen = {});
 /// The error map of each model.
 void maps_part(report::Page& page, const std::vector<Played>& played);
-/// Five words.
+/// Definitions of the terms that pages use.
 void glossary_part(report::Page& page);
 
 /// A page of a command that has no more to show: all parts, `tried` among them as sentences.

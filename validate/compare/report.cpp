@@ -9,6 +9,7 @@
 #include "base/json.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/error_table.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -50,7 +51,7 @@ nlohmann::json to_json(const WindowError& w) {
                       {"mean_pu", w.mean},
                       {"worst_pu", w.worst},
                       {"worst_at_s", w.worst_at}};
-  j["rms_in_noise"] = std::isfinite(w.in_noise) ? nlohmann::json(w.in_noise) : nlohmann::json(nullptr);
+  j["rms_over_noise"] = std::isfinite(w.in_noise) ? nlohmann::json(w.in_noise) : nlohmann::json(nullptr);
   return j;
 }
 
@@ -89,31 +90,16 @@ nlohmann::json to_json(const EventComparison& e) {
 
 }  // namespace
 
-report::Table error_summary(const std::vector<EventComparison>& events) {
-  report::Table table{"Residual (modelled − measured) over the whole record.",
-                      {"event", "channel", "RMS", "RMS [pu]", "largest", "at", "noise σ", "RMS / noise"},
-                      {}};
-  for (const auto& e : events)
-    for (const auto& c : e.channels)
-      table.rows.push_back({e.record.name, c.name, fmt::format("{:.3f} {}", c.whole.rms * c.scale, c.unit),
-                            fmt::format("{:.6f}", c.whole.rms),
-                            fmt::format("{:.3f} {}", c.whole.worst * c.scale, c.unit),
-                            fmt::format("{:.3f} s", c.whole.worst_at),
-                            c.noise > 0 ? fmt::format("{:.3f} {}", c.noise * c.scale, c.unit) : "none",
-                            times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
-  return table;
-}
-
 report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy, const Fitness& fitness) {
   std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, plant::subject(model));
   const auto maps = maps_of(events);
-  out += report::padded(error_summary(events));
-  out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
+  out += error_text({{"", events, fitness}});
+  out += events.size() > 1 ? "\nNormalised RMS per window and band, worst of all events:\n" +
                                  report::padded(worst_map_table(maps))
-                           : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps));
+                           : "\nNormalised RMS per window and band:\n" + report::padded(map_table(maps));
   out += "* exceeds what noise alone allows\n";
   for (const auto& e : events) {
     out += fmt::format("\n{}: {}\n", e.record.name,
@@ -124,13 +110,15 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   }
   if (fitness.not_judged.empty())
     out += "\n" + worst_fitness_table(fitness).caption + "\n" + report::padded(worst_fitness_table(fitness));
+  if (!fitness.movements.empty())
+    out += "\n" + movement_table(fitness).caption + "\n" + report::padded(movement_table(fitness));
   return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
          thresholds::ruling_text(adequacy.ruling) + "\n";
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  nlohmann::json j = {{"format", "swingbank-compare-3"},
+  nlohmann::json j = {{"format", "swingbank-compare-4"},
                       {"adequate", adequacy.adequate},
                       {"statistically_complete", adequacy.adequate},
                       {"fitness", fitness_json(fitness)},

@@ -9,10 +9,8 @@
 
 namespace swingbank::validate::compare {
 
-/// Error per event, channel, window and band in units of noise, and its RMS per window in units.
+/// Normalised RMS per event, channel, window and band, and the RMS per window in units.
 report::Table error_map(const std::vector<EventComparison>& events);
-/// RMS, mean and largest error per event and channel over the whole record, with units.
-report::Table error_summary(const std::vector<EventComparison>& events);
 
 /// Both tables, the notes and the verdict, for a terminal.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,

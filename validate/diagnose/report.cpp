@@ -113,7 +113,7 @@ nlohmann::json parameters_json(const fit::Fit& fit) {
 
 nlohmann::json input_json(const Diagnosis& d, const hypothesis::MissingInput& input) {
   if (input.fit.events.empty()) return nullptr;
-  nlohmann::json j = {{"rms_in_noise", std::sqrt(input.misfit())}, {"events", nlohmann::json::array()}};
+  nlohmann::json j = {{"normalised_rms", std::sqrt(input.misfit())}, {"events", nlohmann::json::array()}};
   for (std::size_t e = 0; e < input.fit.events.size(); ++e)
     j["events"].push_back(
         {{"record", d.events[e].record.name}, {"t_s", input.of(e).t}, {"value_pu", input.of(e).value}});
@@ -126,10 +126,10 @@ nlohmann::json event_json(const ReportEvent& e, bool with_after) {
                       {"record_xxh64", fmt::format("{:016x}", r.hash)},
                       {"samples", r.samples()},
                       {"rate_per_s", r.rate()},
-                      {"rms_in_noise_before", e.before},
-                      {"rms_in_noise_after", with_after ? nlohmann::json(e.after) : nullptr},
-                      {"unseen_rms_in_noise_before", e.unseen_before},
-                      {"unseen_rms_in_noise_after", e.unseen_after},
+                      {"normalised_rms_before", e.before},
+                      {"normalised_rms_after", with_after ? nlohmann::json(e.after) : nullptr},
+                      {"unseen_normalised_rms_before", e.unseen_before},
+                      {"unseen_normalised_rms_after", e.unseen_after},
                       {"channels", nlohmann::json::array()}};
   for (const auto& c : e.channels) {
     nlohmann::json k = {{"name", c.name},
@@ -170,12 +170,12 @@ nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
       {"why_not", h.why_not},
       {"evidence", h.gain},
       {"size", h.size},
-      {"rms_in_noise", h.fit.values > 0 ? nlohmann::json(std::sqrt(h.fit.misfit())) : nullptr},
+      {"normalised_rms", h.fit.values > 0 ? nlohmann::json(std::sqrt(h.fit.misfit())) : nullptr},
       {"unseen", nlohmann::json::array()}};
   for (const auto& u : h.held_out)
     j["unseen"].push_back({{"record", u.record},
-                           {"rms_in_noise_before", std::sqrt(u.before)},
-                           {"rms_in_noise_after", std::sqrt(u.after)},
+                           {"normalised_rms_before", std::sqrt(u.before)},
+                           {"normalised_rms_after", std::sqrt(u.after)},
                            {"cost_per_value_before", u.cost_before},
                            {"cost_per_value_after", u.cost_after}});
   return j;
@@ -243,12 +243,12 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
         {"xxh64", fmt::format("{:016x}", model.hash)},
         {"mva", model.plant.mva}}}};
   j["before"] = {
-      {"rms_in_noise", std::sqrt(d.base.misfit())},
+      {"normalised_rms", std::sqrt(d.base.misfit())},
       {"parameters", d.verdict == Verdict::interrupted && !d.ruling.adequate ? nlohmann::json::array()
                                                                              : parameters_json(d.base)}};
   if (figures.after)
     j["after"] = {{"with", figures.after_name},
-                  {"rms_in_noise", std::sqrt(figures.after->misfit())},
+                  {"normalised_rms", std::sqrt(figures.after->misfit())},
                   {"parameters", parameters_json(*figures.after)}};
   else
     j["after"] = nullptr;

@@ -97,8 +97,8 @@ class DiagnosisPage {
   void at_a_glance() {
     page_.section("Error of each event");
     report::Table table{
-        "Error of each event: RMS of the residual over all channels, "
-        "in units of noise. 1 × means that nothing but noise is left.",
+        "Normalised RMS of each event: all channels, whitened by the measured noise (square root of chi2 per value). "
+        "Noise alone gives 1 ×.",
         {"event", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
@@ -165,7 +165,7 @@ class DiagnosisPage {
         "Before any effect was asked for, a torque and then a field voltage, free in time, were added to the "
         "model such "
         "that it answers as measured. The one that leaves less is the side where something is missing.");
-    report::Bars bars{"Error left [× noise]", "×", 1.0, "noise alone", {}};
+    report::Bars bars{"Normalised RMS", "×", 1.0, "noise alone", {}};
     const auto add = [&](const std::string& name, double misfit) {
       const double left = std::sqrt(misfit);
       bars.bars.push_back({name, left, left < 1.5});
@@ -199,7 +199,7 @@ class DiagnosisPage {
                            fmt::format("{:.0f}", d_.ranked[i].gain)});
     page_.bars(bars);
     report::Table table{
-        "", {"hypothesis", "what", "side", "evidence", "error left", "unseen events", "judged"}, {}};
+        "", {"hypothesis", "what", "side", "evidence", "normalised RMS", "unseen events", "judged"}, {}};
     for (const auto& h : d_.ranked) {
       double worst = 0;
       for (const auto& u : h.held_out) worst = std::max(worst, std::sqrt(u.after));
@@ -258,7 +258,7 @@ class DiagnosisPage {
       if (with_after()) row.emplace_back(value_text(p.value));
       row.emplace_back(std::isfinite(p.error)
                            ? fmt::format("{} … {}{}", value_text(p.low), value_text(p.high),
-                                         p.at_bound ? " (at its bound)" : "")
+                                         p.at_bound ? " (at its bound: interval not valid)" : "")
                            : "–");
       row.emplace_back(std::isfinite(p.decided) ? fmt::format("{:.0f} %", 100 * p.decided) : "–");
       table.rows.push_back(std::move(row));

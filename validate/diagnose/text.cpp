@@ -70,7 +70,9 @@ void add_parameters(const Diagnosis& d, std::string& text) {
   for (const auto& p : fit.parameters)
     text += fmt::format("{:<10} {:<10} {:>12.5g} {:>12.5g} {:>26} {:>6}{}\n", p.block, p.name, p.start,
                         p.value, fmt::format("{:.4g} to {:.4g}", p.low, p.high), p.unit,
-                        p.decided < thresholds::parameters.identified ? "  (the records hardly tell)" : "");
+                        p.at_bound ? "  (at its bound: interval not valid)"
+                        : p.decided < thresholds::parameters.identified ? "  (the records hardly tell)"
+                                                                        : "");
 }
 
 }  // namespace

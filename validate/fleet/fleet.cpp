@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kFormat = "swingbank-fleet-plant-1";
+constexpr const char* kFormat = "swingbank-fleet-plant-2";
 
 /// Files that a name or glob stands for, in order; "RUN.h5#TERMINAL" keeps its terminal.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
@@ -246,9 +246,9 @@ json row_json(const FleetRow& r) {
           {"probabilities", r.probabilities},
           {"side", r.side},
           {"evidence", r.evidence},
-          {"rms_in_noise_refitted", r.left},
-          {"unseen_rms_in_noise_before", r.unseen_before},
-          {"unseen_rms_in_noise_after", r.unseen_after},
+          {"normalised_rms_refitted", r.left},
+          {"unseen_normalised_rms_before", r.unseen_before},
+          {"unseen_normalised_rms_after", r.unseen_after},
           {"probability_by_noise_alone_at_most", r.chance},
           {"events", r.events},
           {"sentence", r.sentence},
@@ -266,9 +266,9 @@ FleetRow read_row(const std::string& text, const std::string& where) {
             j.at("probabilities"),
             j.at("side"),
             number_of(j, "evidence"),
-            number_of(j, "rms_in_noise_refitted"),
-            number_of(j, "unseen_rms_in_noise_before"),
-            number_of(j, "unseen_rms_in_noise_after"),
+            number_of(j, "normalised_rms_refitted"),
+            number_of(j, "unseen_normalised_rms_before"),
+            number_of(j, "unseen_normalised_rms_after"),
             number_of(j, "probability_by_noise_alone_at_most"),
             j.at("events"),
             j.at("sentence"),

@@ -62,7 +62,7 @@ int count(const std::vector<FleetRow>& rows, std::initializer_list<const char*> 
 
 report::Table fleet_table(const std::vector<FleetRow>& rows) {
   report::Table table{
-      "Errors are RMS over all channels in units of noise: 1 × means that nothing but noise is left. "
+      "Errors are normalised RMS over all channels (square root of chi2 per value): noise alone gives 1 ×. "
       "“Refitted” is "
       "the model as it is with its parameters fitted; the next column is of events left out of the fit, "
       "without and "
@@ -107,7 +107,7 @@ std::string fleet_text(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
-  nlohmann::json j = {{"format", "swingbank-fleet-1"},
+  nlohmann::json j = {{"format", "swingbank-fleet-2"},
                       {"fleet", fleet.file.string()},
                       {"software", "swingbank " SWINGBANK_VERSION},
                       {"summary", fleet_summary(rows)},
@@ -120,11 +120,12 @@ std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_csv(const std::vector<FleetRow>& rows) {
-  report::Table table{"",
-                      {"plant", "verdict", "effects", "equivalent", "side", "evidence", "rms_refitted_noise",
-                       "unseen_rms_before_noise", "unseen_rms_after_noise",
-                       "probability_by_noise_alone_at_most", "events", "sentence", "inputs_xxh64"},
-                      {}};
+  report::Table table{
+      "",
+      {"plant", "verdict", "effects", "equivalent", "side", "evidence", "normalised_rms_refitted",
+       "unseen_normalised_rms_before", "unseen_normalised_rms_after", "probability_by_noise_alone_at_most",
+       "events", "sentence", "inputs_xxh64"},
+      {}};
   for (const auto& r : rows)
     table.rows.push_back({r.plant, r.verdict, joined(r.effects, ";"), joined(r.equivalent, ";"), r.side,
                           number_text(r.evidence), number_text(r.left), number_text(r.unseen_before),

@@ -209,8 +209,8 @@ std::string law_sentence(const LawSearch& search, std::size_t hypotheses) {
     after += h.after / static_cast<double>(unseen.size());
   }
   return fmt::format(
-      "None of the {} known effects explains it; {} does: on events it was not fitted to, the error falls "
-      "from {:.1f} × noise to {:.2f} × noise.",
+      "None of the {} known effects explains it; {} does: on events it was not fitted to, the normalised RMS "
+      "falls from {:.1f} to {:.2f}.",
       hypotheses, law->words, std::sqrt(before), std::sqrt(after));
 }
 

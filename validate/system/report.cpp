@@ -41,10 +41,10 @@ report::Table summary(const std::vector<compare::EventComparison>& terminals) {
   for (const auto& e : terminals)
     for (const auto& c : e.channels) {
       const auto in_units = [&](double v) { return fmt::format("{:.3g} {}", v * c.scale, c.unit); };
-      table.rows.push_back(
-          {e.record.name, c.name, in_units(c.whole.rms), in_units(c.whole.worst),
-           fmt::format("{:.3f} s", c.whole.worst_at), c.noise > 0 ? in_units(c.noise) : "none",
-           compare::times_noise(c.map.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
+      table.rows.push_back({e.record.name, c.name, in_units(c.whole.rms), in_units(c.whole.worst),
+                            fmt::format("{:.3f} s", c.whole.worst_at),
+                            c.noise > 0 ? in_units(c.noise) : "none",
+                            compare::times_noise(c.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
     }
   return table;
 }
@@ -178,7 +178,7 @@ report::Table ranking_table(const SystemCase& s, const SystemComparison& c) {
 std::string system_text(const SystemCase& s, const SystemComparison& c) {
   std::string out = fmt::format("{}: measured against the simulation of the whole grid\n\n", s.name);
   out += report::padded(summary(c.terminals));
-  out += "\nIn units of noise, per window and band" +
+  out += "\nNormalised RMS per window and band" +
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
   const auto maps = maps_of(c.terminals);
   out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));

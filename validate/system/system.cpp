@@ -186,9 +186,9 @@ std::pair<double, std::string> worst_cell(const compare::EventComparison& e) {
   std::string where;
   const auto look = [&](const compare::ChannelComparison& c, const std::string& place,
                         const compare::MapCell& cell) {
-    if (cell.empty() || !(cell.in_noise / cell.bound > worst)) return;
-    worst = cell.in_noise / cell.bound;
-    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(cell.in_noise),
+    if (cell.empty() || !(cell.normalised / cell.bound > worst)) return;
+    worst = cell.normalised / cell.bound;
+    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(cell.normalised),
                         cell.rms * c.scale, c.unit);
   };
   for (const auto& c : e.channels) {

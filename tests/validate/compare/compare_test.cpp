@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/compare/error_table.hpp"
 #include "validate/compare/report.hpp"
 
 namespace swingbank::validate::compare {
@@ -394,6 +395,30 @@ TEST(CompareTest, ResidualIsModelledMinusMeasured) {
   EXPECT_EQ(q.whole.worst, worst);
 }
 
+/// The number at the beginning of a cell.
+double number_in(const report::Cell& cell) { return std::stod(cell.text); }
+TEST(ErrorTable, PrintedRatio_IsThePrintedRmsOverThePrintedNoise) {
+  std::vector<EventComparison> events = {example_event()};
+  judge(events);
+  const Fitness fitness = fitness_of(events);
+  for (const auto& played : {std::vector<Played>{{"", events, fitness}},
+                             std::vector<Played>{{"one", events, fitness}, {"two", events, fitness}}}) {
+    const report::Table table = error_table(played);
+    EXPECT_EQ(table.rows.size(), events[0].channels.size());
+    for (const auto& row : table.rows)
+      for (std::size_t c = 2; c + 2 < 3 * played.size() + 2; c += 3) {
+        const double ratio = number_in(row[c]) / number_in(row[c + 1]);
+        EXPECT_NEAR(number_in(row[c + 2]), ratio, std::max(0.051, 0.51 * (ratio > 9.9))) << row[1].text;
+      }
+  }
+  const auto json = errors_json({{"one", events, fitness}});
+  const auto& q = events[0].channels[1];
+  EXPECT_DOUBLE_EQ(json[1]["rms"], q.whole.rms * q.scale);
+  EXPECT_DOUBLE_EQ(json[1]["rms_over_noise"], q.whole.rms / q.noise);
+  EXPECT_THAT(terminal_report(example_model(), events, judge(events), fitness),
+              HasSubstr(report::padded(error_table({{"", events, fitness}}))));
+}
+
 TEST(CompareReportTest, JsonHoldsTheNumbers) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
@@ -406,8 +431,8 @@ TEST(CompareReportTest, JsonHoldsTheNumbers) {
   ASSERT_EQ(map.size(), 5u * 5u + 1);  // windows times (all and four bands), and the whole record
   EXPECT_EQ(map[12]["window"], "0–1 s after");
   EXPECT_EQ(map[12]["band"], "0.1–0.8 Hz");
-  EXPECT_DOUBLE_EQ(map[12]["rms_in_noise"], events[0].channels[1].map.rows[2].bands[1].in_noise);
-  EXPECT_TRUE(map[1]["rms_in_noise"].is_null());  // 2 s hold nothing below 0.1 Hz
+  EXPECT_DOUBLE_EQ(map[12]["normalised_rms"], events[0].channels[1].map.rows[2].bands[1].normalised);
+  EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s hold nothing below 0.1 Hz
   EXPECT_EQ(j["adequate"], false);
 }
 TEST(CompareReportTest, PageAsksForNothing) {

@@ -73,7 +73,7 @@ void expect_unit(double colour, bool estimated) {
       for (std::size_t b = 0; b < 5; ++b) {
         const MapCell& cell = b == 4 ? map.rows[i].all : map.rows[i].bands[b];
         values[i][b] = cell.values;
-        if (!cell.empty()) sum[i][b] += cell.in_noise * cell.in_noise / kDraws;
+        if (!cell.empty()) sum[i][b] += cell.normalised * cell.normalised / kDraws;
       }
   }
   for (std::size_t i = 0; i < 5; ++i)
@@ -111,7 +111,7 @@ TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
       for (std::size_t b = 0; b < 4; ++b)
         EXPECT_EQ(map.rows[i].bands[b].exceeds(), i == c.window && b == c.band)
             << c.window << " " << c.band << " seen in " << i << " " << b << ": "
-            << map.rows[i].bands[b].in_noise;
+            << map.rows[i].bands[b].normalised;
     EXPECT_TRUE(map.rows[c.window].all.exceeds() && map.whole.exceeds());
   }
 }
@@ -133,8 +133,9 @@ TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
   // An offset of one standard error of the mean of 121 samples, 11 sigma of the mean of 774.
   const auto t = times();
   std::vector<double> x(t.size(), 1.0 / 11);
-  const double exact = error_map(t, x, windows(), white_noise(1), {.quiet = 0}).rows[4].bands[0].in_noise;
-  const double started = error_map(t, x, windows(), white_noise(1), {.quiet = 121}).rows[4].bands[0].in_noise;
+  const double exact = error_map(t, x, windows(), white_noise(1), {.quiet = 0}).rows[4].bands[0].normalised;
+  const double started =
+      error_map(t, x, windows(), white_noise(1), {.quiet = 121}).rows[4].bands[0].normalised;
   EXPECT_NEAR(exact, std::sqrt(774.0 / 121 / 3), 0.01);
   EXPECT_NEAR(started, std::sqrt(774.0 / 121 / 3 / (1 + 774.0 / 121)), 0.01);
 }

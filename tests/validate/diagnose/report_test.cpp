@@ -94,9 +94,9 @@ std::string symbol(const std::string& block, const std::string& name) {
   return "";
 }
 std::string cell_text(const nlohmann::json& cell) {
-  if (cell["rms_in_noise"].is_null()) return "–";
-  const double ratio = cell["rms_in_noise"];
-  return compare::times_noise(ratio) + (ratio > cell["bound_in_noise"].get<double>() ? " *" : "");
+  if (cell["normalised_rms"].is_null()) return "–";
+  const double ratio = cell["normalised_rms"];
+  return compare::times_noise(ratio) + (ratio > cell["normalised_bound"].get<double>() ? " *" : "");
 }
 
 TEST(DiagnosisReportTest, ErrorMapsEqualTheJson) {
@@ -127,8 +127,8 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   for (std::size_t e = 0; e < 2; ++e) {
     const auto& event = j["events"][e];
     EXPECT_THAT(at_a_glance[e], ElementsAreArray({event["record"].get<std::string>(),
-                                                  compare::times_noise(event["rms_in_noise_before"]),
-                                                  compare::times_noise(event["rms_in_noise_after"]),
+                                                  compare::times_noise(event["normalised_rms_before"]),
+                                                  compare::times_noise(event["normalised_rms_after"]),
                                                   std::string("20 ×"), std::string("1.5 ×")}));
   }
   const auto parameters = table_after(page(), "95 % intervals.");
@@ -147,7 +147,7 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
 }
 TEST(DiagnosisReportTest, WhatIsAddedLowersTheError) {
   const auto j = figures();  // an exciter, even fitted in haste, is nearer to the truth than none
-  EXPECT_LT(j["after"]["rms_in_noise"], j["before"]["rms_in_noise"]);
+  EXPECT_LT(j["after"]["normalised_rms"], j["before"]["normalised_rms"]);
 }
 TEST(DiagnosisReportTest, TheVerdictComesFirst) {
   const auto verdict = page().find("The exciter &lt;SEXS&gt; is missing.");

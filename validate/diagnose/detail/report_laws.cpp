@@ -66,7 +66,7 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
                         {"accepted", j.accepted},
                         {"why_not", j.why_not},
                         {"evidence", j.gain},
-                        {"rms_in_noise", std::sqrt(j.fit.misfit())},
+                        {"normalised_rms", std::sqrt(j.fit.misfit())},
                         {"explained_of_input", f.law.explained},
                         {"law_file", f.toml},
                         {"parameters", nlohmann::json::array()},
@@ -77,8 +77,8 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
           {{"name", p.name}, {"unit", p.unit}, {"value", p.value}, {"low_95", p.low}, {"high_95", p.high}});
   for (const auto& u : j.held_out)
     law["unseen"].push_back({{"record", u.record},
-                             {"rms_in_noise_before", std::sqrt(u.before)},
-                             {"rms_in_noise_after", std::sqrt(u.after)}});
+                             {"normalised_rms_before", std::sqrt(u.before)},
+                             {"normalised_rms_after", std::sqrt(u.after)}});
   return law;
 }
 

@@ -83,10 +83,10 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
   if (most->saves() > thresholds::held_out.alone * saved &&
       most->after > thresholds::held_out.foretold * most->before)
     return fmt::format(
-        "it shows in {} alone, so that no other event foretells it; fitted there too, the error falls from "
-        "{:.2f} × noise to {:.2f} × noise",
+        "it shows in {} alone, so that no other event foretells it; fitted there too, the normalised RMS falls from "
+        "{:.2f} to {:.2f}",
         most->record, std::sqrt(base.events[e].misfit()), std::sqrt(best.fit.events[e].misfit()));
-  return fmt::format("on events it was not fitted to, the error falls from {:.1f} × noise to {:.2f} × noise",
+  return fmt::format("on events it was not fitted to, the normalised RMS falls from {:.1f} to {:.2f}",
                      std::sqrt(before), std::sqrt(after));
 }
 

@@ -1,0 +1,89 @@
+#include "validate/compare/error_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/json.hpp"
+#include "validate/compare/error_map_table.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+constexpr const char* kErrorCaption =
+    "Residual (modelled − measured) over the whole record. Noise σ: standard deviation of the residual before "
+    "the event. RMS / noise: quotient of the two. A star marks a channel whose normalised RMS exceeds its bound "
+    "(error map).";
+
+std::string quantity(double value, const ChannelComparison& c) {
+  return fmt::format("{:.4g} {}", value * c.scale, c.unit);
+}
+
+/// The channel of the model's playback of an event; null where the model could not follow it.
+const ChannelComparison* find_channel(const Played& played, std::size_t event, const std::string& name) {
+  if (event >= played.events.size()) return nullptr;
+  const auto& channels = played.events[event].channels;
+  const auto c = std::ranges::find(channels, name, &ChannelComparison::name);
+  return c == channels.end() ? nullptr : &*c;
+}
+
+void add_cells(std::vector<report::Cell>& row, const ChannelComparison* c) {
+  if (!c) {
+    row.insert(row.end(), 3, report::Cell("–"));
+    return;
+  }
+  row.emplace_back(quantity(c->whole.rms, *c));
+  row.emplace_back(c->noise > 0 ? quantity(c->noise, *c) : "none");
+  row.emplace_back(times_noise(c->whole.in_noise) + (c->map.whole.exceeds() ? " *" : ""));
+}
+
+}  // namespace
+
+report::Table error_table(const std::vector<Played>& played, const std::vector<std::string>& unseen) {
+  report::Table table{kErrorCaption, {"event", "channel"}, {}};
+  const bool single = played.size() == 1;
+  for (const Played& p : played)
+    for (const char* what : {"RMS", "noise σ", "RMS / noise"})
+      table.header.push_back(single ? what : fmt::format("{}, {}", what, p.name));
+  if (single) table.header.insert(table.header.end(), {"largest", "at"});
+  const auto longest = std::ranges::max_element(played, {}, [](const Played& p) { return p.events.size(); });
+  if (longest == played.end()) return table;
+  for (std::size_t e = 0; e < longest->events.size(); ++e) {
+    const EventComparison& event = longest->events[e];
+    const bool fitted_to = std::ranges::find(unseen, event.record.name) == unseen.end();
+    for (const ChannelComparison& c : event.channels) {
+      std::vector<report::Cell> row = {event.record.name + (fitted_to ? "" : " (not fitted to)"), c.name};
+      for (const Played& p : played) add_cells(row, find_channel(p, e, c.name));
+      if (single) {
+        row.emplace_back(quantity(c.whole.worst, c));
+        row.emplace_back(fmt::format("{:.3f} s", c.whole.worst_at));
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+std::string error_text(const std::vector<Played>& played, const std::vector<std::string>& unseen) {
+  const report::Table table = error_table(played, unseen);
+  return table.caption + "\n" + report::padded(table);
+}
+
+nlohmann::json errors_json(const std::vector<Played>& played) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Played& p : played)
+    for (const EventComparison& e : p.events)
+      for (const ChannelComparison& c : e.channels)
+        rows.push_back({{"record", e.record.name},
+                        {"channel", c.name},
+                        {"model", p.name},
+                        {"unit", c.unit},
+                        {"rms", c.whole.rms * c.scale},
+                        {"noise", c.noise * c.scale},
+                        {"rms_over_noise", std::isfinite(c.whole.in_noise) ? nlohmann::json(c.whole.in_noise)
+                                                                           : nlohmann::json(nullptr)}});
+  return rows;
+}
+
+}  // namespace swingbank::validate::compare
