@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/library/library.hpp"
+#include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/instrument_example.hpp"
 
 namespace swingbank::validate::add {
@@ -72,10 +73,15 @@ TEST(Add, IntervalsHoldTheTruth) {
   const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), records(model, 4), options);
   ASSERT_EQ(a.parameters.size(), 17U);
   std::vector<std::string> outside;
+  const std::vector<double> bound =
+      test::cramer_rao({truth.plant, truth.conventions}, a.prepared, {true, true, true, false}, a.parameters);
   for (const auto& p : a.parameters) {
     const double value = sim::plant::parameter_value(truth.plant, p.where.id);
     if (value < p.low || value > p.high) outside.push_back(p.full_name());
     EXPECT_NEAR(p.value, value, 3 * p.error) << p.full_name();
+    const double least = bound[static_cast<std::size_t>(&p - a.parameters.data())];
+    EXPECT_LT(p.error, 2 * least) << p.full_name();
+    EXPECT_GT(p.error, 0.6 * least) << p.full_name();
   }
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/instrument_example.hpp"
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/calibrate/curve_fit.hpp"
@@ -45,12 +46,19 @@ TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
   // What the starts' scores and the events' fits compare is the same, but for the colour of the noise.
   EXPECT_LT(std::abs(std::log(c.started.front().before / c.before)), std::log(1.5));
   std::vector<std::string> names, outside;
+  std::vector<fit::FittedParameter> fitted;
+  for (const CalibratedParameter& p : c.parameters) fitted.push_back(p.fit);
+  const std::vector<double> bound =
+      test::cramer_rao({example.truth.plant, example.truth.conventions}, c.prepared,
+                       std::vector<bool>(c.prepared.size(), true), fitted);
   for (const CalibratedParameter& p : c.parameters) {
     const double truth = sim::plant::parameter_value(example.truth.plant, p.fit.where.id);
     names.emplace_back(p.fit.name);
     if (truth < p.fit.low || truth > p.fit.high) outside.emplace_back(p.fit.name);
     EXPECT_NEAR(p.fit.value, truth, 3 * p.fit.error) << p.fit.name;
     EXPECT_LT(p.fit.error, 2 * p.curvature_error) << p.fit.name;  // the residual is noise, as believed
+    EXPECT_LT(p.fit.error, 2 * bound[names.size() - 1]) << p.fit.name;
+    EXPECT_GT(p.fit.error, 0.6 * bound[names.size() - 1]) << p.fit.name;
   }
   EXPECT_LE(outside.size(), 1U) << ::testing::PrintToString(outside);
   const auto& instrument = example.truth.plant.measurements.front();
