@@ -212,7 +212,7 @@ class Search {
       problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -room);
       problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), room);
     }
-    for (int k = 0; options_.start_stands && k < 2; ++k)
+    for (int k = 0; options_.start_stands && k < kStates; ++k)
       fixed.push_back(static_cast<int>(switching_numbers(event)) + k);
     bounds_->fix(states_[e].data(), fixed);
   }

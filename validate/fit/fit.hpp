@@ -122,7 +122,7 @@ struct FitOptions {
   /// It is compared with other brief fits only: a lenient one ends with what its own steps made of the
   /// answer.
   bool brief = false;
-  bool start_stands = false;           ///< P and Q of every start are those before the event
+  bool start_stands = false;           ///< every event starts in the steady state before it
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's

@@ -11,7 +11,7 @@ namespace swingbank::validate::compare {
 enum class Fitted {
   in_white_noise,
   in_slow_noise,
-  start_stands  ///< P and Q of the start stay; noise is white
+  start_stands  ///< the start is the steady state before the event; noise is white
 };
 
 /// Sets switchings, playback and left_out of an event whose record is set. Its instants and its start are
