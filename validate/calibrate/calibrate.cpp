@@ -17,6 +17,7 @@
 #include "validate/calibrate/detail/voltage_noise.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/fit/sign.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -265,13 +266,16 @@ class Calibrating {
       pull_ = voltage_pull({plant, model_.conventions}, {whitened_through_, model_.conventions}, seen_,
                            noise_, free_);
       Eigen::VectorXd missing = pull_.score;
-      if (options_.spread > 0) missing -= off_belief(model_.plant, plant, free_);
+      const Eigen::MatrixXd belief = belief_at(plant);
+      if (options_.spread > 0)
+        missing -=
+            (off_belief(model_.plant, plant, free_).array() * belief.diagonal().array().sqrt()).matrix();
       Eigen::MatrixXd data = Eigen::MatrixXd::Zero(missing.size(), missing.size());
       for (const auto& s : slopes_seen(plant)) {
         data += fit::information(s);
         missing -= s.score;
       }
-      const Eigen::MatrixXd known = with_belief(real(data));
+      const Eigen::MatrixXd known = real(data) + belief;
       const Eigen::VectorXd plain = known.ldlt().solve(missing);
       const double off = std::sqrt(plain.dot(missing));
       if (off < nearest) c_.fit.plant = plant;
@@ -303,9 +307,11 @@ class Calibrating {
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
            eigen.eigenvectors().transpose();
   }
-  Eigen::MatrixXd with_belief(Eigen::MatrixXd data) const {
-    if (options_.spread > 0) data.diagonal().array() += 1.0;
-    return data;
+  /// Information of the priors, in units of the axes of `plant`.
+  Eigen::MatrixXd belief_at(const sim::plant::Plant& plant) const {
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    if (options_.spread <= 0) return Eigen::MatrixXd::Zero(n, n);
+    return prior_information(model_.plant, plant, free_).asDiagonal();
   }
 
   /// Fills in errors, correlations, what is not decided, and the event that would decide it.
@@ -319,8 +325,7 @@ class Calibrating {
         },
         [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd belief = options_.spread > 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))
-                                                       : Eigen::MatrixXd(Eigen::MatrixXd::Zero(n, n));
+    const Eigen::MatrixXd belief = belief_at(c_.fit.plant);
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
     if (pull_.score.size() > 0) {
@@ -360,14 +365,14 @@ class Calibrating {
       for (Eigen::Index j = 0; j < n; ++j)
         c_.correlation(i, j) = inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j));
       CalibratedParameter p{.fit = c_.fit.parameters[static_cast<std::size_t>(i)]};
-      const auto range =
-          sim::plant::search_range(sim::plant::parameter_record(c_.fit.plant, p.fit.where.id), p.fit.start);
+      const auto& record = sim::plant::parameter_record(c_.fit.plant, p.fit.where.id);
+      const auto range = sim::plant::search_range(record, p.fit.start);
       p.fit.at_bound = p.fit.at_bound || p.fit.value <= range.low || p.fit.value >= range.high;
       p.shift = shift_[i];
       p.curvature_error = unit[i] * std::sqrt(inverse(i, i));
       p.fit.error = p.curvature_error * widening[i];
       const double reach = constants::normal95 * p.fit.error;
-      const bool logarithmic = p.fit.start > 0;
+      const bool logarithmic = fit::moves_by_logarithm(record, p.fit.start);
       p.fit.low = std::max(range.low,
                            logarithmic ? p.fit.value * std::exp(-reach / p.fit.value) : p.fit.value - reach);
       p.fit.high = std::min(range.high,

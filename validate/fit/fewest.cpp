@@ -9,6 +9,7 @@
 
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/fit/sign.hpp"
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::fit {
@@ -120,8 +121,9 @@ class Selection {
     at_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& p = all_.parameters[static_cast<std::size_t>(i)];
-      at_[i] = p.start > 0 ? std::log(p.value / p.start) / p.where.spread
-                           : (p.value - p.start) / axis_unit(tested_.plant, p.where);
+      at_[i] = moves_by_logarithm(parameter_record(tested_.plant, p.where.id), p.start)
+                   ? std::log(p.value / p.start) / p.where.spread
+                   : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
   /// What the curvature foretells if these move and the others stay within what is right: by how much the
@@ -198,8 +200,9 @@ class Selection {
   [[nodiscard]] double foretold_value(const Foretold& there, std::size_t i) const {
     const double believed = parameter_value(tested_.plant, free_[i].id),
                  z = there.at[static_cast<Eigen::Index>(i)];
-    return believed > 0 ? believed * std::exp(z * free_[i].spread)
-                        : believed + z * axis_unit(tested_.plant, free_[i]);
+    return moves_by_logarithm(parameter_record(tested_.plant, free_[i].id), believed)
+               ? believed * std::exp(z * free_[i].spread)
+               : believed + z * axis_unit(tested_.plant, free_[i]);
   }
   /// A fit in which these alone move, and what it would cost if the others moved within what is right.
   struct Refit {

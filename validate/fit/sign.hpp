@@ -1,5 +1,5 @@
 #pragma once
-// Whether the sign of a parameter is open.
+// Whether the sign of a parameter is open, and on which scale a fit moves it.
 #include <cmath>
 
 #include "sim/core/effect.hpp"
@@ -12,6 +12,10 @@ namespace swingbank::validate::fit {
 inline bool may_change_sign(const sim::Parameter& p) {
   constexpr double kDecade = 10;
   return p.low < 0 && p.high > 0 && p.high <= kDecade * std::abs(p.standard);
+}
+/// Whether a fit moves the logarithm of a parameter that starts at `start`, and not the value itself.
+inline bool moves_by_logarithm(const sim::Parameter& p, double start) {
+  return start > 0 && !may_change_sign(p);
 }
 
 }  // namespace swingbank::validate::fit

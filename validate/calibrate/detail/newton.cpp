@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/plant/usual.hpp"
+#include "validate/fit/sign.hpp"
 
 namespace swingbank::validate::calibrate {
 
@@ -14,9 +15,23 @@ Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::
     const auto& f = free[static_cast<std::size_t>(i)];
     const double start = sim::plant::parameter_value(believed, f.id),
                  value = sim::plant::parameter_value(plant, f.id);
-    off[i] = start > 0 ? std::log(value / start) / f.spread : (value - start) / fit::axis_unit(believed, f);
+    off[i] = fit::moves_by_logarithm(sim::plant::parameter_record(plant, f.id), start)
+                 ? std::log(value / start) / f.spread
+                 : (value - start) / fit::axis_unit(believed, f);
   }
   return off;
+}
+
+Eigen::VectorXd prior_information(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
+                                  const std::vector<fit::FreeParameter>& free) {
+  Eigen::VectorXd information = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(free.size()));
+  for (Eigen::Index i = 0; i < information.size(); ++i) {
+    const auto& f = free[static_cast<std::size_t>(i)];
+    if (!fit::moves_by_logarithm(sim::plant::parameter_record(plant, f.id),
+                                 sim::plant::parameter_value(believed, f.id)))
+      information[i] = std::pow(fit::axis_unit(plant, f) / fit::axis_unit(believed, f), 2);
+  }
+  return information;
 }
 
 sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free,
@@ -28,7 +43,8 @@ sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit:
     double& value = sim::plant::parameter_value(moved, f.id);
     const double move = fit::axis_unit(plant, f) * step[i], old = value;
     const auto [low, high] = sim::plant::search_range(record, old);
-    value = std::clamp(old > 0 ? old * std::exp(move / old) : old + move, low, high);
+    value =
+        std::clamp(fit::moves_by_logarithm(record, old) ? old * std::exp(move / old) : old + move, low, high);
   }
   return moved;
 }

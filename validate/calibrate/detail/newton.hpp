@@ -8,6 +8,11 @@ namespace swingbank::validate::calibrate {
 Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
                            const std::vector<fit::FreeParameter>& free);
 
+/// Information of each prior, per axis_unit of `plant`: 1 where the fit moves the logarithm; elsewhere the
+/// prior keeps the width that it has about the value of `believed`.
+Eigen::VectorXd prior_information(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
+                                  const std::vector<fit::FreeParameter>& free);
+
 /// The plant moved by a step in units of its axes. It stays within the parameters' ranges.
 sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free,
                           const Eigen::VectorXd& step);

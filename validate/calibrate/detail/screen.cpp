@@ -5,6 +5,7 @@
 
 #include "sim/core/noise.hpp"
 #include "sim/plant/usual.hpp"
+#include "validate/fit/sign.hpp"
 #include "validate/fit/slopes.hpp"
 #include "validate/playin/can_run.hpp"
 
@@ -37,8 +38,8 @@ double Screen::one(const fit::FreeParameter& f, double normal) const {
   const auto& record = sim::plant::parameter_record(plant_, f.id);
   sim::plant::Plant plant = plant_;
   const double value = sim::plant::parameter_value(plant, f.id);
-  const double moved =
-      value > 0 ? value * std::exp(f.spread * normal) : value + normal * fit::axis_unit(plant_, f);
+  const double moved = fit::moves_by_logarithm(record, value) ? value * std::exp(f.spread * normal)
+                                                              : value + normal * fit::axis_unit(plant_, f);
   const auto [low, high] = sim::plant::search_range(record, value);
   return std::clamp(moved, low, high);
 }

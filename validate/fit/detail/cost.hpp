@@ -43,7 +43,7 @@ inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.id);
   const double start = parameter_value(plant, f.id);
   const sim::plant::SearchRange range = sim::plant::search_range(record, start);
-  Axis a{f, start, range.low, range.high, start > 0 && !may_change_sign(record), 1.0};
+  Axis a{f, start, range.low, range.high, moves_by_logarithm(record, start), 1.0};
   if (a.logarithmic) {
     a.low = std::max(a.low, 1e-3 * start);
     a.high = std::min(a.high, 1e3 * start);
