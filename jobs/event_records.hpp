@@ -39,18 +39,22 @@ struct Reading {
   std::string point;                  ///< file of the point that several units share; empty: the plant's own
   std::vector<std::string> switches;  ///< "event4.csv=2.08"
 
-  /// Adds the options to a command line.
-  void add_to(CommandLine& line) {
-    line.add(
+  /// Adds the options that say what of the files is read, and as what.
+  std::vector<Option> add_to(CommandLine& line) {
+    return {add_columns(line), add_from(line), add_until(line), add_component(line), add_point(line)};
+  }
+  Option add_columns(CommandLine& line) {
+    return line
+        .add(
             "--columns", columns,
             "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
             "also Vs, Vref, Pm, Pref, gate); "
-            "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME turns the sign; "
+            "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME reverses the sign; "
             "beside [record.columns] of the plant file")
         .comma_separated();
-    line.add("--from", from, "leave out what comes before [s]");
-    line.add("--until", until, "leave out what comes later [s]");
   }
+  Option add_from(CommandLine& line) { return line.add("--from", from, "leave out what comes before [s]"); }
+  Option add_until(CommandLine& line) { return line.add("--until", until, "leave out what comes later [s]"); }
   /// Adds the point that several units share.
   Option add_point(CommandLine& line) {
     return line.add(
@@ -67,8 +71,9 @@ struct Reading {
         .one_value_a_mention();
   }
   /// Adds what of the plant is tried.
-  void add_component(CommandLine& line) {
-    line.add(
+  Option add_component(CommandLine& line) {
+    return line
+        .add(
             "--component", component,
             "what of the plant is tried: plant, or one part that the record drives with what the others did: "
             "exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref where recorded -> Efd), "
@@ -164,14 +169,6 @@ inline void tell(const validate::plant::PlantModel& model) {
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
   if (!model.standard.empty())
     fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
-}
-
-/// The model that a fit begins with: of a calibration that did not hold, the one before it.
-inline validate::plant::PlantModel load_model_to_fit(const std::string& file) {
-  validate::plant::PlantModel model = validate::plant::load_plant_model(file);
-  tell(model);
-  if (model.submitted && !quiet) fmt::print(stderr, "note: begun with the values before that calibration\n");
-  return validate::plant::as_submitted(std::move(model));
 }
 
 /// Writes where the course stands over itself where stderr is a terminal, elsewhere as a line every ten

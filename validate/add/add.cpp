@@ -223,7 +223,7 @@ std::string sentence_of(const Addition& a) {
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
-  auto all = hypothesis::all_hypotheses(model.under_test(), model.library);
+  auto all = hypothesis::all_hypotheses(model.under_test(), model.library, model.reading.component);
   std::string names;
   for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
   std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));

@@ -37,10 +37,9 @@ class Diagnoser {
       throw InputError({fmt::format("{} event", records.size()), "--records",
                         "an effect is believed only if it predicts an event that it was not fitted to",
                         "give records of two events or more"});
-    result_.events =
-        event::prepare_events(model, std::move(records), {.measured_states = options.measured_states});
+    result_.events = event::prepare_events(model, std::move(records), options.events);
     result_.conventions = model.conventions;
-    threads_ = options.threads > 0 ? options.threads : omp_get_num_procs();
+    threads_ = options.threads > 0 ? options.threads : omp_get_max_threads();
   }
 
   Diagnosis run() {
