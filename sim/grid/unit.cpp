@@ -283,10 +283,10 @@ class UnitReader {
   void tell_transformer() {
     const std::set<int> ends = transformers_to();
     if (ends.empty() || ends.size() > 2) return;
-    unit_.notes.push_back(
-        fmt::format("a transformer joins bus {} to bus {}; the model ends at bus {}: for records from bus {} "
-                    "give --measured-at {} (under [grid] of a plant file: measured_at)",
-                    unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
+    unit_.notes.push_back(fmt::format(
+        "a transformer joins bus {} to bus {}; the model covers the unit up to bus {}: for records from bus {} "
+        "give --measured-at {} (under [grid] of a plant file: measured_at)",
+        unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
   }
   void read_transformer(int measured_at) {
     if (measured_at == unit_.bus) return;

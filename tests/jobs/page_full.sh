@@ -9,7 +9,7 @@ sed 's|^name = .*|name = "</script><b>"|' "$bent" >"$work/tag.toml"
 cp "$one" "$work/"$'ev\xff<i>.csv'
 gives 3 '^Fit for purpose: no' "$swingbank" compare --model "$work/tag.toml" --records "$work/"$'ev\xff<i>.csv' --by 'A. Engineer'
 hash=$(sha256sum "$work/tag.toml" | cut -d' ' -f1)
-for words in 'A. Engineer' "$hash" 'Five words' "X''d" 'V, played in' 'Error map'; do
+for words in 'A. Engineer' "$hash" 'Glossary' "X''d" 'V, played in' 'Error map'; do
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of compare"
 done
 ! grep -qF '</script><b>' "$work/out/report.html" || fail "a name breaks the page"
@@ -19,7 +19,7 @@ hashes = [row["value"].split()[0] for row in json.load(open(sys.argv[1]))["prove
 assert sorted(hashes) == sorted(sys.argv[2:]), hashes
 PYTHON
 calibrate --out "$work/out" >/dev/null 2>&1
-for words in 'Five words' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
+for words in 'Glossary' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
 done
 

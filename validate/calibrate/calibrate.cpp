@@ -450,7 +450,7 @@ class Calibrating {
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
     return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
-           left + ")." + (most.empty() ? "" : " Furthest off, in standard errors: " + most + ".");
+           left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();

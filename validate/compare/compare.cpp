@@ -236,26 +236,27 @@ void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::stri
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
       jumps == event::Jumps::spread && smeared > 0)
     e.notes.push_back(fmt::format(
-        "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
-        "compared, and {} moved to where the rest is met best.",
+        "The instrument's filter spreads the steps over {} samples: these are neither played in nor "
+        "compared, and {} fitted to P and Q.",
         smeared, e.detected ? "instants and start were" : "the start was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
-        fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
+        fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
                     "{} Give them with --switch where they are known.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
   if (std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.turn != 0; })) {
     std::string turns;
     for (const playin::Switching& s : e.switchings)
       turns += (turns.empty() ? "" : ", ") + fmt::format("{:+.1f}°", s.turn * constants::degrees_in_radian);
-    e.notes.push_back("At the switchings the integrated angle was turned by " + turns +
-                      ", to where P and Q are met best: a frequency does not show all of it.");
+    e.notes.push_back(
+        "Angle steps of " + turns +
+        " were fitted at the switching times: frequency measurements under-report angle steps.");
   }
   if (e.switchings.empty())
     e.notes.push_back(fmt::format(
-        "The voltage does not jump anywhere: the first {:.3g} s are taken for the steady state (--pre-event){}.",
+        "No voltage step was found; the first {:.3g} s are used as the steady state (--pre-event){}.",
         e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
-        tried && e.fitted ? ", and the start was moved within its noise to where the rest is met best" : ""));
+        tried && e.fitted ? ", and the initial point was adjusted within measurement noise" : ""));
   if (e.playback.start.drift != 0)
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "

@@ -50,9 +50,8 @@ void keep_worse(MapCell& worst, const MapCell& cell) {
 }
 
 constexpr const char* kCaption =
-    "Residual per window of time and band of frequency in units of noise: 1 × means "
-    "that nothing but noise is left. A star marks what exceeds the bound that noise "
-    "alone keeps in all cells together; “–”: the window is too short for the band.";
+    "Residual per time window and frequency band in units of noise; 1 × is noise alone. "
+    "* = above the joint noise limit of all cells; “–”: the window is too short for the band.";
 
 }  // namespace
 

@@ -65,8 +65,8 @@ std::string verdict(const Fitness& f, int exceed, const JudgedErrors& row) {
       "is allowed.",
       f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
             : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
-      f.by.name, f.fit ? "Nearest" : "Furthest off", at.name, row.channel, row.window(), row.event, at.error,
-      f.mva, at.limit);
+      f.by.name, f.fit ? "Nearest to its limit" : "Largest violation", at.name, row.channel, row.window(),
+      row.event, at.error, f.mva, at.limit);
 }
 
 const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
@@ -74,8 +74,8 @@ const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "
 std::string caption(const Fitness& f) {
   return fmt::format(
       "Errors (modelled − measured) in % of {:g} MVA, each of its limit, as IEC 61400-27-2 counts them: MXE the "
-      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Not compared: {:g} ms after the first "
-      "switching, {:g} ms after the last. A star marks what exceeds its limit.",
+      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Excluded: the first {:g} ms after "
+      "the first switching and {:g} ms after the last. A star marks what exceeds its limit.",
       f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
 }
 

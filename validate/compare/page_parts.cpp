@@ -187,7 +187,7 @@ void parameters_part(report::Page& page, const std::vector<PageParameter>& param
   const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
   report::Table table{fitted ? "Before and after, with 95 % intervals. The last columns say how much of the "
                                "interval the records decide, and what else is to be known."
-                             : "The values that the model has; none was changed.",
+                             : "Model parameters (unchanged).",
                       {"parameter", "unit", fitted ? "before" : "value"},
                       {}};
   if (fitted)
@@ -252,10 +252,10 @@ void maps_part(report::Page& page, const std::vector<Played>& played) {
 }
 
 void glossary_part(report::Page& page) {
-  page.section("Five words");
+  page.section("Glossary");
   page.table(
       {"",
-       {"word", "what it means here"},
+       {"term", "definition"},
        {{"noise",
          "What the record holds where nothing happens: the spread of the residual before the event, with its "
          "colour. Errors “in noise” are divided by it."},
@@ -263,13 +263,11 @@ void glossary_part(report::Page& page) {
          "One window of time and one band of frequency of one channel in the error map, with a bound of its "
          "own that noise alone keeps."},
         {"evidence",
-         "Twice the logarithm of how much likelier an effect makes the records than the model without "
-         "it, its parameters paid for."},
-        {"belief",
-         "How far a parameter was thought to be off before the records were seen (--spread); it decides "
-         "what the records do not."},
+         "2 ln(Bayes factor) of the model with the effect against the model without it, penalised for the "
+         "added parameters."},
+        {"prior", "Standard deviation of a parameter before the records were used (--spread)."},
         {"decided",
-         "The share of a parameter's interval that comes from the records, not from the belief."}}});
+         "Share of a parameter's interval that is determined by the records, not by the prior."}}});
 }
 
 std::string command_html(const CommandPage& p) {
@@ -279,7 +277,7 @@ std::string command_html(const CommandPage& p) {
   parameters_part(page, p.parameters);
   errors_part(page, p.played, p.unseen);
   maps_part(page, p.played);
-  page.section("Hypotheses");
+  if (!p.tried.empty()) page.section("Hypotheses");
   for (const auto& sentence : p.tried) page.text(sentence);
   glossary_part(page);
   page.provenance(p.provenance);

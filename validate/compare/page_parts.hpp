@@ -30,7 +30,7 @@ void errors_part(report::Page& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen = {});
 /// The error map of each model.
 void maps_part(report::Page& page, const std::vector<Played>& played);
-/// Five words.
+/// Definitions of the terms on the page.
 void glossary_part(report::Page& page);
 
 /// A page of a command that has no more to show: all parts, `tried` among them as sentences.

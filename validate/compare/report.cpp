@@ -114,7 +114,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
                                  report::padded(worst_map_table(maps))
                            : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps));
-  out += "* exceeds what noise alone allows\n";
+  out += "* = above the joint noise limit\n";
   for (const auto& e : events) {
     out += fmt::format("\n{}: {}\n", e.record.name,
                        e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e));
@@ -124,8 +124,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   }
   if (fitness.not_judged.empty())
     out += "\n" + worst_fitness_table(fitness).caption + "\n" + report::padded(worst_fitness_table(fitness));
-  return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
-         thresholds::ruling_text(adequacy.ruling) + "\n";
+  return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n";
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
@@ -172,18 +171,15 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
   CommandPage page;
   page.title = "Measured against modelled: " + model.name;
   page.subtitle = fmt::format(
-      "{} of {:g} MVA; the recorded {} played into the model, and what it answers with is compared.",
+      "{} of {:g} MVA; the recorded {} into the model, and its response is compared with the recording.",
       plant::subject(model), model.plant.mva,
-      model.whole                         ? "signals around it are"
-      : events.front().playback.P.empty() ? "P and Q are"
-                                          : "terminal voltage is");
+      model.whole                         ? "signals around it are played"
+      : events.front().playback.P.empty() ? "P and Q are played"
+                                          : "terminal voltage is played");
   page.complete = adequacy.adequate;
   page.sentence = adequacy.sentence;
-  page.played = {{"submitted", events, fitness}};
+  page.played = {{"model", events, fitness}};
   page.parameters = parameters_of(model.plant);
-  page.tried = {
-      "None: compare changes nothing. “swingbank diagnose” names what the model lacks, “swingbank calibrate” "
-      "fits its parameters."};
   page.provenance = rows;
   page.figures = json_report(model, events, adequacy, fitness, rows);
   return command_html(page);

@@ -170,7 +170,7 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   constexpr double kSubtransient = 0.04;  // moves the angle in the samples next to a switching
   EXPECT_NEAR(events[0].switchings[0].turn, on, kSubtransient);
   EXPECT_NEAR(events[0].switchings[1].turn, off, kSubtransient);
-  EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("the integrated angle was turned by")));
+  EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("were fitted at the switching times")));
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
   auto& machine = right.model.plant.machine;
