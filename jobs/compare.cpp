@@ -121,7 +121,8 @@ int run(Arguments& a) {
   if (a.of.json)
     fmt::print("{}", result);
   else
-    fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy, fitness), page.string());
+    fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy, fitness, a.of.verbose),
+               page.string());
   a.of.judging.print(page);
   return fitness.exit_code(adequacy.adequate);
 }

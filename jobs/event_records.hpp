@@ -28,7 +28,7 @@
 
 namespace swingbank::jobs {
 
-/// --quiet: no word of progress and no notes on stderr; errors are told.
+/// --quiet: no progress and no notes on stderr, errors only.
 inline bool quiet = false;
 
 /// How a command's records are read, beside what the plant file says.
@@ -145,9 +145,17 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
                                               const validate::check::Preparing& prepare = {}) {
   Problems problems;
   validate::check::RecordSet set = validate::check::read_records(files, model, problems, prepare);
+  std::vector<std::pair<std::string, std::string>> notes;  // each once, with its records
   for (std::size_t k = 0; k < set.records.size(); ++k)
-    for (const auto& warning : set.warnings[k])
-      if (!quiet) fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
+    for (const auto& warning : set.warnings[k]) {
+      const auto known = std::ranges::find(notes, warning, &std::pair<std::string, std::string>::first);
+      if (known == notes.end())
+        notes.emplace_back(warning, set.records[k].name);
+      else
+        known->second += ", " + set.records[k].name;
+    }
+  for (const auto& [warning, of] : notes)
+    if (!quiet) fmt::print(stderr, "note on {}: {}\n", of, warning);
   tell_events_elsewhere(files, model.reading.staged);
   problems.raise();
   return set;

@@ -81,12 +81,13 @@ class UnitReader {
       if (g.in_service) running.push_back(i);
     }
     if (units.empty())
-      return problems_.add(fmt::format("no generator{} at bus {}",
-                                       choice_.id.empty() ? "" : " '" + choice_.id + "'", choice_.bus),
-                           net().origin,
-                           ids.empty() ? "the nearest buses with generators are " + generator_buses()
-                                       : "the ids there are " + ids,
-                           "correct bus and id");
+      return problems_.add(
+          fmt::format("no generator{} at bus {}", choice_.id.empty() ? "" : " '" + choice_.id + "'",
+                      choice_.bus),
+          net().origin,
+          ids.empty() ? "the buses with generators that are nearest by number are " + generator_buses()
+                      : "the ids there are " + ids,
+          "correct bus and id");
     if (units.size() > 1 && running.size() != 1)
       return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
                            "their ids are " + ids,

@@ -1,6 +1,7 @@
 #include "validate/compare/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,24 @@ std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
                       std::string(p.unit), value, value, none, none, none});
     }
   return rows;
+}
+
+/// Each note once, with the events that it is about.
+std::string notes_text(const std::vector<EventComparison>& events) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> notes;
+  for (const auto& e : events)
+    for (const auto& note : e.notes) {
+      auto known = std::ranges::find(notes, note, &std::pair<std::string, std::vector<std::string>>::first);
+      if (known == notes.end()) known = notes.insert(notes.end(), {note, {}});
+      known->second.push_back(e.record.name);
+    }
+  std::string text;
+  for (const auto& [note, of] : notes)
+    text += fmt::format(
+        "note ({}): {}\n",
+        of.size() == events.size() && of.size() > 1 ? "all events" : fmt::format("{}", fmt::join(of, ", ")),
+        note);
+  return text;
 }
 
 nlohmann::json to_json(const WindowError& w) {
@@ -107,24 +126,31 @@ report::Table error_summary(const std::vector<EventComparison>& events) {
 report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy, const Fitness& fitness) {
-  std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, plant::subject(model));
+                            const Adequacy& adequacy, const Fitness& fitness, bool verbose) {
+  std::string out = fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n";
+  if (!adequacy.adequate)
+    out += "Next: swingbank diagnose, with the same options, names what the model lacks.\n";
+  out += fmt::format("\n{} ({}): measured against modelled\n\n", model.name, plant::subject(model)) +
+         report::padded(error_summary(events));
   const auto maps = maps_of(events);
-  out += report::padded(error_summary(events));
-  out += events.size() > 1 ? "\nIn units of noise, per window and band, worst of all events:\n" +
-                                 report::padded(worst_map_table(maps))
-                           : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps));
-  out += "* = above the joint noise limit\n";
+  if (verbose)
+    out += (events.size() > 1
+                ? "\nIn units of noise, per window and band, worst of all events:\n" +
+                      report::padded(worst_map_table(maps))
+                : "\nIn units of noise, per window and band:\n" + report::padded(map_table(maps))) +
+           "* = above the joint noise limit\n";
+  out += "\n";
   for (const auto& e : events) {
-    out += fmt::format("\n{}: {}\n", e.record.name,
-                       e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e));
-    if (const auto begins = record::beginning(e.record); !begins.empty())
-      out += "  t = 0 is " + begins + "\n";
-    for (const auto& note : e.notes) out += "  note: " + note + "\n";
+    const auto begins = record::beginning(e.record);
+    out += fmt::format("{}: {}{}\n", e.record.name,
+                       e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e),
+                       begins.empty() ? "" : "; t = 0 is " + begins);
   }
+  out += notes_text(events);
+  if (!verbose) return out + "(--verbose prints the error map and every limit)\n";
   if (fitness.not_judged.empty())
     out += "\n" + worst_fitness_table(fitness).caption + "\n" + report::padded(worst_fitness_table(fitness));
-  return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n";
+  return out;
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,

@@ -428,9 +428,20 @@ TEST(CompareReportTest, PageAsksForNothing) {
 TEST(CompareReportTest, TerminalReportCarriesUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events));
+  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), true);
   for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
     EXPECT_THAT(text, HasSubstr(word));
+}
+TEST(CompareReportTest, TerminalReport_PrintsVerdictFirstAndEachNoteOnce) {
+  std::vector<EventComparison> events(2, example_event());
+  events[1].record.name = "other.csv";
+  for (auto& e : events) e.notes = {"a note of both"};
+  events[1].notes.push_back("a note of one");
+  const Adequacy adequacy = judge(events);
+  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), false);
+  EXPECT_THAT(text, ::testing::StartsWith("Fit for purpose: "));
+  EXPECT_THAT(text, HasSubstr("note (all events): a note of both\nnote (other.csv): a note of one\n"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("In units of noise")));
 }
 TEST(CompareReportTest, PlaybackHasOneLineASample) {
   const EventComparison e = example_event();

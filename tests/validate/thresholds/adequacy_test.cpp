@@ -9,7 +9,6 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-using testing::HasSubstr;
 
 struct Event {
   std::string record;
