@@ -78,8 +78,9 @@ bool speaks() {
 int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Command>& commands) {
   if (!speaks()) return 1;
   std::vector<std::string> names;
-  for (const auto& command : commands) names.push_back(command.name);
-  const std::string guess = nearest_word(wanted, names);
+  for (const auto& command : commands)
+    if (!command.group.empty()) names.push_back(command.name);
+  const std::string guess = swingbank::nearest_word(wanted, names);
   const std::string remedy =
       guess.empty() ? "run swingbank --help for the list" : fmt::format("did you mean '{}'?", guess);
   fmt::print(stderr, "unknown command at '{}' (no {}{} in {}): {}\n", wanted, kPrefix, wanted,

@@ -245,8 +245,8 @@ void maps_part(report::Page& page, const std::vector<Played>& played) {
     if (p.events.empty()) continue;
     const auto maps = labelled_maps(p.events);
     report::Table table = p.events.size() > 1 ? worst_map_table(maps) : map_table(maps);
-    table.caption =
-        fmt::format("The model {}. {}", p.name, &p == played.data() ? table.caption : "Same units.");
+    const std::string which = p.name == "model" ? "" : fmt::format("The model {}. ", p.name);
+    table.caption = which + (&p == played.data() ? table.caption : "Same units.");
     page.table(table);
   }
 }
@@ -273,10 +273,10 @@ void glossary_part(report::Page& page) {
 std::string command_html(const CommandPage& p) {
   report::Page page(p.title, p.subtitle);
   verdict_part(page, p.played, p.complete, p.sentence, p.complete ? report::Tone::good : report::Tone::bad);
+  maps_part(page, p.played);
   panels_part(page, p.played);
   parameters_part(page, p.parameters);
   errors_part(page, p.played, p.unseen);
-  maps_part(page, p.played);
   if (!p.tried.empty()) page.section("Hypotheses");
   for (const auto& sentence : p.tried) page.text(sentence);
   glossary_part(page);

@@ -1,6 +1,6 @@
 #pragma once
-// The parts that the pages of all commands have, in the order in which they stand: verdict, panels of the
-// events, parameters, errors, error maps, what was tried, glossary, provenance.
+// The parts that the pages of all commands have, in the order in which they stand: verdict, error maps,
+// panels of the events, parameters, errors, what was tried, glossary, provenance.
 #include <string>
 #include <vector>
 

@@ -424,6 +424,9 @@ TEST(CompareReportTest, PageAsksForNothing) {
   EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
   EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
+  ASSERT_NE(own.find("Error map</h2>"), std::string::npos);
+  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map stands under the verdict
+  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare tries none
 }
 TEST(CompareReportTest, TerminalReportCarriesUnits) {
   std::vector<EventComparison> events = {example_event()};
