@@ -26,7 +26,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// letters or more, stands for it.
 inline std::string nearest_word(std::string_view wanted, const std::vector<std::string>& words) {
   std::string best;
-  std::size_t least = std::max<std::size_t>(2, wanted.size() / 2);  // farther than this is no likely slip
+  std::size_t least = std::max<std::size_t>(2, wanted.size() / 3);  // farther than this is no likely slip
   for (const auto& word : words) {
     const bool begins = wanted.size() >= 3 && word.starts_with(wanted);
     const std::size_t distance = begins ? 0 : edit_distance(wanted, word);

@@ -222,11 +222,11 @@ Option CommandLine::add(CLI::Option* option, const std::string& meaning) {
 void CommandLine::group(const std::string& name) { parser_->group = name; }
 void CommandLine::footer(const std::string& text) {
   parser_->text = text;
-  parser_->app.footer(parser_->examples + text);
+  parser_->app.footer(parser_->examples + (parser_->examples.empty() ? "" : "\n") + text);
 }
 void CommandLine::example(const std::string& text) {
   parser_->examples += (parser_->examples.empty() ? "Example:\n  " : "  ") + text + "\n";
-  parser_->app.footer(parser_->examples + parser_->text);
+  parser_->app.footer(parser_->examples + (parser_->text.empty() ? "" : "\n") + parser_->text);
 }
 
 bool CommandLine::parse(int argc, char** argv) {
