@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/input_file.hpp"
+#include "base/nearest_word.hpp"
 
 namespace swingbank {
 
@@ -106,7 +107,8 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
       problems.add("unknown key " + full, place(name, key.source().begin),
                    prefix.empty() ? "nothing reads it"
                                   : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
-                   known.empty() ? "remove it" : "remove it or use one of: " + list(known));
+                   known.empty() ? "remove it"
+                                 : suggestion(key.str(), known, "remove it or use one of: " + list(known)));
   }
 }
 
@@ -266,7 +268,8 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   std::string word = otherwise;
   if (!take(key, word, {}) || word.empty()) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
-    problem(key, key + " = '" + word + "'", "there is no such choice", "use one of: " + list(words));
+    problem(key, key + " = '" + word + "'", "there is no such choice",
+            suggestion(word, words, "use one of: " + list(words)));
   return word;
 }
 

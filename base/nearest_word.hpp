@@ -1,8 +1,10 @@
 #pragma once
 // The known word nearest to a mistyped one, for "did you mean".
 #include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace swingbank {
@@ -22,20 +24,35 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the one of `words` that was probably meant; empty if none is near. The begin of a word, of three
-/// letters or more, stands for it.
+/// Returns the one of `words` that was probably meant, whatever the case of its letters; empty if none is near.
+/// A word that begins with the wanted one, of three letters or more, comes before all others.
 inline std::string nearest_word(std::string_view wanted, const std::vector<std::string>& words) {
+  const auto lower = [](std::string_view text) {
+    std::string small(text);
+    std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+    return small;
+  };
+  const std::string sought = lower(wanted);
+  const std::size_t most = std::max<std::size_t>(1, sought.size() / 3);  // farther than this is no likely slip
   std::string best;
-  std::size_t least = std::max<std::size_t>(2, wanted.size() / 3);  // farther than this is no likely slip
+  std::pair<bool, std::size_t> least;  // whether it only resembles the wanted one, and its distance
   for (const auto& word : words) {
-    const bool begins = wanted.size() >= 3 && word.starts_with(wanted);
-    const std::size_t distance = begins ? 0 : edit_distance(wanted, word);
-    if (distance <= least && (best.empty() || distance < least)) {
+    const std::string known = lower(word);
+    const bool begins = sought.size() >= 3 && known.starts_with(sought);
+    const std::pair<bool, std::size_t> distance{!begins, edit_distance(sought, known)};
+    if (!begins && (distance.second > most || distance.second >= known.size())) continue;
+    if (best.empty() || distance < least) {
       best = word;
       least = distance;
     }
   }
   return best;
+}
+/// Returns "did you mean GENROU?", or `otherwise` where no word is near.
+inline std::string suggestion(std::string_view wanted, const std::vector<std::string>& words,
+                              const std::string& otherwise) {
+  const std::string nearest = nearest_word(wanted, words);
+  return nearest.empty() ? otherwise : "did you mean " + nearest + "?";
 }
 
 }  // namespace swingbank

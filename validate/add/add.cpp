@@ -1,6 +1,7 @@
 #include "validate/add/add.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -8,6 +9,7 @@
 #include <cmath>
 
 #include "base/in_parallel.hpp"
+#include "base/nearest_word.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
@@ -224,14 +226,15 @@ std::string sentence_of(const Addition& a) {
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
   auto all = hypothesis::all_hypotheses(model.under_test(), model.library, model.reading.component);
-  std::string names;
-  for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
+  std::vector<std::string> names;
+  for (const auto& h : all) names.push_back(h.name);
   std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));
   if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
   const sim::Effect* effect = model.library.find(name);
-  const std::string remedy = "use one of " + names + ", or load a law with --law";
+  const std::string remedy = fmt::format("use one of {}, or load a user-defined model with --law", fmt::join(names, ", "));
   if (effect == nullptr)
-    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name", remedy});
+    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
+                      suggestion(name, names, remedy)});
   if (effect->instants)
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
                       "it acts at given instants and so belongs to one event, not to the plant",

@@ -55,7 +55,10 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   const EffectLibrary& library = model.library;
   sim::plant::Block block{
       library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
-  if (!block.effect || block.effect->slot != slot) return {};
+  if (!block.effect || block.effect->slot != slot) {
+    config.ignore(section);  // its keys are those of the effect that was meant
+    return {};
+  }
   const bool sound = config.sound();
   const bool may_miss = config.optional<bool>(section + ".standard", false);
   for (const auto& p : block.effect->parameters) {
