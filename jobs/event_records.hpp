@@ -210,6 +210,23 @@ inline std::string command_line(const std::string& command, int argc, char** arg
   return line;
 }
 
+/// The problems of an input, one a line; those that differ only in their place share a line.
+inline std::string problems_text(const InputError& error) {
+  std::vector<Problem> lines;
+  for (const Problem& p : error.problems()) {
+    const auto same = std::ranges::find_if(lines, [&](const Problem& q) {
+      return q.what == p.what && q.why == p.why && q.remedy == p.remedy;
+    });
+    if (same == lines.end())
+      lines.push_back(p);
+    else
+      same->where += ", " + p.where;
+  }
+  std::string text;
+  for (const Problem& p : lines) text += p.sentence() + "\n";
+  return text;
+}
+
 /// Runs it; bad input and failures become a message and exit code 1, a stop before any result exit code 2.
 template <class F>
 int guarded(const std::string& command, F action) {
@@ -220,7 +237,7 @@ int guarded(const std::string& command, F action) {
                command);
     return kSubmitAgain;
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}", problems_text(error));
   } catch (const std::exception& error) {
     fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
   }

@@ -49,6 +49,11 @@ int run(Arguments& a) {
       fmt::print(stderr, "note: {}\n", note);
       head.push_back(note);
     }
+  if (model.record_base.kv <= 0)  // not into the file, where it would stay once base_kv is filled in
+    fmt::print(stderr,
+               "note: the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
+               "base_kv, line to line, under [record]\n",
+               unit.bus, unit.kv);
   if (a.out.empty()) {
     fmt::print("{}", plant::plant_text(model, head));
     return 0;

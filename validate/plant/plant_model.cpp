@@ -350,13 +350,7 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.record_base.mva = unit.system_mva;
   // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
   constexpr double kPerUnitCase = 1.0;
-  if (unit.kv > kPerUnitCase)
-    model.record_base.kv = unit.kv;
-  else
-    model.warnings.push_back(
-        fmt::format("the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
-                    "base_kv, line to line, under [record]",
-                    unit.bus, unit.kv));
+  if (unit.kv > kPerUnitCase) model.record_base.kv = unit.kv;
   note_standard(model, unit.standard);
   if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
     model.warnings.push_back(fmt::format("{}: {}; {}", base->what, base->why, base->remedy));
