@@ -56,6 +56,11 @@ TEST_F(PlantModelTest, ReadsTheExample) {
   EXPECT_FALSE(m.conventions.speed_voltage);
   EXPECT_TRUE(m.plant.controls.empty());
 }
+TEST_F(PlantModelTest, AMistypedEffect_GivesOneLineWithASuggestion) {
+  EXPECT_THAT(
+      faults(replaced(example_text(), "\"GENROU\"", "\"GENRUO\"")),
+      ElementsAre(AllOf(HasSubstr("machine.effect = 'GENRUO' at "), HasSubstr("did you mean GENROU?"))));
+}
 TEST_F(PlantModelTest, ReadsLawsBesideIt) {
   const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
   const std::string shaft =
@@ -153,7 +158,9 @@ TEST_F(PlantModelTest, TakesAGeneratorOfAGrid) {
   EXPECT_THAT(faults(replaced(text, "frequency_hz = 60.0", "frequency_hz = 50.0")),
               ElementsAre(HasSubstr("the grid's .raw says 60 Hz")));
   EXPECT_THAT(faults(replaced(text, "bus = 31", "bus = 16")),
-              ElementsAre(AllOf(HasSubstr("no generator at bus 16"), HasSubstr("30, 31"))));
+              ElementsAre(AllOf(
+                  HasSubstr("no generator at bus 16"),
+                  HasSubstr("are 33 (2 branches), 34 (3 branches), 35 (3 branches), 36 (3 branches), "))));
   EXPECT_THAT(faults(replaced(text, "name = \"31\"", "name = \"31\"\nbase_mva = 10.0")),
               Contains(HasSubstr("beside [grid]")));
 }
