@@ -86,7 +86,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   page.played = played;
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", fmt::format("{}, XXH64 {:016x}", before.origin, before.hash)}};
+                     {"model", before.origin}};
   for (const auto& e : played.front().events)
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);

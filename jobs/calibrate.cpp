@@ -90,7 +90,7 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
                     "None about the structure: “swingbank diagnose” names what a model lacks.");
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+                     {"model", model.origin}};
   for (const auto& e : page.played.front().events)
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);

@@ -224,13 +224,15 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
 /// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
-      e.record.component == record::Component::plant ? "P and Q are" : "what is compared is";
-  if (e.fitted) return "within that they were moved to where " + what + " met best.";
+      e.record.component == record::Component::plant ? "P and Q" : "the compared signals";
+  if (e.fitted) return "they were then fitted to " + what + " within these intervals.";
   if (!failed.empty())
-    return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
-  return tried ? "nowhere within that " + what + " met better than with the middle of each interval."
-               : "the middle of each interval was taken.";
+    return "the fit within these intervals failed, so the middle of each is used (" + failed + ").";
+  return tried ? "no time within these intervals fits " + what + " better than their middle."
+               : "the middle of each interval is used.";
 }
+
+constexpr double kQuietTime = 120;  ///< after an event, beyond what any control of a plant takes [s]
 
 void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
@@ -257,6 +259,12 @@ void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::stri
         "No voltage step was found; the first {:.3g} s are used as the steady state (--pre-event){}.",
         e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
         tried && e.fitted ? ", and the initial point was adjusted within measurement noise" : ""));
+  const double end = e.record.t.back(), over = e.switchings.empty() ? end : e.switchings.back().time;
+  if (end - over > kQuietTime)
+    e.notes.push_back(fmt::format(
+        "The record goes on for {:.0f} s after the last switching: errors over the whole record are averaged over "
+        "this quiet time. --until {:.0f} limits them to the event.",
+        end - over, std::ceil(over + kQuietTime / 4)));
   if (e.playback.start.drift != 0)
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
@@ -334,11 +342,15 @@ std::vector<Window> event_windows(const record::Record& record,
   const double begins = slack + (switched ? std::min(switchings.front().time, staged) : still);
   const double over = slack + (switched ? switchings.back().time : still);
   const bool known = switched || moved;  // else nothing tells when the event begins
-  const Window all[] = {{known ? "pre-event" : "at first", first, begins},
+  const auto of_record = [&](double from, double to) {
+    return fmt::format("{:.4g}–{:.4g} s of the record", from - first, to - first);
+  };
+  const Window all[] = {{known ? "pre-event" : of_record(first, begins), first, begins},
                         {"fault", begins, over},
-                        {known ? "0–1 s after" : "next second", over, over + 1},
-                        {known ? "1–5 s after" : "next 4 s", over + 1, over + 5},
-                        {known ? "> 5 s after" : "later", over + 5, end + slack}};
+                        {known ? "0–1 s after" : of_record(over, over + 1), over, over + 1},
+                        {known ? "1–5 s after" : of_record(over + 1, over + 5), over + 1, over + 5},
+                        {known ? "> 5 s after" : fmt::format("> {:.4g} s of the record", over + 5 - first),
+                         over + 5, end + slack}};
   std::vector<Window> windows;
   for (const auto& w : all) {
     const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };

@@ -50,7 +50,8 @@ void keep_worse(MapCell& worst, const MapCell& cell) {
 }
 
 constexpr const char* kCaption =
-    "Residual per time window and frequency band in units of noise; 1 × is noise alone. "
+    "Residual per time window and frequency band in units of noise; 1 × is noise alone. Windows “after” count from "
+    "the last switching, others from the first sample. "
     "* = above the joint noise limit of all cells; “–”: the window is too short for the band.";
 
 }  // namespace
@@ -77,9 +78,12 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
   std::vector<std::string> channels;
   for (const auto& m : maps)
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
+  std::vector<std::string> windows = {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"};
+  for (const auto& m : maps)
+    for (const Window& w : *m.windows)  // of records without a switching
+      if (std::ranges::find(windows, w.name) == windows.end()) windows.push_back(w.name);
   for (const auto& channel : channels)
-    for (const char* window : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after", "at first",
-                               "next second", "next 4 s", "later"}) {
+    for (const auto& window : windows) {
       ErrorMap::Row worst;
       worst.bands.resize(error_bands().size());
       const LabelledMap* of = nullptr;

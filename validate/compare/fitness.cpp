@@ -106,7 +106,7 @@ nlohmann::json errors_json(const Errors& e) {
 
 std::string_view JudgedErrors::window() const {
   if (switched) return thresholds::phase_name(phase);
-  return phase == Phase::pre_fault ? "at first" : "later";
+  return phase == Phase::pre_fault ? "start of record" : "rest of record";
 }
 
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why) {

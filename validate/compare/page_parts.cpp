@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/event_title.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -124,7 +125,7 @@ void event_panels(report::Page& page, const std::vector<Played>& played, std::si
   const ShownEvent shown = shown_event(played, event);
   if (shown.of.empty()) return;
   const EventComparison& e = *shown.of.back().second;  // what is said of it is said of the model that counts
-  page.subsection(e.record.name);
+  page.subsection(e.record.name + ": " + event_title(e));
   const auto begins = record::beginning(e.record);
   page.text(fmt::format(
       "{}{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",

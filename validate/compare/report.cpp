@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/event_title.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -22,13 +23,6 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
     for (const auto& c : e.channels)
       maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
   return maps;
-}
-
-std::string describe_instants(const EventComparison& e) {
-  if (e.switchings.empty()) return "none";
-  std::string text;
-  for (const auto& s : e.switchings) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", s.time);
-  return text + (!e.detected ? " (given)" : e.fitted ? " (found and fitted)" : " (found)");
 }
 
 /// Every parameter of a plant, as it is.
@@ -142,8 +136,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   out += "\n";
   for (const auto& e : events) {
     const auto begins = record::beginning(e.record);
-    out += fmt::format("{}: {}{}\n", e.record.name,
-                       e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e),
+    out += fmt::format("{}: {}{}\n", e.record.name, event_title(e),
                        begins.empty() ? "" : "; t = 0 is " + begins);
   }
   out += notes_text(events);
@@ -213,9 +206,8 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
 
 report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                               const std::string& command_line) {
-  report::Provenance rows = {{"command", command_line},
-                             {"software", "swingbank " SWINGBANK_VERSION},
-                             {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  report::Provenance rows = {
+      {"command", command_line}, {"software", "swingbank " SWINGBANK_VERSION}, {"model", model.origin}};
   rows.emplace_back(
       "conventions",
       fmt::format(
@@ -226,8 +218,8 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
   if (!model.standard.empty())
     rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
   for (const auto& e : events)
-    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}{}", e.record.name, e.record.hash,
-                                            e.record.epoch ? ", begins " + record::beginning(e.record) : ""));
+    rows.emplace_back("record", e.record.name + (e.record.epoch ? ", begins " + record::beginning(e.record)
+                                                                : std::string()));
   return rows;
 }
 

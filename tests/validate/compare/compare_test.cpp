@@ -381,9 +381,28 @@ TEST(CompareTest, WindowsFollowTheSwitchings) {
   EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
               ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
   // Where nothing switches, nothing is "after" anything.
-  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("at first", "next second"));
+  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)),
+              ElementsAre("0–14.5 s of the record", "14.5–15.5 s of the record"));
   EXPECT_THAT(names(event_windows(e.record, {}, 1)),
-              ElementsAre("at first", "next second", "next 4 s", "later"));
+              ElementsAre("0–1 s of the record", "1–2 s of the record", "2–6 s of the record",
+                          "> 6 s of the record"));
+}
+TEST(CompareTest, ALongQuietEnd_GivesAHintOfUntil) {
+  const plant::PlantModel model = example_model();
+  record::Record record =
+      record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
+  EXPECT_THAT(compare_event(model, record).notes, ::testing::Not(::testing::Contains(HasSubstr("--until"))));
+  const std::size_t samples = record.t.size();
+  for (std::size_t k = 0; record.t.back() < 150; ++k) {  // the last second again and again
+    const std::size_t from = samples - 60 + k % 60;
+    for (auto* values :
+         {&record.V, &record.theta, &record.f, &record.P, &record.Q, &record.speed, &record.Efd, &record.Ifd})
+      if (!values->empty()) values->push_back((*values)[from]);
+    if (!record.lost.empty()) record.lost.push_back(0);
+    record.t.push_back(record.t.back() + record.step());
+  }
+  EXPECT_THAT(compare_event(model, record).notes,
+              ::testing::Contains(HasSubstr("--until 33 limits them to the event")));
 }
 TEST(CompareTest, ResidualIsModelledMinusMeasured) {
   const EventComparison e = example_event();
