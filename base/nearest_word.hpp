@@ -24,8 +24,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the one of `words` that was probably meant, whatever the case of its letters; empty if none is near.
-/// A word that begins with the wanted one, of three letters or more, comes before all others.
+/// Returns the one of `words` that was probably meant, whatever the case of its letters; empty if none is
+/// near. A word that begins with the wanted one, of three letters or more, comes before all others.
 inline std::string nearest_word(std::string_view wanted, const std::vector<std::string>& words) {
   const auto lower = [](std::string_view text) {
     std::string small(text);
@@ -33,7 +33,8 @@ inline std::string nearest_word(std::string_view wanted, const std::vector<std::
     return small;
   };
   const std::string sought = lower(wanted);
-  const std::size_t most = std::max<std::size_t>(1, sought.size() / 3);  // farther than this is no likely slip
+  const std::size_t most =
+      std::max<std::size_t>(1, sought.size() / 3);  // farther than this is no likely slip
   std::string best;
   std::pair<bool, std::size_t> least;  // whether it only resembles the wanted one, and its distance
   for (const auto& word : words) {

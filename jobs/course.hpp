@@ -118,7 +118,7 @@ class CourseProgress {
   /// ", about 1 min 20 s left"; nothing where the work takes longer than was said before, because a time that
   /// grows helps nobody.
   std::string time_left(double seconds) {
-    if (beyond_ || share_ < kLeastShare || share_ >= 1) return "";
+    if (beyond_ || share_ < kLeastDone || share_ >= 1) return "";
     const double end = seconds / share_;
     if (end > end_ * kMayGrow) return "";
     end_ = std::min(end_, end);
@@ -126,8 +126,8 @@ class CourseProgress {
     return left > 0 ? fmt::format(", about {} left", duration_text(left)) : "";
   }
 
-  static constexpr double kLeastShare = 0.02;  ///< below it, the rate so far predicts nothing
-  static constexpr double kMayGrow = 1.2;      ///< of the duration first told
+  static constexpr double kLeastDone = 0.02;  ///< below it, the rate so far predicts nothing
+  static constexpr double kMayGrow = 1.2;     ///< of the duration first told
   Course course_;
   std::map<std::size_t, Seen> seen_;
   double share_ = 0;

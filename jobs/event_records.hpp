@@ -214,9 +214,8 @@ inline std::string command_line(const std::string& command, int argc, char** arg
 inline std::string problems_text(const InputError& error) {
   std::vector<Problem> lines;
   for (const Problem& p : error.problems()) {
-    const auto same = std::ranges::find_if(lines, [&](const Problem& q) {
-      return q.what == p.what && q.why == p.why && q.remedy == p.remedy;
-    });
+    const auto same = std::ranges::find_if(
+        lines, [&](const Problem& q) { return q.what == p.what && q.why == p.why && q.remedy == p.remedy; });
     if (same == lines.end())
       lines.push_back(p);
     else

@@ -231,7 +231,8 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
   std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));
   if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
   const sim::Effect* effect = model.library.find(name);
-  const std::string remedy = fmt::format("use one of {}, or load a user-defined model with --law", fmt::join(names, ", "));
+  const std::string remedy =
+      fmt::format("use one of {}, or load a user-defined model with --law", fmt::join(names, ", "));
   if (effect == nullptr)
     throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
                       suggestion(name, names, remedy)});

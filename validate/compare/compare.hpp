@@ -93,10 +93,10 @@ ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<dou
 std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
                                  double nominal);
 
-/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; where nothing switches, the same lengths
-/// counted from the begin of the record (0-1 s, 1-2 s, 2-6 s and > 6 s of the record, with a pre-event stretch of
-/// 1 s); none without a sample. Between the first and the last switching is the
-/// "fault"; a single switching has none. No window begins or ends with samples that are left out.
+/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; where nothing switches, the same
+/// lengths counted from the begin of the record (0-1 s, 1-2 s, 2-6 s and > 6 s of the record, with a
+/// pre-event stretch of 1 s); none without a sample. Between the first and the last switching is the "fault";
+/// a single switching has none. No window begins or ends with samples that are left out.
 std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<playin::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});

@@ -11,7 +11,7 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr double kDip = 0.1;               ///< share of the voltage that at least is lost in a fault
+constexpr double kFaultDip = 0.1;          ///< share of the voltage that at least is lost in a fault
 constexpr double kFrequencyChange = 0.05;  ///< smallest change of a frequency event [Hz]
 constexpr double kFrequencyAverage = 1.0;  ///< over which the frequency is averaged [s]
 
@@ -30,7 +30,7 @@ bool is_fault(const EventComparison& e) {
   const auto end =
       static_cast<std::size_t>(std::ranges::lower_bound(r.t, e.switchings.back().time) - r.t.begin());
   if (begin == 0 || begin >= end) return false;
-  return mean_of(r.V, begin, end) < (1 - kDip) * mean_of(r.V, 0, begin);
+  return mean_of(r.V, begin, end) < (1 - kFaultDip) * mean_of(r.V, 0, begin);
 }
 
 /// Largest change of the averaged frequency against that before the event [Hz]; 0 where it is not recorded.

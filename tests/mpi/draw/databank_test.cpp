@@ -114,7 +114,8 @@ TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
   }
 }
 
-// Most draws are too close here (19 of 20 admissible ones), so that the forecast decides after the first batch.
+// Most draws are too close here (19 of 20 admissible ones), so that the forecast decides after the first
+// batch.
 TEST(DatabankDraw, AReachableCountIsNotGivenUp) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 2.0;

@@ -9,7 +9,6 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-
 struct Event {
   std::string record;
   double after, limit;
