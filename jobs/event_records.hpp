@@ -181,7 +181,7 @@ inline void tell(const validate::plant::PlantModel& model) {
 
 /// Writes where the course stands over itself where stderr is a terminal, elsewhere as a line every ten
 /// seconds; nothing with --quiet.
-inline std::function<void(const std::string&, int, int)> progress_line(const Course& course = {}) {
+inline validate::event::Progress progress_line(const Course& course = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
   struct State {  // copies of the function share it
@@ -189,11 +189,11 @@ inline std::function<void(const std::string&, int, int)> progress_line(const Cou
     Clock::time_point start = Clock::now(), said = start;
   };
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, state = std::make_shared<State>(CourseProgress(course))](const std::string& what,
-                                                                             int done, int total) {
+  return [terminal, state = std::make_shared<State>(CourseProgress(course))](
+             Phase phase, const std::string& item, int done, int total) {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - state->start).count();
-    const std::string line = state->at.line(what, done, total, seconds);
+    const std::string line = state->at.line(phase, item, done, total, seconds);
     if (terminal) {
       fmt::print(stderr, "\r\033[K{}{}", line, done == total ? "\r\033[K" : "");
     } else if (now - state->said >= std::chrono::seconds(10)) {

@@ -42,7 +42,7 @@ class Bench {
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
-    whole.events = each({seen.plant, conventions}, "noise measured again");
+    whole.events = each({seen.plant, conventions}, event::Phase::noise_again);
     all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
     keep_seen();
     return true;
@@ -61,7 +61,7 @@ class Bench {
                               "check the model's parameters and the record's base and units"});
           fits[e] = std::move(f.events.front());
         },
-        [&](int done) { tell(what, done, static_cast<int>(all_.size())); });
+        [&](int done) { tell(phase, done, static_cast<int>(all_.size())); });
     return fits;
   }
   std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const {
@@ -70,8 +70,8 @@ class Bench {
       if (!out_[e]) states.push_back(fits[e].state);
     return states;
   }
-  void tell(const std::string& what, int done, int total) const {
-    if (options_.progress) options_.progress(what, done, total);
+  void tell(event::Phase phase, int done, int total) const {
+    if (options_.progress) options_.progress(phase, "", done, total);
   }
 
  private:
@@ -124,9 +124,7 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
       [&](std::size_t k) {
         order[k] = {chi2_of({hypothesis::started(h, h.starts[k]), h.conventions}, bench, states), k};
       },
-      [&](int done) {
-        bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
-      });
+      [&](int done) { bench.tell(event::Phase::effect_values, done, static_cast<int>(order.size())); });
   // The start that leaves least may be one that hardly acts.
   std::ranges::sort(order.begin() + 1, order.end());
   const std::size_t tries =
@@ -145,7 +143,7 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
           fits[k] = ended.reached;
         }
       },
-      [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
+      [&](int done) { bench.tell(event::Phase::effect_starts, done, static_cast<int>(tries)); });
   if (interruption_asked()) throw_best(fits);
   fit::Fit best = *std::ranges::min_element(fits, fit::better);
   if (!best.failed.empty())
@@ -172,7 +170,7 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
       [&](std::size_t e) {
         known[e] = fit::information(fit::event_slopes(fitted, bench.all().whitened(e), fits[e].state, free));
       },
-      [&](int done) { bench.tell("sensitivities", done, static_cast<int>(fits.size())); });
+      [&](int done) { bench.tell(event::Phase::sensitivities, done, static_cast<int>(fits.size())); });
   const auto n = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd belief = Eigen::MatrixXd::Identity(n, n);
   Eigen::MatrixXd all = belief;
@@ -251,7 +249,7 @@ namespace {
 void work(const plant::PlantModel& model, std::vector<record::Record> records, const AddOptions& options,
           Addition& a) {
   Bench bench(model, std::move(records), options.calibrate);
-  auto before = bench.each(model.under_test(), "events with the model as it is");
+  auto before = bench.each(model.under_test(), event::Phase::model_as_it_is);
   const auto states = bench.states_of(before);
   hypothesis::Hypothesis& hypothesis = a.hypothesis;
   a.model = model;
@@ -266,7 +264,7 @@ void work(const plant::PlantModel& model, std::vector<record::Record> records, c
   }
   if (bench.measure_noise(a.with, hypothesis.conventions)) {
     const double spread = options.calibrate.spread;
-    before = bench.each(model.under_test(), "events with the model as it is");
+    before = bench.each(model.under_test(), event::Phase::model_as_it_is);
     a.without = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), a.without);
     a.with = go_on(hypothesis.under_test(), bench, hypothesis::free_of(hypothesis, spread), a.with);
   }
@@ -276,8 +274,8 @@ void work(const plant::PlantModel& model, std::vector<record::Record> records, c
   // The effect's parameters stand last in a fit.
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.evidence = fit::gain(a.without, a.with, fit::criterion);
-  const auto refitted = bench.each({a.without.plant, model.conventions}, "events without the effect");
-  const auto after = bench.each({a.with.plant, hypothesis.conventions}, "events with the effect");
+  const auto refitted = bench.each({a.without.plant, model.conventions}, event::Phase::effect_left_out);
+  const auto after = bench.each({a.with.plant, hypothesis.conventions}, event::Phase::effect_added);
   const auto allowed = allowances({a.with.plant, hypothesis.conventions}, bench, after,
                                   hypothesis::free_of(hypothesis, options.calibrate.spread));
   a.earns = true;
@@ -325,7 +323,7 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
   r.effect = model.plant.controls[control].effect->name;
   r.model = model;
   r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
-  const auto states = bench.states_of(bench.each(model.under_test(), "events with " + r.effect));
+  const auto states = bench.states_of(bench.each(model.under_test(), event::Phase::effect_added));
   const double spread = options.calibrate.spread;
   fit::Fit with = fit_without(model, bench, states, spread),
            without = fit_without(r.model, bench, states, spread);

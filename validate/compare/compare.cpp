@@ -387,7 +387,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       record::stretch(std::move(record), -std::numeric_limits<double>::infinity(), options.play_in.until);
   e.left_out = e.record.lost;
   const auto step = [&](const char* what, int done) {
-    if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
+    if (options.progress)
+      options.progress(event::Phase::playing, fmt::format("{}: {}", e.record.name, what), done, 3);
   };
   const bool no_angle =
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();

@@ -1,12 +1,12 @@
 #pragma once
 // Measured against modelled P and Q of one event, per window of time and beside the record's own noise.
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "validate/compare/error_map.hpp"
 #include "validate/event/event.hpp"
+#include "validate/event/progress.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/record/record.hpp"
@@ -63,7 +63,7 @@ struct CompareOptions {
   bool fit_switchings = true;
   event::Jumps jumps = event::Jumps::either;  ///< what the instrument does to jumps; either: the record tells
   /// Told before each step of a record that is long: what comes, and how many steps are done of how many.
-  std::function<void(const std::string& what, int done, int total)> progress = {};
+  event::Progress progress = {};
   playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
 

@@ -55,8 +55,7 @@ struct DiagnoseOptions {
   event::FitEventOptions events = {};             ///< how the records are prepared
   int leading = 9;                                ///< hypotheses at most that are judged on events left out
   int firsts = 2;  ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
-  /// Called with what is done, done and total; may be empty.
-  std::function<void(const std::string& what, int done, int total)> progress;
+  event::Progress progress;
   /// Called with a sentence as soon as something is known that the verdict will rest on: what is left and on
   /// which side, then who leads. May be empty.
   std::function<void(const std::string& sentence)> told = {};

@@ -280,7 +280,7 @@ void interrupt(Diagnosis& d) {
       d.base.misfit(), leading.empty() ? "no effect had explained anything yet" : leading);
 }
 
-void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d) {
+void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
