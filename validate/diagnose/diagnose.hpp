@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "validate/event/progress.hpp"
 #include "validate/fit/fewest.hpp"
 #include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"

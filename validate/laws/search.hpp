@@ -4,6 +4,7 @@
 // events left out, as every hypothesis is. A law that does not predict unseen events is not offered.
 #include <memory>
 
+#include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/missing_input.hpp"
 #include "validate/laws/candidate.hpp"
