@@ -50,7 +50,7 @@ class Bench {
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
   /// Fits every event by itself, with only its own state free.
-  std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, const std::string& what) const {
+  std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, event::Phase phase) const {
     std::vector<fit::EventFit> fits(all_.size());
     in_parallel(
         all_.size(),
