@@ -9,6 +9,8 @@ const std::vector<std::string> kEffects = {"GENCLS", "GENROU", "GENSAL", "SEXS",
 
 TEST(NearestWord, ReturnsTheWordOfTheFewestSlips) {
   EXPECT_EQ(nearest_word("GENRUO", kEffects), "GENROU");
+  EXPECT_EQ(nearest_word("GENRUO", {"GENROE", "GENROU"}), "GENROU");  // two letters swapped
+  EXPECT_EQ(nearest_word("Xddp", {"Xdp", "Xdpp"}), "Xdpp");           // of the same length
   EXPECT_EQ(nearest_word("ESDC2", kEffects), "ESDC2A");
   EXPECT_EQ(nearest_word("ESDC2B", kEffects), "ESDC2A");
 }

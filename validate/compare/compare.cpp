@@ -10,6 +10,7 @@
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/detail/power_doubt.hpp"
 #include "validate/compare/detail/spread.hpp"
+#include "validate/compare/event_title.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 
@@ -232,8 +233,6 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
                : "the middle of each interval is used.";
 }
 
-constexpr double kQuietTime = 120;  ///< after an event, beyond what any control of a plant takes [s]
-
 void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
       jumps == event::Jumps::spread && smeared > 0)
@@ -259,12 +258,7 @@ void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::stri
         "No voltage step was found; the first {:.3g} s are used as the steady state (--pre-event){}.",
         e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
         tried && e.fitted ? ", and the initial point was adjusted within measurement noise" : ""));
-  const double end = e.record.t.back(), over = e.switchings.empty() ? end : e.switchings.back().time;
-  if (end - over > kQuietTime)
-    e.notes.push_back(fmt::format(
-        "The record goes on for {:.0f} s after the last switching: errors over the whole record are averaged over "
-        "this quiet time. --until {:.0f} limits them to the event.",
-        end - over, std::ceil(over + kQuietTime / 4)));
+  if (const std::string hint = quiet_end_hint(e); !hint.empty()) e.notes.push_back(hint);
   if (e.playback.start.drift != 0)
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "

@@ -15,6 +15,8 @@ constexpr double kFaultDip = 0.1;          ///< share of the voltage that at lea
 constexpr double kFrequencyChange = 0.05;  ///< smallest change of a frequency event [Hz]
 constexpr double kFrequencyAverage = 1.0;  ///< over which the frequency is averaged [s]
 
+constexpr double kQuietTime = 120;  ///< beyond what any control of a plant takes [s]
+
 double mean_of(const std::vector<double>& x, std::size_t begin, std::size_t end) {
   return std::accumulate(x.begin() + static_cast<std::ptrdiff_t>(begin),
                          x.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
@@ -75,6 +77,16 @@ std::string event_title(const EventComparison& e) {
   if (std::abs(change) >= kFrequencyChange)
     text += fmt::format("{} {:+.2f} Hz", text.empty() ? "frequency event," : ", frequency", change);
   return text.empty() ? "no switching" : text;
+}
+
+std::string quiet_end_hint(const EventComparison& e) {
+  if (e.switchings.empty()) return {};
+  const double over = e.switchings.back().time, quiet = e.record.t.back() - over;
+  if (quiet < kQuietTime) return {};
+  return fmt::format(
+      "The record goes on for {:.0f} s after the last switching: errors over the whole record are averaged over "
+      "this quiet time. --until {:.0f} limits them to the event.",
+      quiet, std::ceil(over + kQuietTime / 4));
 }
 
 }  // namespace swingbank::validate::compare

@@ -56,6 +56,16 @@ TEST(EventTitle, TakesTheFrequencyFromTheAngle_WhenItIsNotRecorded) {
     e.record.theta.push_back(t < 5 ? 0 : -2 * 3.141592653589793 * 0.3 * (t - 5));
   EXPECT_EQ(event_title(e), "frequency event, -0.30 Hz");
 }
+TEST(QuietEndHint, NamesUntil_WhenTheRecordIsMuchLongerThanTheEvent) {
+  EventComparison e = steady();
+  e.switchings = {{.time = 2.0}, {.time = 2.1}};
+  EXPECT_EQ(quiet_end_hint(e), "");
+  e.record.t.back() = 602.1;
+  EXPECT_THAT(quiet_end_hint(e), ::testing::HasSubstr("600 s after the last switching"));
+  EXPECT_THAT(quiet_end_hint(e), ::testing::HasSubstr("--until 33 limits"));
+  e.switchings.clear();
+  EXPECT_EQ(quiet_end_hint(e), "");
+}
 
 }  // namespace
 }  // namespace swingbank::validate::compare
