@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/input_file.hpp"
+#include "base/nearest_word.hpp"
 
 namespace swingbank {
 
@@ -29,6 +30,12 @@ std::string place(const fs::path& name, const toml::source_position& p) {
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+/// "use one of: GENCLS, GENROU; did you mean GENROU?"
+std::string choose_from(std::string_view word, const std::vector<std::string>& words,
+                        const std::string& remedy) {
+  const std::string nearest = nearest_word(word, words);
+  return remedy + list(words) + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+}
 
 // What a node of TOML is called, and how it becomes a T.
 bool convert(const toml::node& n, bool& v) { return n.is_boolean() && (v = n.as_boolean()->get(), true); }
@@ -106,7 +113,7 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
       problems.add("unknown key " + full, place(name, key.source().begin),
                    prefix.empty() ? "nothing reads it"
                                   : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
-                   known.empty() ? "remove it" : "remove it or use one of: " + list(known));
+                   known.empty() ? "remove it" : choose_from(key.str(), known, "remove it or use one of: "));
   }
 }
 
@@ -266,7 +273,8 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   std::string word = otherwise;
   if (!take(key, word, {}) || word.empty()) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
-    problem(key, key + " = '" + word + "'", "there is no such choice", "use one of: " + list(words));
+    problem(key, key + " = '" + word + "'", "there is no such choice",
+            choose_from(word, words, "use one of: "));
   return word;
 }
 

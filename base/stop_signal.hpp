@@ -1,22 +1,39 @@
 #pragma once
 // SIGTERM, SIGINT and SIGUSR1 ask for a soft exit: finish the shards at hand, or end the fits at hand, leave
 // everything durable, exit with 2.
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 
 namespace swingbank {
 
 constexpr int kSubmitAgain = 2;  ///< exit code: checkpointed, submit again
 
 namespace detail {
-inline volatile std::sig_atomic_t stop_asked = 0, interruptible = 0;
+inline volatile std::sig_atomic_t stop_asked = 0, interruptible = 0, first_rank = 1;
+/// Whether this process is no rank of an MPI run, or its first.
+inline bool is_first_rank() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
+    if (const char* rank = std::getenv(name); rank && std::strcmp(rank, "0") != 0) return false;
+  return true;
 }
+/// Prints "stopping" at once, so that the user knows that the signal was received. For signal handlers.
+inline void say_stopping() {
+  constexpr char text[] = "\nstopping\n";
+  if (first_rank != 0) [[maybe_unused]]
+    const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
+}
+}  // namespace detail
 /// Stop signals are noted; the work at hand is finished.
 inline void catch_stop_signals() {
   detail::interruptible = 0;
+  detail::first_rank = detail::is_first_rank() ? 1 : 0;
   for (int s : {SIGTERM, SIGINT, SIGUSR1})
     std::signal(s, [](int number) {
       if (detail::stop_asked != 0 && number == SIGINT) std::_Exit(130);  // a second Ctrl-C means it
+      if (detail::stop_asked == 0) detail::say_stopping();
       detail::stop_asked = 1;
     });
 }

@@ -11,8 +11,8 @@ fi
 rm -rf "$out"
 mkdir -p "$out/man1" "$out/help"
 "$bin/swingbank" --help >"$out/help/all"
-# "  name  summary" under "Commands:"
-commands() { sed -n '/^Commands:/,$ s/^  \([a-z][a-z0-9-]*\)  *\(.*\)/\1\t\2/p' "$out/help/all"; }
+# "  name  summary" under the headings of the groups
+commands() { sed -n 's/^  \([a-z][a-z0-9-]*\)  *\(.*\)/\1\t\2/p' "$out/help/all"; }
 [[ -n $(commands) ]] || { echo "no commands at $bin/swingbank --help (its list is empty): build all commands" >&2; exit 1; }
 
 # help2man tells an option from its meaning by two spaces; CLI11 leaves one where the option fills its 30 columns.

@@ -46,11 +46,12 @@ add_library(swingbank_train INTERFACE)
 target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
 target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
-# swingbank_command(name SUMMARY "one line" USES rooms... [SOURCES files...] [KIND train]): jobs/<name>.cpp becomes
-# bin/swingbank-<name>.
-# The summary stands here only: `swingbank --help` lists it, the command gets it as SWINGBANK_SUMMARY.
+# swingbank_command(name SUMMARY "one line" USES rooms... [GROUP "heading"] [SOURCES files...] [KIND train]):
+# jobs/<name>.cpp becomes bin/swingbank-<name>.
+# The summary stands here only: `swingbank --help` lists it under the heading, the command gets it as SWINGBANK_SUMMARY. A
+# command without a heading is internal and not listed.
 function(swingbank_command name)
-  cmake_parse_arguments(A "" "SUMMARY;KIND" "USES;SOURCES" ${ARGN})
+  cmake_parse_arguments(A "" "SUMMARY;KIND;GROUP" "USES;SOURCES" ${ARGN})
   string(REPLACE "-" "_" file ${name})
   list(TRANSFORM A_USES REPLACE / _)
   list(TRANSFORM A_USES PREPEND swingbank_)
@@ -60,7 +61,7 @@ function(swingbank_command name)
   if(NOT A_KIND STREQUAL "train")
     swingbank_precompile(swingbank-${name} cold)
   endif()
-  set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\"},\n")
+  set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", \"${A_GROUP}\"},\n")
   set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS swingbank-${name})
 endfunction()
 

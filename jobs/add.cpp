@@ -6,12 +6,9 @@
 
 #include "base/json.hpp"
 #include "base/write_file.hpp"
-#include "jobs/command_line.hpp"
-#include "jobs/event_records.hpp"
+#include "jobs/analysis_options.hpp"
 #include "jobs/results.hpp"
 #include "jobs/retrain_run.hpp"
-#include "jobs/verdict.hpp"
-#include "sim/laws/law.hpp"
 #include "validate/add/report.hpp"
 #include "validate/compare/error_table.hpp"
 #include "validate/plant/plant_dyr.hpp"
@@ -27,43 +24,24 @@ constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kPage = "repo
                      *kResult = "add.json", *kRetrained = "retrain.json";
 
 struct Arguments {
-  std::string effect, model, out = "added", command;
-  std::vector<std::string> records, laws;
-  bool json = false, until_adequate = false, retrain = false;
-  std::string truth;
-  jobs::Reading reading;
-  jobs::Judging judging;
+  jobs::AnalysisOptions of{"added"};
+  std::string effect, truth, command;
+  bool until_adequate = false, retrain = false;
   nlohmann::json told;  ///< what was done to read the records
   add::AddOptions options;
   retrain::RetrainOptions training;
-  std::shared_ptr<OutputFolder> results;  ///< from when the inputs are read
-  std::optional<fit::Fit> fitted;         ///< once the fit has ended
+  std::optional<fit::Fit> fitted;  ///< once the fit has ended
 };
-
-/// Law files of the command line whose effects the plant has now.
-void keep_laws(plant::PlantModel& model,
-               const std::vector<std::pair<std::string, const sim::Effect*>>& laws) {
-  for (const auto& [file, effect] : laws)
-    for (const auto& block : model.plant.controls)
-      if (block.effect == effect && std::ranges::count(model.laws, std::filesystem::path(file)) == 0)
-        model.laws.emplace_back(file);
-}
 
 /// The events of the model as it was and with what was added.
 std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
-  const auto& events = a.options.calibrate.events;
-  compare::CompareOptions options;
-  options.jump_threshold = events.jump_threshold;
-  options.play_in.pre_event = events.pre_event;
+  compare::CompareOptions options = a.of.comparing();
   options.progress = a.options.calibrate.progress;
-  const auto shown = events.measured_states ? records : compare::power_only(records);
-  std::vector<compare::Played> both = {
-      compare::play_and_judge("submitted", before, shown, options, a.judging.by),
-      compare::play_and_judge("completed", after, shown, options, a.judging.by)};
-  catch_stop_signals();  // results are written even after a stop signal
-  return both;
+  const auto shown = a.of.compared(records);
+  return {compare::play_and_judge("submitted", before, shown, options, a.of.judging.by),
+          compare::play_and_judge("completed", after, shown, options, a.of.judging.by)};
 }
 
 /// What a page says of one addition.
@@ -98,19 +76,22 @@ compare::CommandPage page_of(const add::Completion& c) {
 void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
            const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
            const std::vector<compare::Played>& played, compare::CommandPage page) {
+  const plant::PlantModel whole_before = event::whole_model(before);
+  model = event::whole_model(std::move(model));
   model.submitted.reset();
-  const auto model_file = a.results->file(kModel), page_file = a.results->file(kPage);
+  OutputFolder& results = a.of.results();
+  const auto model_file = results.file(kModel), page_file = results.file(kPage);
   page.title = "An effect added: " + before.name;
   page.subtitle = fmt::format("{} of {:g} MVA; the model as it was and with what was added.",
                               plant::subject(before), before.plant.mva);
   page.played = played;
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", fmt::format("{}, XXH64 {:016x}", before.origin, before.hash)}};
+                     {"model", before.origin}};
   for (const auto& e : played.front().events)
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
-  jobs::sign(page.provenance, a.judging, a.model, a.records);
+  jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
   result["format"] = "swingbank-add-2";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
@@ -118,18 +99,18 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   plant::write_plant_file(model_file, model, provenance);
-  const plant::WrittenDyr records = plant::write_dyr_beside(model_file, before, model);
-  if (!records.file.empty()) a.results->file(records.file.filename());
+  const plant::WrittenDyr records = plant::write_dyr_beside(model_file, whole_before, model);
+  if (!records.file.empty()) results.file(records.file.filename());
   page.figures = json_text(result);
   write_file(page_file, compare::command_html(page));
-  write_file(a.results->file(kResult), json_text(result, 1) + "\n");
-  a.results->finish();
-  if (a.json)
+  write_file(results.file(kResult), json_text(result, 1) + "\n");
+  results.finish();
+  if (a.of.json)
     fmt::print("{}\n", json_text(result, 1));
   else
     fmt::print("{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played), text,
                compare::error_text(played, page.unseen), model_file.string(), records.line);
-  a.judging.print(page_file);
+  a.of.judging.print(page_file);
 }
 
 /// What is wrong with options that belong together, before anything is computed.
@@ -152,15 +133,15 @@ void check_options(const Arguments& a) {
 std::optional<retrain::Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms& programs,
                                           const plant::PlantModel& before, const add::Addition& added,
                                           const std::vector<record::Record>& records) {
-  const std::filesystem::path folder = a.out;
+  const std::filesystem::path folder = a.of.out;
   const calibrate::Truth truth =
       a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, before);
   const auto sides = retrain::write_retrain_configs(folder / "retrain", before, added, records, a.training);
   for (const auto& side : sides)
     if (!jobs::make_network(programs, side)) return std::nullopt;
   const std::array<calibrate::NetworkEstimate, 2> estimates = {
-      jobs::ask_network(programs, sides[0], a.model, a.records),
-      jobs::ask_network(programs, sides[1], (folder / kModel).string(), a.records)};
+      jobs::ask_network(programs, sides[0], a.of.model, a.of.records),
+      jobs::ask_network(programs, sides[1], (folder / kModel).string(), a.of.records)};
   return retrain::compare_networks(estimates, before, added, truth);
 }
 
@@ -173,38 +154,30 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
   }
   nlohmann::json result = retrain::retrained_json(*networks);
   result["command"] = a.command;
-  write_file(a.results->file(kRetrained), json_text(result, 1) + "\n");
-  a.results->finish();
-  if (!a.json) fmt::print("\n{}\n", terminal_report(*networks));
+  write_file(a.of.results().file(kRetrained), json_text(result, 1) + "\n");
+  a.of.results().finish();
+  if (!a.of.json) fmt::print("\n{}\n", terminal_report(*networks));
   return 0;
 }
 
-using Laws = std::vector<std::pair<std::string, const sim::Effect*>>;
-
-int run(Arguments& a, plant::PlantModel& model, Laws& laws) {
+int run(Arguments& a, plant::PlantModel& model) {
   jobs::RetrainPrograms programs;
   if (a.retrain) programs = jobs::retrain_programs();
-  for (const auto& file : a.laws)
-    laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), model.library));
-  const check::Preparing preparing = a.reading.apply(model, a.records);
-  const check::RecordSet set = jobs::read_events(a.records, model, preparing);
+  const check::Preparing preparing = a.of.reading.apply(model, a.of.records);
+  const check::RecordSet set = jobs::read_events(a.of.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
   a.told = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
   for (const std::filesystem::path& file : std::vector<std::filesystem::path>{a.training.dataset, a.truth})
     if (!file.empty()) note_input(file);
-  interruption_point();
-  a.results = std::make_shared<OutputFolder>(
-      a.out, "add",
-      std::vector<std::string>{kModel, kDyr, kPage, kResult, kRetrained, jobs::kInterruptedModel,
-                               "add-interrupted.json"},
-      a.judging.outputs());
+  a.of.open_results(
+      "add", {kModel, kDyr, kPage, kResult, kRetrained, jobs::kInterruptedModel, "add-interrupted.json"});
   a.options.calibrate.progress =
       a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddCourse);
   if (a.until_adequate) {
     add::Completion c = add::add_until_adequate(model, records, a.options);
     if (!c.added.empty()) a.fitted = c.added.back().with;
-    keep_laws(c.model, laws);
+    a.of.keep_laws(c.model);
     std::vector<std::string> provenance = {"Command: " + a.command};
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
@@ -216,7 +189,7 @@ int run(Arguments& a, plant::PlantModel& model, Laws& laws) {
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   a.fitted = done.with;
-  keep_laws(done.model, laws);
+  a.of.keep_laws(done.model);
   const bool complete = done.adequate && done.earns;
   const auto played = play_both(a, model, done.model, records);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
@@ -228,47 +201,26 @@ int run(Arguments& a, plant::PlantModel& model, Laws& laws) {
 
 int run_interruptible(Arguments& a) {
   check_options(a);
-  a.judging.read();
-  plant::PlantModel model = jobs::load_model_to_fit(a.model);
-  Laws laws;
-  try {
-    return run(a, model, laws);
-  } catch (const fit::InterruptedFit& ended) {
-    if (!a.fitted) a.fitted = ended.reached;
-  } catch (const Interrupted&) {
-    if (!a.fitted) throw;
-  }
-  plant::PlantModel reached = model;
-  reached.plant = a.fitted->plant;
-  keep_laws(reached, laws);
-  return jobs::write_interrupted(*a.results, "add", a.command, model, reached, *a.fitted);
+  a.of.judging.read();
+  plant::PlantModel model = a.of.load_model(true);
+  return jobs::keep_reached(a.of, "add", a.command, model, a.fitted, [&] { return run(a, model); });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  interrupt_on_stop_signals();
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank add");
-  Arguments a;
-  bool inner = true;
-  auto& c = a.options.calibrate;
-  line.add("effect", a.effect,
-           "effect, law or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
-  line.add("--model", a.model, "plant file (configs/plants/README.md)").required();
-  line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
-  line.add("--out", a.out, "folder for model.toml, model.dyr, report.html and add.json").shows_default();
-  a.reading.add_to(line);
-  a.reading.add_point(line);
-  a.reading.add_switch(line);
-  line.add("--law", a.laws, "law file (.toml) whose effect may be added; may be repeated");
-  line.add("--hold-out", c.held_out,
-           "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+void declare(jobs::CommandLine& line, Arguments& a) {
+  line.group("Input");
+  line.add(
+      "effect", a.effect,
+      "effect, user-defined model or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
+  a.of.declare(line, "model.toml, model.dyr, report.html and add.json");
+  a.of.declare_fit(line);
+  a.of.declare_hold_out(line);
+  line.group("Fit");
   line.add_flag("--until-adequate", a.until_adequate,
-                "diagnose and add, one effect at a time, until nothing but noise is left");
-  line.add_flag(
-      "--retrain", a.retrain,
-      "train a network on the plant without and one with the effect, and compare them on these records "
-      "(folder OUT/retrain; run again to go on)");
+                "diagnose and add, one effect at a time, until the residual is noise");
+  line.group("Network");
+  line.add_flag("--retrain", a.retrain,
+                "train a network on the plant without and one with the effect, and compare them on these "
+                "records (folder OUT/retrain; run again to continue)");
   line.add("--dataset", a.training.dataset,
            "--retrain: config of a dataset about this plant in its grid, without the effect "
            "(default: the plant behind three lines and a large machine)")
@@ -283,27 +235,31 @@ int main(int argc, char** argv) {
       .shows_default()
       .one_of({"cnn", "gru", "lstm"});
   line.add("--train-range", a.training.range,
-           "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times what was fitted; "
+           "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times the fitted values; "
            "without --dataset the machine's too, about the model's values")
       .shows_default()
       .between(1.05, 100.0);
   line.add("--truth", a.truth, "--retrain: plant file (or blind-test's truth) to judge the networks by");
-  line.add("--spread", c.spread, "relative uncertainty believed of the model's parameters")
-      .shows_default()
-      .between(0.001, 2.0);
-  line.add("--jump-threshold", c.events.jump_threshold,
-           "smallest jump of the voltage taken for switching [pu]")
-      .shows_default();
-  line.add("--pre-event", c.events.pre_event, "steady stretch of records without switching [s]")
-      .shows_default();
-  line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  a.judging.add_to(line);
-  line.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  line.example("swingbank add SEXS --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
   line.footer(
       std::string(thresholds::kExitCodes) +
-      " Complete: the effect earns its place, and nothing but noise is left. 2: a training stopped on a signal; run again to go on.");
+      " Complete: the effect earns its place, and the residual is noise. 2: a training stopped on a signal; run again to continue.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  interrupt_on_stop_signals();
+  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank add");
+  Arguments a;
+  declare(line, a);
   if (!line.parse(argc, argv)) return line.end();
-  c.events.measured_states = inner;
+  if (a.of.model.empty()) return line.lacks("--model with --records");
+  auto& c = a.options.calibrate;
+  c.events = a.of.events();
+  c.spread = a.of.spread;
+  c.held_out = a.of.held_out;
+  a.of.limit_threads();
   a.command = jobs::command_line("add", argc, argv);
   return jobs::guarded("add", [&] { return run_interruptible(a); });
 }

@@ -226,6 +226,8 @@ int main(int argc, char** argv) {
   line.add("--part", o.part,
            "K/N: only every N-th case, from the K-th; for job arrays. Under mpirun the ranks share those")
       .shows_default();
+  line.example(
+      "swingbank blind-test --config configs/blind/tiny.toml --make 5 --diagnose --score --out blind");
   if (!line.parse(argc, argv)) return line.end();
   try {
     return on_ranks(argc, argv, o);

@@ -7,10 +7,8 @@
 #include "base/json.hpp"
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
-#include "jobs/command_line.hpp"
-#include "jobs/event_records.hpp"
+#include "jobs/analysis_options.hpp"
 #include "jobs/results.hpp"
-#include "jobs/verdict.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
 #include "validate/calibrate/side_by_side.hpp"
@@ -29,14 +27,11 @@ constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.t
                      *kCurveFit = "curve-fit.toml", *kPage = "report.html", *kResult = "calibrate.json";
 
 struct Arguments {
-  std::string model, out = "calibration", method = "fit", truth, network, start, command;
-  std::vector<std::string> records;
-  bool json = false, fewest = false;
-  jobs::Reading reading;
-  jobs::Judging judging;
+  jobs::AnalysisOptions of{"calibration"};
+  std::string method = "fit", truth, network, start, command;
+  bool fewest = false;
   calibrate::CalibrateOptions options;
-  std::shared_ptr<OutputFolder> results;  ///< from when the inputs are read
-  std::optional<fit::Fit> fitted;         ///< once the fit has ended
+  std::optional<fit::Fit> fitted;  ///< once the fit has ended
 };
 
 calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& model,
@@ -54,16 +49,11 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
   interruption_point();
-  compare::CompareOptions options;
-  options.jump_threshold = a.options.events.jump_threshold;
-  options.play_in.pre_event = a.options.events.pre_event;
+  compare::CompareOptions options = a.of.comparing();
   options.progress = a.options.progress;
-  const auto shown = a.options.events.measured_states ? records : compare::power_only(records);
-  std::vector<compare::Played> both = {
-      compare::play_and_judge("submitted", before, shown, options, a.judging.by),
-      compare::play_and_judge("calibrated", after, shown, options, a.judging.by)};
-  catch_stop_signals();  // results are written even after a stop signal
-  return both;
+  const auto shown = a.of.compared(records);
+  return {compare::play_and_judge("submitted", before, shown, options, a.of.judging.by),
+          compare::play_and_judge("calibrated", after, shown, options, a.of.judging.by)};
 }
 
 /// Names of the records that were held out.
@@ -80,7 +70,7 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
   model = event::whole_model(std::move(model));
-  const auto file = a.results->file(holds ? kModel : kBentModel);
+  const auto file = a.of.results().file(holds ? kModel : kBentModel);
   model.submitted.reset();
   if (!holds) model.submitted = before.plant;
   std::vector<std::string> head = provenance;
@@ -93,9 +83,9 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
     return fmt::format(
         "model: {} (not adequate: its parameters are bent, do not use them)\n"
         "next: what is missing says swingbank diagnose --model {} --records ...",
-        file.string(), a.model);
+        file.string(), a.of.model);
   const plant::WrittenDyr dyr = plant::write_dyr_beside(file, before, model);
-  if (!dyr.file.empty()) a.results->file(dyr.file.filename());
+  if (!dyr.file.empty()) a.of.results().file(dyr.file.filename());
   return fmt::format("model: {}\n{}", file.string(), dyr.line);
 }
 
@@ -109,19 +99,19 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
                     "None about the structure: “swingbank diagnose” names what a model lacks.");
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+                     {"model", model.origin}};
   for (const auto& e : page.played.front().events)
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
-  jobs::sign(page.provenance, a.judging, a.model, a.records);
+  jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
   page.figures = json_text(result);
-  write_file(a.results->file(kPage), compare::command_html(page));
+  write_file(a.of.results().file(kPage), compare::command_html(page));
 }
 
 void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
-  write_file(a.results->file(kResult), json_text(result, 1) + "\n");
-  a.results->finish();
-  fmt::print("{}\n", a.json ? json_text(result, 1) : text);
+  write_file(a.of.results().file(kResult), json_text(result, 1) + "\n");
+  a.of.results().finish();
+  fmt::print("{}\n", a.of.json ? json_text(result, 1) : text);
 }
 
 int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
@@ -152,7 +142,7 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
       compare::fitness_text(played) +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
           compare::error_text(played, unseen_of(f.events)) + "\n" + written);
-  a.judging.print(a.results->path() / kPage);
+  a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(f.adequate);
 }
 
@@ -171,11 +161,11 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
       "run 'swingbank predict --out FILE' where it was built with LibTorch, and give --start FILE");
   const jobs::Scratch scratch;
   const auto file = scratch.folder() / "estimate.json";
-  std::vector<std::string> words = {"--network", a.network,     "--model",  a.model,
+  std::vector<std::string> words = {"--network", a.network,     "--model",  a.of.model,
                                     "--out",     file.string(), "--records"};
   for (std::size_t k = 0; k < records.size(); ++k)
-    if (!out[k]) words.push_back(a.records[k]);
-  for (const auto& word : a.reading.words()) words.push_back(word);
+    if (!out[k]) words.push_back(a.of.records[k]);
+  for (const auto& word : a.of.reading.words()) words.push_back(word);
   if (jobs::run_own(predict, words) != 0)
     throw InputError({"no estimate of the network", a.network, "swingbank predict says why above",
                       "correct that, or calibrate without --network"});
@@ -204,23 +194,19 @@ int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<r
   say(a, result,
       compare::fitness_text(played) + compare::complete_text(w.holds(), calibrate::wrong_text(w)) + "\n" +
           compare::error_text(played) + "\n" + written);
-  a.judging.print(a.results->path() / kPage);
+  a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(w.holds());
 }
 
 int run(Arguments& a, plant::PlantModel& model) {
-  const check::Preparing preparing = a.reading.apply(model, a.records);
+  const check::Preparing preparing = a.of.reading.apply(model, a.of.records);
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
-  const check::RecordSet set = jobs::read_events(a.records, model, preparing);
+  const check::RecordSet set = jobs::read_events(a.of.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
   if (!a.start.empty()) note_input(a.start);
-  interruption_point();
-  a.results = std::make_shared<OutputFolder>(
-      a.out, "calibrate",
-      std::vector<std::string>{kModel, kBentModel, kDyr, kCurveFit, kPage, kResult, jobs::kInterruptedModel,
-                               "calibrate-interrupted.json"},
-      a.judging.outputs());
+  a.of.open_results("calibrate", {kModel, kBentModel, kDyr, kCurveFit, kPage, kResult,
+                                  jobs::kInterruptedModel, "calibrate-interrupted.json"});
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
@@ -254,7 +240,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   result["statistically_complete"] = holds;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
-    plant::write_plant_file(a.results->file(kCurveFit), event::whole_model(curve->model),
+    plant::write_plant_file(a.of.results().file(kCurveFit), event::whole_model(curve->model),
                             calibrate::provenance_lines(*curve, model, a.command));
     result["curve_fit"] = calibrate::curve_fit_json(*curve, truth);
     ways.push_back(calibrate::way_of(*curve, c));
@@ -277,70 +263,45 @@ int run(Arguments& a, plant::PlantModel& model) {
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
-  a.judging.print(a.results->path() / kPage);
+  a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(holds);
 }
 
 int run_interruptible(Arguments& a) {
-  a.judging.read();
-  plant::PlantModel model = jobs::load_model_to_fit(a.model);
-  try {
-    return run(a, model);
-  } catch (const fit::InterruptedFit& ended) {
-    if (!a.fitted) a.fitted = ended.reached;
-  } catch (const Interrupted&) {
-    if (!a.fitted) throw;
-  }
-  return jobs::write_interrupted(*a.results, "calibrate", a.command, model, model, *a.fitted);
+  a.of.judging.read();
+  plant::PlantModel model = a.of.load_model(true);
+  return jobs::keep_reached(a.of, "calibrate", a.command, model, a.fitted, [&] { return run(a, model); });
 }
 
-void add_options(jobs::CommandLine& line, Arguments& a, bool& inner) {
+void declare(jobs::CommandLine& line, Arguments& a) {
   auto& o = a.options;
-  line.add("--model", a.model, "plant file, with [[event]] for staged tests (configs/plants/README.md)")
-      .required();
-  line.add("--records,--record", a.records, "records of the events (validate/record/README.md)").required();
-  line.add(
-          "--out", a.out,
-          "folder for model.toml (model-not-adequate.toml where it does not hold), model.dyr, report.html and calibrate.json")
-      .shows_default();
-  a.reading.add_to(line);
-  a.reading.add_component(line);
-  a.reading.add_point(line);
-  a.reading.add_switch(line);
+  a.of.declare(line,
+               "model.toml (model-not-adequate.toml where it does not hold), model.dyr, report.html and "
+               "calibrate.json");
+  a.of.declare_fit(line);
+  a.of.declare_hold_out(line);
+  line.group("Fit");
   line.add("--method", a.method,
            "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
            "baseline; both: side by side")
       .shows_default()
       .one_of({"fit", "curve-fit", "both"});
-  const jobs::Option network =
-      line.add("--network", a.network,
-               "trained network (file.network, or a folder with one): its estimate is one of the "
-               "starts, and is shown beside the fit");
+  line.add_flag("--fewest", a.fewest,
+                "which parameters are wrong: the fewest that must change for the model to explain the "
+                "records, while every other one stays as it is; writes the model with these changed");
+  line.add("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
+  const jobs::Option network = line.add("--network", a.network,
+                                        "trained network (file.network, or a folder with one): its estimate "
+                                        "is one of the starts, and is shown beside the fit");
   line.add("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote").excludes(network);
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
-  line.add_flag(
-      "--fewest", a.fewest,
-      "which parameters are wrong: the fewest that must change for the model to explain the records, "
-      "while every other one stays as it is; the model with these is written");
-  line.add("--hold-out", o.held_out,
-           "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
-  line.add("--spread", o.spread, "relative uncertainty believed of the model's parameters")
-      .shows_default()
-      .between(0.001, 2.0);
-  line.add("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
+  line.group("Expert");
   line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);
   line.add("--starts", o.starts, "how many of them are refined, beside the model's own values")
       .shows_default()
       .between(0, 1000);
   line.add("--seed", o.seed, "of the draws").shows_default();
-  line.add("--jump-threshold", o.events.jump_threshold,
-           "smallest jump of the voltage taken for switching [pu]")
-      .shows_default();
-  line.add("--pre-event", o.events.pre_event, "steady stretch of records without switching [s]")
-      .shows_default();
-  line.add_flag_off("--power-only", inner, "leave recorded speed, Efd and Ifd aside: compare P and Q only");
-  a.judging.add_to(line);
-  line.add_flag("--json", a.json, "print the result as JSON instead of tables");
+  line.example("swingbank calibrate --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
   line.footer(
       std::string(thresholds::kExitCodes) +
       " Complete is a structure that holds after calibration (curve-fit: that leaves nothing but noise).");
@@ -352,11 +313,14 @@ int main(int argc, char** argv) {
   interrupt_on_stop_signals();
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank calibrate");
   Arguments a;
-  bool inner = true;
-  add_options(line, a, inner);
+  declare(line, a);
   if (!line.parse(argc, argv)) return line.end();
+  if (a.of.model.empty()) return line.lacks("--model with --records");
   a.options.progress = jobs::progress_line(a.fewest ? jobs::kFewestCourse : jobs::kCalibrateCourse);
-  a.options.events.measured_states = inner;
+  a.options.events = a.of.events();
+  a.options.spread = a.of.spread;
+  a.options.held_out = a.of.held_out;
+  a.of.limit_threads();
   a.command = jobs::command_line("calibrate", argc, argv);
   return jobs::guarded("calibrate", [&] { return run_interruptible(a); });
 }

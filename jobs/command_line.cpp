@@ -1,10 +1,14 @@
 #include "jobs/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "base/inputs_kept.hpp"
+#include "base/nearest_word.hpp"
 #include "jobs/software.hpp"
 
 namespace swingbank::jobs {
@@ -22,11 +26,90 @@ CLI::Validator number_that(bool (*holds)(double), const std::string& name, const
 
 int exit_code(const CLI::App& app, const CLI::ParseError& why) { return app.exit(why) == 0 ? 0 : 1; }
 
+constexpr std::size_t kHelpWidth = 110, kNameWidth = 30;  // columns
+
+/// `text` in lines of the help's right column.
+std::string wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string word, lines;
+  std::size_t column = 0;
+  while (words >> word) {
+    if (column > 0 && column + 1 + word.size() > kHelpWidth - kNameWidth) {
+      lines += '\n';
+      column = 0;
+    } else if (column > 0) {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
+/// Help with the groups of options in the order in which they were declared, but those that few people need
+/// last.
+class GroupedHelp : public CLI::Formatter {
+ public:
+  GroupedHelp() { column_width(kNameWidth); }
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
+    std::vector<std::string> groups = app->get_groups();
+    for (const char* last : {"Output", "Expert", "Help"}) {
+      const auto at = std::ranges::find(groups, last);
+      if (at != groups.end()) std::rotate(at, at + 1, groups.end());
+    }
+    std::string text = make_description(app) + make_usage(app, std::move(name)) + make_positionals(app);
+    for (const auto& group : groups) {
+      const auto options = app->get_options(
+          [&](const CLI::Option* o) { return o->get_group() == group && o->nonpositional(); });
+      if (!group.empty() && !options.empty()) text += make_group(group, false, options);
+    }
+    return text + "\n" + make_footer(app);
+  }
+  /// Without the options that it excludes, which may be many; the message tells them where they are given.
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string text = CLI::Formatter::make_option_opts(option);
+    return text.substr(0, text.find(" Excludes:"));
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(option->get_description());
+  }
+};
+
 }  // namespace
 
 struct CommandLine::Parser {
   CLI::App app;
   std::optional<CLI::ParseError> ended = std::nullopt;
+  std::string group = "Options", text = {}, examples = {};
+
+  /// Every name by which an option can be given.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const CLI::Option* option : app.get_options()) {
+      for (const auto& name : option->get_lnames()) all.push_back("--" + name);
+      for (const auto& name : option->get_snames()) all.push_back("-" + name);
+    }
+    return all;
+  }
+  /// A sentence for each word that is no option and no value of one, in the order given. The words behind an
+  /// unknown option are its values.
+  [[nodiscard]] std::vector<std::string> not_expected() const {
+    std::vector<std::string> sentences;
+    bool value = false;
+    for (const std::string& word : app.remaining()) {
+      const bool option = word.starts_with('-') && word.size() > 1;
+      if (!option && value) continue;
+      value = value || option;
+      const std::string name = option ? word.substr(0, word.find('=')) : "";
+      const std::string nearest = option ? nearest_word(name, names()) : "";
+      sentences.push_back(fmt::format(
+          "{} at '{}' ({} has none of that name): {}", option ? "unknown option" : "unexpected word",
+          option ? name : word, app.get_name(),
+          nearest.empty() ? fmt::format("see {} --help", app.get_name()) : "did you mean " + nearest + "?"));
+    }
+    return sentences;
+  }
 };
 
 const Option& Option::required() const {
@@ -82,60 +165,74 @@ const Option& Option::excludes(Option other) const {
 
 CommandLine::CommandLine(const std::string& summary, const std::string& name)
     : parser_(new Parser{CLI::App(summary, name)}) {
-  parser_->app.set_version_flag("--version", name + " " + version() + ", commit " + commit(),
-                                "print version and commit, and end");
+  parser_->app.formatter(std::make_shared<GroupedHelp>());
+  parser_->app.set_help_flag("-h,--help", "print this help, and end")->group("Help");
+  parser_->app
+      .set_version_flag("--version", name + " " + version() + ", commit " + commit(),
+                        "print version and commit, and end")
+      ->group("Help");
 }
 CommandLine::~CommandLine() = default;
 
 Option CommandLine::add(const std::string& names, std::string& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::filesystem::path& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, int& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, unsigned& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::uint64_t& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, double& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::optional<std::uint64_t>& value,
                         const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::optional<double>& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::vector<std::string>& value,
                         const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add(const std::string& names, std::vector<int>& value, const std::string& meaning) {
-  return Option(parser_->app.add_option(names, value, meaning));
+  return add(parser_->app.add_option(names, value), meaning);
 }
 Option CommandLine::add_choice(const std::string& names, int& place, const std::vector<std::string>& words,
                                const std::string& meaning) {
   const std::function<void(const std::string&)> keep = [&place, words](const std::string& word) {
     place = static_cast<int>(std::find(words.begin(), words.end(), word) - words.begin());
   };
-  CLI::Option* option = parser_->app.add_option_function(names, keep, meaning);
+  CLI::Option* option = parser_->app.add_option_function(names, keep);
   option->default_str(words.at(static_cast<std::size_t>(place)));
-  return Option(option).one_of(words);
+  return add(option, meaning).one_of(words);
 }
 Option CommandLine::add_flag(const std::string& names, bool& on, const std::string& meaning) {
-  return Option(parser_->app.add_flag(names, on, meaning));
+  return add(parser_->app.add_flag(names, on), meaning);
 }
 Option CommandLine::add_flag_off(const std::string& name, bool& on, const std::string& meaning) {
-  return Option(parser_->app.add_flag_callback(
-      name, [&on] { on = false; }, meaning));
+  return add(parser_->app.add_flag_callback(name, [&on] { on = false; }), meaning);
 }
-void CommandLine::footer(const std::string& text) { parser_->app.footer(text); }
+Option CommandLine::add(CLI::Option* option, const std::string& meaning) {
+  return Option(option->description(meaning)->group(parser_->group));
+}
+void CommandLine::group(const std::string& name) { parser_->group = name; }
+void CommandLine::footer(const std::string& text) {
+  parser_->text = text;
+  parser_->app.footer(parser_->examples + (parser_->examples.empty() ? "" : "\n") + text);
+}
+void CommandLine::example(const std::string& text) {
+  parser_->examples += (parser_->examples.empty() ? "Example:\n  " : "  ") + text + "\n";
+  parser_->app.footer(parser_->examples + (parser_->text.empty() ? "" : "\n") + parser_->text);
+}
 
 bool CommandLine::parse(int argc, char** argv) {
   keep_inputs();
@@ -147,7 +244,14 @@ bool CommandLine::parse(int argc, char** argv) {
     return false;
   }
 }
-int CommandLine::end() const { return parser_->ended ? exit_code(parser_->app, *parser_->ended) : 0; }
+int CommandLine::end() const {
+  if (!parser_->ended) return 0;
+  const auto wrong = parser_->not_expected();
+  if (parser_->ended->get_exit_code() == 0 || wrong.empty()) return exit_code(parser_->app, *parser_->ended);
+  for (const auto& sentence : wrong) fmt::print(stderr, "{}\n", sentence);
+  fmt::print(stderr, "Run with --help for more information.\n");
+  return 1;
+}
 int CommandLine::lacks(const std::string& what) const {
   return exit_code(parser_->app, CLI::RequiredError(what));
 }

@@ -59,7 +59,11 @@ class CommandLine {
   Option add_flag(const std::string& names, bool& on, const std::string& meaning);
   /// A flag that makes `on` false.
   Option add_flag_off(const std::string& name, bool& on, const std::string& meaning);
+  /// Heading in the help of the options that are added from now on. "Output" and "Expert" stand last.
+  void group(const std::string& name);
   void footer(const std::string& text);
+  /// A command line to copy; stands below the options in the help.
+  void example(const std::string& text);
 
   /// Returns false if the command has no work to do: help was asked for, or an option is wrong. Prints
   /// nothing.
@@ -71,6 +75,7 @@ class CommandLine {
 
  private:
   struct Parser;
+  Option add(CLI::Option* option, const std::string& meaning);
   std::unique_ptr<Parser> parser_;
 };
 

@@ -6,10 +6,8 @@
 
 int main(int argc, char** argv) {
   swingbank::jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank configs");
-  line.footer(
-      "To have them here, and to change them:\n"
-      "  cp -r \"$(swingbank configs)\" .\n"
-      "Paths inside a config refer to the folder of that config.");
+  line.example("cp -r \"$(swingbank configs)\" .");
+  line.footer("Paths inside a config refer to the folder of that config.");
   if (!line.parse(argc, argv)) return line.end();
   const auto folder = swingbank::example_configs();
   if (folder.empty()) {

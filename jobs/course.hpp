@@ -5,106 +5,187 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/progress.hpp"
+#include "validate/event/progress.hpp"
 
 namespace swingbank::jobs {
 
+using validate::event::Phase;
+
+/// Returns a phase as a user reads it.
+inline std::string_view phase_words(Phase phase) {
+  switch (phase) {
+    case Phase::playing:
+      return "the models' events are played";
+    case Phase::model_as_it_is:
+      return "the model as it is";
+    case Phase::parameter_sets:
+      return "parameter sets are screened";
+    case Phase::starts:
+      return "parameters are fitted";
+    case Phase::voltage_noise:
+      return "the noise of the voltage is corrected";
+    case Phase::fitted_model:
+      return "the fitted model";
+    case Phase::sensitivities:
+      return "what the records determine";
+    case Phase::effect_values:
+      return "values of the effect are screened";
+    case Phase::effect_starts:
+      return "the effect is fitted";
+    case Phase::effect_left_out:
+      return "the model without the effect";
+    case Phase::effect_added:
+      return "the model with the effect";
+    case Phase::every_parameter:
+      return "all parameters are fitted";
+    case Phase::parameter_subsets:
+      return "sets of wrong parameters are tried";
+    case Phase::subsets_less_one:
+      return "what each wrong parameter reduces";
+    case Phase::base:
+      return "the model's parameters are refitted";
+    case Phase::missing_input:
+      return "the missing input is inferred";
+    case Phase::screening:
+      return "effects are screened";
+    case Phase::quick_fits:
+      return "quick fits";
+    case Phase::full_fits:
+      return "full fits of the best candidates";
+    case Phase::noise_again:
+      return "the noise is measured again";
+    case Phase::further_starts:
+      return "competing hypotheses from further starts";
+    case Phase::other_optima:
+      return "competing hypotheses from distant starts";
+    case Phase::unseen_events:
+      return "effects are judged on events they were not fitted to";
+    case Phase::laws:
+      return "user-defined models are searched";
+    case Phase::second_screening:
+      return "second effects are screened";
+    case Phase::second_quick_fits:
+      return "quick fits of second effects";
+    case Phase::second_full_fits:
+      return "full fits of the best second effects";
+    case Phase::pair_exchanges:
+      return "pairs of other effects are tried";
+    case Phase::pair_crossings:
+      return "partners are exchanged between pairs";
+    case Phase::pair_unseen_events:
+      return "pairs are judged on events they were not fitted to";
+  }
+  return "";
+}
+
 /// One stage of a course.
 struct CourseStage {
-  std::string_view inner;      ///< what the work calls it; the first stage whose words it holds is meant
-  std::string_view words;      ///< as a person reads it
-  double from, to;             ///< share of the whole time at its begin and end
-  bool beyond = false;         ///< comes only where the rest did not do, and may take longer than it
-  std::string_view also = {};  ///< a second word that it must hold
-  [[nodiscard]] bool is(const std::string& what) const {
-    return what.find(inner) != std::string::npos && what.find(also) != std::string::npos;
-  }
+  Phase phase;
+  double from, to;      ///< share of the whole time at its begin and end
+  bool beyond = false;  ///< comes only where the rest did not do, and may take longer than it
 };
 using Course = std::vector<CourseStage>;
-/// The course with what every command ends with: its models' events are played for the page.
-inline Course then_played(Course course) {
-  const double from = std::ranges::max(course, {}, &CourseStage::to).to;
-  for (const std::string_view inner : {": the voltage", ": instants", ": what is left", ": compared"})
-    course.push_back({inner, "the models' events are played", from, 1});
-  return course;
-}
 
 /// Measured on two shared cores with the four events of configs/records/record-example (34 s, of which 6 s
 /// beyond the usual course).
-inline const Course kDiagnoseCourse = then_played({
-    {"hypotheses", "second effects are screened", 0.95, 0.97, true, " beside"},
-    {"first steps ", "second effects are tried in brief", 0.95, 0.97, true, " beside"},
-    {"fit ", "promising second effects are fitted", 0.95, 0.97, true, " beside"},
-    {"in place of", "pairs of other effects are tried", 0.95, 0.97, true, " + "},
-    {"crossed", "partners are exchanged between pairs", 0.95, 0.97, true, " + "},
-    {"unseen events", "pairs are judged on events they were not fitted to", 0.95, 0.97, true, " + "},
-    {"base", "the model's parameters are refitted", 0, 0.01},
-    {"parameter", "a few wrong parameters are tried", 0.01, 0.015},
-    {"missing input", "the missing input is inferred", 0.015, 0.02},
-    {"hypotheses", "effects are screened", 0.02, 0.05},
-    {"first steps ", "effects are tried in brief", 0.05, 0.26},
-    {"fit ", "promising effects are fitted", 0.26, 0.4},
-    {"noise measured again", "the noise is measured again", 0.4, 0.48},
-    {"further starts", "rivals get further starts", 0.48, 0.74},
-    {"other optima", "rivals are fitted from far away", 0.74, 0.89},
-    {"unseen events", "effects are judged on events they were not fitted to", 0.89, 0.97},
-    {"law", "laws are looked for", 0.89, 0.97},
-});
+inline const Course kDiagnoseCourse = {
+    {Phase::base, 0, 0.01},
+    {Phase::every_parameter, 0.01, 0.015},
+    {Phase::parameter_subsets, 0.01, 0.015},
+    {Phase::subsets_less_one, 0.01, 0.015},
+    {Phase::missing_input, 0.015, 0.02},
+    {Phase::screening, 0.02, 0.05},
+    {Phase::quick_fits, 0.05, 0.26},
+    {Phase::full_fits, 0.26, 0.4},
+    {Phase::noise_again, 0.4, 0.48},
+    {Phase::further_starts, 0.48, 0.74},
+    {Phase::other_optima, 0.74, 0.89},
+    {Phase::unseen_events, 0.89, 0.97},
+    {Phase::laws, 0.89, 0.97},
+    {Phase::second_screening, 0.95, 0.97, true},
+    {Phase::second_quick_fits, 0.95, 0.97, true},
+    {Phase::second_full_fits, 0.95, 0.97, true},
+    {Phase::pair_exchanges, 0.95, 0.97, true},
+    {Phase::pair_crossings, 0.95, 0.97, true},
+    {Phase::pair_unseen_events, 0.95, 0.97, true},
+    {Phase::playing, 0.97, 1},
+};
 /// With two events of the same (5 s each).
-inline const Course kCalibrateCourse = then_played({
-    {"events with the model as it is", "the model as it is", 0, 0.15},
-    {"parameter sets screened", "parameter sets are screened", 0.15, 0.2},
-    {"starts refined", "parameters are fitted", 0.2, 0.62},
-    {"noise of the voltage", "the voltage's noise is taken back", 0.62, 0.8},
-    {"events with the fitted model", "the fitted model", 0.8, 0.82},
-    {"sensitivities", "what the records decide", 0.82, 0.95},
-});
-inline const Course kAddCourse = then_played({
-    {"events with the model as it is", "the model as it is", 0, 0.04},
-    {"values of", "values of the effect are screened", 0.04, 0.25},
-    {"starts of", "the effect is fitted", 0.25, 0.55},
-    {"noise measured again", "the noise is measured again", 0.55, 0.57},
-    {"events without the effect", "the model without the effect", 0.57, 0.8},
-    {"events with the effect", "the model with the effect", 0.8, 0.85},
-    {"sensitivities", "what the records decide", 0.85, 0.95},
-});
-
+inline const Course kCalibrateCourse = {
+    {Phase::model_as_it_is, 0, 0.15},  {Phase::parameter_sets, 0.15, 0.2}, {Phase::starts, 0.2, 0.62},
+    {Phase::voltage_noise, 0.62, 0.8}, {Phase::fitted_model, 0.8, 0.82},   {Phase::sensitivities, 0.82, 0.95},
+    {Phase::playing, 0.95, 1},
+};
+inline const Course kAddCourse = {
+    {Phase::model_as_it_is, 0, 0.04},    {Phase::effect_values, 0.04, 0.25},
+    {Phase::effect_starts, 0.25, 0.55},  {Phase::noise_again, 0.55, 0.57},
+    {Phase::effect_left_out, 0.57, 0.8}, {Phase::effect_added, 0.8, 0.85},
+    {Phase::sensitivities, 0.85, 0.95},  {Phase::playing, 0.95, 1},
+};
 /// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
-inline const Course kFewestCourse = then_played({
-    {"every parameter", "all parameters are fitted", 0, 0.12},
-    {"without", "what each wrong parameter takes away", 0.75, 0.98},
-    {"sets of parameters", "sets of wrong parameters are tried", 0.12, 0.75},
-});
+inline const Course kFewestCourse = {
+    {Phase::every_parameter, 0, 0.12},
+    {Phase::parameter_subsets, 0.12, 0.75},
+    {Phase::subsets_less_one, 0.75, 0.98},
+    {Phase::playing, 0.98, 1},
+};
 
-/// Where the work stands; never goes back.
+/// Progress through a course. Neither the share done nor the time left that it prints ever goes back.
 class CourseProgress {
  public:
   explicit CourseProgress(Course course) : course_(std::move(course)) {}
-  /// "37 % done, about 1 min 20 s left: effects are tried in brief (SEXS: 16 of 26)". A course that does not
-  /// know the stage tells it as it is called.
-  std::string line(const std::string& what, int done, int total, double seconds) {
-    const auto stage = std::ranges::find_if(course_, [&](const CourseStage& s) { return s.is(what); });
+  /// "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)". A phase that the course does not have
+  /// is printed without a share. A phase that begins again is counted: "round 2".
+  std::string line(Phase phase, const std::string& item, int done, int total, double seconds) {
+    const int round = round_of(phase, done);
+    const std::string what =
+        fmt::format("{} ({}{} of {}{})", phase_words(phase), item.empty() ? "" : item + ", ", done, total,
+                    round > 1 && phase != Phase::playing ? fmt::format(", round {}", round) : "");
+    const auto stage = std::ranges::find(course_, phase, &CourseStage::phase);
+    if (stage == course_.end()) return what;
     const double part = total > 0 ? static_cast<double>(done) / total : 0;
-    if (stage == course_.end()) return fmt::format("{}: {} of {}", what, done, total);
     share_ = std::max(share_, stage->from + (stage->to - stage->from) * part);
     beyond_ = beyond_ || stage->beyond;
-    std::string text =
+    const std::string share =
         beyond_ ? std::string("beyond the usual course") : fmt::format("{:.0f} % done", 100 * share_);
-    if (!beyond_ && share_ >= 0.02 && share_ < 1)
-      text += fmt::format(", about {} left", duration_text(seconds * (1 - share_) / share_));
-    std::string item = what.starts_with(stage->inner) ? what.substr(stage->inner.size()) : what;
-    item.erase(0, item.find_first_not_of(' '));
-    return text +
-           fmt::format(": {} ({}{} of {})", stage->words, item.empty() ? "" : item + ", ", done, total);
+    return share + time_left(seconds) + ": " + what;
   }
 
  private:
+  struct Seen {
+    int done = 0, rounds = 1;
+  };
+  /// How often the phase was begun: its counter starts again where the work repeats it.
+  int round_of(Phase phase, int done) {
+    const auto [seen, first] = seen_.try_emplace(phase);
+    if (!first && done <= seen->second.done && done <= 1 && seen->second.done > 1) ++seen->second.rounds;
+    seen->second.done = done;
+    return seen->second.rounds;
+  }
+  /// ", about 1 min 20 s left"; nothing where the work takes longer than was said before, because a time that
+  /// grows helps nobody.
+  std::string time_left(double seconds) {
+    if (beyond_ || share_ < kLeastDone || share_ >= 1) return "";
+    const double end = seconds / share_;
+    if (end > end_ * kMayGrow) return "";
+    end_ = std::min(end_, end);
+    const double left = std::max(end_ - seconds, 0.0);
+    return left > 0 ? fmt::format(", about {} left", duration_text(left)) : "";
+  }
+
+  static constexpr double kLeastDone = 0.02;  ///< below it, the rate so far predicts nothing
+  static constexpr double kMayGrow = 1.2;     ///< of the duration first told
   Course course_;
+  std::map<Phase, Seen> seen_;
   double share_ = 0;
+  double end_ = std::numeric_limits<double>::infinity();  ///< duration of the whole, as told [s]
   bool beyond_ = false;
 };
 

@@ -279,6 +279,7 @@ int main(int argc, char** argv) {
       line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
   line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its standard values, to paste")
       .excludes(json);
+  line.example("swingbank effects SEXS --toml");
   if (!line.parse(argc, argv)) return line.end();
   try {
     return dyr_files.empty() ? run(names, laws, shape) : jobs::print_coverage(dyr_files, shape.json);

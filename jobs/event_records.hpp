@@ -28,7 +28,7 @@
 
 namespace swingbank::jobs {
 
-/// --quiet: no word of progress and no notes on stderr; errors are told.
+/// --quiet: no progress and no notes on stderr, errors only.
 inline bool quiet = false;
 
 /// How a command's records are read, beside what the plant file says.
@@ -39,18 +39,22 @@ struct Reading {
   std::string point;                  ///< file of the point that several units share; empty: the plant's own
   std::vector<std::string> switches;  ///< "event4.csv=2.08"
 
-  /// Adds the options to a command line.
-  void add_to(CommandLine& line) {
-    line.add(
+  /// Adds the options that say what of the files is read, and as what.
+  std::vector<Option> add_to(CommandLine& line) {
+    return {add_columns(line), add_from(line), add_until(line), add_component(line), add_point(line)};
+  }
+  Option add_columns(CommandLine& line) {
+    return line
+        .add(
             "--columns", columns,
             "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
             "also Vs, Vref, Pm, Pref, gate); "
-            "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME turns the sign; "
+            "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME reverses the sign; "
             "beside [record.columns] of the plant file")
         .comma_separated();
-    line.add("--from", from, "leave out what comes before [s]");
-    line.add("--until", until, "leave out what comes later [s]");
   }
+  Option add_from(CommandLine& line) { return line.add("--from", from, "leave out what comes before [s]"); }
+  Option add_until(CommandLine& line) { return line.add("--until", until, "leave out what comes later [s]"); }
   /// Adds the point that several units share.
   Option add_point(CommandLine& line) {
     return line.add(
@@ -67,8 +71,9 @@ struct Reading {
         .one_value_a_mention();
   }
   /// Adds what of the plant is tried.
-  void add_component(CommandLine& line) {
-    line.add(
+  Option add_component(CommandLine& line) {
+    return line
+        .add(
             "--component", component,
             "what of the plant is tried: plant, or one part that the record drives with what the others did: "
             "exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref where recorded -> Efd), "
@@ -140,9 +145,17 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
                                               const validate::check::Preparing& prepare = {}) {
   Problems problems;
   validate::check::RecordSet set = validate::check::read_records(files, model, problems, prepare);
+  std::vector<std::pair<std::string, std::string>> notes;  // each once, with its records
   for (std::size_t k = 0; k < set.records.size(); ++k)
-    for (const auto& warning : set.warnings[k])
-      if (!quiet) fmt::print(stderr, "note on {}: {}\n", set.records[k].name, warning);
+    for (const auto& warning : set.warnings[k]) {
+      const auto known = std::ranges::find(notes, warning, &std::pair<std::string, std::string>::first);
+      if (known == notes.end())
+        notes.emplace_back(warning, set.records[k].name);
+      else
+        known->second += ", " + set.records[k].name;
+    }
+  for (const auto& [warning, of] : notes)
+    if (!quiet) fmt::print(stderr, "note on {}: {}\n", of, warning);
   tell_events_elsewhere(files, model.reading.staged);
   problems.raise();
   return set;
@@ -166,17 +179,9 @@ inline void tell(const validate::plant::PlantModel& model) {
     fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
 }
 
-/// The model that a fit begins with: of a calibration that did not hold, the one before it.
-inline validate::plant::PlantModel load_model_to_fit(const std::string& file) {
-  validate::plant::PlantModel model = validate::plant::load_plant_model(file);
-  tell(model);
-  if (model.submitted && !quiet) fmt::print(stderr, "note: begun with the values before that calibration\n");
-  return validate::plant::as_submitted(std::move(model));
-}
-
 /// Writes where the course stands over itself where stderr is a terminal, elsewhere as a line every ten
 /// seconds; nothing with --quiet.
-inline std::function<void(const std::string&, int, int)> progress_line(const Course& course = {}) {
+inline validate::event::Progress progress_line(const Course& course = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
   struct State {  // copies of the function share it
@@ -184,11 +189,11 @@ inline std::function<void(const std::string&, int, int)> progress_line(const Cou
     Clock::time_point start = Clock::now(), said = start;
   };
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, state = std::make_shared<State>(CourseProgress(course))](const std::string& what,
-                                                                             int done, int total) {
+  return [terminal, state = std::make_shared<State>(CourseProgress(course))](
+             Phase phase, const std::string& item, int done, int total) {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - state->start).count();
-    const std::string line = state->at.line(what, done, total, seconds);
+    const std::string line = state->at.line(phase, item, done, total, seconds);
     if (terminal) {
       fmt::print(stderr, "\r\033[K{}{}", line, done == total ? "\r\033[K" : "");
     } else if (now - state->said >= std::chrono::seconds(10)) {
@@ -205,6 +210,22 @@ inline std::string command_line(const std::string& command, int argc, char** arg
   return line;
 }
 
+/// The problems of an input, one a line; those that differ only in their place share a line.
+inline std::string problems_text(const InputError& error) {
+  std::vector<Problem> lines;
+  for (const Problem& p : error.problems()) {
+    const auto same = std::ranges::find_if(
+        lines, [&](const Problem& q) { return q.what == p.what && q.why == p.why && q.remedy == p.remedy; });
+    if (same == lines.end())
+      lines.push_back(p);
+    else
+      same->where += ", " + p.where;
+  }
+  std::string text;
+  for (const Problem& p : lines) text += p.sentence() + "\n";
+  return text;
+}
+
 /// Runs it; bad input and failures become a message and exit code 1, a stop before any result exit code 2.
 template <class F>
 int guarded(const std::string& command, F action) {
@@ -215,7 +236,7 @@ int guarded(const std::string& command, F action) {
                command);
     return kSubmitAgain;
   } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}", problems_text(error));
   } catch (const std::exception& error) {
     fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
   }

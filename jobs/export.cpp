@@ -13,18 +13,15 @@ using namespace swingbank;
 using namespace swingbank::validate;
 
 struct Arguments {
-  std::string plant, dyd, id, bus_name;
+  std::string plant, format = "dyr", id, bus_name;
   std::filesystem::path out;
   int bus = 0;
   double kv = 0;
 };
 
 int run(const Arguments& a) {
-  const bool dyd = !a.dyd.empty();
-  const std::string& file = dyd ? a.dyd : a.plant;
-  if (file.empty())
-    throw InputError(
-        {"no plant file", "--dyr", "something must be written", "give --dyr FILE or --dyd FILE"});
+  const bool dyd = a.format == "dyd";
+  const std::string& file = a.plant;
   plant::PlantModel model = plant::load_plant_model(file);
   jobs::tell(model);
   if (!a.out.empty()) require_inputs_kept({{a.out, "--out"}});
@@ -54,17 +51,21 @@ int run(const Arguments& a) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank export");
   Arguments a;
-  const auto dyr = line.add(
-      "--dyr", a.plant, "plant file (configs/plants/README.md), to be written as records of a PSS/E .dyr");
-  line.add("--dyd", a.dyd, "plant file, to be written as lines of a PSLF .dyd").excludes(dyr);
-  line.add("--bus", a.bus, "bus number of the records (default: the plant file's)").positive();
+  line.group("Input");
+  line.add("--model", a.plant, "plant file (configs/plants/README.md)").required();
+  line.add("--bus", a.bus, "number of the unit's bus (default: the plant file's)").positive();
   line.add("--id", a.id, "the machine's id there (default: the plant file's, else 1)");
-  line.add("--bus-name", a.bus_name, "name of that bus, of a .dyd");
-  line.add("--kv", a.kv, "its nominal voltage [kV], of a .dyd (default: the plant file's base_kv)")
+  line.add("--bus-name", a.bus_name, "name of that bus, for a .dyd");
+  line.add("--kv", a.kv, "its nominal voltage [kV], for a .dyd (default: the plant file's base_kv)")
       .positive();
+  line.group("Output");
+  line.add("--format", a.format, "dyr: records of PSS/E; dyd: lines of PSLF")
+      .one_of({"dyr", "dyd"})
+      .shows_default();
   line.add("--out", a.out, "file to write (default: to the terminal)");
+  line.example("swingbank export --model added/model.toml --format dyr --bus 33 --out unit.dyr");
   line.footer(
-      "What PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) is told in comments. Instruments "
+      "What PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) stands in comments. Instruments "
       "and moved references belong to a record and are left out.");
   if (!line.parse(argc, argv)) return line.end();
   return jobs::guarded("export", [&] { return run(a); });

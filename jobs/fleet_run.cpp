@@ -93,8 +93,9 @@ int run_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
         {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
   diagnose::DiagnoseOptions options;
   options.threads = std::max(c.threads, 0);
-  options.progress = [line = jobs::progress_line(), &name](const std::string& what, int done, int total) {
-    line(name + ": " + what, done, total);
+  options.progress = [line = jobs::progress_line(), &name](jobs::Phase phase, const std::string& item,
+                                                           int done, int total) {
+    line(phase, item.empty() ? name : name + ": " + item, done, total);
   };
   const fleet::FleetOutcome o = fleet::diagnose_plant(fleet, *plant, c.out, options);
   fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", fleet::row_json(o.row)}}.dump());

@@ -152,6 +152,7 @@ int main(int argc, char** argv) {
   line.footer(
       "A unit is wholly covered if it has a machine model and every record of it can be read; 'swingbank plant' "
       "takes one out of the case.");
+  line.example("swingbank inventory --raw grid.raw --dyr grid.dyr");
   if (!line.parse(argc, argv)) return line.end();
   try {
     const Inventory inventory = sim::grid::take_inventory(a.raw, a.dyr, {a.frequency_hz, a.raw_version});

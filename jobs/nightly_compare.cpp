@@ -194,6 +194,7 @@ int main(int argc, char** argv) {
   std::string folder, date;
   line.add("folder", folder, "folder of nights, as jobs/nightly.sh writes it").required();
   line.add("--night", date, "YYYY-MM-DD (default: the last one)");
+  line.example("swingbank nightly-compare nights");
   if (!line.parse(argc, argv)) return line.end();
   try {
     const Nights nights = read_nights(folder);

@@ -49,6 +49,11 @@ int run(Arguments& a) {
       fmt::print(stderr, "note: {}\n", note);
       head.push_back(note);
     }
+  if (model.record_base.kv <= 0)  // not into the file, where it would stay once base_kv is filled in
+    fmt::print(stderr,
+               "note: the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
+               "base_kv, line to line, under [record]\n",
+               unit.bus, unit.kv);
   if (a.out.empty()) {
     fmt::print("{}", plant::plant_text(model, head));
     return 0;
@@ -63,6 +68,7 @@ int run(Arguments& a) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
   Arguments a;
+  line.group("Input");
   line.add("--raw,--epc", a.unit.raw,
            "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
@@ -70,7 +76,9 @@ int main(int argc, char** argv) {
   line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
   line.add("--id", a.unit.id, "the unit's id, where the bus has several");
+  line.group("Output");
   line.add("--out", a.out, "plant file to write (default: to the terminal)");
+  line.group("Models");
   line.add("--drop", a.unit.models.ignore,
            "models of the unit to leave out, comma-separated; may be repeated")
       .one_value_a_mention()
@@ -82,6 +90,7 @@ int main(int argc, char** argv) {
   line.add_choice("--complete-records", a.complete_records, {"no", "zero", "standard"},
                   "records that are shorter than their model get these values at their end, longer ones lose "
                   "what is beyond it; each value is named");
+  line.group("Input");
   line.add("--measured-at", a.measured_at,
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "
            "of the plant")
@@ -93,6 +102,7 @@ int main(int argc, char** argv) {
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
   line.add("--raw-version", a.unit.raw_version, "version of a .raw that does not say it, 23 to 35");
   line.footer("Only the unit's own records are read: what is wrong with others is of no concern.");
+  line.example("swingbank plant --raw grid.raw --dyr grid.dyr --bus 33 --out plant.toml");
   if (!line.parse(argc, argv)) return line.end();
   try {
     return run(a);

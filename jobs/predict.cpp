@@ -192,7 +192,9 @@ int main(int argc, char** argv) {
       .required();
   line.add("--model", o.model, "plant file: machine model and base, bases of the records").required();
   line.add("--records,--record", o.records, "records (CSV, COMTRADE or HDF5), one or several").required();
-  o.reading.add_to(line);
+  o.reading.add_columns(line);
+  o.reading.add_from(line);
+  o.reading.add_until(line);
   o.reading.add_point(line);
   line.add("--event", o.event, "when the event begins [s] (default: found)");
   line.add("--noise", o.noise,
@@ -201,6 +203,7 @@ int main(int argc, char** argv) {
       .shows_default();
   line.add("--out", o.out, "write the estimate as JSON to this file");
   line.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
+  line.example("swingbank predict --network results --model plant.toml --records fault1.csv");
   if (!line.parse(argc, argv)) return line.end();
   try {
     train::runtime::use_best_blas_kernels(argv);

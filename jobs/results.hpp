@@ -1,11 +1,12 @@
 #pragma once
-// What compare, calibrate, diagnose and add share about their results: the folder, and what is written where
-// a signal has stopped the work.
+// What calibrate and add do where a signal ends the work: the values that the fit had reached are written.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "base/json.hpp"
-#include "base/output_folder.hpp"
 #include "base/write_file.hpp"
+#include "jobs/analysis_options.hpp"
 #include "validate/event/event.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/plant/plant_file.hpp"
@@ -16,15 +17,17 @@ constexpr const char* kInterruptedModel = "model-interrupted.toml";
 
 /// Writes the values that an interrupted fit had reached, under names that say so, and keeps the results of
 /// earlier runs. Returns the exit code.
-inline int write_interrupted(OutputFolder& folder, const std::string& command,
+inline int write_interrupted(const AnalysisOptions& of, const std::string& command,
                              const std::string& command_line, const validate::plant::PlantModel& before,
-                             validate::plant::PlantModel model, const validate::fit::Fit& reached) {
-  catch_stop_signals();
+                             const validate::fit::Fit& reached) {
+  OutputFolder& folder = of.results();
   const std::string sentence = fmt::format(
       "Interrupted: the best values until then, with chi2 per value {:.4g}. The fit has not ended and is not "
       "judged.",
       reached.misfit());
+  validate::plant::PlantModel model = before;
   model.plant = reached.plant;
+  of.keep_laws(model);
   model = validate::event::whole_model(std::move(model));
   if (command == "calibrate") model.submitted = validate::event::whole_model(before).plant;
   validate::plant::write_plant_file(
@@ -46,6 +49,22 @@ inline int write_interrupted(OutputFolder& folder, const std::string& command,
   fmt::print("{}\nmodel: {}\nvalues: {}\n", sentence, (folder.path() / kInterruptedModel).string(),
              file.string());
   return kSubmitAgain;
+}
+
+/// Does the work. Where a signal ends it, writes the best values until then: `fitted`, or what the fit at
+/// hand had reached. Before any fit, the signal goes on to the caller.
+template <class Work>
+int keep_reached(const AnalysisOptions& of, const std::string& command, const std::string& command_line,
+                 const validate::plant::PlantModel& model, std::optional<validate::fit::Fit>& fitted,
+                 Work work) {
+  try {
+    return work();
+  } catch (const validate::fit::InterruptedFit& ended) {
+    if (!fitted) fitted = ended.reached;
+  } catch (const Interrupted&) {
+    if (!fitted) throw;
+  }
+  return write_interrupted(of, command, command_line, model, *fitted);
 }
 
 }  // namespace swingbank::jobs

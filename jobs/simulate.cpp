@@ -367,11 +367,19 @@ int simulate(const Options& o) {
 int main(int argc, char** argv) {
   jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank simulate");
   Options o;
+  line.group("Input");
   line.add("--raw,--epc", o.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
   line.add("--dyr,--dyd", o.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
   line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 to 35");
+  line.add("--law", o.laws, "file (.toml) of a user-defined model that --attach may use; may be repeated");
+  line.add("--convention", o.convention,
+           "psse: governors set power; andes: torque; neither has speed in the stator voltage "
+           "(configs/README.md)")
+      .one_of({"psse", "andes"})
+      .shows_default();
+  line.group("Power flow");
   line.add_flag("--net-generators", o.net_generators,
                 "generators in service without a machine model become negative loads, as PSS/E's GNET does");
   line.add("--start", o.start,
@@ -386,8 +394,20 @@ int main(int argc, char** argv) {
           "fixed: switched shunts stay at BINIT; step: those in discrete steps hold their voltage in the power flow")
       .one_of({"fixed", "step"})
       .shows_default();
+  line.add("--devices", o.devices,
+           "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
+           "these are a solution (checked) or whatever they are (file), or nothing (none)")
+      .one_of({"checked", "file", "none"})
+      .shows_default();
+  line.add("--loads", o.load_model,
+           "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
+           "power, current and admittance; those with a model in the .dyr keep it")
+      .one_of({"impedance", "raw"})
+      .shows_default();
+  line.add("--load", o.loads, "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
   line.add_flag("--widen-limits", o.widen_limits,
                 "where the operating point lies beyond a control's limit, move the limit there and name it");
+  line.group("Models");
   line.add("--complete-records", o.complete_records,
            "records of the .dyr that are shorter than their model get these values at their end, longer "
            "ones lose what is beyond it; each is named")
@@ -402,30 +422,15 @@ int main(int argc, char** argv) {
           "only where the file's voltages show it (voltages)")
       .one_of({"refuse", "keep", "voltages"})
       .shows_default();
-  line.add("--devices", o.devices,
-           "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
-           "these are a solution (checked) or whatever they are (file), or nothing (none)")
-      .one_of({"checked", "file", "none"})
-      .shows_default();
-  line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
   line.add("--ignore-model", o.ignore_models,
            "names of .dyr models to leave out, comma-separated; may be repeated")
       .comma_separated();
   line.add("--map-model", o.map_models,
            "FROM=TO,...: read a .dyr model as another with as many parameters; may be repeated")
       .comma_separated();
-  line.add("--law", o.laws, "law file (.toml) whose effect --attach may use; may be repeated");
   line.add("--attach", o.attached,
            "PLANT:EFFECT[:PARAM=VALUE,...]: an effect added to a plant (or to all); may be repeated");
-  line.add("--measure", o.measured,
-           "EFFECT[:PARAM=VALUE,...]: an instrument between every recorded plant and the record, after "
-           "those before it; may be repeated");
-  line.add("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps").shows_default();
-  line.add("--convention", o.convention,
-           "psse: governors set power; andes: torque; neither has speed in the stator voltage "
-           "(configs/README.md)")
-      .one_of({"psse", "andes"})
-      .shows_default();
+  line.group("Events");
   line.add("--fault", o.event.faults,
            "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
   line.add("--fault-type", o.event.fault_type,
@@ -446,26 +451,30 @@ int main(int argc, char** argv) {
            "repeated");
   line.add("--vref-step", o.event.vref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
   line.add("--pref-step", o.event.pref_steps, "BUS[/ID]:T:STEP [s, pu]; may be repeated");
-  line.add("--loads", o.load_model,
-           "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
-           "power, current and admittance; those with a model in the .dyr keep it")
-      .one_of({"impedance", "raw"})
-      .shows_default();
-  line.add("--load", o.loads, "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
-  line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
-  line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
-  line.add("--integrator", o.integrator,
-           "reference: IDA on the unreduced equations; lanes: the engine of generate")
-      .one_of({"reference", "lanes"})
-      .shows_default();
-  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
-  line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
+  line.group("Measurements");
+  line.add("--measure", o.measured,
+           "EFFECT[:PARAM=VALUE,...]: an instrument between every recorded plant and the record; may be "
+           "repeated, and is then applied in the given order");
+  line.add("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps").shows_default();
   line.add("--plants", o.plants, "plants to record, comma-separated (default: all)").comma_separated();
   line.add("--channels", o.channels, "channels to record, comma-separated (default: all)").comma_separated();
   line.add("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
       .comma_separated();
   line.add_flag("--after-switching", o.after_switching,
                 "a sample at a switching instant shows the value just after it");
+  line.group("Output");
+  line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
+  line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
+  line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
+  line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
+  line.group("Expert");
+  line.add("--integrator", o.integrator,
+           "reference: IDA on the unreduced equations; lanes: the engine of generate")
+      .one_of({"reference", "lanes"})
+      .shows_default();
+  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
+  line.example(
+      "swingbank simulate --raw grid.raw --dyr grid.dyr --fault 16:1.0:1.1 --t-end 10 --out run.csv");
   if (!line.parse(argc, argv)) return line.end();
   try {
     return simulate(o);

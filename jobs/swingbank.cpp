@@ -14,6 +14,8 @@
 #include <system_error>
 #include <vector>
 
+#include "base/nearest_word.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,10 +23,10 @@ namespace fs = std::filesystem;
 struct Command {
   std::string name;
   std::string summary;
+  std::string group;  ///< heading in the help; empty: internal, not listed
 };
 
-// Declared once, as SUMMARY of swingbank_command() in jobs/CMakeLists.txt, in the order data meets the
-// commands.
+// Declared once, by swingbank_command() in jobs/CMakeLists.txt, in the order of the help.
 const std::vector<Command> kDeclared = {
 #include "commands.inc"
 };
@@ -47,44 +49,22 @@ std::vector<Command> found_commands(const fs::path& folder) {
   for (const auto& command : kDeclared) {
     if (present.erase(command.name) > 0) commands.push_back(command);
   }
-  for (const auto& [name, unused] : present) commands.push_back({name, ""});
+  for (const auto& [name, unused] : present) commands.push_back({name, "", "Others"});
   return commands;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
-    }
-  }
-  return row.back();
-}
-
-std::string nearest(std::string_view wanted, const std::vector<Command>& commands) {
-  std::string best;
-  std::size_t fewest = std::max<std::size_t>(2, wanted.size() / 2);  // farther than this is no likely slip
-  for (const auto& command : commands) {
-    const bool begins = wanted.size() >= 3 && command.name.starts_with(wanted);
-    const std::size_t distance = begins ? 0 : edit_distance(wanted, command.name);
-    if (distance <= fewest && (best.empty() || distance < fewest)) {
-      best = command.name;
-      fewest = distance;
-    }
-  }
-  return best;
 }
 
 void print_help(const std::vector<Command>& commands) {
   fmt::print("swingbank {}: power-plant model validation at scale\n\n", SWINGBANK_VERSION);
-  fmt::print("Usage: swingbank <command> [arguments]\n  or:  swingbank <command> --help\n\nCommands:\n");
+  fmt::print("Usage: swingbank <command> [arguments]\n  or:  swingbank <command> --help\n");
   std::size_t width = 0;
   for (const auto& command : commands) width = std::max(width, command.name.size());
-  for (const auto& command : commands) fmt::print("  {:<{}}  {}\n", command.name, width, command.summary);
+  std::string group;
+  for (const auto& command : commands) {
+    if (command.group.empty()) continue;
+    if (command.group != group) fmt::print("\n{}:\n", command.group);
+    group = command.group;
+    fmt::print("  {:<{}}  {}\n", command.name, width, command.summary);
+  }
 }
 
 /// Under mpirun or srun every rank runs this program; only the first one speaks.
@@ -97,7 +77,10 @@ bool speaks() {
 
 int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Command>& commands) {
   if (!speaks()) return 1;
-  const std::string guess = nearest(wanted, commands);
+  std::vector<std::string> names;
+  for (const auto& command : commands)
+    if (!command.group.empty()) names.push_back(command.name);
+  const std::string guess = swingbank::nearest_word(wanted, names);
   const std::string remedy =
       guess.empty() ? "run swingbank --help for the list" : fmt::format("did you mean '{}'?", guess);
   fmt::print(stderr, "unknown command at '{}' (no {}{} in {}): {}\n", wanted, kPrefix, wanted,

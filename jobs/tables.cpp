@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   std::string out;
   line.add("results", folders, "folders with the JSON files of train and cross-validate").required();
   line.add("--out", out, "folder for tables.md with its pictures, tables.html and CSV files").required();
+  line.example("swingbank tables results --out tables");
   if (!line.parse(argc, argv)) return line.end();
   try {
     const auto results = report::read_results({folders.begin(), folders.end()});

@@ -83,9 +83,7 @@ class UnitReader {
     if (units.empty())
       return problems_.add(fmt::format("no generator{} at bus {}",
                                        choice_.id.empty() ? "" : " '" + choice_.id + "'", choice_.bus),
-                           net().origin,
-                           ids.empty() ? "the nearest buses with generators are " + generator_buses()
-                                       : "the ids there are " + ids,
+                           net().origin, ids.empty() ? nearest_generators() : "the ids there are " + ids,
                            "correct bus and id");
     if (units.size() > 1 && running.size() != 1)
       return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
@@ -96,20 +94,52 @@ class UnitReader {
     generator_ = static_cast<int>(at);
     if (at < survey_.generator_line.size()) faults_of(survey_.generator_line[at], 1);
   }
-  /// Some buses with generators, those with the nearest numbers.
-  [[nodiscard]] std::string generator_buses() const {
+  /// Branches in service on the shortest path from the bus at `start` to each bus; -1 where there is none.
+  [[nodiscard]] std::vector<int> branches_from(std::size_t start) const {
+    std::vector<std::vector<std::size_t>> neighbours(net().buses.size());
+    for (const network::Branch& b : net().branches)
+      if (b.in_service) {
+        neighbours[static_cast<std::size_t>(b.from)].push_back(static_cast<std::size_t>(b.to));
+        neighbours[static_cast<std::size_t>(b.to)].push_back(static_cast<std::size_t>(b.from));
+      }
+    std::vector<int> apart(net().buses.size(), -1);
+    apart[start] = 0;
+    std::vector<std::size_t> queue = {start};
+    for (std::size_t k = 0; k < queue.size(); ++k)
+      for (const std::size_t next : neighbours[queue[k]])
+        if (apart[next] < 0) {
+          apart[next] = apart[queue[k]] + 1;
+          queue.push_back(next);
+        }
+    return apart;
+  }
+  /// Some buses with generators: the nearest in the grid, or by number where there is no bus of that number.
+  [[nodiscard]] std::string nearest_generators() const {
+    const auto bus = std::ranges::find(net().buses, choice_.bus, &network::Bus::number);
+    const bool known = bus != net().buses.end();
+    const std::vector<int> apart =
+        known ? branches_from(static_cast<std::size_t>(bus - net().buses.begin())) : std::vector<int>{};
     std::set<std::pair<int, int>> near;
     for (const auto& g : net().generators) {
       const int number = bus_at(g.bus).number;
-      near.emplace(std::abs(number - choice_.bus), number);
+      const int distance = known ? apart[static_cast<std::size_t>(g.bus)] : std::abs(number - choice_.bus);
+      if (distance >= 0) near.emplace(distance, number);
     }
     std::string text;
-    constexpr std::size_t shown = 8;
-    for (const auto& [apart, number] : near) {
-      if (static_cast<std::size_t>(std::ranges::count(text, ',')) + 1 >= shown) return text + ", ...";
+    constexpr int shown = 8;
+    int count = 0;
+    for (const auto& [distance, number] : near) {
+      if (++count > shown) {
+        text += ", ...";
+        break;
+      }
       text += (text.empty() ? "" : ", ") + std::to_string(number);
+      if (known) text += fmt::format(" ({} {})", distance, distance == 1 ? "branch" : "branches");
     }
-    return text;
+    return (known ? "the nearest buses with generators are "
+                  : fmt::format("there is no bus {}; the buses with generators of the nearest numbers are ",
+                                choice_.bus)) +
+           text;
   }
 
   void describe() {
@@ -283,10 +313,10 @@ class UnitReader {
   void tell_transformer() {
     const std::set<int> ends = transformers_to();
     if (ends.empty() || ends.size() > 2) return;
-    unit_.notes.push_back(
-        fmt::format("a transformer joins bus {} to bus {}; the model ends at bus {}: for records from bus {} "
-                    "give --measured-at {} (under [grid] of a plant file: measured_at)",
-                    unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
+    unit_.notes.push_back(fmt::format(
+        "a transformer joins bus {} to bus {}; the model covers the unit up to bus {}: for records from bus {} "
+        "give --measured-at {} (under [grid] of a plant file: measured_at)",
+        unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
   }
   void read_transformer(int measured_at) {
     if (measured_at == unit_.bus) return;

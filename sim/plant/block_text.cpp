@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/nearest_word.hpp"
+
 namespace swingbank::sim::plant {
 
 void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems) {
@@ -73,8 +75,10 @@ Attachment read_attachment(const std::string& text, const library::EffectLibrary
   const std::string name = text.substr(first + 1, second == text.npos ? text.npos : second - first - 1);
   const Effect* effect = library.find(name);
   if (!effect) {
-    problems.add("no effect '" + name + "'", where, "there are " + library.names(),
-                 "choose one of these, or give its file with --law");
+    std::vector<std::string> names;
+    for (const Effect* e : library.all()) names.emplace_back(e->name);
+    problems.add("no effect '" + name + "'", where, "the library has none of that name",
+                 suggestion(name, names, "use one of " + library.names() + ", or give its file with --law"));
     return {};
   }
   Block block{effect, effect->standard_parameters()};

@@ -3,14 +3,20 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"
 
+# refuses_at_once NAME PATTERN COMMAND...: before the kernels are measured, which takes seconds and prints a line
+refuses_at_once() {
+  refuses "$@"
+  [[ $(wc -l <"$work/stderr") == 1 ]] || fail "$1: the kernels were measured before: $(cat "$work/stderr")"
+}
+
 refuses "no dataset given" 'DATASET' "$swingbank" cross-validate --experiment "$experiment" --out "$out"
 refuses "unknown preset" 'preset' validate "$data" "$experiment" --preset weekly
 refuses "unknown fold" 'fold' validate "$data" "$experiment" --fold 39
 refuses "unknown network" 'network' validate "$data" "$experiment" --network transformer
-refuses "the other command" 'cross-validate' "$swingbank" train "$data" --experiment "$experiment" --out "$out"
-refuses "rows that only train, unasked" '--training-rows' validate "$data" "$experiment" --training-rows "$data"
+refuses_at_once "the other command" 'cross-validate' "$swingbank" train "$data" --experiment "$experiment" --out "$out"
+refuses_at_once "rows that only train, unasked" '--training-rows' validate "$data" "$experiment" --training-rows "$data"
 sed -e '1i training_dataset = "tiny_data.toml"' -e 's/^networks = .*/&\ntraining_rows = true\ntraining_draws = 1/' "$experiment" >"$work/rows.toml"
-refuses "no rows that only train" '--training-rows' validate "$data" "$work/rows.toml"
+refuses_at_once "no rows that only train" '--training-rows' validate "$data" "$work/rows.toml"
 edit type 's/^epochs = .*/epochs = "many"/'
 refuses "wrong type" 'type.toml:[0-9]+' validate "$data" "$work/type.toml"
 edit channel 's/^channels = .*/channels = ["P", "Efd"]/'

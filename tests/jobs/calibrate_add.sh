@@ -44,11 +44,13 @@ grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the n
 # what was written is a model: it is calibrated again, and holds
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --power-only --draws 0 --starts 0 --out "$work/again" >"$work/text"
 [[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
-grep -q 'no .dyr: no bus number' "$work/text" || fail "no word of the records"
-sed 's/^base_mva = 100.0  # machine base/bus = 2\n&/' "$work/added/model.toml" >"$work/numbered.toml"
-"$swingbank" calibrate --model "$work/numbered.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/numbered" >/dev/null
+grep -q "^2 'SEXS' '1' " "$work/added/model.dyr" || fail "add wrote no .dyr of the example plant"
+sed '/^bus = 2/d' "$work/added/model.toml" >"$work/unnumbered.toml"
+"$swingbank" calibrate --model "$work/unnumbered.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/unnumbered" >"$work/said"
+grep -q 'no .dyr: no bus number' "$work/said" || fail "no word of the records"
+"$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/numbered" >/dev/null
 grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "the records do not say what changed"
-cmp <("$swingbank" export --dyr "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
+cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 
 # instants that a person knows are taken as they are

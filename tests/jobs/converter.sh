@@ -30,7 +30,7 @@ PYTHON
 for section in converter electrical_control plant_control; do
   grep -q "^\[$section\]" "$work/plant.toml" || fail "the plant file has no [$section]"
 done
-"$swingbank" export --dyr "$work/plant.toml" | holds -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
+"$swingbank" export --model "$work/plant.toml" | holds -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
 # The run's own values are per unit of the machine's base. A converter answers within 20 ms: 240 samples a second, and the
 # instants as they are.
 sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 843.7/' "$work/plant.toml"
@@ -59,7 +59,7 @@ explains_itself() { # NAME VALUES, records on stdin; VALUES: how its record begi
   { grep -v '^32 ' "$networks/ieee39_genrou.dyr"; cat; } >"$work/case.dyr"
   simulate --t-end 6 --rate 240 --fault 12:1:1.1 --out "$work/run.csv" >/dev/null
   "$swingbank" plant --raw "$raw" --dyr "$work/case.dyr" --bus 32 --out "$work/plant.toml" >/dev/null
-  "$swingbank" export --dyr "$work/plant.toml" | holds -q "^32 '$1' '1' $2" || fail "export writes another $1"
+  "$swingbank" export --model "$work/plant.toml" | holds -q "^32 '$1' '1' $2" || fail "export writes another $1"
   sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 843.7/' "$work/plant.toml"
   compare --model "$work/plant.toml" --out "$work/compared" >"$work/said" ||
     fail "$1 does not explain its own run: $(cat "$work/said")"

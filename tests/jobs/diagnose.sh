@@ -21,6 +21,19 @@ tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+'
 ! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|beyond the usual course: [a-z])' "$work/progress" >"$work/inner" ||
   fail "progress without a share: $(cat "$work/inner")"
 sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the share done goes back"
+# the time left may fall, not rise: seconds of each line that tells it
+python3 - "$work/progress" <<'PYTHON'
+import re, sys
+last = None
+for line in open(sys.argv[1]):
+    told = re.search(r"about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s )?left", line)
+    if not told: continue
+    h, m, s = (int(x or 0) for x in told.groups())
+    left = 3600 * h + 60 * m + s
+    assert last is None or left <= last, f"the time left rises from {last} s: {line}"
+    last = left
+assert last is not None, "no time left is told"
+PYTHON
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
 grep -q 'SEXS' "$work/found/report.html" || fail "the report does not name the exciter"
 python3 - "$work/found/diagnosis.json" <<'PYTHON'
@@ -44,6 +57,7 @@ kill -TERM "$diagnosing"
 status=0
 wait "$diagnosing" || status=$?
 ((status == 2)) || fail "exit code $status after a signal, expected 2"
+grep -qx 'stopping' "$work/told" || fail "the signal is not acknowledged"
 grep -q 'Interrupted: what was fitted until then' "$work/ended.txt" || fail "the end is not told"
 grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
 [[ -s $work/ended/report.html ]] || fail "no page after a signal"

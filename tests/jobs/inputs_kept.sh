@@ -33,7 +33,7 @@ kept "compare --pdf over a record" 'at --pdf' "$swingbank" compare --model m.tom
 kept "compare --pdf over the model" 'at --pdf' "$swingbank" compare --model m.toml --records p.csv --pdf ./own/../m.toml --out new
 kept "plant over the .dyr" 'at --out' "$swingbank" plant --raw n.raw --dyr n.dyr --bus 2 --out n.dyr
 kept "plant over the .raw" 'at --out' "$swingbank" plant --raw n.raw --dyr n.dyr --bus 2 --out ./n.raw
-kept "export over the plant file" 'at --out' "$swingbank" export --dyr m.toml --bus 2 --out m.toml
+kept "export over the plant file" 'at --out' "$swingbank" export --model m.toml --bus 2 --out m.toml
 kept "simulate --changes over the .dyr" 'at --changes' "$swingbank" simulate --raw n.raw --dyr n.dyr --changes n.dyr \
   --t-end 0.1 --out run.csv
 kept "simulate writes two outputs into one file" 'named twice' "$swingbank" simulate --raw n.raw --dyr n.dyr --changes run.csv \

@@ -46,9 +46,9 @@ swingbank compare ${example[@]} --out report >"$work/compare" 2>&1 || status=$?
 ((status == 3)) || fail "compare: exit code $status: $(tail -n 5 "$work/compare")"
 [[ -s report/report.html ]] || fail "compare wrote no report"
 
-# A man page of every command, with every option that --help lists.
+# A man page of every command that --help lists, with every option. read-hdf5 is internal.
 man1=$prefix/share/man/man1
-for program in $(programs "$SWINGBANK_BIN"); do
+for program in $(programs "$SWINGBANK_BIN" | grep -v -e -read-hdf5); do
   [[ -s $man1/$program.1 ]] || fail "no man page of $program"
 done
 for command in compare effects; do
@@ -67,7 +67,7 @@ complete_after() {
     printf "%s\n" "${COMPREPLY[@]}"' - "$prefix/share/bash-completion/completions/swingbank" "$@" | sort
 }
 cmp <(complete_after swingbank "" | grep -v -e '^-' -e '^help$') \
-  <(programs "$prefix/bin" | sed -n 's/^swingbank-//p' | sort) || fail "completion does not list the commands"
+  <(programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx read-hdf5 | sort) || fail "completion does not list the commands"
 cmp <(complete_after swingbank compare --) \
   <(swingbank compare --help | grep -oE '^  -[^ {]+' | tr ',' '\n' | tr -d ' ' | grep -e '^--' | sort) ||
   fail "completion does not list the options of compare"

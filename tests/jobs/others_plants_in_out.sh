@@ -9,7 +9,7 @@ there_and_back() {
   shift 4
   "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus "$bus" "$@" --out "$work/$name.toml" >/dev/null 2>"$work/notes" ||
     fail "$name: $(cat "$work/notes")"
-  "$swingbank" export --dyr "$work/$name.toml" --out "$work/$name.dyr" >/dev/null
+  "$swingbank" export --model "$work/$name.toml" --out "$work/$name.dyr" >/dev/null
   local again=()
   while (($# > 0)); do # nothing is left to drop or replace
     case $1 in

@@ -9,25 +9,35 @@ raw=$networks/ieee39_genrou.raw dyr=$networks/ieee39_genrou.dyr
 # Out, back, out again: the same file.
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 --out "$work/plant.toml" >"$work/said"
 grep -q "^wrote $work/plant.toml" "$work/said" || fail "plant says: $(cat "$work/said")"
-"$swingbank" export --dyr "$work/plant.toml" --out "$work/plant.dyr" >/dev/null
+"$swingbank" export --model "$work/plant.toml" --out "$work/plant.dyr" >/dev/null
 "$swingbank" plant --raw "$raw" --dyr "$work/plant.dyr" --bus 32 >"$work/again.toml" 2>/dev/null
 cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fail "the plant is another after the way out and in"
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | cmp - "$work/plant.toml" || fail "--out writes something else than is printed"
-cmp <("$swingbank" export --dyr "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
-"$swingbank" export --dyr "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
+cmp <("$swingbank" export --model "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
+"$swingbank" export --model "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
 
 # A case without nominal voltages (1 kV at every bus) gives no base of volts, and says so.
 sed "s/', 345, /', 1, /" "$raw" >"$work/per_unit.raw"
 "$swingbank" plant --raw "$work/per_unit.raw" --dyr "$dyr" --bus 32 >"$work/per_unit.toml" 2>"$work/notes"
 grep -q '^base_kv' "$work/per_unit.toml" && fail "1 kV is taken for a nominal voltage"
 grep -q 'no nominal voltage (BASKV = 1 kV): for records in kV write base_kv' "$work/notes" || fail "not said: $(cat "$work/notes")"
+grep -q '^# base_kv = ?  # nominal kV, line to line' "$work/per_unit.toml" || fail "the file does not ask for base_kv"
+! grep -q 'BASKV' "$work/per_unit.toml" || fail "the file keeps a note that is wrong once base_kv is filled in"
+for k in 1 2; do
+  { echo t_s,V_kV,theta_deg,P_MW,Q_Mvar && seq 0 0.02 10 | sed 's/$/,345,0,600,100/'; } >"$work/kv$k.csv"
+done
+status=0
+"$swingbank" compare --model "$work/per_unit.toml" --records "$work"/kv[12].csv --out "$work/no" 2>"$work/words" >&2 || status=$?
+((status == 1)) || fail "compare without base_kv: exit code $status"
+[[ $(grep -c 'add base_kv under \[record\]' "$work/words") == 1 ]] || fail "the missing base_kv is named otherwise than once: $(cat "$work/words")"
+grep -q 'kv1.csv.*kv2.csv' "$work/words" || fail "the missing base_kv is not named for both records"
 
 # Out as PSLF's and back: the same plant, with controls; the .dyd's Ra and mva count.
 {
   cat "$work/plant.toml"
   "$swingbank" effects --toml SEXS TGOV1
 } >"$work/controlled.toml"
-"$swingbank" export --dyd "$work/controlled.toml" --bus-name NORTH --kv 20 >"$work/plant.dyd"
+"$swingbank" export --model "$work/controlled.toml" --format dyd --bus-name NORTH --kv 20 >"$work/plant.dyd"
 grep -qE '^genrou +32 "NORTH +" 20 "1 " : #9 mva=[0-9.]+ "tpdo" ' "$work/plant.dyd" || fail "export --dyd: $(cat "$work/plant.dyd")"
 "$swingbank" plant --raw "$raw" --dyd "$work/plant.dyd" --bus 32 >"$work/again.toml" 2>"$work/notes" || fail "plant --dyd: $(cat "$work/notes")"
 values() { sed 's/ *#.*//; /^$/d; /^origin/d; /^base_kv/d; /^name/d' "$1" | sort; } # blocks in whatever order
@@ -39,7 +49,7 @@ sed 's/"xcomp" [^ ]*/"xcomp" -0.05/' "$work/plant.dyd" >"$work/other.dyd"
 refuses "a compensated machine" "xcomp = -0.05 of genrou .*other.dyd" "$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32
 refuses "neither" "no dynamic models" "$swingbank" plant --raw "$raw" --bus 32
 sed '/^base_kv/d' "$work/controlled.toml" >"$work/no_kv.toml"
-refuses "no kV" "no nominal voltage" "$swingbank" export --dyd "$work/no_kv.toml"
+refuses "no kV" "no nominal voltage" "$swingbank" export --model "$work/no_kv.toml" --format dyd
 
 # Unknown records of others do not matter; its own are named with their line, and dropped or replaced.
 {
@@ -57,7 +67,8 @@ grep -q "ESAC9Z of line $line left out" "$work/notes" || fail "it does not say w
 grep -q 'standard = true' "$work/replaced.toml" || fail "a replacement of other parameters has no standard values"
 refuses "no such bus" "no bus 4711" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 4711
 refuses "no unit there" "no generator at bus 16" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 16
-refuses "no bus number" "no bus number" "$swingbank" export --dyr "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
+sed '/^bus = 2/d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" >"$work/no_bus.toml"
+refuses "no bus number" "no bus number" "$swingbank" export --model "$work/no_bus.toml"
 misused "no bus" "bus" "$swingbank" plant --raw "$raw" --dyr "$dyr"
 
 # One line for each model, not for each record.
@@ -103,5 +114,5 @@ grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (SEXS's is usuall
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
   "$swingbank" effects --toml GENROU IEEET1
 } >"$work/pasted.toml"
-"$swingbank" export --dyr "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
+"$swingbank" export --model "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
 refuses "a block of nothing" "a block is of one effect" "$swingbank" effects --toml

@@ -51,7 +51,7 @@ grep -q "^2 'GENROU' '1' " mine_unit.dyr || fail "export: $(cat mine_unit.dyr)"
 status=0
 swingbank diagnose --model calibrated/model-not-adequate.toml --records event*.csv --out bent >said 2>said.errors || status=$?
 ((status == 3)) || fail "diagnose of the bent model: exit code $status: $(tail -n 5 said.errors)"
-grep -q 'begun with the values before' said.errors || fail "it does not say what it began with: $(cat said.errors)"
+grep -q 'started from the values before' said.errors || fail "it does not say what it began with: $(cat said.errors)"
 verdict bent >bent.verdict
 cmp mine bent.verdict || fail "the bent model's verdict is another: $(cat mine bent.verdict)"
-refuses "export of a bent model" "does not hold" swingbank export --dyr calibrated/model-not-adequate.toml
+refuses "export of a bent model" "does not hold" swingbank export --model calibrated/model-not-adequate.toml

@@ -11,7 +11,7 @@ limits() { printf 'name = "%s"\nsource = "this test"\npreset = "dtr-test"\n' "$1
 gives 0 '^calibrated: Fit for purpose: yes. All 18 errors .* limits dtr-test' calibrate
 grep -q '^Statistically complete: yes' "$work/text" || fail "the other verdict is missing: $(cat "$work/text")"
 gives 5 '^calibrated: Fit for purpose: no. .* exceed the limits tight. .* MXE of P in the pre-fault window' calibrate --accept "$work/tight.toml"
-gives 3 '^Fit for purpose: no. .* limits dtr-test. Furthest off: MXE of Q in the post-fault window' compare --model "$bent"
+gives 3 '^Fit for purpose: no. .* limits dtr-test. Largest violation: MXE of Q in the post-fault window' compare --model "$bent"
 gives 4 '^Fit for purpose: yes. .* limits wide' compare --model "$bent" --accept "$work/wide.toml"
 gives 4 '^Statistically complete: no' compare --model "$work/near.toml" --accept dtr-simulation
 python3 - "$work/out/compare.json" <<'PYTHON'

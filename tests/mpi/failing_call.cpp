@@ -1,6 +1,9 @@
 // To be preloaded: one call of one process fails with an error that is given. Calls are counted from 1 in
 // each process, file calls (below one folder) and allocations by operator new apart.
-// - FAILING_ERROR: memory (std::bad_alloc), or errno's number for a file call; absent: only count
+// - FAILING_ERROR: memory (std::bad_alloc), or errno's number for a file call; kill: the process dies by
+// SIGKILL in
+//   place of the call; trace: nothing fails, and each file call adds a line "trace CALL PATH" to the log;
+//   absent: only count
 // - FAILING_AT: the call that fails
 // - FAILING_CALL: only file calls of this name count; absent: all
 // - FAILING_RANK: the rank that is meant (OpenMPI's OMPI_COMM_WORLD_RANK; without a launcher all are 0)
@@ -15,6 +18,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -26,11 +30,20 @@ namespace {
 
 std::atomic<long> file_calls{0}, allocations{0};
 
+constexpr int kMemory = -1, kKill = -2, kTrace = -3;
+
+int error_of(const char* word) {
+  if (std::strcmp(word, "memory") == 0) return kMemory;
+  if (std::strcmp(word, "kill") == 0) return kKill;
+  if (std::strcmp(word, "trace") == 0) return kTrace;
+  return std::atoi(word);
+}
+
 struct Order {
   const char* under = std::getenv("FAILING_UNDER");
   const char* log = std::getenv("FAILING_LOG");
   const char* call = std::getenv("FAILING_CALL");
-  int error = 0;  ///< 0: none; -1: memory
+  int error = 0;  ///< 0: none; otherwise errno's number or one of those below
   long at = 0;
   bool meant = false;
   Order() {
@@ -38,8 +51,7 @@ struct Order {
     meant = log != nullptr &&
             std::atoi(rank != nullptr ? rank : "0") == std::atoi(wanted != nullptr ? wanted : "0");
     if (const char* n = std::getenv("FAILING_AT")) at = std::atol(n);
-    if (const char* e = std::getenv("FAILING_ERROR"))
-      error = std::strcmp(e, "memory") == 0 ? -1 : std::atoi(e);
+    if (const char* e = std::getenv("FAILING_ERROR")) error = error_of(e);
   }
 };
 const Order& order() {
@@ -71,9 +83,12 @@ bool fails(const char* call, const char* path) {
   if (o.call != nullptr && std::strcmp(o.call, call) != 0) return false;
   const std::size_t n = std::strlen(o.under);
   if (std::strncmp(path, o.under, n) != 0) return false;
-  if (++file_calls != o.at || o.error <= 0) return false;
+  const bool reached = ++file_calls == o.at;
   char line[700];
+  if (o.error == kTrace) note(line, std::snprintf(line, sizeof line, "trace %s %.500s\n", call, path));
+  if (!reached || o.error == 0 || o.error == kMemory || o.error == kTrace) return false;
   note(line, std::snprintf(line, sizeof line, "failed %s %.500s\n", call, path));
+  if (o.error == kKill) ::kill(::getpid(), SIGKILL);
   errno = o.error;
   return true;
 }
@@ -93,7 +108,7 @@ Function next(const char* name) {
 }
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
-  if (const Order& o = order(); o.meant && ++allocations == o.at && o.error == -1) {
+  if (const Order& o = order(); o.meant && ++allocations == o.at && o.error == kMemory) {
     note("failed new memory\n", 18);
     throw std::bad_alloc();
   }

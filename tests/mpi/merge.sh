@@ -10,11 +10,12 @@ for k in 1 2 3; do "${make[@]}" --part $k/3 --out "$work/part$k" >/dev/null 2>&1
 code=0
 "$merge" "$work/part1" "$work/part2" --out "$work/out" --progress none >"$work/log" 2>&1 || code=$?
 [ $code = 2 ] || { cat "$work/log"; fail "exit code $code while a part is missing"; }
-"$merge" "$work"/part? --out "$work/killed" --progress none >"$work/log" 2>&1 &
-pid=$!
-wait_for_lines "$work/killed" 3
-kill -9 $pid 2>/dev/null || true # it may have ended
-wait $pid 2>/dev/null || true
+# killed in place of giving the fourth shard its name (failing_call.cpp)
+code=0
+FAILING_ERROR=kill FAILING_CALL=rename FAILING_AT=4 FAILING_UNDER=$work/killed/shards FAILING_LOG=$work/failing \
+  LD_PRELOAD=$SWINGBANK_BIN/failing_call.so "$merge" "$work"/part? --out "$work/killed" --progress none >"$work/log" 2>&1 || code=$?
+[ $code = 137 ] || { cat "$work/log"; fail "exit code $code of a merge that was to be killed"; }
+[ "$(lines "$work/killed")" = 3 ] || fail "$(lines "$work/killed") shards in the journal when the merge was killed"
 for out in out killed; do
   expect 0 "dataset $whole" "$merge" "$work/part1" "$work/part2" "$work/part3" --out "$work/$out" --progress none
   diff -r "$work/whole/shards" "$work/$out/shards" || fail "other bytes in $out"

@@ -1,6 +1,7 @@
 #include "validate/add/add.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -8,6 +9,7 @@
 #include <cmath>
 
 #include "base/in_parallel.hpp"
+#include "base/nearest_word.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
@@ -40,7 +42,7 @@ class Bench {
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
-    whole.events = each({seen.plant, conventions}, "noise measured again");
+    whole.events = each({seen.plant, conventions}, event::Phase::noise_again);
     all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
     keep_seen();
     return true;
@@ -48,7 +50,7 @@ class Bench {
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
   /// Fits every event by itself, with only its own state free.
-  std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, const std::string& what) const {
+  std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, event::Phase phase) const {
     std::vector<fit::EventFit> fits(all_.size());
     in_parallel(
         all_.size(),
@@ -59,7 +61,7 @@ class Bench {
                               "check the model's parameters and the record's base and units"});
           fits[e] = std::move(f.events.front());
         },
-        [&](int done) { tell(what, done, static_cast<int>(all_.size())); });
+        [&](int done) { tell(phase, done, static_cast<int>(all_.size())); });
     return fits;
   }
   std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const {
@@ -68,8 +70,8 @@ class Bench {
       if (!out_[e]) states.push_back(fits[e].state);
     return states;
   }
-  void tell(const std::string& what, int done, int total) const {
-    if (options_.progress) options_.progress(what, done, total);
+  void tell(event::Phase phase, int done, int total) const {
+    if (options_.progress) options_.progress(phase, "", done, total);
   }
 
  private:
@@ -122,9 +124,7 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
       [&](std::size_t k) {
         order[k] = {chi2_of({hypothesis::started(h, h.starts[k]), h.conventions}, bench, states), k};
       },
-      [&](int done) {
-        bench.tell("values of " + h.name + " screened", done, static_cast<int>(order.size()));
-      });
+      [&](int done) { bench.tell(event::Phase::effect_values, done, static_cast<int>(order.size())); });
   // The start that leaves least may be one that hardly acts.
   std::ranges::sort(order.begin() + 1, order.end());
   const std::size_t tries =
@@ -143,7 +143,7 @@ fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
           fits[k] = ended.reached;
         }
       },
-      [&](int done) { bench.tell("starts of " + h.name + " refined", done, static_cast<int>(tries)); });
+      [&](int done) { bench.tell(event::Phase::effect_starts, done, static_cast<int>(tries)); });
   if (interruption_asked()) throw_best(fits);
   fit::Fit best = *std::ranges::min_element(fits, fit::better);
   if (!best.failed.empty())
@@ -170,7 +170,7 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
       [&](std::size_t e) {
         known[e] = fit::information(fit::event_slopes(fitted, bench.all().whitened(e), fits[e].state, free));
       },
-      [&](int done) { bench.tell("sensitivities", done, static_cast<int>(fits.size())); });
+      [&](int done) { bench.tell(event::Phase::sensitivities, done, static_cast<int>(fits.size())); });
   const auto n = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd belief = Eigen::MatrixXd::Identity(n, n);
   Eigen::MatrixXd all = belief;
@@ -195,8 +195,8 @@ void calibrate_addition(Addition& a, const std::vector<record::Record>& records,
   o.given = {{a.hypothesis.name, a.with.plant}};
   o.free = hypothesis::free_of(a.hypothesis, options.calibrate.spread);
   if (options.calibrate.progress)
-    o.progress = [&](const std::string& what, int done, int total) {
-      options.calibrate.progress("sensitivities, " + what, done, total);
+    o.progress = [&](event::Phase, const std::string& item, int done, int total) {
+      options.calibrate.progress(event::Phase::sensitivities, item, done, total);
     };
   const calibrate::Calibration c = calibrate::calibrate(prior, records, o);
   a.parameters.clear();
@@ -244,15 +244,17 @@ std::string sentence_of(const Addition& a) {
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
-  auto all = hypothesis::all_hypotheses(model.under_test(), model.library);
-  std::string names;
-  for (const auto& h : all) names += (names.empty() ? "" : ", ") + h.name;
+  auto all = hypothesis::all_hypotheses(model.under_test(), model.library, model.reading.component);
+  std::vector<std::string> names;
+  for (const auto& h : all) names.push_back(h.name);
   std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));
   if (const auto found = std::ranges::find_if(all, named); found != all.end()) return *found;
   const sim::Effect* effect = model.library.find(name);
-  const std::string remedy = "use one of " + names + ", or load a law with --law";
+  const std::string remedy =
+      fmt::format("use one of {}, or load a user-defined model with --law", fmt::join(names, ", "));
   if (effect == nullptr)
-    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name", remedy});
+    throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
+                      suggestion(name, names, remedy)});
   if (effect->instants)
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
                       "it acts at given instants and so belongs to one event, not to the plant",
@@ -268,7 +270,7 @@ namespace {
 void work(const plant::PlantModel& model, const std::vector<record::Record>& records,
           const AddOptions& options, Addition& a) {
   Bench bench(model, records, options.calibrate);
-  auto before = bench.each(model.under_test(), "events with the model as it is");
+  auto before = bench.each(model.under_test(), event::Phase::model_as_it_is);
   const auto states = bench.states_of(before);
   hypothesis::Hypothesis& hypothesis = a.hypothesis;
   a.model = model;
@@ -283,15 +285,15 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   }
   if (bench.measure_noise(a.with, hypothesis.conventions)) {
     const double spread = options.calibrate.spread;
-    before = bench.each(model.under_test(), "events with the model as it is");
+    before = bench.each(model.under_test(), event::Phase::model_as_it_is);
     a.without = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), a.without);
     a.with = go_on(hypothesis.under_test(), bench, hypothesis::free_of(hypothesis, spread), a.with);
   }
   hypothesis::grow(bench.seen(), options.calibrate.spread, hypothesis, a.with);
   a.own = static_cast<int>(hypothesis.free.size());
   a.evidence = fit::gain(a.without, a.with, fit::criterion);
-  const auto refitted = bench.each({a.without.plant, model.conventions}, "events without the effect");
-  const auto after = bench.each({a.with.plant, hypothesis.conventions}, "events with the effect");
+  const auto refitted = bench.each({a.without.plant, model.conventions}, event::Phase::effect_left_out);
+  const auto after = bench.each({a.with.plant, hypothesis.conventions}, event::Phase::effect_added);
   const auto allowed = allowances({a.with.plant, hypothesis.conventions}, bench, after,
                                   hypothesis::free_of(hypothesis, options.calibrate.spread));
   a.earns = true;
@@ -343,7 +345,7 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
   r.effect = model.plant.controls[control].effect->name;
   r.model = model;
   r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
-  const auto states = bench.states_of(bench.each(model.under_test(), "events with " + r.effect));
+  const auto states = bench.states_of(bench.each(model.under_test(), event::Phase::effect_added));
   const double spread = options.calibrate.spread;
   fit::Fit with = fit_without(model, bench, states, spread),
            without = fit_without(r.model, bench, states, spread);

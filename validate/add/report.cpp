@@ -76,9 +76,8 @@ report::Table addition_table(const Addition& a) {
 std::string terminal_report(const Addition& a) {
   return a.sentence + "\n\n" + calibrate::aligned(addition_table(a)) + "\n" +
          calibrate::aligned(values_table(a)) +
-         fmt::format(
-             "\nEvidence (twice the log of the Bayes factor): {:.1f}; above {:g} is strong.\n{}\n{}\n",
-             a.evidence, thresholds::addition.strong.value, judged_by(a), thresholds::ruling_text(a.ruling));
+         fmt::format("\nEvidence, 2 ln(Bayes factor): {:.1f}; above {:g} is strong.\n{}\n", a.evidence,
+                     thresholds::addition.strong.value, judged_by(a));
 }
 
 json addition_json(const Addition& a) {

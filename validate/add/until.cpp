@@ -50,7 +50,7 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
   diagnose::DiagnoseOptions how;
   how.spread = options.calibrate.spread;
   how.adequate = options.calibrate.adequate;
-  how.measured_states = options.calibrate.events.measured_states;
+  how.events = options.calibrate.events;
   how.progress = options.calibrate.progress;
   std::string names;
   while (static_cast<int>(c.added.size()) < most) {

@@ -76,14 +76,14 @@ class Calibrating {
 
  private:
   void work() {
-    before_ = each_alone(model_.plant, "events with the model as it is");
+    before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
     search();
     shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
     if (c_.fit.misfit() <= thresholds::noise.measurable) {
       whiten_voltage_noise();
       if (c_.fit.misfit() <= thresholds::noise.taken_back) undo_voltage_noise();
     }
-    after_ = each_alone(c_.fit.plant, "events with the fitted model");
+    after_ = each_alone(c_.fit.plant, event::Phase::fitted_model);
     c_.model.plant = c_.fit.plant;
     for (const auto& f : after_) c_.states.push_back(f.state);
     learn();
@@ -101,19 +101,19 @@ class Calibrating {
     const std::lock_guard guard(reaching_);
     if (!f.parameters.empty() && f.failed.empty() && std::isfinite(fit::penalised(f))) reached_.push_back(f);
   }
-  void tell(const std::string& what, int done, int total) const {
-    if (options_.progress) options_.progress(what, done, total);
+  void tell(event::Phase phase, int done, int total) const {
+    if (options_.progress) options_.progress(phase, "", done, total);
   }
   /// Fits every event by itself, with only its own state free. Events that were seen keep the state of the
   /// common fit if that is better.
-  std::vector<fit::EventFit> each_alone(const sim::plant::Plant& plant, const std::string& what) const {
+  std::vector<fit::EventFit> each_alone(const sim::plant::Plant& plant, event::Phase phase) const {
     std::vector<fit::EventFit> fits(c_.prepared.size());
     in_parallel(
         c_.prepared.size(),
         [&](std::size_t e) {
           fits[e] = std::move(alone(model_, plant, c_.prepared.alone(e)).events.front());
         },
-        [&](int done) { tell(what, done, static_cast<int>(fits.size())); });
+        [&](int done) { tell(phase, done, static_cast<int>(fits.size())); });
     return fits;
   }
 
@@ -160,7 +160,7 @@ class Calibrating {
           draws[k] = screen.draw(k);
           order[k] = {chi2_of({screen.with(draws[k]), model_.conventions}, seen_, states), k};
         },
-        [&](int done) { tell("parameter sets screened", done, options_.draws); });
+        [&](int done) { tell(event::Phase::parameter_sets, done, options_.draws); });
     std::ranges::sort(order);
     Starts starts;
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
@@ -187,7 +187,7 @@ class Calibrating {
           }
           reached(found[k]);
         },
-        [&](int done) { tell("starts refined", done, static_cast<int>(starts.size())); });
+        [&](int done) { tell(event::Phase::starts, done, static_cast<int>(starts.size())); });
     for (std::size_t k = 0; k < starts.size(); ++k) {
       c_.started.push_back({.name = starts[k].name, .before = starts[k].before});
       fits.push_back(std::move(found[k]));
@@ -218,7 +218,7 @@ class Calibrating {
   void whiten_voltage_noise() {
     fit::Fit whole;
     whole.plant = c_.fit.plant;
-    whole.events = each_alone(whole.plant, "noise of the voltage");
+    whole.events = each_alone(whole.plant, event::Phase::voltage_noise);
     event::WhitenedEvents measured = c_.prepared;
     measured = measured.with(event::measure_noise({whole.plant, model_.conventions}, measured));
     measured = measured.with(fit::sharpen_noise(whole, measured));
@@ -239,7 +239,7 @@ class Calibrating {
     if (!c_.fit.failed.empty())
       throw InputError(
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
-    before_ = each_alone(model_.plant, "events with the model as it is");
+    before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
   }
   /// Slopes of the events that are seen.
   std::vector<fit::EventSlopes> slopes_seen(const sim::plant::Plant& plant) const {
@@ -249,7 +249,7 @@ class Calibrating {
         [&](std::size_t e) {
           slopes[e] = fit::event_slopes({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
         },
-        [&](int done) { tell("noise of the voltage", done, static_cast<int>(slopes.size())); });
+        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(slopes.size())); });
     return slopes;
   }
   /// Goes by Newton steps from where noise of the played-in voltage has pulled the fit to where the scores
@@ -323,7 +323,7 @@ class Calibrating {
           slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
                                         c_.states[e], free_);
         },
-        [&](int done) { tell("sensitivities", done, static_cast<int>(slopes.size())); });
+        [&](int done) { tell(event::Phase::sensitivities, done, static_cast<int>(slopes.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
     const Eigen::MatrixXd belief = belief_at(c_.fit.plant);
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
@@ -460,7 +460,7 @@ class Calibrating {
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
     return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
-           left + ")." + (most.empty() ? "" : " Furthest off, in standard errors: " + most + ".");
+           left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();

@@ -2,10 +2,10 @@
 // Calibration: the free parameters of the present structure fitted to several events at once, from several
 // starts; what the records decide and what they cannot; and whether the structure holds after that, on the
 // events it was fitted to and on those left out.
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "validate/event/progress.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
@@ -30,8 +30,7 @@ struct CalibrateOptions {
   double adequate =
       thresholds::adequacy.misfit;  ///< chi2 per value that interpolation and the played-in voltage may leave
   event::FitEventOptions events = {};
-  /// Called with what is done, done and total; may be empty.
-  std::function<void(const std::string& what, int done, int total)> progress = {};
+  event::Progress progress = {};
 };
 
 /// One channel of one event in the fit, which moves the event's own state. The errors that commands show are

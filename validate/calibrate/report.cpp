@@ -157,8 +157,8 @@ std::string aligned(const report::Table& table) {
 }
 
 std::string terminal_report(const Calibration& c) {
-  std::string text = c.sentence + "\n" + thresholds::ruling_text(c.ruling) + "\n\n" +
-                     aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
+  std::string text =
+      c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
   text += fmt::format("\n{} of {} starts came to this optimum{}.\n", c.agreeing, c.starts,
                       c.converged ? "" : "; the search had not ended when its iterations did");
   if (c.started.size() > 1) text += starts_text(c);

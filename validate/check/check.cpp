@@ -223,9 +223,11 @@ class Check : Findings {
              "name the column V_kV");
     else if (near(v, std::numbers::sqrt3, 0.12) || near(v, 1 / std::numbers::sqrt3, 0.12))
       refuse("voltage_unit", what, "that is off by sqrt(3)",
-             v < 1 ? "V is line to neutral: name the column V_kV_ln, or give base_kv line to neutral's "
-                     "sqrt(3) fold"
-                   : "base_kv is line to line; give it so, or name the column V_kV");
+             v < 1 ? "if V is line to neutral, name the column V_kV_ln; base_kv is always line to line"
+                   : "give base_kv line to line, or name the column V_kV if V is line to line");
+    else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // 1 kV: a case that gives none
+      refuse("voltage_unit", fmt::format("{}, with base_kv = {:g} kV", what, r_.base.kv),
+             "that is a voltage in V taken as kV", "name the column V_V");
     else if (within(v, 70, 130))
       refuse("voltage_unit", what, "that may be a voltage in percent, or in kV, taken as pu",
              "name the column V_kV and give base_kv, or divide by 100");

@@ -10,6 +10,7 @@
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/detail/power_doubt.hpp"
 #include "validate/compare/detail/spread.hpp"
+#include "validate/compare/event_title.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 
@@ -224,38 +225,40 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
 /// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
-      e.record.component == record::Component::plant ? "P and Q are" : "what is compared is";
-  if (e.fitted) return "within that they were moved to where " + what + " met best.";
+      e.record.component == record::Component::plant ? "P and Q" : "the compared signals";
+  if (e.fitted) return "they were then fitted to " + what + " within these intervals.";
   if (!failed.empty())
-    return "they could not be moved within that, so the middle of each interval was taken (" + failed + ").";
-  return tried ? "nowhere within that " + what + " met better than with the middle of each interval."
-               : "the middle of each interval was taken.";
+    return "the fit within these intervals failed, so the middle of each is used (" + failed + ").";
+  return tried ? "no time within these intervals fits " + what + " better than their middle."
+               : "the middle of each interval is used.";
 }
 
 void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
       jumps == event::Jumps::spread && smeared > 0)
     e.notes.push_back(fmt::format(
-        "The instrument's filter has smeared the jumps over {} samples: these are neither played in nor "
-        "compared, and {} moved to where the rest is met best.",
+        "The instrument's filter spreads the steps over {} samples: these are neither played in nor "
+        "compared, and {} fitted to P and Q.",
         smeared, e.detected ? "instants and start were" : "the start was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
-        fmt::format("The switching instants were found in the record, which tells each to ± {:.1f} ms only; "
+        fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
                     "{} Give them with --switch where they are known.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
   if (std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.turn != 0; })) {
     std::string turns;
     for (const playin::Switching& s : e.switchings)
       turns += (turns.empty() ? "" : ", ") + fmt::format("{:+.1f}°", s.turn * constants::degrees_in_radian);
-    e.notes.push_back("At the switchings the integrated angle was turned by " + turns +
-                      ", to where P and Q are met best: a frequency does not show all of it.");
+    e.notes.push_back(
+        "Angle steps of " + turns +
+        " were fitted at the switching times: frequency measurements under-report angle steps.");
   }
   if (e.switchings.empty())
     e.notes.push_back(fmt::format(
-        "The voltage does not jump anywhere: the first {:.3g} s are taken for the steady state (--pre-event){}.",
+        "No voltage step was found; the first {:.3g} s are used as the steady state (--pre-event){}.",
         e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
-        tried && e.fitted ? ", and the start was moved within its noise to where the rest is met best" : ""));
+        tried && e.fitted ? ", and the initial point was adjusted within measurement noise" : ""));
+  if (const std::string hint = quiet_end_hint(e); !hint.empty()) e.notes.push_back(hint);
   if (e.playback.start.drift != 0)
     e.notes.push_back(
         fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
@@ -333,11 +336,15 @@ std::vector<Window> event_windows(const record::Record& record,
   const double begins = slack + (switched ? std::min(switchings.front().time, staged) : still);
   const double over = slack + (switched ? switchings.back().time : still);
   const bool known = switched || moved;  // else nothing tells when the event begins
-  const Window all[] = {{known ? "pre-event" : "at first", first, begins},
+  const auto of_record = [&](double from, double to) {
+    return fmt::format("{:.4g}–{:.4g} s of the record", from - first, to - first);
+  };
+  const Window all[] = {{known ? "pre-event" : of_record(first, begins), first, begins},
                         {"fault", begins, over},
-                        {known ? "0–1 s after" : "next second", over, over + 1},
-                        {known ? "1–5 s after" : "next 4 s", over + 1, over + 5},
-                        {known ? "> 5 s after" : "later", over + 5, end + slack}};
+                        {known ? "0–1 s after" : of_record(over, over + 1), over, over + 1},
+                        {known ? "1–5 s after" : of_record(over + 1, over + 5), over + 1, over + 5},
+                        {known ? "> 5 s after" : fmt::format("> {:.4g} s of the record", over + 5 - first),
+                         over + 5, end + slack}};
   std::vector<Window> windows;
   for (const auto& w : all) {
     const auto inside = [&](double t) { return t <= w.to && (t > w.from || (&w == all && t == w.from)); };
@@ -374,7 +381,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       record::stretch(std::move(record), -std::numeric_limits<double>::infinity(), options.play_in.until);
   e.left_out = e.record.lost;
   const auto step = [&](const char* what, int done) {
-    if (options.progress) options.progress(fmt::format("{}: {}", e.record.name, what), done, 3);
+    if (options.progress)
+      options.progress(event::Phase::playing, fmt::format("{}: {}", e.record.name, what), done, 3);
   };
   const bool no_angle =
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();

@@ -1,12 +1,12 @@
 #pragma once
 // Measured against modelled P and Q of one event, per window of time and beside the record's own noise.
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "validate/compare/error_map.hpp"
 #include "validate/event/event.hpp"
+#include "validate/event/progress.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/record/record.hpp"
@@ -63,7 +63,7 @@ struct CompareOptions {
   bool fit_switchings = true;
   event::Jumps jumps = event::Jumps::either;  ///< what the instrument does to jumps; either: the record tells
   /// Told before each step of a record that is long: what comes, and how many steps are done of how many.
-  std::function<void(const std::string& what, int done, int total)> progress = {};
+  event::Progress progress = {};
   playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
 
@@ -93,9 +93,10 @@ ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<dou
 std::vector<double> frequency_of(const std::vector<double>& t, const std::vector<double>& theta,
                                  double nominal);
 
-/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; at first, next second, next 4 s and
-/// later where nothing switches; none without a sample. Between the first and the last switching is the
-/// "fault"; a single switching has none. No window begins or ends with samples that are left out.
+/// pre-event, fault, 0-1 s, 1-5 s and > 5 s after the last switching; where nothing switches, the same
+/// lengths counted from the begin of the record (0-1 s, 1-2 s, 2-6 s and > 6 s of the record, with a
+/// pre-event stretch of 1 s); none without a sample. Between the first and the last switching is the "fault";
+/// a single switching has none. No window begins or ends with samples that are left out.
 std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<playin::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});

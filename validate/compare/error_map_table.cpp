@@ -50,9 +50,10 @@ void keep_worse(MapCell& worst, const MapCell& cell) {
 }
 
 constexpr const char* kCaption =
-    "Normalised RMS of the residual per window of time and band of frequency: each component is divided by the "
-    "standard deviation that coloured noise gives it, so that noise alone gives 1 ×. A star marks what exceeds "
-    "the bound of noise alone, which holds for all cells together; “–”: the window is too short for the band.";
+    "Normalised RMS of the residual per time window and frequency band: each component is divided by the standard "
+    "deviation that coloured noise gives it, so that noise alone gives 1 ×. Windows “after” count from the last "
+    "switching, others from the first sample. * = above the joint noise limit of all cells; “–”: the window is too "
+    "short for the band.";
 
 }  // namespace
 
@@ -78,9 +79,12 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
   std::vector<std::string> channels;
   for (const auto& m : maps)
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
+  std::vector<std::string> windows = {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"};
+  for (const auto& m : maps)
+    for (const Window& w : *m.windows)  // of records without a switching
+      if (std::ranges::find(windows, w.name) == windows.end()) windows.push_back(w.name);
   for (const auto& channel : channels)
-    for (const char* window : {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after", "at first",
-                               "next second", "next 4 s", "later"}) {
+    for (const auto& window : windows) {
       ErrorMap::Row worst;
       worst.bands.resize(error_bands().size());
       const LabelledMap* of = nullptr;

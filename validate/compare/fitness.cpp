@@ -107,7 +107,7 @@ std::string verdict(const Fitness& f, int exceed) {
   return fmt::format("Fit for purpose: {} the limits {}. {}: {}",
                      f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
                            : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
-                     f.by.name, f.fit ? "Nearest" : "Furthest off", nearest_text(f));
+                     f.by.name, f.fit ? "Nearest to its limit" : "Largest violation", nearest_text(f));
 }
 
 const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
@@ -115,8 +115,8 @@ const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "
 std::string caption(const Fitness& f) {
   return fmt::format(
       "Errors (modelled − measured) in % of {:g} MVA, each of its limit, as IEC 61400-27-2 counts them: MXE the "
-      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Not compared: {:g} ms after the first "
-      "switching, {:g} ms after the last. A star marks what exceeds its limit.",
+      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Excluded: the first {:g} ms after "
+      "the first switching and {:g} ms after the last. A star marks what exceeds its limit.",
       f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
 }
 
@@ -147,7 +147,7 @@ nlohmann::json errors_json(const Errors& e) {
 
 std::string_view JudgedErrors::window() const {
   if (switched) return thresholds::phase_name(phase);
-  return phase == Phase::pre_fault ? "at first" : "later";
+  return phase == Phase::pre_fault ? "start of record" : "rest of record";
 }
 
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why) {

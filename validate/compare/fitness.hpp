@@ -19,7 +19,7 @@ struct JudgedErrors {
   int samples = 0;
   thresholds::Errors errors, limits;  ///< [% of MVA]
   bool switched = true;               ///< of the event: without a switching it has no fault
-  /// "post-fault"; "later" where nothing is switched.
+  /// "post-fault"; "rest of record" where nothing is switched.
   [[nodiscard]] std::string_view window() const;
 };
 

@@ -82,17 +82,16 @@ Adequacy judge(std::vector<EventComparison>& events) {
     return a;
   }
   a.sentence =
-      a.adequate
-          ? fmt::format("Adequate: each of {} cells is within what noise alone allows", a.cells)
-          : fmt::format("Not adequate: {} of {} cells exceed what noise alone allows", a.exceeding, a.cells);
-  a.sentence += fmt::format(" (with probability {:g} % for all of them together).",
-                            100 * (1 - thresholds::adequacy.false_alarm));
+      a.adequate ? fmt::format("Adequate: each of {} time/frequency cells is within the noise limit", a.cells)
+                 : fmt::format("Not adequate: {} of {} time/frequency cells exceed the noise limit",
+                               a.exceeding, a.cells);
+  a.sentence += fmt::format(" (joint {:g} % level).", 100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
-    a.sentence +=
-        fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
-                    a.adequate ? "Nearest to its bound" : "Furthest off", worst->channel->name, worst->where,
-                    worst->event->record.name, worst->cell->rms * worst->channel->scale, worst->channel->unit,
-                    times_noise(worst->cell->normalised), times_noise(worst->cell->bound));
+    a.sentence += fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
+                              a.adequate ? "Nearest to its bound" : "Largest violation", worst->channel->name,
+                              worst->where, worst->event->record.name,
+                              worst->cell->rms * worst->channel->scale, worst->channel->unit,
+                              times_noise(worst->cell->normalised), times_noise(worst->cell->bound));
   return a;
 }
 

@@ -8,6 +8,7 @@
 
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/event_title.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -125,7 +126,7 @@ void event_panels(report::Page& page, const std::vector<Played>& played, std::si
   const ShownEvent shown = shown_event(played, event);
   if (shown.of.empty()) return;
   const EventComparison& e = *shown.of.back().second;  // what is said of it is said of the model that counts
-  page.subsection(e.record.name);
+  page.subsection(e.record.name + ": " + event_title(e));
   const auto begins = record::beginning(e.record);
   page.text(fmt::format(
       "{}{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
@@ -190,7 +191,7 @@ void parameters_part(report::Page& page, const std::vector<PageParameter>& param
   const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
   report::Table table{fitted ? "Before and after, with 95 % intervals. The last columns say how much of the "
                                "interval the records decide, and what else is to be known."
-                             : "The values that the model has; none was changed.",
+                             : "Model parameters (unchanged).",
                       {"parameter", "unit", fitted ? "before" : "value"},
                       {}};
   if (fitted)
@@ -222,8 +223,8 @@ void maps_part(report::Page& page, const std::vector<Played>& played) {
     if (p.events.empty()) continue;
     const auto maps = labelled_maps(p.events);
     report::Table table = p.events.size() > 1 ? worst_map_table(maps) : map_table(maps);
-    table.caption =
-        fmt::format("The model {}. {}", p.name, &p == played.data() ? table.caption : "Same units.");
+    const std::string which = p.name == "model" ? "" : fmt::format("The model {}. ", p.name);
+    table.caption = which + (&p == played.data() ? table.caption : "Same units.");
     page.table(table);
   }
 }
@@ -245,23 +246,21 @@ void glossary_part(report::Page& page) {
          "One window of time and one band of frequency of one channel in the error map, with a bound of its "
          "own that noise alone keeps."},
         {"evidence",
-         "Twice the logarithm of how much likelier an effect makes the records than the model without "
-         "it, its parameters paid for."},
-        {"belief",
-         "How far a parameter was thought to be off before the records were seen (--spread); it decides "
-         "what the records do not."},
+         "2 ln(Bayes factor) of the model with the effect against the model without it, penalised for the "
+         "added parameters."},
+        {"prior", "Standard deviation of a parameter before the records were used (--spread)."},
         {"decided",
-         "The share of a parameter's interval that comes from the records, not from the belief."}}});
+         "Share of a parameter's interval that is determined by the records, not by the prior."}}});
 }
 
 std::string command_html(const CommandPage& p) {
   report::Page page(p.title, p.subtitle);
   verdict_part(page, p.played, p.complete, p.sentence, p.complete ? report::Tone::good : report::Tone::bad);
+  maps_part(page, p.played);
   panels_part(page, p.played);
   parameters_part(page, p.parameters);
   errors_part(page, p.played, p.unseen);
-  maps_part(page, p.played);
-  page.section("Hypotheses");
+  if (!p.tried.empty()) page.section("Hypotheses");
   for (const auto& sentence : p.tried) page.text(sentence);
   glossary_part(page);
   page.provenance(p.provenance);

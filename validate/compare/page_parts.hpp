@@ -1,6 +1,6 @@
 #pragma once
-// The parts that the pages of all commands have, in the order in which they stand: verdict, panels of the
-// events, parameters, errors, error maps, what was tried, glossary, provenance.
+// The parts that the pages of all commands have, in the order in which they stand: verdict, error maps,
+// panels of the events, parameters, errors, what was tried, glossary, provenance.
 #include <string>
 #include <vector>
 
@@ -30,7 +30,7 @@ void errors_part(report::Page& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen = {});
 /// The error map of each model.
 void maps_part(report::Page& page, const std::vector<Played>& played);
-/// Definitions of the terms that pages use.
+/// Definitions of the terms on the page.
 void glossary_part(report::Page& page);
 
 /// A page of a command that has no more to show: all parts, `tried` among them as sentences.

@@ -1,6 +1,7 @@
 #include "validate/compare/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/event_title.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -24,13 +26,6 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
   return maps;
 }
 
-std::string describe_instants(const EventComparison& e) {
-  if (e.switchings.empty()) return "none";
-  std::string text;
-  for (const auto& s : e.switchings) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", s.time);
-  return text + (!e.detected ? " (given)" : e.fitted ? " (found and fitted)" : " (found)");
-}
-
 /// Every parameter of a plant, as it is.
 std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -43,6 +38,24 @@ std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
                       std::string(p.unit), value, value, none, none, none});
     }
   return rows;
+}
+
+/// Each note once, with the events that it is about.
+std::string notes_text(const std::vector<EventComparison>& events) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> notes;
+  for (const auto& e : events)
+    for (const auto& note : e.notes) {
+      auto known = std::ranges::find(notes, note, &std::pair<std::string, std::vector<std::string>>::first);
+      if (known == notes.end()) known = notes.insert(notes.end(), {note, {}});
+      known->second.push_back(e.record.name);
+    }
+  std::string text;
+  for (const auto& [note, of] : notes)
+    text += fmt::format(
+        "note ({}): {}\n",
+        of.size() == events.size() && of.size() > 1 ? "all events" : fmt::format("{}", fmt::join(of, ", ")),
+        note);
+  return text;
 }
 
 nlohmann::json to_json(const WindowError& w) {
@@ -93,27 +106,31 @@ nlohmann::json to_json(const EventComparison& e) {
 report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy, const Fitness& fitness) {
-  std::string out = fmt::format("{} ({}): measured against modelled\n\n", model.name, plant::subject(model));
+                            const Adequacy& adequacy, const Fitness& fitness, bool verbose) {
+  std::string out = fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n";
+  if (!adequacy.adequate)
+    out += "Next: swingbank diagnose, with the same options, names what the model lacks.\n";
+  out += fmt::format("\n{} ({}): measured against modelled\n\n", model.name, plant::subject(model)) +
+         error_text({{"", events, fitness}});
   const auto maps = maps_of(events);
-  out += error_text({{"", events, fitness}});
-  out += events.size() > 1 ? "\nNormalised RMS per window and band, worst of all events:\n" +
-                                 report::padded(worst_map_table(maps))
-                           : "\nNormalised RMS per window and band:\n" + report::padded(map_table(maps));
-  out += "* exceeds what noise alone allows\n";
+  if (verbose)
+    out += (events.size() > 1 ? "\nNormalised RMS per window and band, worst of all events:\n" +
+                                    report::padded(worst_map_table(maps))
+                              : "\nNormalised RMS per window and band:\n" + report::padded(map_table(maps))) +
+           "* = above the joint noise limit\n";
+  out += "\n";
   for (const auto& e : events) {
-    out += fmt::format("\n{}: {}\n", e.record.name,
-                       e.switchings.empty() ? "no switching" : "switching at " + describe_instants(e));
-    if (const auto begins = record::beginning(e.record); !begins.empty())
-      out += "  t = 0 is " + begins + "\n";
-    for (const auto& note : e.notes) out += "  note: " + note + "\n";
+    const auto begins = record::beginning(e.record);
+    out += fmt::format("{}: {}{}\n", e.record.name, event_title(e),
+                       begins.empty() ? "" : "; t = 0 is " + begins);
   }
+  out += notes_text(events);
+  if (!verbose) return out + "(--verbose prints the error map and every limit)\n";
   if (fitness.not_judged.empty())
     out += "\n" + worst_fitness_table(fitness).caption + "\n" + report::padded(worst_fitness_table(fitness));
   if (!fitness.movements.empty())
     out += "\n" + movement_table(fitness).caption + "\n" + report::padded(movement_table(fitness));
-  return out + "\n" + fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
-         thresholds::ruling_text(adequacy.ruling) + "\n";
+  return out;
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
@@ -160,18 +177,15 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
   CommandPage page;
   page.title = "Measured against modelled: " + model.name;
   page.subtitle = fmt::format(
-      "{} of {:g} MVA; the recorded {} played into the model, and what it answers with is compared.",
+      "{} of {:g} MVA; the recorded {} into the model, and its response is compared with the recording.",
       plant::subject(model), model.plant.mva,
-      model.whole                         ? "signals around it are"
-      : events.front().playback.P.empty() ? "P and Q are"
-                                          : "terminal voltage is");
+      model.whole                         ? "signals around it are played"
+      : events.front().playback.P.empty() ? "P and Q are played"
+                                          : "terminal voltage is played");
   page.complete = adequacy.adequate;
   page.sentence = adequacy.sentence;
-  page.played = {{"submitted", events, fitness}};
+  page.played = {{"model", events, fitness}};
   page.parameters = parameters_of(model.plant);
-  page.tried = {
-      "None: compare changes nothing. “swingbank diagnose” names what the model lacks, “swingbank calibrate” "
-      "fits its parameters."};
   page.provenance = rows;
   page.figures = json_report(model, events, adequacy, fitness, rows);
   return command_html(page);
@@ -179,9 +193,8 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
 
 report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                               const std::string& command_line) {
-  report::Provenance rows = {{"command", command_line},
-                             {"software", "swingbank " SWINGBANK_VERSION},
-                             {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  report::Provenance rows = {
+      {"command", command_line}, {"software", "swingbank " SWINGBANK_VERSION}, {"model", model.origin}};
   rows.emplace_back(
       "conventions",
       fmt::format(
@@ -192,8 +205,8 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
   if (!model.standard.empty())
     rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
   for (const auto& e : events)
-    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}{}", e.record.name, e.record.hash,
-                                            e.record.epoch ? ", begins " + record::beginning(e.record) : ""));
+    rows.emplace_back("record", e.record.name + (e.record.epoch ? ", begins " + record::beginning(e.record)
+                                                                : std::string()));
   return rows;
 }
 

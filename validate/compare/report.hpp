@@ -12,9 +12,9 @@ namespace swingbank::validate::compare {
 /// Normalised RMS per event, channel, window and band, and the RMS per window in units.
 report::Table error_map(const std::vector<EventComparison>& events);
 
-/// Both tables, the notes and the verdict, for a terminal.
+/// The verdict, what to do next, the errors and each note once, for a terminal; `verbose`: every table.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy, const Fitness& fitness);
+                            const Adequacy& adequacy, const Fitness& fitness, bool verbose);
 /// Everything but the samples; values in pu, bases and units beside them.
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness,

@@ -37,10 +37,9 @@ class Diagnoser {
       throw InputError({fmt::format("{} event", records.size()), "--records",
                         "an effect is believed only if it predicts an event that it was not fitted to",
                         "give records of two events or more"});
-    result_.events =
-        event::prepare_events(model, std::move(records), {.measured_states = options.measured_states});
+    result_.events = event::prepare_events(model, std::move(records), options.events);
     result_.conventions = model.conventions;
-    threads_ = options.threads > 0 ? options.threads : omp_get_num_procs();
+    threads_ = options.threads > 0 ? options.threads : omp_get_max_threads();
   }
 
   Diagnosis run() {
@@ -65,9 +64,9 @@ class Diagnoser {
     const event::WhitenedEvents prepared = result_.events;
     fit::FitOptions from{.lenient = true};
     for (int round = 0;; ++round) {
-      report("base", 0, 1);
+      report(event::Phase::base, "", 0, 1);
       fit_base(model_, options_, from, result_);
-      report("base", 1, 1);
+      report(event::Phase::base, "", 1, 1);
       result_.ranked.clear();  // those of a worse base
       result_.torque = result_.field = {};
       keep();
@@ -157,7 +156,7 @@ class Diagnoser {
         go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base, how);
     require_fitted(result_.base, model_);
     const hypothesis::FittedOn leading{best.gain, best.hypothesis.slot};
-    each(result_.ranked, "noise measured again", [&](hypothesis::Judgement& j) {
+    each(result_.ranked, event::Phase::noise_again, [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
       fit::FitOptions its = how;
       if (!leading(j.gain, j.hypothesis.slot))
@@ -184,7 +183,7 @@ class Diagnoser {
                                   known ? fit::continued({}, m.fit, free) : from);
     };
     in_parallel(
-        2, infer, [&](int done) { report("missing input", done, 2); }, threads_);
+        2, infer, [&](int done) { report(event::Phase::missing_input, "", done, 2); }, threads_);
   }
 
   /// Judges the leading hypotheses. Then tries each hypothesis beside the one that holds or, where none does,
@@ -279,14 +278,14 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::Stage& stage,
                                                              const hypothesis::Judgement& pair) const {
     auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
-    each(rivals, "in place of " + pair.hypothesis.with, [&](hypothesis::Judgement& j) {
+    each(rivals, event::Phase::pair_exchanges, [&](hypothesis::Judgement& j) {
       hypothesis::try_exchange(stage, pair, j);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
     std::erase_if(rivals, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
-    each(rivals, "unseen events", [&](hypothesis::Judgement& j) { judge_one(j); });
+    each(rivals, event::Phase::pair_unseen_events, [&](hypothesis::Judgement& j) { judge_one(j); });
     return rivals;
   }
   /// What was no rival of a pair's first effect, beside the second one: the first was chosen while the second
@@ -313,7 +312,7 @@ class Diagnoser {
     for (auto next = hypothesis::best_cross(tried); next && in_set(next->expected) && !stopped();
          next = hypothesis::best_cross(tried)) {
       hypothesis::Judgement j = hypothesis::crossed(stage, *next);
-      report("crossed " + hypothesis::full_name(j.hypothesis), 0, 1);
+      report(event::Phase::pair_crossings, hypothesis::full_name(j.hypothesis), 0, 1);
       hypothesis::try_begun(stage, j);
       fit::count_passed(trial().passed, j.hypothesis.conventions, j.fit);
       if (j.fit.failed.empty()) j.gain = fit::gain(result_.base, j.fit, fit::criterion);
@@ -411,7 +410,9 @@ class Diagnoser {
   }
   void judge_some(std::vector<hypothesis::Judgement>& tried, int from, int to) const {
     each(std::span(tried).subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from)),
-         "unseen events", [&](hypothesis::Judgement& j) { judge_one(j); });
+         tried.front().hypothesis.with.empty() ? event::Phase::unseen_events
+                                               : event::Phase::pair_unseen_events,
+         [&](hypothesis::Judgement& j) { judge_one(j); });
   }
   /// Judges on unseen events, and beside the inputs that are free in time.
   void judge_one(hypothesis::Judgement& j) const {
@@ -430,15 +431,14 @@ class Diagnoser {
 
   /// Does something with each judgement, on all cores.
   template <class F>
-  void each(std::span<hypothesis::Judgement> tried, const std::string& what, F act) const {
+  void each(std::span<hypothesis::Judgement> tried, event::Phase phase, F act) const {
     in_parallel(
         tried.size(),
         [&](std::size_t k) {
           if (!stopped()) until_interrupted([&] { act(tried[k]); });
         },
         [&](int done, std::size_t k) {
-          report(what + " " + hypothesis::full_name(tried[k].hypothesis), done,
-                 static_cast<int>(tried.size()));
+          report(phase, hypothesis::full_name(tried[k].hypothesis), done, static_cast<int>(tried.size()));
         },
         threads_);
   }
@@ -451,8 +451,8 @@ class Diagnoser {
   void tell(const std::string& sentence) const {
     if (options_.told) options_.told(sentence);
   }
-  void report(const std::string& what, int done, int total) const {
-    if (options_.progress) options_.progress(what, done, total);
+  void report(event::Phase phase, const std::string& item, int done, int total) const {
+    if (options_.progress) options_.progress(phase, item, done, total);
   }
 
   const plant::PlantModel& model_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "validate/event/progress.hpp"
 #include "validate/fit/fewest.hpp"
 #include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"
@@ -52,11 +53,10 @@ struct DiagnoseOptions {
   double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the model's parameters
   double adequate = thresholds::adequacy.misfit;  ///< chi2 per value up to which nothing but noise is left
   int threads = 0;                                ///< 0: as many as there are cores
-  bool measured_states = true;
-  int leading = 9;  ///< hypotheses at most that are judged on events left out
-  int firsts = 2;   ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
-  /// Called with what is done, done and total; may be empty.
-  std::function<void(const std::string& what, int done, int total)> progress;
+  event::FitEventOptions events = {};             ///< how the records are prepared
+  int leading = 9;                                ///< hypotheses at most that are judged on events left out
+  int firsts = 2;  ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
+  event::Progress progress;
   /// Called with a sentence as soon as something is known that the verdict will rest on: what is left and on
   /// which side, then who leads. May be empty.
   std::function<void(const std::string& sentence)> told = {};

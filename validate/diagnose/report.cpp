@@ -294,13 +294,11 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
 
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& d,
                                         const std::string& command_line) {
-  report::Provenance rows = {{"command", command_line},
-                             {"software", "swingbank " SWINGBANK_VERSION},
-                             {"model", fmt::format("{}, XXH64 {:016x}", model.origin, model.hash)}};
+  report::Provenance rows = {
+      {"command", command_line}, {"software", "swingbank " SWINGBANK_VERSION}, {"model", model.origin}};
   if (!model.standard.empty())
     rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
-  for (const auto& e : d.events)
-    rows.emplace_back("record", fmt::format("{}, XXH64 {:016x}", e.record.name, e.record.hash));
+  for (const auto& e : d.events) rows.emplace_back("record", e.record.name);
   return rows;
 }
 

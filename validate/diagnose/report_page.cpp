@@ -184,7 +184,7 @@ class DiagnosisPage {
     page_.text(fmt::format(
         "{} effects were added one at a time. A score test beside the refitted model says first what each "
         "could gain; what promises something is fitted, the model's parameters with it. "
-        "Evidence is twice the logarithm of how much likelier the effect makes the records (Laplace's "
+        "Evidence is 2 ln(Bayes factor) of the effect (Laplace's "
         "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
         "for its parameters. "
         "The leading ones were then judged on events left out of the fit.",

@@ -78,8 +78,7 @@ void add_parameters(const Diagnosis& d, std::string& text) {
 }  // namespace
 
 std::string diagnosis_text(const Diagnosis& d) {
-  std::string text =
-      d.sentence + "\n" + thresholds::ruling_text(d.ruling) + "\n" + false_positive_note() + "\n";
+  std::string text = d.sentence + "\n" + false_positive_note() + "\n";
   add_probabilities(d, text);
   if (const auto wrong = wrong_parameters(d)) text += "\n" + calibrate::wrong_text(*wrong);
   add_inputs(d, text);

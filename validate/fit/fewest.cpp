@@ -63,7 +63,7 @@ class Selection {
       if (stopped()) return back;
       if (taken - penalised(all_) < options_.each) break;  // every other parameter together earns no more
       const auto& [refitted, best] = best_of(size);
-      report("sets of parameters", size, beams_.size() - 1);
+      report(event::Phase::parameter_subsets, size, beams_.size() - 1);
       // a set of this size may look poor where the next one holds two that work together
       if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
         taken = refitted.cost;
@@ -98,7 +98,7 @@ class Selection {
       all_ = *options_.all;
       return;
     }
-    report("every parameter", 0, 1);
+    report(event::Phase::every_parameter, 0, 1);
     all_ = fit(tested_, events_, free_, kSearch);
     require(all_);
     events_ = events_.with(measure_noise_through(all_, tested_.conventions, events_));
@@ -262,7 +262,7 @@ class Selection {
         Refit less = refit(without(set, i));
         evidence.push_back(less.cost - chosen.cost);
         if (evidence.back() <= *std::ranges::min_element(evidence)) cheapest = std::move(less);
-        report("sets of parameters without one", i + 1, set.size());
+        report(event::Phase::subsets_less_one, i + 1, set.size());
       }
       const auto least = std::ranges::min_element(evidence);
       if (*least >= options_.each) break;
@@ -368,8 +368,8 @@ class Selection {
     }
     return found;
   }
-  void report(const std::string& what, std::size_t done, std::size_t total) const {
-    if (options_.progress) options_.progress(what, static_cast<int>(done), static_cast<int>(total));
+  void report(event::Phase phase, std::size_t done, std::size_t total) const {
+    if (options_.progress) options_.progress(phase, "", static_cast<int>(done), static_cast<int>(total));
   }
 
   const sim::plant::PlantUnderTest tested_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "validate/event/progress.hpp"
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit {
@@ -41,7 +42,7 @@ struct FewestOptions {
   /// that are not named may move by that much while sets are compared (spike and slab; George and McCulloch,
   /// J. Am. Stat. Assoc. 88, 1993, p. 881). In what is returned they stay as they are.
   double right = 0.01;
-  std::function<void(const std::string& what, int done, int total)> progress = {};
+  event::Progress progress = {};
   /// Asked between sets; true: nothing is named.
   std::function<bool()> stop = {};
   /// Every parameter fitted to these events, in their noise, with errors. Null: that is done here, and the

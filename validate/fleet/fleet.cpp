@@ -199,7 +199,7 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
     }
     diagnose::DiagnoseOptions options = given;
     options.spread = plant.spread;
-    options.measured_states = !plant.power_only;
+    options.events.measured_states = !plant.power_only;
     const diagnose::Diagnosis d = diagnose::diagnose(l.model, std::move(l.records), options);
     o.row = row_of(d);
     o.row.plant = plant.name;

@@ -14,8 +14,8 @@ namespace {
 
 /// Does something with each judgement, on all cores, and counts its evidence anew.
 template <class F>
-void each(const Stage& stage, const std::vector<Judgement*>& some, const std::string& what,
-          const SearchProgress& report, F act) {
+void each(const Stage& stage, const std::vector<Judgement*>& some, event::Phase phase,
+          const event::Progress& report, F act) {
   in_parallel(
       some.size(),
       [&](std::size_t k) {
@@ -24,7 +24,7 @@ void each(const Stage& stage, const std::vector<Judgement*>& some, const std::st
         some[k]->gain = fit::gain(stage.fit, some[k]->fit, fit::criterion);
       },
       [&](int done, std::size_t k) {
-        if (report) report(what + " " + full_name(some[k]->hypothesis), done, static_cast<int>(some.size()));
+        if (report) report(phase, full_name(some[k]->hypothesis), done, static_cast<int>(some.size()));
       },
       stage.threads);
 }
@@ -39,10 +39,10 @@ void best_first(std::vector<Judgement>& tried) {
   std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
 }
 /// Looks at them elsewhere; each starts from what all of them have found under the same names, too.
-void look(const Stage& stage, const std::vector<Judgement*>& some, const SearchProgress& report) {
+void look(const Stage& stage, const std::vector<Judgement*>& some, const event::Progress& report) {
   std::vector<sim::plant::Plant> found;  // as they stand before any of them is looked at
   for (const Judgement* j : some) found.push_back(j->fit.plant);
-  each(stage, some, "other optima", report, [&](Judgement& j) {
+  each(stage, some, event::Phase::other_optima, report, [&](Judgement& j) {
     try_basins(stage, j, found);
     j.looked_at = true;
   });
@@ -55,7 +55,7 @@ bool rivals(const Judgement& a, const Judgement& b) {
 
 }  // namespace
 
-void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, const SearchProgress& report) {
+void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, const event::Progress& report) {
   if (tried.empty() || tried.front().hypothesis.slot < 0) return;
   // One that is worse than nothing has not arrived anywhere, which says nothing of it.
   const double near = thresholds::evidence.near * tried.front().gain;
@@ -64,7 +64,7 @@ void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, con
   if (some.empty()) return;
   const fit::Fit leader =
       (*std::ranges::max_element(some, {}, [](const Judgement* j) { return j->gain; }))->fit;
-  each(stage, some, "further starts", report, [&](Judgement& j) {
+  each(stage, some, event::Phase::further_starts, report, [&](Judgement& j) {
     try_further(stage, leader, j);
     fit_on(stage, j);
     grow(stage.events, stage.spread, j.hypothesis, j.fit);
@@ -84,7 +84,7 @@ void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, con
 }
 
 std::vector<std::size_t> look_at_next(const Stage& stage, std::vector<Judgement>& tried,
-                                      const SearchProgress& report) {
+                                      const event::Progress& report) {
   if (tried.empty()) return {};
   const double best = std::ranges::max_element(tried, {}, &Judgement::gain)->gain;
   const auto left = those(tried, [&](const Judgement& j) {
@@ -96,7 +96,7 @@ std::vector<std::size_t> look_at_next(const Stage& stage, std::vector<Judgement>
   std::vector<Judgement*> some;
   for (Judgement* j : left)
     if (rivals(next, *j)) some.push_back(j);
-  each(stage, some, "further starts", report, [&](Judgement& j) { fit_on(stage, j); });
+  each(stage, some, event::Phase::further_starts, report, [&](Judgement& j) { fit_on(stage, j); });
   look(stage, some, report);
   std::vector<std::size_t> which;
   for (const Judgement* j : some) which.push_back(static_cast<std::size_t>(j - tried.data()));

@@ -31,7 +31,7 @@ const fit::FitOptions kBriefly = {.lenient = true, .brief = true, .errors = fals
 
 class Searcher {
  public:
-  Searcher(const Stage& stage, const SearchProgress& report)
+  Searcher(const Stage& stage, const event::Progress& report)
       : stage_(stage), report_(report), starts_(stage) {}
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
@@ -39,7 +39,7 @@ class Searcher {
     std::vector<Judgement> tried(candidates.size());
     if (starts_.near()) {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, "first steps ", [&](std::size_t i) {
+      each(candidates, first_steps_phase(), [&](std::size_t i) {
         if (!stage_.stopped()) near_first(candidates[i], begun[i]);
       });
       auto onward = promising(candidates, begun, thresholds::search.fair);
@@ -47,7 +47,7 @@ class Searcher {
       for (std::size_t i = 0; i < candidates.size(); ++i)
         if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
       const double reach = in_reach(begun);
-      each(candidates, "fit ", [&](std::size_t i) {
+      each(candidates, full_fits_phase(), [&](std::size_t i) {
         const Candidate& c = candidates[i];
         tried[i] = c.nested.empty() ? hopeless(c) : begun_only(c, begun[i]);
         if (!c.nested.empty() && !stage_.stopped())
@@ -57,7 +57,7 @@ class Searcher {
       std::vector<std::vector<fit::Fit>> begun(candidates.size());
       const auto start = [&](std::size_t tries, const std::vector<char>& which) {
         const double reach = in_reach(begun);
-        each(candidates, "first steps ", [&](std::size_t i) {
+        each(candidates, first_steps_phase(), [&](std::size_t i) {
           if (which[i] && !stage_.stopped()) first_steps(candidates[i], tries, reach, begun[i]);
         });
       };
@@ -68,7 +68,7 @@ class Searcher {
       for (std::size_t i = 0; i < fair.size(); ++i) fair[i] = fair[i] && allowed[i];
       start(kTries, fair);
       const auto onward = promising(candidates, begun, thresholds::search.fair);
-      each(candidates, "fit ", [&](std::size_t i) {
+      each(candidates, full_fits_phase(), [&](std::size_t i) {
         tried[i] = begun_only(candidates[i], begun[i]);
         if (!stage_.stopped())
           tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
@@ -81,11 +81,11 @@ class Searcher {
 
  private:
   template <class F>
-  void each(const std::vector<Candidate>& candidates, const std::string& what, F act) const {
+  void each(const std::vector<Candidate>& candidates, event::Phase phase, F act) const {
     in_parallel(
         candidates.size(), [&](std::size_t i) { until_interrupted([&] { act(i); }); },
         [&](int done, std::size_t i) {
-          report(what + candidates[i].hypothesis.name, done, candidates.size());
+          report(phase, candidates[i].hypothesis.name, done, candidates.size());
         },
         stage_.threads);
   }
@@ -97,7 +97,10 @@ class Searcher {
         [&](std::size_t i) {
           if (!stage_.stopped()) until_interrupted([&] { candidates[i] = starts_.of(std::move(all[i])); });
         },
-        [&](int done) { report("hypotheses", done, all.size()); }, stage_.threads);
+        [&](int done) {
+          report(first() ? event::Phase::screening : event::Phase::second_screening, "", done, all.size());
+        },
+        stage_.threads);
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
     return candidates;
   }
@@ -267,20 +270,28 @@ class Searcher {
     known.converged = f.converged;
     return known;
   }
-  void report(const std::string& what, int done, std::size_t total) const {
-    if (!report_) return;
-    report_(stage_.with.empty() ? what : what + " beside " + stage_.with, done, static_cast<int>(total));
+  /// Whether nothing was added to the model before.
+  [[nodiscard]] bool first() const { return stage_.with.empty(); }
+  [[nodiscard]] event::Phase first_steps_phase() const {
+    return first() ? event::Phase::quick_fits : event::Phase::second_quick_fits;
+  }
+  [[nodiscard]] event::Phase full_fits_phase() const {
+    return first() ? event::Phase::full_fits : event::Phase::second_full_fits;
+  }
+  void report(event::Phase phase, const std::string& item, int done, std::size_t total) const {
+    if (report_)
+      report_(phase, first() ? item : item + " beside " + stage_.with, done, static_cast<int>(total));
   }
 
   const Stage& stage_;
-  const SearchProgress& report_;
+  const event::Progress& report_;
   StartFinder starts_;
 };
 
 }  // namespace
 
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
-                                      const SearchProgress& report) {
+                                      const event::Progress& report) {
   return Searcher(stage, report).run(std::move(all));
 }
 

@@ -8,13 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
-
-/// Called with what is done, done and total; may be empty.
-using SearchProgress = std::function<void(const std::string& what, int done, int total)>;
 
 /// A structure that a hypothesis may be added to.
 struct Stage {
@@ -44,7 +42,7 @@ struct Stage {
 /// Fits the hypotheses and does not judge them. Returns the best first and leaves out those that do not act.
 /// `gain` is over the stage's fit.
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
-                                      const SearchProgress& report = {});
+                                      const event::Progress& report = {});
 
 /// chi2 of each plant with each event at its entry of `states`; infinite where a plant cannot be run. The
 /// plants differ in values only. Steps are lenient (event::Playing).

@@ -76,7 +76,7 @@ std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::B
 
 class Searcher {
  public:
-  Searcher(const Unexplained& c, const hypothesis::MissingInput& input, const LawProgress& report)
+  Searcher(const Unexplained& c, const hypothesis::MissingInput& input, const event::Progress& report)
       : case_(c), input_(input), report_(report) {}
 
   LawSearch run() {
@@ -86,17 +86,17 @@ class Searcher {
     const double level = trigger_level(case_.trial.events);
     s.traces = law_traces(case_.model, case_.trial.events, input_, level);
     s.ranked = law_candidates(s.kind, s.traces, level);
-    tell("laws ranked", 1, 1);
+    tell("", 1, 1);
     const auto tried = leading(s.ranked);
     s.findings.resize(tried.size());
-    in_turn("law", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
+    in_turn("", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
     std::erase_if(s.findings, [](const LawFinding& f) { return f.judgement.fit.events.empty(); });
     const auto by_gain = [](const LawFinding& a, const LawFinding& b) {
       if (a.judgement.accepted != b.judgement.accepted) return a.judgement.accepted;
       return a.judgement.gain - handicap(a.law) > b.judgement.gain - handicap(b.law);
     };
     std::ranges::stable_sort(s.findings, by_gain);
-    in_turn("unseen events, law", std::min(kJudged, s.findings.size()),
+    in_turn("unseen events", std::min(kJudged, s.findings.size()),
             [&](std::size_t k) { settle(s.findings[k]); });
     std::ranges::stable_sort(s.findings, by_gain);
     for (LawFinding& f : s.findings) write_out(f, s.traces);
@@ -106,12 +106,12 @@ class Searcher {
 
  private:
   template <class Work>
-  void in_turn(const std::string& what, std::size_t n, Work work) {
+  void in_turn(const std::string& item, std::size_t n, Work work) {
     in_parallel(
-        n, work, [&](int done) { tell(what, done, static_cast<int>(n)); }, case_.threads);
+        n, work, [&](int done) { tell(item, done, static_cast<int>(n)); }, case_.threads);
   }
-  void tell(const std::string& what, int done, int total) const {
-    if (report_) report_(what, done, total);
+  void tell(const std::string& item, int done, int total) const {
+    if (report_) report_(event::Phase::laws, item, done, total);
   }
 
   [[nodiscard]] LawFinding fitted(const LawCandidate& law) const {
@@ -169,7 +169,7 @@ class Searcher {
 
   const Unexplained& case_;
   const hypothesis::MissingInput& input_;
-  const LawProgress& report_;
+  const event::Progress& report_;
 };
 
 }  // namespace
@@ -180,7 +180,7 @@ sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& ef
   return with;
 }
 
-LawSearch search_laws(const Unexplained& case_, const LawProgress& report) {
+LawSearch search_laws(const Unexplained& case_, const event::Progress& report) {
   const auto left = [](const hypothesis::MissingInput& m) {
     return m.fit.events.empty() ? 1e300 : m.misfit();
   };

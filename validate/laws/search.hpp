@@ -2,9 +2,9 @@
 // Where no known effect explains the records: does a small law explain the input that would? Candidates are
 // ranked on the inferred input; the leading ones become law effects, are fitted to the records and judged on
 // events left out, as every hypothesis is. A law that does not predict unseen events is not offered.
-#include <functional>
 #include <memory>
 
+#include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/missing_input.hpp"
 #include "validate/laws/candidate.hpp"
@@ -40,11 +40,10 @@ struct Unexplained {
   const hypothesis::MissingInput &torque, &field;
   int threads = 1;
 };
-using LawProgress = std::function<void(const std::string& what, int done, int total)>;
 
 /// Searches in the input that explains more. Searches in the other input too if that explains as much and the
 /// first one gave no law. Does not search where neither takes away most of the misfit.
-LawSearch search_laws(const Unexplained& case_, const LawProgress& report = {});
+LawSearch search_laws(const Unexplained& case_, const event::Progress& report = {});
 
 /// "None of the 31 known effects explains it; a torque of ... does: ..."; empty without an accepted law.
 std::string law_sentence(const LawSearch& search, std::size_t hypotheses);

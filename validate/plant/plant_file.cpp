@@ -113,6 +113,8 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
                       number(model.record_base.mva));
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
+  else
+    text += "# base_kv = ?  # nominal kV, line to line: fill in for records in kV\n";
   if (model.record_base.efd > 0)
     text += fmt::format("efd_base = {}  # 1 pu of Efd in the records' unit\n", number(model.record_base.efd));
   if (model.record_base.ifd > 0)

@@ -12,6 +12,7 @@
 #include "sim/plant/usual.hpp"
 #include "validate/plant/detail/plausible.hpp"
 #include "validate/plant/detail/staged.hpp"
+#include "validate/plant/load_with_laws.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -54,7 +55,10 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   const EffectLibrary& library = model.library;
   sim::plant::Block block{
       library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
-  if (!block.effect || block.effect->slot != slot) return {};
+  if (!block.effect || block.effect->slot != slot) {
+    config.ignore(section);  // its keys are those of the effect that was meant
+    return {};
+  }
   const bool sound = config.sound();
   const bool may_miss = config.optional<bool>(section + ".standard", false);
   for (const auto& p : block.effect->parameters) {
@@ -81,8 +85,8 @@ void check_orderings(const Config& config, PlantModel& model) {
   for (const auto& o : sim::plant::violated(machine)) {
     const auto& name = machine.effect->parameters[static_cast<std::size_t>(o.greater)].name;
     model.warnings.push_back(Problem{sim::plant::violation_text(machine, o),
-                                     config.where(fmt::format("machine.{}", name)), "no machine is like that",
-                                     "correct one of them"}
+                                     config.where(fmt::format("machine.{}", name)),
+                                     "every machine has them in that order", "check both values"}
                                  .sentence());
   }
 }
@@ -262,25 +266,13 @@ bool is_columns(std::string_view text) {
   return false;
 }
 
-}  // namespace
-
-std::string subject(const PlantModel& model) {
-  if (model.reading.component == record::Component::plant)
-    return std::string(model.plant.machine.effect->name);
-  return std::string(record::component_name(model.reading.component)) + " alone";
-}
-
-PlantModel load_plant_model(const fs::path& file) {
-  return parse_plant_model(read_input(file, "no readable plant file", "give the path of a plant .toml"),
-                           file);
-}
-
-PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
+PlantModel parse_with_laws(const std::string& text, const fs::path& file, const std::vector<fs::path>& laws) {
   if (is_columns(text))
     throw InputError({"a record", file.string(), "a plant file was asked for",
                       "give the plant file (.toml) as --model, and the record as --records"});
   Config config(text, file);
   PlantModel model;
+  for (const auto& law : laws) sim::laws::load_law(law, model.library);
   model.origin = file.string();
   model.hash = XXH64(text.data(), text.size(), 0);
   model.laws = read_laws(config, model.library);
@@ -319,6 +311,25 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
   return model;
 }
 
+}  // namespace
+
+std::string subject(const PlantModel& model) {
+  if (model.reading.component == record::Component::plant)
+    return std::string(model.plant.machine.effect->name);
+  return std::string(record::component_name(model.reading.component)) + " alone";
+}
+
+PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
+  return parse_with_laws(text, file, {});
+}
+
+PlantModel load_plant_model(const fs::path& file) { return load_plant_model(file, {}); }
+
+PlantModel load_plant_model(const fs::path& file, const std::vector<fs::path>& laws) {
+  return parse_with_laws(read_input(file, "no readable plant file", "give the path of a plant .toml"), file,
+                         laws);
+}
+
 PlantModel as_submitted(PlantModel model) {
   if (model.submitted) model.plant = *model.submitted;
   return model;
@@ -339,19 +350,12 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.record_base.mva = unit.system_mva;
   // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
   constexpr double kPerUnitCase = 1.0;
-  if (unit.kv > kPerUnitCase)
-    model.record_base.kv = unit.kv;
-  else
-    model.warnings.push_back(
-        fmt::format("the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
-                    "base_kv, line to line, under [record]",
-                    unit.bus, unit.kv));
+  if (unit.kv > kPerUnitCase) model.record_base.kv = unit.kv;
   note_standard(model, unit.standard);
   if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
     model.warnings.push_back(fmt::format("{}: {}; {}", base->what, base->why, base->remedy));
   for (const auto& o : sim::plant::violated(model.plant.machine))
-    model.warnings.push_back(sim::plant::violation_text(model.plant.machine, o) +
-                             ": no machine is like that");
+    model.warnings.push_back(sim::plant::violation_text(model.plant.machine, o) + ": check both values");
   return model;
 }
 

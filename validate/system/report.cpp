@@ -182,7 +182,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
   const auto maps = maps_of(c.terminals);
   out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));
-  out += "* exceeds what noise alone allows\n\nBefore the event, model less record:\n";
+  out += "* = above the joint noise limit\n\nBefore the event, model less record:\n";
   out += report::padded(initial_table(s, c));
   out += "\nTerminals, the one that fails most first (largest cell over its bound):\n";
   out += report::padded(ranking_table(s, c), 6);
@@ -190,8 +190,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
   for (const auto& note : c.notes) out += "note: " + note + "\n";
   for (const auto& e : c.terminals)
     for (const auto& note : e.notes) out += "note on " + e.record.name + ": " + note + "\n";
-  return out + "\n" + c.adequacy.sentence + "\n" + thresholds::ruling_text(c.adequacy.ruling) + "\n" +
-         c.culprit + "\n";
+  return out + "\n" + c.adequacy.sentence + "\n" + c.culprit + "\n";
 }
 
 std::string system_json(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {

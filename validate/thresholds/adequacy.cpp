@@ -47,11 +47,4 @@ Ruling judged_by_evidence(const std::string& effect, double strength) {
   return {Criterion::named_effect, false, strength, evidence.accepted, effect};
 }
 
-std::string ruling_text(const Ruling& ruling) {
-  const CriterionRecord& r = criterion_record(ruling.by);
-  return fmt::format("Judged by the criterion '{}', {}{}: {:.4g} {}, adequate {} {:.4g}.", r.name, r.asks,
-                     ruling.where.empty() ? "" : " (" + ruling.where + ")", ruling.value, r.unit,
-                     r.while_adequate, ruling.limit);
-}
-
 }  // namespace swingbank::validate::thresholds

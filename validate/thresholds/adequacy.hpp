@@ -84,9 +84,6 @@ Ruling judged_by_remainder(const Refitted& r, double least);
 /// Not adequate: an effect of this evidence was accepted.
 Ruling judged_by_evidence(const std::string& effect, double evidence);
 
-/// "Judged by <what is asked> (<where>): <value> <unit>, adequate <while_adequate> <limit>."
-std::string ruling_text(const Ruling& ruling);
-
 /// Exit codes of a command that judges a model (acceptance.hpp): more than noise is left, and it is not fit
 /// for purpose; it is fit for purpose only; it is statistically complete only.
 inline constexpr int kNotAdequate = 3, kFitOnly = 4, kNotFit = 5;

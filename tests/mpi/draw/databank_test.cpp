@@ -114,6 +114,19 @@ TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
   }
 }
 
+// Most draws are too close here (19 of 20 admissible ones), so that the forecast decides after the first
+// batch.
+TEST(DatabankDraw, AReachableCountIsNotGivenUp) {
+  DatasetConfig c = test::genrou_box();
+  c.databank.distance = 2.0;
+  c.databank.candidates_per_point = 1000;
+  const Databank whole = draw(c, 250);
+  EXPECT_GT(whole.too_close, 10 * whole.points());
+  const auto admissible = static_cast<double>(whole.points() + whole.too_close);
+  c.databank.candidates_per_point = (1.2 * admissible - 1000) / 250;  // a fifth more than it takes
+  EXPECT_EQ(draw(c, 250).values, whole.values);
+}
+
 // 60,000 points as the thesis has them: every pair, and seconds at most.
 TEST(DatabankDrawFull, SixtyThousandPoints) {
   const Databank b = draw(test::genrou_box(), 60000);

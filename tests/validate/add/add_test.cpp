@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 plant::PlantModel example(bool with_exciter) {
@@ -134,6 +135,8 @@ TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {
   EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12").name, "GENROU:S10,S12");
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch"); }),
               ElementsAre(AllOf(HasSubstr("no effect of that name"), HasSubstr("TGOV1"))));
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "TGOV"); }),
+              ElementsAre(EndsWith("did you mean TGOV1?")));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1"); }),
               ElementsAre(AllOf(HasSubstr("no room"), HasSubstr("exciter"))));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),

@@ -98,6 +98,9 @@ std::vector<Mistake> mistakes() {
       {"base_kv_of_1",
        "voltage_unit",
        {.V = "V_kV", .edit = [](Row x) { x[1] *= 345; }, .base = {100, 60, 1}}},
+      {"volts_as_kV",
+       "voltage_unit",
+       {.V = "V_kV", .edit = [](Row x) { x[1] *= 138e3; }, .base = {100, 60, 138}}},
       {"percent_as_pu", "voltage_unit", {.edit = [](Row x) { x[1] *= 100; }}},
       {"line_to_neutral",
        "voltage_unit",
@@ -178,6 +181,12 @@ TEST(RecordSignalsTest, RecordsShorterThanATenthOfASecondHaveAnAngle) {
       EXPECT_NEAR(s.first_angle, 0.1, 1e-3);
       EXPECT_GE(s.fast_angle, 0) << samples << " samples at " << rate << "/s";
     }
+}
+TEST(RecordCheckTest, VoltsUnderTheHeadingOfKilovolts_NameTheUnit) {
+  const Written volts{
+      .V = "V_kV", .edit = [](std::vector<double>& x) { x[1] *= 138e3; }, .base = {100, 60, 138}};
+  EXPECT_THAT(told(check_record(rewritten(example(1), volts), {100, 60})),
+              ::testing::HasSubstr("a voltage in V taken as kV"));
 }
 
 TEST(RecordCheckTest, ASlowRecordIsSaid) {

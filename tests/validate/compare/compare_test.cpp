@@ -171,7 +171,7 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   constexpr double kSubtransient = 0.04;  // moves the angle in the samples next to a switching
   EXPECT_NEAR(events[0].switchings[0].turn, on, kSubtransient);
   EXPECT_NEAR(events[0].switchings[1].turn, off, kSubtransient);
-  EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("the integrated angle was turned by")));
+  EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("were fitted at the switching times")));
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
   auto& machine = right.model.plant.machine;
@@ -289,7 +289,7 @@ TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
   ASSERT_EQ(e.channels.size(), 2U);
   for (const auto& c : e.channels) EXPECT_LT(c.whole.in_noise, 10) << c.name;  // by the middles: 5.2, 2.9
   ASSERT_FALSE(e.notes.empty());
-  EXPECT_THAT(e.notes.front(), HasSubstr("could not be moved"));
+  EXPECT_THAT(e.notes.front(), HasSubstr("the fit within these intervals failed"));
   EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
 }
 TEST(CompareTest, AnInadequateModelIsCalledSo) {
@@ -385,9 +385,11 @@ TEST(CompareTest, WindowsFollowTheSwitchings) {
   EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
               ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
   // Where nothing switches, nothing is "after" anything.
-  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)), ElementsAre("at first", "next second"));
+  EXPECT_THAT(names(event_windows(e.record, {}, 14.5)),
+              ElementsAre("0–14.5 s of the record", "14.5–15.5 s of the record"));
   EXPECT_THAT(names(event_windows(e.record, {}, 1)),
-              ElementsAre("at first", "next second", "next 4 s", "later"));
+              ElementsAre("0–1 s of the record", "1–2 s of the record", "2–6 s of the record",
+                          "> 6 s of the record"));
 }
 TEST(CompareTest, ResidualIsModelledMinusMeasured) {
   const EventComparison e = example_event();
@@ -452,13 +454,27 @@ TEST(CompareReportTest, PageAsksForNothing) {
   EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
   EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
+  ASSERT_NE(own.find("Error map</h2>"), std::string::npos);
+  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map stands under the verdict
+  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare tries none
 }
 TEST(CompareReportTest, TerminalReportCarriesUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events));
+  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), true);
   for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
     EXPECT_THAT(text, HasSubstr(word));
+}
+TEST(CompareReportTest, TerminalReport_PrintsVerdictFirstAndEachNoteOnce) {
+  std::vector<EventComparison> events(2, example_event());
+  events[1].record.name = "other.csv";
+  for (auto& e : events) e.notes = {"a note of both"};
+  events[1].notes.push_back("a note of one");
+  const Adequacy adequacy = judge(events);
+  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), false);
+  EXPECT_THAT(text, ::testing::StartsWith("Fit for purpose: "));
+  EXPECT_THAT(text, HasSubstr("note (all events): a note of both\nnote (other.csv): a note of one\n"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("In units of noise")));
 }
 TEST(CompareReportTest, PlaybackHasOneLineASample) {
   const EventComparison e = example_event();

@@ -147,14 +147,14 @@ TEST(Fitness, WithoutASwitchingNoWindowIsOfAFault) {
   e.windows = event_windows(e.record, {}, 1.0);
   const Fitness f = judge_fitness({e}, 50, plain_limits());
   ASSERT_EQ(f.rows.size(), 4U);
-  EXPECT_EQ(f.rows[0].window(), "at first");
-  EXPECT_EQ(f.rows[1].window(), "later");
-  EXPECT_THAT(f.sentence, HasSubstr("in the later window"));
+  EXPECT_EQ(f.rows[0].window(), "start of record");
+  EXPECT_EQ(f.rows[1].window(), "rest of record");
+  EXPECT_THAT(f.sentence, HasSubstr("in the rest of record window"));
   EXPECT_THAT(report::padded(worst_fitness_table(f)), testing::Not(HasSubstr("fault ")));
   const std::string both =
       report::padded(worst_fitness_table(judge_fitness({e, faulted}, 50, plain_limits())));
   EXPECT_THAT(both, HasSubstr("post-fault"));
-  EXPECT_THAT(both, testing::Not(HasSubstr("later")));
+  EXPECT_THAT(both, testing::Not(HasSubstr("rest of record")));
 }
 
 TEST(Fitness, WhatIsNoNumberDoesNotFit) {

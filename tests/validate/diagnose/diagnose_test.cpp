@@ -66,7 +66,7 @@ TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
 TEST(DiagnoseFull, TheMissingExciterIsNamed) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
-  options.measured_states = false;
+  options.events.measured_states = false;
   const Diagnosis d = diagnose(model, example_records(model), options);
   EXPECT_NE(d.verdict, Verdict::adequate);
   EXPECT_NE(d.verdict, Verdict::unexplained);
@@ -123,7 +123,7 @@ std::vector<record::Record> records_with_exst1(
 TEST(DiagnoseNight, AnExciterWithARateFeedbackIsNotLost) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
-  options.measured_states = false;
+  options.events.measured_states = false;
   const Diagnosis d = diagnose(
       model, records_with_exst1(model, {{"KA", 60}, {"KC", 0.3}, {"KF", 0.04}, {"TF", 0.15}, {"TB", 4}}),
       options);

@@ -40,7 +40,7 @@ std::vector<record::Record> records_with_valves(const plant::PlantModel& model) 
 TEST(DiagnoseNight, FastValvingAfterEachFaultIsNamed) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
-  options.measured_states = false;
+  options.events.measured_states = false;
   const Diagnosis d = diagnose(model, records_with_valves(model), options);
   EXPECT_THAT(d.effects, testing::ElementsAre("FVFAULT")) << d.sentence;
   EXPECT_EQ(d.side, hypothesis::Side::mechanical);

@@ -208,11 +208,11 @@ std::string first_sentence(const Diagnosis& d, double adequate) {
   const double slow = slow_remainder(d.base, d.events);
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
     return fmt::format(
-        "So far: with its parameters refitted the model leaves nothing but noise (chi2 per value {:.3f}).",
+        "So far: with the parameters refitted the residual is noise (reduced chi-square {:.3f}).",
         d.base.misfit());
   return fmt::format(
-      "So far: something is missing; with its parameters refitted the model leaves chi2 of {:.2f} per value, "
-      "slow means {:.1f} standard deviations.{}",
+      "So far: something is missing; reduced chi-square {:.2f} with the parameters refitted, slow drift {:.1f} "
+      "standard deviations above noise.{}",
       d.base.misfit(), slow, line_sentence(d));
 }
 
@@ -234,10 +234,10 @@ std::string side_sentence(const Diagnosis& d) {
       std::max(d.torque.explains(d.base), d.field.explains(d.base)) > thresholds::adequacy.free_input;
   const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
   return fmt::format(
-      "So far: {} (chi2 per value {:.2f} with a torque free in time, {:.2f} with a field voltage free in "
-      "time).",
-      !explains ? "neither a torque nor a field voltage explains what is left"
-      : both    ? "a torque and a field voltage explain what is left about as well"
+      "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
+      "vary freely).",
+      !explains ? "neither mechanical power nor field voltage explains the residual"
+      : both    ? "mechanical power and field voltage explain the residual about as well"
       : t < f   ? "it looks like the mechanical side"
                 : "it looks like the excitation side",
       t, f);
@@ -280,7 +280,7 @@ void interrupt(Diagnosis& d) {
       d.base.misfit(), leading.empty() ? "no effect had explained anything yet" : leading);
 }
 
-void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d) {
+void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);

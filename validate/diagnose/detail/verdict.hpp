@@ -7,7 +7,7 @@ namespace swingbank::validate::diagnose {
 
 /// Fills verdict, side, sentence, effects and their rivals from base, inputs and ranking, all of which are
 /// judged. Searches for laws where neither the model nor a known effect explains the records.
-void settle(const laws::Unexplained& judged, const laws::LawProgress& progress, Diagnosis& d);
+void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d);
 
 /// The verdict where a person has ended the work: what was fitted until then, and that it is not judged.
 void interrupt(Diagnosis& d);

@@ -1,0 +1,150 @@
+#pragma once
+// The options that compare, calibrate, diagnose and add share, declared in one place: each means the same in
+// all of them.
+#include <omp.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/output_folder.hpp"
+#include "base/stop_signal.hpp"
+#include "jobs/command_line.hpp"
+#include "jobs/event_records.hpp"
+#include "jobs/verdict.hpp"
+#include "sim/laws/law.hpp"
+#include "validate/compare/played.hpp"
+#include "validate/plant/load_with_laws.hpp"
+
+namespace swingbank::jobs {
+
+/// What the user asks of one of these commands, beside its own options.
+struct AnalysisOptions {
+  explicit AnalysisOptions(std::string folder) : out(std::move(folder)) {}
+  std::string model, out;
+  std::vector<std::string> records, law_files, held_out;
+  bool json = false, verbose = false, measured_states = true;
+  int threads = -1;  ///< 0: one per core; -1: not given
+  double jump_threshold = validate::playin::kJumpThreshold;
+  double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
+  double spread = validate::thresholds::parameters.spread;          ///< prior standard deviation, relative
+  Reading reading;
+  Judging judging;
+  std::vector<std::pair<std::string, const sim::Effect*>> laws;  ///< effects of `law_files`
+
+  /// Declares all of them. `files`: what --out holds. Returns those that describe the records and the fit of
+  /// one plant, which a command that takes a grid or a fleet instead does not use.
+  std::vector<Option> declare(CommandLine& line, const std::string& files) {
+    std::vector<Option> of_one_plant;
+    const auto keep = [&](const Option& option) { of_one_plant.push_back(option); };
+    line.group("Input");
+    const Option plant =
+        line.add("--model", model, "plant file, with [[event]] for staged tests (configs/plants/README.md)");
+    const Option events =
+        line.add("--records,--record", records,
+                 "records of the events (CSV, COMTRADE or HDF5; validate/record/README.md)");
+    plant.needs(events);
+    events.needs(plant);
+    keep(plant);
+    for (const Option& option : reading.add_to(line)) keep(option);
+    keep(line.add_flag_off("--power-only", measured_states,
+                           "ignore recorded speed, Efd and Ifd: compare P and Q only"));
+    keep(line.add("--law", law_files,
+                  "file (.toml) of a user-defined model that the plant may use and that may be added to it; "
+                  "may be repeated")
+             .one_value_a_mention());
+    line.group("Events");
+    keep(reading.add_switch(line));
+    keep(line.add("--jump-threshold", jump_threshold,
+                  "smallest step of the voltage taken for a switching [pu]")
+             .shows_default()
+             .positive());
+    keep(line.add("--pre-event", pre_event, "steady state at the start of records without switching [s]")
+             .shows_default()
+             .positive());
+    line.group("Output");
+    line.add("--out", out, "folder for " + files).shows_default();
+    keep(judging.add_to(line));
+    line.add_flag("--json", json, "print the result as JSON instead of text");
+    line.add_flag("--verbose", verbose, "print all tables and every note on the terminal");
+    line.group("Expert");
+    line.add("--threads", threads, "processor cores to use; 0: all (default)").between(0, 4096);
+    return of_one_plant;
+  }
+  /// Declares what commands that fit parameters share.
+  std::vector<Option> declare_fit(CommandLine& line) {
+    line.group("Expert");
+    return {line.add("--spread", spread, "prior standard deviation of the model's parameters, relative")
+                .shows_default()
+                .between(0.001, 2.0)};
+  }
+  /// Declares the choice of events that judge a fit.
+  void declare_hold_out(CommandLine& line) {
+    line.group("Events");
+    line.add("--hold-out", held_out,
+             "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+  }
+
+  /// Once all inputs are read, before the work: opens the folder of the results. `names`: files that the
+  /// command may write in it. Throws InputError where one of them is an input.
+  void open_results(const std::string& command, const std::vector<std::string>& names) {
+    interruption_point();
+    folder_ = std::make_shared<OutputFolder>(out, command, names, judging.outputs());
+  }
+  /// The folder, to write the results: from now on a stop signal does not end the command.
+  [[nodiscard]] OutputFolder& results() const {
+    catch_stop_signals();
+    return *folder_;
+  }
+
+  /// Limits the cores of all that follows in this process.
+  void limit_threads() const {
+    if (threads > 0) omp_set_num_threads(threads);
+  }
+  /// The model with the user-defined models of --law known to it. Throws InputError.
+  validate::plant::PlantModel load_model(bool to_fit) {
+    using namespace validate;
+    plant::PlantModel loaded = plant::load_plant_model(
+        model, std::vector<std::filesystem::path>(law_files.begin(), law_files.end()));
+    for (const auto& file : law_files)
+      laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), loaded.library));
+    keep_laws(loaded);
+    tell(loaded);
+    if (!to_fit) return loaded;
+    if (loaded.submitted && !quiet)
+      fmt::print(stderr, "note: started from the values before that calibration\n");
+    return plant::as_submitted(std::move(loaded));
+  }
+  /// Notes in the model which files of --law its effects come from.
+  void keep_laws(validate::plant::PlantModel& of) const {
+    for (const auto& [file, effect] : laws)
+      for (const auto& block : of.plant.controls)
+        if (block.effect == effect && std::ranges::count(of.laws, std::filesystem::path(file)) == 0)
+          of.laws.emplace_back(file);
+  }
+  [[nodiscard]] validate::event::FitEventOptions events() const {
+    validate::event::FitEventOptions options;
+    options.measured_states = measured_states;
+    options.jump_threshold = jump_threshold;
+    options.pre_event = pre_event;
+    return options;
+  }
+  [[nodiscard]] validate::compare::CompareOptions comparing() const {
+    validate::compare::CompareOptions options;
+    options.jump_threshold = jump_threshold;
+    options.play_in.pre_event = pre_event;
+    return options;
+  }
+  /// The records without the channels that --power-only ignores.
+  [[nodiscard]] std::vector<validate::record::Record> compared(
+      std::vector<validate::record::Record> all) const {
+    return measured_states ? std::move(all) : validate::compare::power_only(std::move(all));
+  }
+
+ private:
+  std::shared_ptr<OutputFolder> folder_;
+};
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Options: one set for the commands that play records into a plant model, help in groups with an example, and a sentence
+# for each word that is no option.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+# the same options with the same words in all four commands
+shared='model records columns from until component point power-only law switch jump-threshold pre-event out pdf quiet by accept json verbose threads'
+for command in compare calibrate diagnose add; do
+  "$swingbank" "$command" --help >"$work/help"
+  for option in $shared; do
+    grep -qE -- "^  (-[a-z],)?--$option\b" "$work/help" || fail "$command --help lacks --$option"
+  done
+  for group in Input Events Output Expert Help; do
+    grep -q "^$group:" "$work/help" || fail "$command --help has no group $group"
+  done
+  sed -n '/^Events:/,/^Output:/p' "$work/help" | grep -E '^  --(switch|jump|pre)' >"$work/events-$command"
+  cmp "$work/events-compare" "$work/events-$command" || fail "$command describes the options of events otherwise than compare"
+  grep -A1 '^Example:' "$work/help" | grep -q "^  swingbank $command " || fail "$command --help has no example"
+done
+for command in calibrate diagnose add; do
+  holds -q -- '--spread' < <("$swingbank" "$command" --help) || fail "$command --help lacks --spread"
+done
+"$swingbank" simulate --help >"$work/help"
+for group in Input 'Power flow' Models Events Measurements Output Expert; do
+  grep -q "^$group:" "$work/help" || fail "simulate --help has no group $group"
+done
+for command in inventory plant export simulate effects tables generate databank verify merge; do
+  holds -qE "^ +swingbank $command [^-]*.*[a-z]" < <("$swingbank" "$command" --help) || fail "$command --help has no example"
+done
+# a plant file to read has one name everywhere
+"$swingbank" export --dyr plant.toml 2>"$work/words" >&2 && fail "export reads a plant file from --dyr"
+grep -q "unknown option at '--dyr'" "$work/words" || fail "export --dyr: $(cat "$work/words")"
+
+# every unknown word in the order given, with the option that was probably meant
+status=0
+"$swingbank" add SEXS --model a.toml --records r.csv --thread 1 --jump-treshold=0.1 --xyzzy 3 4 2>"$work/words" >&2 || status=$?
+((status == 1)) || fail "exit code $status, expected 1"
+cat >"$work/expected" <<'TEXT'
+unknown option at '--thread' (swingbank add has none of that name): did you mean --threads?
+unknown option at '--jump-treshold' (swingbank add has none of that name): did you mean --jump-threshold?
+unknown option at '--xyzzy' (swingbank add has none of that name): see swingbank add --help
+Run with --help for more information.
+TEXT
+diff "$work/expected" "$work/words" || fail "unknown options are reported otherwise"
+"$swingbank" plant --raw a.raw extra 2>"$work/words" >&2 && fail "a word too many is accepted"
+grep -q "^unexpected word at 'extra'" "$work/words" || fail "a word too many is reported otherwise: $(cat "$work/words")"
+
+# the commands of validation come first, internal ones are not listed
+"$swingbank" --help >"$work/help"
+awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"
+printf '%s\n' 'Validate a plant:' 'Simulate and generate:' 'Train:' 'Benchmarks:' >"$work/expected"
+grep -vx 'Train:' "$work/groups" | diff <(grep -vx 'Train:' "$work/expected") - || fail "groups of swingbank --help"
+first=$(sed -n '/^Validate a plant:/,/^$/p' "$work/help" | awk '/^  / {print $1}' | xargs)
+[[ $first == 'inventory plant compare diagnose add calibrate export' ]] || fail "validation lists $first"
+! grep -q 'read-hdf5' "$work/help" || fail "an internal command is listed"
