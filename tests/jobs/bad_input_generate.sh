@@ -33,6 +33,10 @@ edit network 's/^raw = .*/raw = "none.raw"/'
 refuses "no such network" 'none.raw' make_data "$work/network.toml" "$data"
 [[ ! -e $data ]] || fail "a refused config left $data"
 
+# No machine stays in step through a fault of two seconds: there is no row, and that is a failure.
+edit unstable 's/^buses = .*/buses = [16]/; s/^duration = .*/duration = [2.0, 2.1]/; s/^draws = .*/draws = 20/'
+refuses "dataset without rows" 'a dataset without rows at .*unstable_data .*stable' make_data "$work/unstable.toml" "$work/unstable_data"
+
 make_data "$config" "$data" >/dev/null 2>&1
 whole "$data" || fail "the dataset that the cases below break is broken itself"
 edit other 's/^seed = .*/seed = 4/'

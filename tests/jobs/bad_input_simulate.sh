@@ -53,6 +53,7 @@ awk -F", *" -v OFS=", " '/end of bus/ {loads = 1} /end of load/ {loads = 0} load
 refuses "power flow that diverges" 'heavy.raw' simulate "$work/heavy.raw" "$dyr"
 head -c 3000 "$raw" >"$work/short.raw"
 refuses "truncated .raw" 'short.raw' simulate "$work/short.raw" "$dyr"
+refuses "run that fails at its start" 'the run failed at 0 s .*nothing was written' simulate "$raw" "$dyr" --tolerance 1e-16
 leaves_nothing "$out"
 
 disk "$work/full" 32k
