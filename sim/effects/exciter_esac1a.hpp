@@ -38,11 +38,12 @@ struct Model : shared::AlternatorRectifier<Model> {
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA,  UPPER, LOWER, TE,    KF,   TF,
                                         KC, KD, KE, E1, SE1, E2,    SE2,   VRMAX, VRMIN};
   enum { vrmax = alternator, vrmin, coefficients };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
-                                     {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
-                                     {"Va", "pu", "regulator output", 1.0, lower, upper},
-                                     {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
-                                     {"rate", "pu", "state of the rate feedback", kErrorWeight}};
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
+      {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
+      {"Va", "pu", "regulator output", 1.0, lower, upper},
+      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
+      {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     AlternatorRectifier::check(p, where, problems);

@@ -24,7 +24,7 @@ struct Model : shared::DcTypeOne<Model> {
                                      {"leadlag", "pu", "state of the lead-lag", 1.0, -1, -1, {iTB}},
                                      {"Vr", "pu", "regulator output", 1.0, vrmin, vrmax},
                                      {"Efd", "pu", "field voltage", 1.0, none, -1},
-                                     {"rate", "pu", "state of the rate feedback"}};
+                                     {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 };
 
 }  // namespace swingbank::sim::effects::exciter_esdc1a

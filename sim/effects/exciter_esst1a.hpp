@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::exciter_esst1a {
 
@@ -121,10 +122,8 @@ struct Model {
     bad(p[UEL] != 1 && p[UEL] != 2 && p[UEL] != 3, says(UEL), "it is a code", "give 1, 2 or 3");
     bad(p[VOS] != 1 && p[VOS] != 2, says(VOS), "it is a code", "give 1 or 2");
     bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
-    for (int i : {TR, TB, TB1, TA, TF})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
-    bad(p[KF] != 0 && !(p[TF] > 0), says(KF) + " with " + says(TF) + " s",
-        "a derivative needs a time constant", "give TF > 0, or KF = 0");
+    for (int i : {TR, TB, TB1, TA}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     bad(p[KF] != 0 && !(p[TA] > 0), says(KF) + " with " + says(TA) + " s",
         "the rate feedback would act on itself", "give TA > 0, or KF = 0");
     bad(!(p[KLR] >= 0), says(KLR), "it would raise the field current", "give KLR >= 0");

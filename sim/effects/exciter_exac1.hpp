@@ -26,11 +26,12 @@ struct Model : shared::AlternatorRectifier<Model> {
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF,
                                         TF, KC, KD, KE, E1, SE1,   E2,    SE2};
   enum { coefficients = alternator };
-  static constexpr State states[] = {{"Vm", "pu", "measured voltage", kErrorWeight},
-                                     {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
-                                     {"Vr", "pu", "regulator output", 1.0, lower, upper},
-                                     {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
-                                     {"rate", "pu", "state of the rate feedback", kErrorWeight}};
+  static constexpr State states[] = {
+      {"Vm", "pu", "measured voltage", kErrorWeight},
+      {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
+      {"Vr", "pu", "regulator output", 1.0, lower, upper},
+      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
+      {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   template <class T>
   static T field_input(const T*, const T& output, const T&) {

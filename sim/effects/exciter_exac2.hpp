@@ -80,7 +80,7 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
       {"Va", "pu", "regulator output", 1.0, lower, upper},
       {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true},
-      {"rate", "pu", "state of the rate feedback", kErrorWeight}};
+      {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     AlternatorRectifier::check(p, where, problems);

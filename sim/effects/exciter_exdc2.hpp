@@ -54,7 +54,7 @@ struct Model : shared::DcBehindLeadLag<Model> {
       {"leadlag", "pu", "state of the lead-lag"},
       {.name = "Vr", .unit = "pu", .meaning = "regulator output", .bends = true},
       {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true},
-      {"rate", "pu", "state of the rate feedback"}};
+      {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 
   template <class T>
   static T regulator(const T* c, const T* x, const T& u, const T& V, T* dx) {

@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::exciter_exst1 {
 
@@ -32,30 +33,35 @@ struct Model {
       {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNeutral, "lead"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag (0: bypass)"},
       {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain", kCase},
-      {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNeutral, "regulator time constant"},
+      {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNeutral, "regulator time constant (0: none)"},
       {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage", kCase},
       {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage",
        literature::own("a bridge inverts a little less than it rectifies")},
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
-      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNeutral, "rate feedback's time constant"}};
+      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)"}};
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
   enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };
   enum X { Vm, leadlag, Va, rate };
   static constexpr State states[] = {
       {"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
       {.name = "leadlag", .unit = "pu", .meaning = "state of the lead-lag", .moved_by = {iTB}, .bends = true},
-      {.name = "Va", .unit = "pu", .meaning = "regulator output before the ceilings", .bends = true},
-      {"rate", "pu", "state of the rate feedback"}};
+      {.name = "Va",
+       .unit = "pu",
+       .meaning = "regulator output before the ceilings",
+       .moved_by = {iTA},
+       .bends = true},
+      {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
-    bad(!(p[TA] > 0), fmt::format("TA = {:g} s", p[TA]), "EXST1 integrates Va over TA", "give TA > 0");
-    bad(!(p[TF] > 0), fmt::format("TF = {:g} s", p[TF]), "the rate feedback divides by TF", "give TF > 0");
+    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
+    bad(p[KF] != 0 && p[TA] == 0, fmt::format("TA = 0 s with KF = {:g}", p[KF]),
+        "the rate feedback would act on itself", "give TA > 0, or KF = 0");
     bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
-    for (int i : {TR, TB})
+    for (int i : {TR, TB, TA})
       bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
           "give a value >= 0");
     bad(!(p[VIMAX] > p[VIMIN]), fmt::format("VIMAX = {:g} pu with VIMIN = {:g} pu", p[VIMAX], p[VIMIN]),
@@ -73,11 +79,11 @@ struct Model {
     c[lead] = p[TC];
     c[iTB] = inverse(p[TB]);
     c[gain] = p[KA];
-    c[iTA] = T(1.0) / p[TA];
+    c[iTA] = inverse(p[TA]);
     c[vrmax] = p[VRMAX];
     c[vrmin] = p[VRMIN];
     c[drop] = p[KC];
-    c[iTF] = T(1.0) / p[TF];
+    c[iTF] = inverse(p[TF]);
     c[feedback] = p[KF] * c[iTF];
   }
   template <class T>
@@ -87,9 +93,9 @@ struct Model {
     const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
     const T limited = clamp(error, c[vimin], c[vimax]);
     const T u = lead_lag(c[lead], c[iTB], x[leadlag], limited, dx[leadlag]);
-    dx[Va] = (c[gain] * u - x[Va]) * c[iTA];
+    const T va = lag(c[iTA], x[Va], c[gain] * u, dx[Va]);
     const T fall = c[drop] * s.Ifd;
-    s.Efd = clamp(x[Va], s.V * c[vrmin] - fall, s.V * c[vrmax] - fall);
+    s.Efd = clamp(va, s.V * c[vrmin] - fall, s.V * c[vrmax] - fall);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

@@ -44,7 +44,7 @@ struct Model : shared::RotatingDc<Model> {
   static constexpr State states[] = {{"Vm", "pu", "measured voltage"},
                                      {"Vr", "pu", "regulator output", 1.0, vrmin, vrmax},
                                      {"Efd", "pu", "field voltage"},
-                                     {"rate", "pu", "state of the rate feedback"}};
+                                     {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {

@@ -33,7 +33,8 @@ struct Model : shared::RotatingDc<Model> {
       kKE,
       kTE,
       kKF,
-      {"TF1", "TF1", "s", 1.0, 0.02, 20.0, kNoNeutral, "first time constant of the rate feedback"},
+      {"TF1", "TF1", "s", 1.0, 0.02, 20.0, kNoNeutral,
+       "first time constant of the rate feedback (0: with KF = 0)"},
       {"TF2", "TF2", "s", 0.8, 0.0, 20.0, kNoNeutral, "second time constant of the rate feedback (0: none)",
        literature::own("that of the exciter, which it stands for")},
       kE1,
@@ -46,7 +47,7 @@ struct Model : shared::RotatingDc<Model> {
   static constexpr State states[] = {{"Vm", "pu", "measured voltage", 1.0, -1, -1, {iTR}},
                                      {"Vr", "pu", "regulator output", 1.0, vrmin, vrmax},
                                      {"Efd", "pu", "field voltage"},
-                                     {"rate", "pu", "state of the rate feedback"},
+                                     {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}},
                                      {"slow", "pu", "rate feedback, lagged", 1.0, -1, -1, {iTF2}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -6,6 +6,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::exciter_ieeet3 {
 
@@ -43,7 +44,7 @@ struct Model {
       {"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
       {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNeutral, "exciter time constant"},
       {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "rate feedback"},
-      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNeutral, "rate feedback's time constant"},
+      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)"},
       {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNeutral, "source, from voltage"},
       {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
       {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNeutral, "upper limit of what feeds the field"},
@@ -73,7 +74,7 @@ struct Model {
                                       .high = vrmax,
                                       .moved_by = {iTA}},
                                      {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true},
-                                     {"rate", "pu", "state of the rate feedback", 5.0}};
+                                     {"rate", "pu", "state of the rate feedback", 5.0, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
@@ -82,7 +83,8 @@ struct Model {
     const auto says = [&](int i) {
       return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
     };
-    for (const int i : {TE, TF}) bad(!(p[i] > 0), says(i), "IEEET3 divides by it", "give a value > 0");
+    bad(!(p[TE] > 0), says(TE), "IEEET3 divides by it", "give TE > 0");
+    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     for (const int i : {KA, VBMAX})
       bad(!(p[i] > 0), says(i), "there would be no exciter", "give a value > 0");
     for (const int i : {TR, TA, KF, KI, KE}) bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
@@ -101,7 +103,7 @@ struct Model {
     c[vrmax] = p[VRMAX];
     c[vrmin] = p[VRMIN];
     c[iTE] = T(1.0) / p[TE];
-    c[iTF] = T(1.0) / p[TF];
+    c[iTF] = inverse(p[TF]);
     c[feedback] = p[KF] * c[iTF];
     c[vbmax] = p[VBMAX];
     c[self] = p[KE];

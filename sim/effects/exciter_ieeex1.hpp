@@ -27,7 +27,7 @@ struct Model : shared::DcTypeOne<Model> {
                                      {"leadlag", "pu", "state of the lead-lag", 1.0, -1, -1, {iTB}},
                                      {"Vr", "pu", "regulator output", 1.0, vrmin, vrmax},
                                      {"Efd", "pu", "field voltage"},
-                                     {"rate", "pu", "state of the rate feedback"}};
+                                     {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 };
 
 }  // namespace swingbank::sim::effects::exciter_ieeex1

@@ -8,6 +8,7 @@
 #include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::exciter_rexs {
 
@@ -184,7 +185,7 @@ struct Model : shared::Alternator<Model> {
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     check_alternator(p, where, problems);
-    for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF, TF1, TF2, TP})
+    for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF1, TF2, TP})
       bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
     for (int i : {KVP, KVI, KIP, KII, KH, KF})
       bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
@@ -193,8 +194,7 @@ struct Model : shared::Alternator<Model> {
           fmt::format("{} with {}", says(proportional), says(integral)), "no gain, no regulator",
           "give one of them");
     bad(!(p[VIMAX] > 0), says(VIMAX) + " pu", "the regulator would see no error", "give VIMAX > 0");
-    bad(p[KF] > 0 && !(p[TF] > 0), fmt::format("{} with {} s", says(KF), says(TF)),
-        "no derivative without a lag", "give TF > 0, or KF = 0 for no feedback");
+    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     bad(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0,
         fmt::format("{} s with {} and {}", says(TA), says(FBF), says(KF)),
         "the regulator's output would feed itself without a lag", "give TA > 0");

@@ -10,6 +10,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::governor_ggov1 {
 
@@ -322,17 +323,15 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   for (const int i : {Tact, Kturb, Ropen, Rup})
     bad(!(p[i] > 0), value(i), "nothing would move", "give a value > 0");
   for (const int i : {Rclose, Rdown}) bad(!(p[i] < 0), value(i), "nothing would move", "give a value < 0");
-  for (const int i : {R,      Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tdgov, Tb, Tc,  Tfload,
-                      Kpload, Kiload, Kimw,   Aset,  Ka,    Ta,    Trate, db, Tsa, Tsb})
+  for (const int i : {R, Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tb, Tc, Tfload, Kpload, Kiload, Kimw, Aset, Ka,
+                      Trate, db, Tsa, Tsb})
     bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
   bad(!(p[minerr] <= 0), value(minerr), "the lower limit of an error", "give a value <= 0");
   bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the valve must have room to move",
       "give Vmax > Vmin");
   bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output ends at 1 pu", "give Vmin < 1");
-  bad(p[Kdgov] > 0 && p[Tdgov] == 0, value(Kdgov) + " with " + value(Tdgov),
-      "a derivative needs a time constant", "give Tdgov > 0");
-  bad(p[Ka] > 0 && p[Ta] == 0, value(Ka) + " with " + value(Ta), "a derivative needs a time constant",
-      "give Ta > 0, or Ka = 0 for no acceleration limiter");
+  shared::check_time_constant(name, "Tdgov", p[Tdgov], p[Kdgov] > 0, "Kdgov = 0", where, problems);
+  shared::check_time_constant(name, "Ta", p[Ta], p[Ka] > 0, "Ka = 0", where, problems);
   for (const int i : {Wfnl, Ldref, Dm})
     bad(!(p[i] - p[i] == 0), value(i), "it must be finite", "give a number");
 }

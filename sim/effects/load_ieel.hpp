@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "sim/core/blocks.hpp"
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_ieel {
 
@@ -68,7 +70,10 @@ struct Model {
   };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    for (const int i : {Vp, Vi, Tf})
+    shared::check_time_constant(name, "Tf", p[Tf], p[a7] != 0 || p[a8] != 0, "a7 = a8 = 0", where, problems);
+    if (!std::isfinite(p[Tf]))
+      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
+    for (const int i : {Vp, Vi})
       if (!(p[i] > 0.0) || !std::isfinite(p[i]))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
                      "IEEL divides by it", "give a value > 0");
@@ -100,7 +105,7 @@ struct Model {
     }
     c[kp] = p[a7];
     c[kq] = p[a8];
-    c[iTf] = T(1.0) / p[Tf];
+    c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
   /// As an admittance, so that nothing is divided by V.

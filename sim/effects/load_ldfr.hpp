@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "sim/core/blocks.hpp"
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_ldfr {
 
@@ -55,7 +57,13 @@ struct Model {
   enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, slope, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    for (const int i : {Vp, Vi, Tf})
+    shared::check_time_constant(name, "Tf", p[Tf],
+                                (p[m] != 0 && p[Pp] != 0) || (p[n] != 0 && p[Qp] != 0) ||
+                                    (p[r] != 0 && p[Pi] != 0) || (p[s] != 0 && p[Qi] != 0),
+                                "m = n = r = s = 0", where, problems);
+    if (!std::isfinite(p[Tf]))
+      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
+    for (const int i : {Vp, Vi})
       if (!(p[i] > 0.0) || !std::isfinite(p[i]))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
                      "LDFR divides by it", "give a value > 0");
@@ -78,7 +86,7 @@ struct Model {
     c[es] = p[s];
     c[vp] = p[Vp];
     c[vi] = p[Vi];
-    c[iTf] = T(1.0) / p[Tf];
+    c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
   /// As an admittance, so that nothing is divided by V.

@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "sim/core/blocks.hpp"
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_zip {
 
@@ -53,7 +55,11 @@ struct Model {
   enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, slope, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    for (const int i : {Vp, Vi, Tf})
+    shared::check_time_constant(name, "Tf", p[Tf], p[Kpf] != 0 || p[Kqf] != 0, "Kpf = Kqf = 0", where,
+                                problems);
+    if (!std::isfinite(p[Tf]))
+      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
+    for (const int i : {Vp, Vi})
       if (!(p[i] > 0.0) || !std::isfinite(p[i]))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
                      "ZIP divides by it", "give a value > 0");
@@ -74,7 +80,7 @@ struct Model {
     c[vi] = p[Vi];
     c[kp] = p[Kpf];
     c[kq] = p[Kqf];
-    c[iTf] = T(1.0) / p[Tf];
+    c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
   /// As an admittance, so that nothing is divided by V.

@@ -8,6 +8,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::stabiliser_ieeest {
 
@@ -140,8 +141,9 @@ struct Model {
         "IEEEST reads speed (1), frequency (2), electrical power (3), "
         "accelerating power (4), voltage (5) or its slope (6)",
         "give a whole number from 1 to 6");
-    bad(!(p[Tf] > 0) || !std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]),
-        "frequency and slope are measured behind a lag", "give Tf > 0");
+    shared::check_time_constant(name, "Tf", p[Tf], p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
+                                "ICS other than 2 and 6 or KS = 0", where, problems);
+    bad(!std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]), "a time constant", "give a number");
     // Speed and powers are the machine's own, whatever bus stands there.
     bad(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, fmt::format("IB = {:g}", p[IB]),
         "IEEEST reads its own machine only", "give IB = 0");
@@ -178,7 +180,7 @@ struct Model {
     c[w4] = is(4);
     c[w5] = is(5);
     c[w6] = is(6);
-    c[iTf] = T(1.0) / p[Tf];
+    c[iTf] = inverse(p[Tf]);
     c[per_lead] = c[w2] * frequency_slope(c[iTf], conventions.frequency);
     for (int i = 0; i < 6; ++i) c[a1 + i] = p[A1 + i];
     for (int i = 0; i < 4; ++i) c[ia1 + i] = inverse(p[A1 + i]);

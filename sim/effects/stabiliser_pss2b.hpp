@@ -2,9 +2,12 @@
 // PSS2B: dual-input power system stabiliser.
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2b {
 
@@ -23,7 +26,8 @@ struct Model {
   u1 (IC1), u2 (IC2): speed deviation (1), electrical power on the machine's base (3), accelerating power
      Pm - P (4), voltage (5).
   Bypassed: washout 2 with Tw2 = 0, washout 4 with Tw4 = 0, lags with T6, T7 = 0, lead-lags with T2, T4,
-     T11 = 0, the ramp-tracking filter with M = 0 or N = 0.
+     T11 = 0, the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 switches all off, KS2 = 0 the second
+     input; what is off needs no Tw1, Tw3 and T9.
 )";
   enum P {
     IC1,
@@ -137,10 +141,10 @@ struct Model {
   /// Behind every state stand KS1 and the leads, some tens together, and an exciter's gain.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {
-      {"w1", "pu", "first washout of the first input", kGainWeight},
+      {"w1", "pu", "first washout of the first input", kGainWeight, -1, -1, {iTw1}},
       {"w2", "pu", "second washout of the first input", kGainWeight, -1, -1, {iTw2}},
       {"y1", "pu", "first input, filtered", kGainWeight, -1, -1, {iT6}},
-      {"w3", "pu", "first washout of the second input", kGainWeight},
+      {"w3", "pu", "first washout of the second input", kGainWeight, -1, -1, {iTw3}},
       {"w4", "pu", "second washout of the second input", kGainWeight, -1, -1, {iTw4}},
       {"y2", "pu", "second input, filtered", kGainWeight, -1, -1, {iT7}},
       {"ramp1", "pu", "ramp-tracking filter, first lag", kGainWeight, -1, -1, {slow}},
@@ -178,8 +182,10 @@ struct Model {
           "give a whole number >= 0");
     bad(p[M] * p[N] > kRampLags, fmt::format("M = {:g} with N = {:g}", p[M], p[N]),
         "the ramp-tracking filter has at most 8 lags", "give M N <= 8");
-    for (int i : {TW1, TW3, T9})
-      bad(!(p[i] > 0), says(i) + " s", fmt::format("{} divides by it", who), "give a value > 0");
+    const bool on = p[KS1] != 0, second = on && p[KS2] != 0, ramp = on && p[M] * p[N] != 0;
+    for (const auto& [time, acts, off] :
+         {std::tuple{TW1, on, "KS1 = 0"}, {TW3, second, "KS2 = 0"}, {T9, ramp, "M = 0 or N = 0"}})
+      shared::check_time_constant(who, parameters[time].symbol, p[time], acts, off, where, problems);
     for (int i : {TW2, T6, TW4, T7, T2, T4, T11})
       bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
     for (const auto& [most, least] : {std::pair{VS1MAX, VS1MIN}, {VS2MAX, VS2MIN}})

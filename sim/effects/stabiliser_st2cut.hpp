@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::stabiliser_st2cut {
 
@@ -18,7 +19,7 @@ struct Model {
   u1 (MODE), u2 (MODE2): none (0), speed deviation (1), electrical power on the machine's base (3),
      accelerating power Pm - P (4), voltage (5).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off).
-  T3 = 0: 1/(1 + s T4) in the washout's place. T1, T2, T6, T8, T10 = 0: bypass.
+  T3 = 0: 1/(1 + s T4) in the washout's place. T1, T2, T6, T8, T10 = 0, and T4 = 0 with T3 = 0: bypass.
 )";
   enum P {
     MODE,
@@ -99,7 +100,7 @@ struct Model {
   enum X { in1, in2, washed, lead1, lead2, lead3 };
   static constexpr State states[] = {{"in1", "pu", "first input, lagged", 1.0, -1, -1, {iT1}},
                                      {"in2", "pu", "second input, lagged", 1.0, -1, -1, {iT2}},
-                                     {"washed", "pu", "state of the washout"},
+                                     {"washed", "pu", "state of the washout", 1.0, -1, -1, {iT4}},
                                      {"lead1", "pu", "state of the first lead-lag", 1.0, -1, -1, {iT6}},
                                      {"lead2", "pu", "state of the second lead-lag", 1.0, -1, -1, {iT8}},
                                      {"lead3", "pu", "state of the third lead-lag", 1.0, -1, -1, {iT10}}};
@@ -113,7 +114,8 @@ struct Model {
             "ST2CUT reads nothing (0), speed (1), electrical (3) or accelerating power (4) or voltage "
             "(5); bus frequency (2) and voltage slope (6) are not modelled",
             fmt::format("give {} = 0, 1, 3, 4 or 5", parameters[i].symbol));
-    if (!(p[T4] > 0)) problems.add(says(T4) + " s", where, "ST2CUT divides by it", "give T4 > 0");
+    shared::check_time_constant(name, "T4", p[T4], p[T3] != 0 && (p[K1] != 0 || p[K2] != 0),
+                                "T3 = 0 or K1 = K2 = 0", where, problems);
     for (const int i : {T1, T2, T3, T6, T8, T10})
       if (!(p[i] >= 0)) problems.add(says(i) + " s", where, "a time constant", "give a value >= 0");
     if (!(p[LSMAX] >= p[LSMIN]))
@@ -158,8 +160,8 @@ struct Model {
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T sum = lag(c[iT1], x[in1], c[k1] * input(c + u1, s), dx[in1]) +
                   lag(c[iT2], x[in2], c[k2] * input(c + u2, s), dx[in2]);
-    dx[washed] = (sum - x[washed]) * c[iT4];
-    const T out = c[wash] * (sum - x[washed]) + c[passes] * x[washed];
+    const T lagged = lag(c[iT4], x[washed], sum, dx[washed]);
+    const T out = c[wash] * (sum - x[washed]) + c[passes] * lagged;
     const T a = lead_lag(c[t5], c[iT6], x[lead1], out, dx[lead1]);
     const T b = lead_lag(c[t7], c[iT8], x[lead2], a, dx[lead2]);
     const T limited = clamp(lead_lag(c[t9], c[iT10], x[lead3], b, dx[lead3]), c[low], c[high]);

@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::stabiliser_stab1 {
 
@@ -33,13 +34,12 @@ struct Model {
   static constexpr int dyr_columns[] = {KT, TW, T1_T3, T3, T2_T4, T4, HLIM};
   enum C { gain, iT, t1, it3, t2, it4, limit, coefficients };
   enum X { washed, lead1, lead2 };
-  static constexpr State states[] = {{"washed", "pu", "state of the washout"},
+  static constexpr State states[] = {{"washed", "pu", "state of the washout", 1.0, -1, -1, {iT}},
                                      {"lead1", "pu", "state of the first lead-lag"},
                                      {"lead2", "pu", "state of the second lead-lag"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[TW] > 0))
-      problems.add(fmt::format("T = {:g} s", p[TW]), where, "STAB1 divides by T", "give T > 0");
+    shared::check_time_constant(name, "T", p[TW], p[KT] != 0, "K/T = 0", where, problems);
     for (int i : {T3, T4})
       if (!(p[i] >= 0))
         problems.add(fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), where, "a time constant",
@@ -52,7 +52,7 @@ struct Model {
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
     c[gain] = p[KT];
-    c[iT] = T(1.0) / p[TW];
+    c[iT] = inverse(p[TW]);
     c[t1] = p[T1_T3] * p[T3];
     c[it3] = inverse(p[T3]);
     c[t2] = p[T2_T4] * p[T4];

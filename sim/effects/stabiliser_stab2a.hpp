@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::stabiliser_stab2a {
 
@@ -24,7 +25,7 @@ struct Model {
       {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNeutral, "gain of each washout"},
       {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNeutral, "time constant of each washout"},
       {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged way"},
-      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNeutral, "its time constant"},
+      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNeutral, "its time constant (0: none)"},
       {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct way"},
       {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
       {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNeutral, "time constant of each output lag (0: none)"},
@@ -32,10 +33,10 @@ struct Model {
   static constexpr int dyr_columns[] = {K2, T2, K3, T3, K4, K5, T5, HLIM};
   enum C { k2, iT2, k3, iT3, k4, k5, iT5, limit, coefficients };
   enum X { wash1, wash2, wash3, slow, out1, out2 };
-  static constexpr State states[] = {{"wash1", "pu", "state of the first washout"},
-                                     {"wash2", "pu", "state of the second washout"},
-                                     {"wash3", "pu", "state of the third washout"},
-                                     {"slow", "pu", "lagged way"},
+  static constexpr State states[] = {{"wash1", "pu", "state of the first washout", 1.0, -1, -1, {iT2}},
+                                     {"wash2", "pu", "state of the second washout", 1.0, -1, -1, {iT2}},
+                                     {"wash3", "pu", "state of the third washout", 1.0, -1, -1, {iT2}},
+                                     {"slow", "pu", "lagged way", 1.0, -1, -1, {iT3}},
                                      {"out1", "pu", "first output lag", 1.0, -1, -1, {iT5}},
                                      {"out2", "pu", "second output lag", 1.0, -1, -1, {iT5}}};
 
@@ -43,9 +44,10 @@ struct Model {
     const auto says = [&](int i) {
       return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
     };
-    for (const int i : {T2, T3})
-      if (!(p[i] > 0)) problems.add(says(i), where, "STAB2A divides by it", "give a value > 0");
-    if (!(p[T5] >= 0)) problems.add(says(T5), where, "a time constant", "give T5 >= 0");
+    shared::check_time_constant(name, "T2", p[T2], p[K2] != 0 && p[K5] != 0, "K2 = 0 or K5 = 0", where,
+                                problems);
+    for (const int i : {T3, T5})
+      if (!(p[i] >= 0)) problems.add(says(i), where, "a time constant", "give a value >= 0");
     if (!(p[HLIM] >= 0)) problems.add(says(HLIM), where, "the limits cross", "give HLIM >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
@@ -53,9 +55,9 @@ struct Model {
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
     c[k2] = p[K2];
-    c[iT2] = T(1.0) / p[T2];
+    c[iT2] = inverse(p[T2]);
     c[k3] = p[K3];
-    c[iT3] = T(1.0) / p[T3];
+    c[iT3] = inverse(p[T3]);
     c[k4] = p[K4];
     c[k5] = p[K5];
     c[iT5] = inverse(p[T5]);

@@ -8,6 +8,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -34,7 +35,7 @@ struct AlternatorRectifier : Alternator<Model> {
              lower,
              {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "alternator's time constant"},
              {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
-             {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant"},
+             {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)"},
              {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance", kAsEffect, kRange},
              {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
              {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNeutral, "alternator's own field"},
@@ -77,7 +78,7 @@ struct AlternatorRectifier : Alternator<Model> {
     c[upper] = p[UPPER];
     c[lower] = p[LOWER];
     Behind::prepare_alternator(p, c);
-    c[iTF] = T(1.0) / p[TF];
+    c[iTF] = inverse(p[TF]);
     c[feedback] = p[KF] * c[iTF];
   }
   template <class T>
@@ -110,8 +111,7 @@ void AlternatorRectifier<Model>::check(const double* p, const std::string& where
     if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
   };
   Behind::check_alternator(p, where, problems);
-  bad(!(p[TF] > 0), fmt::format("TF = {:g} s", p[TF]), fmt::format("{} divides by it", Model::name),
-      "give a value > 0");
+  check_time_constant(Model::name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
   bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
   for (int i : {TR, TB, TA})
     bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant", "give a value >= 0");

@@ -9,6 +9,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -33,7 +34,9 @@ struct RotatingDc {
       kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNeutral, "exciter time constant", kDefault},
       kKA = {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain", kOfDc2},
       kKF = {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback", kOfDc2},
-      kTF = {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNeutral, "rate feedback's time constant", kDefault},
+      kTF = {"TF",    "TF", "s",        1.0,
+             0.02,    20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)",
+             kDefault},
       kSwitch = {"Switch", "Switch", "code",     0.0,
                  0.0,      1.0,      kNoNeutral, "kept by PSS/E for files; without effect",
                  kDefault, kCode},
@@ -63,7 +66,7 @@ struct RotatingDc {
     c[M::vrmin] = select(given, p[M::VRMIN], zero - found);
     c[M::self] = p[M::KE];
     c[M::iTE] = T(1.0) / p[M::TE];
-    c[M::iTF] = T(1.0) / p[M::TF];
+    c[M::iTF] = inverse(p[M::TF]);
     c[M::feedback] = p[M::KF] * c[M::iTF];
     const auto saturation = Quadratic<T>::through(p[M::E1], p[M::SE1], p[M::E2], p[M::SE2]);
     c[M::satA] = saturation.A;
@@ -106,9 +109,10 @@ void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const do
   const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
     if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
   };
-  for (int i : {M::TE, M::TF})
-    bad(!(p[i] > 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]),
-        fmt::format("{} divides by it", M::name), "give a value > 0");
+  bad(!(p[M::TE] > 0), fmt::format("TE = {:g} s", p[M::TE]), fmt::format("{} divides by it", M::name),
+      "give TE > 0");
+  check_time_constant(M::name, M::parameters[M::TF].symbol, p[M::TF], p[M::KF] != 0, "KF = 0", where,
+                      problems);
   bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "no gain, no exciter", "give KA > 0");
   for (int i : bypassed)
     bad(!(p[i] >= 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]), "a time constant",

@@ -75,6 +75,7 @@ TEST(LoadIeel, WhatCannotRunIsRefused) {
   for (const auto& [name, value] : {std::pair{"n2", -1.0}, {"Tf", 0.0}, {"Vi", 0.0}}) {
     auto p = effect.standard_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
+    p[static_cast<std::size_t>(effect.parameter_index("a7"))] = 1.0;
     Problems problems;
     effect.check(nullptr, p.data(), "test", problems);
     EXPECT_FALSE(problems.empty()) << name;

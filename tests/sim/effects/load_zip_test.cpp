@@ -102,7 +102,7 @@ TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
 TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
   grid::Grid grid = test::configured_grid(kGrid, Conventions::psse());
   Problems problems;
-  for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Tf=0"})
+  for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Kpf=1,Tf=0"})
     grid::choose_load(grid, text, std::string("--load ") + text, problems);
   try {
     problems.raise();

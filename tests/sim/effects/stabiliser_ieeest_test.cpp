@@ -77,7 +77,7 @@ TEST(StabiliserIeeest, FrequencyAndSlopeOfTheVoltageBehindTheirLag) {
   }
   EXPECT_EQ(ControlBench("IEEEST", with({{"ICS", 7.0}})).problems.list().size(), 1u);
   EXPECT_EQ(ControlBench("IEEEST", with({{"ICS", 2.5}})).problems.list().size(), 1u);
-  EXPECT_EQ(ControlBench("IEEEST", with({{"Tf", 0.0}})).problems.list().size(), 1u);
+  EXPECT_EQ(ControlBench("IEEEST", with({{"ICS", 2.0}, {"Tf", 0.0}})).problems.list().size(), 1u);
 }
 
 TEST(StabiliserIeeest, ZeroTimeConstantsAreBypassed) {
