@@ -65,8 +65,7 @@ TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
 }
 
 // Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
-// intervals all hold the truth in 42 % of such records, all but one in 79 %; X''d misses by a quarter of its
-// error.
+// intervals all hold the truth in 42 % of such records, all but one in 79 %.
 TEST(Add, IntervalsHoldTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
@@ -86,6 +85,7 @@ TEST(Add, IntervalsHoldTheTruth) {
   }
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));
+  EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // pulled by the voltage's noise
 }
 
 TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {

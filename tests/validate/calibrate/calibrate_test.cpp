@@ -127,7 +127,8 @@ TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
     // samples/s do to a time constant of 0.05 s
     EXPECT_NEAR(p.value, value, 3 * p.error + 3e-3 * value) << name;
     const auto at = &parameter(c, name) - c.parameters.data();
-    EXPECT_LT(p.error, 2 * bound[static_cast<std::size_t>(at)]) << name;
+    // noise of V, which the bound leaves out, reaches Efd through K TA/TB as large as the noise of Efd
+    EXPECT_LT(p.error, 2.6 * bound[static_cast<std::size_t>(at)]) << name;
     EXPECT_GT(p.error, 0.6 * bound[static_cast<std::size_t>(at)]) << name;
   }
   ASSERT_EQ(c.events.size(), 4U);
