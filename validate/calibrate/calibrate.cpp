@@ -350,7 +350,7 @@ class Calibrating {
     }
     fill_parameters(inverse, unit, widening);
     c_.blurs = find_blurs(data, unit);
-    try_others(data + belief, inverse, unit, widening);
+    if (!options_.only_given) try_others(data + belief, inverse, unit, widening);
     for (std::size_t e = 0; e < slopes.size(); ++e)  // what uncertain parameters add to events they never saw
       allowance_.push_back(
           out_[e] ? unseen_allowance(fit::information(slopes[e]), robust, c_.prepared[e].values()) : 0.0);

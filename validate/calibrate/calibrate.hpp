@@ -25,7 +25,7 @@ struct CalibrateOptions {
   std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;             ///< "GENROU.Xl": stays as it is
   std::vector<GivenStart> given;              ///< starts beside the model's own values and those drawn
-  bool only_given = false;                    ///< starts from `given` alone
+  bool only_given = false;                    ///< starts from `given` alone, and no further event is tried
   std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
   double adequate =
       thresholds::adequacy.misfit;  ///< chi2 per value that interpolation and the played-in voltage may leave
