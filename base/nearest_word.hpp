@@ -45,7 +45,7 @@ inline std::string nearest_word(std::string_view wanted, const std::vector<std::
     const std::string known = lower(word);
     const bool begins = sought.size() >= 3 && known.starts_with(sought);
     const std::size_t slips = edit_distance(sought, known);
-    if (!begins && (slips > most || slips >= known.size())) continue;
+    if (!begins && (slips > most || 2 * slips >= std::max(known.size(), sought.size()))) continue;
     const std::array<std::size_t, 3> distance{
         begins ? 0U : 1U, slips,
         std::max(known.size(), sought.size()) - std::min(known.size(), sought.size())};
