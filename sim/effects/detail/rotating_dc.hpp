@@ -109,9 +109,8 @@ void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const do
   const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
     if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
   };
-  bad(!(p[M::TE] > 0), fmt::format("TE = {:g} s", p[M::TE]), fmt::format("{} divides by it", M::name),
-      "give TE > 0");
-  check_time_constant(M::name, M::parameters[M::TF].symbol, p[M::TF], p[M::KF] != 0, "KF = 0", where,
+  bad(!(p[M::TE] > 0), fmt::format("TE = {:g} s", p[M::TE]), "the exciter divides by it", "give TE > 0");
+  check_time_constant("the exciter", M::parameters[M::TF].symbol, p[M::TF], p[M::KF] != 0, "KF = 0", where,
                       problems);
   bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "no gain, no exciter", "give KA > 0");
   for (int i : bypassed)

@@ -12,8 +12,8 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Notes a time constant [s] that breaks the rule. `acts`: whether its block acts; `off`: what switches the
-/// block off ("KF = 0").
+/// Notes a time constant [s] that breaks the rule. `model`: what divides by it; `acts`: whether its block
+/// acts; `off`: what switches the block off ("KF = 0").
 inline void check_time_constant(std::string_view model, std::string_view symbol, double seconds, bool acts,
                                 std::string_view off, const std::string& where, Problems& problems) {
   if (acts ? seconds > 0 : seconds >= 0) return;
