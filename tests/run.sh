@@ -49,13 +49,11 @@ check_reference() {
 
 # The build of the fuzz targets also has the tests of the rooms that read a user's files.
 run_readers() {
-  local folder=$source_folder/build/fuzz left_out='*Full.*:*Night.*' test
+  local folder=$source_folder/build/fuzz left_out='*Full.*:*Night.*'
   ((with_psse)) || left_out+=":*${of_others//|/*:*}*"
   cmake --build "$folder" --target tests_of_readers >"$folder.log" 2>&1 || { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
-  for test in "$folder"/bin/test_*; do
-    echo "$(basename "$test")"
-    "$test" --gtest_brief=1 "--gtest_filter=-$left_out" || return 1
-  done
+  printf '%s\0' "$folder"/bin/test_* |
+    xargs -0 -P "$(nproc)" -I{} bash -c '"$1" --gtest_brief=1 "--gtest_filter=-$2" || { echo "failed: $1" >&2; exit 1; }' _ {} "$left_out"
 }
 
 check_scripts() {
