@@ -420,7 +420,7 @@ TEST(ErrorTable, PrintedRatio_IsThePrintedRmsOverThePrintedNoise) {
   const auto& q = events[0].channels[1];
   EXPECT_DOUBLE_EQ(json[1]["rms"], q.whole.rms * q.scale);
   EXPECT_DOUBLE_EQ(json[1]["rms_over_noise"], q.whole.rms / q.noise);
-  EXPECT_THAT(terminal_report(example_model(), events, judge(events), fitness),
+  EXPECT_THAT(terminal_report(example_model(), events, judge(events), fitness, false),
               HasSubstr(report::padded(error_table({{"", events, fitness}}))));
 }
 
