@@ -166,7 +166,8 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
   for (const char* words : {"SEXS 62 % or ESST1A 34 %", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no file",
                             "3 plants: 1 adequate, 1 with an effect named, 0 unexplained, 1 failed."})
     EXPECT_THAT(text, HasSubstr(words));
-  EXPECT_THAT(fleet_csv(broken), HasSubstr("plant,verdict,effects,equivalent,side,evidence,normalised_rms_refitted"));
+  EXPECT_THAT(fleet_csv(broken),
+              HasSubstr("plant,verdict,effects,equivalent,side,evidence,normalised_rms_refitted"));
   EXPECT_THAT(fleet_csv(broken), HasSubstr("\"A sentence, with a comma.\""));
   EXPECT_THAT(fleet_csv(broken),
               HasSubstr("b,confusable,SEXS,ESST1A,excitation,412.25,1.01,26.4,1.02,3e-05,3,"));
