@@ -66,7 +66,7 @@ class GroupedHelp : public CLI::Formatter {
     }
     return text + "\n" + make_footer(app);
   }
-  /// Without the options that it excludes, which may be many; the message tells them where they are given.
+  /// Omits the options that it excludes, which may be many; the error message names those given.
   std::string make_option_opts(const CLI::Option* option) const override {
     const std::string text = CLI::Formatter::make_option_opts(option);
     return text.substr(0, text.find(" Excludes:"));

@@ -181,11 +181,11 @@ class CourseProgress {
   }
 
   static constexpr double kLeastDone = 0.02;  ///< below it, the rate so far predicts nothing
-  static constexpr double kMayGrow = 1.2;     ///< of the duration first told
+  static constexpr double kMayGrow = 1.2;     ///< of the duration first estimated
   Course course_;
   std::map<Phase, Seen> seen_;
   double share_ = 0;
-  double end_ = std::numeric_limits<double>::infinity();  ///< duration of the whole, as told [s]
+  double end_ = std::numeric_limits<double>::infinity();  ///< estimated duration of the whole [s]
   bool beyond_ = false;
 };
 

@@ -54,7 +54,7 @@ struct RawOptions {
 /// vector groups, voltage limits, tap and load-flow controls (taps stay where they are), substations whose
 /// buses are in one piece. Distributed generation inside a load is taken off its P and Q, with a remark.
 /// Refused, naming section and line: buses that a substation's open switches split. Out-of-service loads and
-/// shunts are left out; what stands at an isolated bus (type 4) is out of service, as in PSS/E.
+/// shunts are left out; equipment at an isolated bus (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for fields left empty: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
