@@ -18,7 +18,7 @@ enum class Phase {
   effect_starts,    ///< the effect is fitted from the best of them
   effect_left_out,  ///< each event without the effect
   effect_added,     ///< each event with the effect
-  // the fewest wrong parameters
+  // sparse parameter selection
   every_parameter,
   parameter_subsets,
   subsets_less_one,
