@@ -106,7 +106,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
   j["model"] = model.origin;
   for (const auto& e : all) {
     j["records"].push_back({{"file", e.record.name},
-                            {"hash", fmt::format("{:016x}", e.record.hash)},
+                            {"sha256", e.record.sha256},
                             {"event_s", e.input.event_s},
                             {"held_before_record_s", e.input.held_s},
                             {"input_rms", e.estimate.input_rms},

@@ -110,13 +110,13 @@ std::vector<std::string> provenance_lines(const Addition& a, const plant::PlantM
   std::string fitted, unseen;
   for (std::size_t e = 0; e < a.events.size(); ++e) {
     auto& list = a.events[e].score.seen ? fitted : unseen;
-    list += fmt::format("{}{} (xxh64 {:016x})", list.empty() ? "" : ", ", a.prepared[e].record.name,
-                        a.prepared[e].record.hash);
+    list += fmt::format("{}{} (SHA-256 {})", list.empty() ? "" : ", ", a.prepared[e].record.name,
+                        a.prepared[e].record.sha256);
   }
   std::vector<std::string> lines = {
       fmt::format("{} added by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", a.hypothesis.what, SWINGBANK_VERSION,
                   fmt::gmtime(std::time(nullptr))),
-      "Command: " + command_line, fmt::format("To the model {} (xxh64 {:016x}).", from.origin, from.hash),
+      "Command: " + command_line, fmt::format("To the model {} (SHA-256 {}).", from.origin, from.sha256),
       "Fitted to: " + fitted};
   if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
   lines.push_back(a.sentence);

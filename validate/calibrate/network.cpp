@@ -29,7 +29,7 @@ NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
     e.parameters.push_back({p.at("name"), p.at("effect"), p.at("unit"), p.at("estimate"), p.at("spread"),
                             p.at("scatter"), p.at("low"), p.at("high")});
   for (const json& r : j.at("records"))
-    e.records.push_back({r.at("file"), r.at("hash"), r.value("estimates", std::vector<double>())});
+    e.records.push_back({r.at("file"), r.at("sha256"), r.value("estimates", std::vector<double>())});
   return e;
 }
 
@@ -105,8 +105,8 @@ void require_unseen(const NetworkEstimate& estimate, const std::vector<record::R
                     const std::vector<bool>& held_out) {
   Problems problems;
   for (std::size_t k = 0; k < records.size(); ++k)
-    if (held_out[k] && std::ranges::count(estimate.records, fmt::format("{:016x}", records[k].hash),
-                                          &NetworkEstimate::Seen::hash) > 0)
+    if (held_out[k] &&
+        std::ranges::count(estimate.records, records[k].sha256, &NetworkEstimate::Seen::sha256) > 0)
       problems.add("an estimate made of " + records[k].name, estimate.file, "that event is held out",
                    "make the estimate of the other events, or let it in");
   problems.raise();

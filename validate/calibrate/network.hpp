@@ -24,7 +24,7 @@ struct NetworkEstimate {
   };
   std::vector<Parameter> parameters;
   struct Seen {
-    std::string record, hash;    ///< XXH64 of its bytes, 16 hex digits
+    std::string record, sha256;  ///< name, and hash of its bytes
     std::vector<double> values;  ///< estimated from it alone, as `parameters`
   };
   std::vector<Seen> records;  ///< it was made of

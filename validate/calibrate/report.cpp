@@ -188,7 +188,7 @@ json calibration_json(const Calibration& c) {
   json j = {{"format", "swingbank-calibrate-2"},
             {"version", SWINGBANK_VERSION},
             {"model", c.model.origin},
-            {"model_xxh64", fmt::format("{:016x}", c.model.hash)},
+            {"model_sha256", c.model.sha256},
             {"verdict", adequacy_name(c.adequacy)},
             {"adequacy", thresholds::ruling_json(c.ruling)},
             {"sentence", c.sentence},
@@ -235,7 +235,7 @@ std::vector<std::string> provenance_lines(const Calibration& c, const std::strin
   for (const auto& e : c.prepared) {
     const auto score = std::ranges::find(c.events, e.record.name, &EventScore::record);
     auto& list = score == c.events.end() || score->seen ? fitted : unseen;
-    list += fmt::format("{}{} (xxh64 {:016x})", list.empty() ? "" : ", ", e.record.name, e.record.hash);
+    list += fmt::format("{}{} (SHA-256 {})", list.empty() ? "" : ", ", e.record.name, e.record.sha256);
   }
   std::string names;
   for (const auto& p : c.parameters) names += (names.empty() ? "" : ", ") + p.fit.full_name();
@@ -243,8 +243,7 @@ std::vector<std::string> provenance_lines(const Calibration& c, const std::strin
       fmt::format("Calibrated by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", SWINGBANK_VERSION,
                   fmt::gmtime(std::time(nullptr))),
       "Command: " + command_line,
-      fmt::format("From the model {} (xxh64 {:016x}).", c.model.origin, c.model.hash),
-      "Fitted to: " + fitted};
+      fmt::format("From the model {} (SHA-256 {}).", c.model.origin, c.model.sha256), "Fitted to: " + fitted};
   if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
   lines.push_back("Fitted parameters: " + names + "; every other value is as in that model.");
   lines.push_back(fmt::format("Misfit (chi2 per value) {:.4g} before, {:.4g} after: {}.", c.before, c.after,

@@ -264,20 +264,11 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {
-  json j = {{"format", "swingbank-curve-fit-2"},
-            {"version", SWINGBANK_VERSION},
-            {"model", f.model.origin},
-            {"model_xxh64", fmt::format("{:016x}", f.model.hash)},
-            {"sentence", f.sentence},
-            {"misfit_before", f.before},
-            {"misfit_after", f.after},
-            {"misfit_limit", f.limit},
-            {"adequate", f.adequate},
-            {"converged", f.converged},
-            {"iterations", f.iterations},
-            {"seconds", f.seconds},
-            {"events", json::array()},
-            {"parameters", json::array()}};
+  json j = {{"format", "swingbank-curve-fit-2"}, {"version", SWINGBANK_VERSION}, {"model", f.model.origin},
+            {"model_sha256", f.model.sha256},    {"sentence", f.sentence},       {"misfit_before", f.before},
+            {"misfit_after", f.after},           {"misfit_limit", f.limit},      {"adequate", f.adequate},
+            {"converged", f.converged},          {"iterations", f.iterations},   {"seconds", f.seconds},
+            {"events", json::array()},           {"parameters", json::array()}};
   for (const auto& e : f.events) j["events"].push_back(event_json(e));
   for (const auto& p : f.parameters) {
     const auto known = truth.find(p.full_name());
@@ -304,7 +295,7 @@ std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantM
               "Fitted by least squares of the curves (baseline) by swingbank {} on {:%Y-%m-%d %H:%M} UTC.",
               SWINGBANK_VERSION, fmt::gmtime(std::time(nullptr))),
           "Command: " + command_line,
-          fmt::format("From the model {} (xxh64 {:016x}).", from.origin, from.hash), "Fitted to: " + fitted,
+          fmt::format("From the model {} (SHA-256 {}).", from.origin, from.sha256), "Fitted to: " + fitted,
           f.sentence};
 }
 

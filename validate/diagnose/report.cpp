@@ -123,7 +123,7 @@ nlohmann::json input_json(const Diagnosis& d, const hypothesis::MissingInput& in
 nlohmann::json event_json(const ReportEvent& e, bool with_after) {
   const record::Record& r = e.event->record;
   nlohmann::json j = {{"record", r.name},
-                      {"record_xxh64", fmt::format("{:016x}", r.hash)},
+                      {"record_sha256", r.sha256},
                       {"samples", r.samples()},
                       {"rate_per_s", r.rate()},
                       {"normalised_rms_before", e.before},
@@ -238,10 +238,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
       {"would_decide", decision_json(d.would_decide)},
       {"seconds", d.seconds},
       {"model",
-       {{"name", model.name},
-        {"file", model.origin},
-        {"xxh64", fmt::format("{:016x}", model.hash)},
-        {"mva", model.plant.mva}}}};
+       {{"name", model.name}, {"file", model.origin}, {"sha256", model.sha256}, {"mva", model.plant.mva}}}};
   j["before"] = {
       {"normalised_rms", std::sqrt(d.base.misfit())},
       {"parameters", d.verdict == Verdict::interrupted && !d.ruling.adequate ? nlohmann::json::array()

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 #include <glob.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/json.hpp"
+#include "base/sha256.hpp"
 #include "base/write_file.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/diagnose/report.hpp"
@@ -79,7 +79,7 @@ json block_json(const sim::plant::Block& b) {
 /// they gave and the laws' own bytes count.
 std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   const plant::PlantModel& m = l.model;
-  json j = {kFormat, SWINGBANK_VERSION, plant.name, fmt::format("{:016x}", m.hash)};
+  json j = {kFormat, SWINGBANK_VERSION, plant.name, m.sha256};
   j.push_back({plant.spread, plant.power_only});
   j.push_back({m.plant.mva, m.conventions.speed_voltage, m.conventions.mechanical_power,
                m.conventions.frequency, m.record_base.mva, m.record_base.frequency, m.record_base.kv});
@@ -89,11 +89,11 @@ std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   for (const auto& b : m.plant.measurements) j.push_back(block_json(b));
   for (const auto& law : m.laws) {
     const std::string bytes = record::read_bytes(law);
-    j.push_back(XXH64(bytes.data(), bytes.size(), 0));
+    j.push_back(sha256(bytes));
   }
-  for (const auto& r : l.records) j.push_back({r.name, r.terminal, r.hash});
+  for (const auto& r : l.records) j.push_back({r.name, r.terminal, r.sha256});
   const std::string text = json_text(j);
-  return fmt::format("{:016x}", XXH64(text.data(), text.size(), 0));
+  return sha256(text);
 }
 
 FleetRow row_of(const diagnose::Diagnosis& d) {
@@ -252,7 +252,7 @@ json row_json(const FleetRow& r) {
           {"probability_by_noise_alone_at_most", r.chance},
           {"events", r.events},
           {"sentence", r.sentence},
-          {"inputs_xxh64", r.inputs}};
+          {"inputs_sha256", r.inputs}};
 }
 
 FleetRow read_row(const std::string& text, const std::string& where) {
@@ -272,7 +272,7 @@ FleetRow read_row(const std::string& text, const std::string& where) {
             number_of(j, "probability_by_noise_alone_at_most"),
             j.at("events"),
             j.at("sentence"),
-            j.at("inputs_xxh64")};
+            j.at("inputs_sha256")};
   } catch (const std::exception& error) {
     throw InputError(
         {"no result of a plant", where, error.what(), "remove its folder and run the command again"});

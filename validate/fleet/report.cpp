@@ -124,7 +124,7 @@ std::string fleet_csv(const std::vector<FleetRow>& rows) {
       "",
       {"plant", "verdict", "effects", "equivalent", "side", "evidence", "normalised_rms_refitted",
        "unseen_normalised_rms_before", "unseen_normalised_rms_after", "probability_by_noise_alone_at_most",
-       "events", "sentence", "inputs_xxh64"},
+       "events", "sentence", "inputs_sha256"},
       {}};
   for (const auto& r : rows)
     table.rows.push_back({r.plant, r.verdict, joined(r.effects, ";"), joined(r.equivalent, ";"), r.side,

@@ -1,12 +1,12 @@
 #include "validate/plant/plant_model.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 
 #include "base/config.hpp"
 #include "base/input_file.hpp"
+#include "base/sha256.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/plant/orderings.hpp"
 #include "sim/plant/usual.hpp"
@@ -274,7 +274,7 @@ PlantModel parse_with_laws(const std::string& text, const fs::path& file, const 
   PlantModel model;
   for (const auto& law : laws) sim::laws::load_law(law, model.library);
   model.origin = file.string();
-  model.hash = XXH64(text.data(), text.size(), 0);
+  model.sha256 = sha256(text);
   model.laws = read_laws(config, model.library);
   model.name = config.require<std::string>("plant.name");
   config.optional<std::string>("plant.origin", "");

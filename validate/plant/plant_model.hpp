@@ -16,7 +16,7 @@ namespace swingbank::validate::plant {
 
 struct PlantModel {
   std::string name, origin;  ///< origin: the file it was read from
-  std::uint64_t hash = 0;    ///< XXH64 of that file's bytes
+  std::string sha256;        ///< of that file's bytes
   sim::plant::Plant plant;   ///< its generation is set from each record
   sim::Conventions conventions;
   record::RecordBase record_base;                ///< what "pu" means in the records of this plant

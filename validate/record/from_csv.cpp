@@ -1,6 +1,5 @@
 // Records as text in columns: separators, header dialects, numbers and stamps.
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/sha256.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/cells.hpp"
 #include "validate/record/detail/playback.hpp"
@@ -419,7 +419,7 @@ Record parse_record(std::string_view text, const std::string& name, const Record
   Record record =
       playback ? playback_record(known, name, base, options) : CsvReader(known, name, base, options).read();
   record.notes.insert(record.notes.begin(), notes.begin(), notes.end());
-  record.hash = XXH64(text.data(), text.size(), 0);
+  record.sha256 = sha256(text);
   return record;
 }
 

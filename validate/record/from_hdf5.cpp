@@ -1,10 +1,10 @@
 // One plant of a simulated run as a record.
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/sha256.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
@@ -54,7 +54,7 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   raw.about.name = file.filename().string();
   raw.about.format = "HDF5";
   raw.about.terminal = plants[plant];
-  raw.about.hash = XXH64(bytes.data(), bytes.size(), 0);
+  raw.about.sha256 = sha256(bytes);
   std::vector<Heading> headings{{"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}, false}}};
   const auto units = h.texts_attribute("channel_units");
   for (std::size_t c = 0; c < channels.size(); ++c)

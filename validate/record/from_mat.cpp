@@ -1,7 +1,6 @@
 // MATLAB files (v4, v5 and v7.3, by libmatio) as records: vectors, tables of columns and structs of both.
 #include <fmt/format.h>
 #include <matio.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "base/read_apart.hpp"
+#include "base/sha256.hpp"
 #include "validate/record/detail/columns.hpp"
 #include "validate/record/formats.hpp"
 #include "validate/record/mat_text.hpp"
@@ -319,7 +319,7 @@ Record read_mat_record(const std::filesystem::path& file, const RecordBase& base
   const auto line = text.find('\n');
   Record record = parse_record(line == std::string::npos ? "" : text.substr(line + 1),
                                fmt::format("columns of {}", file.filename().string()), base, options);
-  record.hash = XXH64(bytes.data(), bytes.size(), 0);
+  record.sha256 = sha256(bytes);
   record.format = text.substr(0, line);
   return record;
 }

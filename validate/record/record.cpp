@@ -1,7 +1,6 @@
 #include "validate/record/record.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "base/constants.hpp"
 #include "base/input_file.hpp"
+#include "base/sha256.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
 #include "validate/record/staged.hpp"
@@ -63,7 +63,7 @@ Record read_comtrade(const std::filesystem::path& file, const RecordBase& base, 
         parse_comtrade(all.substr(0, split), all.substr(split), cfg.string(), dat.string()), name, base,
         options);
   }
-  record.hash = XXH64(bytes.data(), bytes.size(), 0);
+  record.sha256 = sha256(bytes);
   return record;
 }
 
@@ -90,7 +90,7 @@ Record read_parts(const std::vector<std::filesystem::path>& files, const RecordB
   for (const auto& file : files) {
     try {
       records.push_back(read_record(file, base, part));
-      bytes += fmt::format("{:016x}", records.back().hash);
+      bytes += records.back().sha256;
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
@@ -98,7 +98,7 @@ Record read_parts(const std::vector<std::filesystem::path>& files, const RecordB
   problems.raise();
   Record all = join_records(std::move(records), options, names);
   all.name = names;
-  all.hash = XXH64(bytes.data(), bytes.size(), 0);
+  all.sha256 = sha256(bytes);
   return all;
 }
 

@@ -56,8 +56,8 @@ struct StagedEvent {
 
 /// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
-  std::string name;        ///< file name without folder
-  std::uint64_t hash = 0;  ///< XXH64 of the file's bytes (of a COMTRADE record: .cfg, then .dat)
+  std::string name;    ///< file name without folder
+  std::string sha256;  ///< of the file's bytes (of a COMTRADE record: .cfg, then .dat)
   RecordBase base;
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)

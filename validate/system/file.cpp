@@ -1,12 +1,12 @@
 // System files: a grid, an event, and the records of several terminals.
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/config.hpp"
+#include "base/sha256.hpp"
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/grid/load_choice.hpp"
@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
 
-std::uint64_t hash_of(const fs::path& file) {
+std::string sha256_of(const fs::path& file) {
   const std::string bytes = record::read_bytes(file);
-  return XXH64(bytes.data(), bytes.size(), 0);
+  return sha256(bytes);
 }
 
 /// Problems of a part, told at the key they belong to.
@@ -72,7 +72,7 @@ void read_grid(Config& c, SystemCase& s) {
     attempt(c, "laws", [&] {
       const fs::path law = (c.name().parent_path() / name).lexically_normal();
       sim::laws::load_law(law, library);
-      s.laws.emplace_back(law, hash_of(law));
+      s.laws.emplace_back(law, sha256_of(law));
     });
   s.raw = c.file("system.raw");
   s.dyr = c.file("system.dyr");
@@ -85,8 +85,8 @@ void read_grid(Config& c, SystemCase& s) {
   const auto attached = c.optional<Texts>("system.attach", {}), loads = c.optional<Texts>("system.load", {});
   const bool composed = c.choice("system.loads", {"impedance", "raw"}, "impedance") == "raw";
   if (!c.sound()) return;
-  s.raw_hash = hash_of(s.raw);
-  s.dyr_hash = hash_of(s.dyr);
+  s.raw_sha256 = sha256_of(s.raw);
+  s.dyr_sha256 = sha256_of(s.dyr);
   attempt(c, "system.raw", [&] { s.grid = sim::grid::load_grid(s.raw, s.dyr, conventions, models, hz); });
   if (!c.sound()) return;
   s.grid.library = library;
@@ -213,7 +213,7 @@ SystemCase load_system(const fs::path& file) {
   Config c(file);
   SystemCase s;
   s.file = file;
-  s.hash = hash_of(file);
+  s.sha256 = sha256_of(file);
   s.name = c.require<std::string>("system.name");
   s.base.mva = c.require<double>("record.base_mva", {1e-9, 1e9, "MVA"});
   s.base.kv = c.optional<double>("record.base_kv", 0.0, {1e-9, 1e9, "kV"});

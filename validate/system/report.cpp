@@ -107,7 +107,7 @@ json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i
   json j = {{"name", t.name},
             {"at", place_of(s, t)},
             {"record", t.record.name},
-            {"record_xxh64", fmt::format("{:016x}", t.record.hash)},
+            {"record_sha256", t.record.sha256},
             {"samples", t.record.samples()},
             {"rate_per_s", t.record.rate()},
             {"warnings", t.warnings},
@@ -256,19 +256,19 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
 }
 
 report::Provenance system_provenance(const SystemCase& s, const std::string& command_line) {
-  const auto hashed = [](const std::filesystem::path& file, std::uint64_t hash) {
-    return fmt::format("{}, XXH64 {:016x}", file.string(), hash);
+  const auto hashed = [](const std::filesystem::path& file, const std::string& sha256) {
+    return fmt::format("{}, SHA-256 {}", file.string(), sha256);
   };
   report::Provenance rows = {
       {"command", command_line},
       {"software", "swingbank " SWINGBANK_VERSION},
-      {"system", hashed(s.file, s.hash)},
-      {"network", hashed(s.raw, s.raw_hash)},
-      {"dynamics", hashed(s.dyr, s.dyr_hash)},
+      {"system", hashed(s.file, s.sha256)},
+      {"network", hashed(s.raw, s.raw_sha256)},
+      {"dynamics", hashed(s.dyr, s.dyr_sha256)},
       {"integrator", fmt::format("IDA on the unreduced grid, relative tolerance {:g}", s.tolerance)}};
-  for (const auto& [file, hash] : s.laws) rows.emplace_back("law", hashed(file, hash));
+  for (const auto& [file, sha256] : s.laws) rows.emplace_back("law", hashed(file, sha256));
   for (const auto& t : s.terminals)
-    rows.emplace_back("record of " + t.name, hashed(t.record.name, t.record.hash));
+    rows.emplace_back("record of " + t.name, hashed(t.record.name, t.record.sha256));
   return rows;
 }
 

@@ -26,8 +26,8 @@ enum class SteadyState {
 struct SystemCase {
   std::string name;
   std::filesystem::path file, raw, dyr;
-  std::uint64_t hash = 0, raw_hash = 0, dyr_hash = 0;  ///< XXH64 of the files' bytes
-  std::vector<std::pair<std::filesystem::path, std::uint64_t>> laws;
+  std::string sha256, raw_sha256, dyr_sha256;  ///< of the files' bytes
+  std::vector<std::pair<std::filesystem::path, std::string>> laws;
   sim::grid::Grid grid;
   sim::grid::EventTexts texts;
   sim::network::Event event;  ///< instants on the records' clock

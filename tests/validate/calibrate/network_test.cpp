@@ -41,7 +41,7 @@ class EstimateFile {
     std::ofstream(file_) << json{
         {"format", "swingbank-estimate-1"},
         {"network", {{"file", "x.network"}, {"kind", "cnn"}, {"machine_model", machine}, {"dataset", "d"}}},
-        {"records", {{{"file", "avr_ev1.csv"}, {"hash", hash}}}},
+        {"records", {{{"file", "avr_ev1.csv"}, {"sha256", hash}}}},
         {"parameters", std::move(parameters)}};
   }
   EstimateFile(const EstimateFile&) = delete;
@@ -119,8 +119,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
 TEST(NetworkStart, RefusesEventsHeldOutAndOtherFiles) {
   const plant::PlantModel model = example();
   const std::vector<record::Record> records = {example_record(model, 1), example_record(model, 2)};
-  const EstimateFile file(Parameters{estimate_json("H", 7, 1, 10)}, "GENROU",
-                          fmt::format("{:016x}", records[1].hash));
+  const EstimateFile file(Parameters{estimate_json("H", 7, 1, 10)}, "GENROU", records[1].sha256);
   EXPECT_THAT(test::messages([&] {
                 require_unseen(file.read(), records, {false, true});
               }),

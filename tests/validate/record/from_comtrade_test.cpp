@@ -239,10 +239,10 @@ TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
   const Record r = read_record(folder_ / "e.cfg", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_EQ(r.name, "e.cfg");
-  EXPECT_EQ(read_record(folder_ / "e.dat", kTestBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "e.dat", kTestBase).sha256, r.sha256);
   write("F.CFG", w.cfg());
   write("F.DAT", w.dat());
-  EXPECT_EQ(read_record(folder_ / "F.CFG", kTestBase).hash, r.hash);
+  EXPECT_EQ(read_record(folder_ / "F.CFG", kTestBase).sha256, r.sha256);
   write("alone.cfg", w.cfg());
   EXPECT_THAT(test::messages([&] { read_record(folder_ / "alone.cfg", kTestBase); }),
               ElementsAre(HasSubstr("alone.dat")));

@@ -64,7 +64,7 @@ TEST(RecordTest, UnitsAreInTheNames) {
 }
 
 TEST(RecordTest, HashIsOfTheBytes) {
-  EXPECT_NE(parse_record(sound(), "a", {}).hash, parse_record(sound(41), "a", {}).hash);
+  EXPECT_NE(parse_record(sound(), "a", {}).sha256, parse_record(sound(41), "a", {}).sha256);
 }
 
 TEST(RecordTest, MissingColumnsAreAllNamed) {
