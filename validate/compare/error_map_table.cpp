@@ -49,6 +49,20 @@ void keep_worse(MapCell& worst, const MapCell& cell) {
   if (worst.empty() || cell.normalised / cell.bound > worst.normalised / worst.bound) worst = cell;
 }
 
+/// Events whose cell of this channel, window and band exceeds its bound, and how many have that cell.
+std::string events_beyond(const std::vector<LabelledMap>& maps, const std::string& channel,
+                          const std::string& window, std::size_t band) {
+  int beyond = 0, all = 0;
+  for (const auto& m : maps)
+    for (std::size_t w = 0; w < m.windows->size(); ++w) {
+      if (m.channel != channel || (*m.windows)[w].name != window || m.map->rows[w].bands[band].empty())
+        continue;
+      ++all;
+      beyond += m.map->rows[w].bands[band].exceeds() ? 1 : 0;
+    }
+  return all > 1 ? fmt::format(", in {} of {} events", beyond, all) : "";
+}
+
 constexpr const char* kCaption =
     "Normalised RMS of the residual per time window and frequency band: each component is divided by the standard "
     "deviation that coloured noise gives it, so that noise alone gives 1 ×. Windows “after” count from the last "
@@ -99,6 +113,35 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
       if (of) add_row(table, *of, window, worst, false);
     }
   return table;
+}
+
+std::string map_sentence(const std::vector<LabelledMap>& maps) {
+  std::vector<std::string> channels;
+  for (const auto& m : maps)
+    if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
+  std::string text;
+  for (const auto& channel : channels) {
+    MapCell worst;
+    std::string window;
+    std::size_t band = 0;
+    for (const auto& m : maps)
+      for (std::size_t w = 0; m.channel == channel && w < m.windows->size(); ++w)
+        for (std::size_t b = 0; b < m.map->rows[w].bands.size(); ++b) {
+          const MapCell& cell = m.map->rows[w].bands[b];
+          if (!cell.exceeds() ||
+              (!worst.empty() && cell.normalised / cell.bound <= worst.normalised / worst.bound))
+            continue;
+          worst = cell;
+          window = (*m.windows)[w].name;
+          band = b;
+        }
+    text += text.empty() ? "" : " ";
+    text += worst.empty() ? channel + " is nowhere beyond its noise."
+                          : fmt::format("{} is furthest off in the window “{}” at {}: {} noise{}.", channel,
+                                        window, error_bands()[band].name, times_noise(worst.normalised),
+                                        events_beyond(maps, channel, window, band));
+  }
+  return text;
 }
 
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map) {

@@ -23,6 +23,10 @@ report::Table map_table(const std::vector<LabelledMap>& maps);
 /// The same with the worst of all events (furthest beyond its bound) in each cell.
 report::Table worst_map_table(const std::vector<LabelledMap>& maps);
 
+/// The maps in words: of each channel the window and band that are furthest beyond their bound, and in how
+/// many events they are beyond it.
+std::string map_sentence(const std::vector<LabelledMap>& maps);
+
 /// Rows of cells: window, band ("all" over every frequency), values, rms_pu, normalised_rms and
 /// normalised_bound.
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map);

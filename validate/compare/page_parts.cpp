@@ -224,6 +224,7 @@ void maps_part(report::Page& page, const std::vector<Played>& played) {
     const auto maps = labelled_maps(p.events);
     report::Table table = p.events.size() > 1 ? worst_map_table(maps) : map_table(maps);
     const std::string which = p.name == "model" ? "" : fmt::format("The model {}. ", p.name);
+    page.text(which + map_sentence(maps));
     table.caption = which + (&p == played.data() ? table.caption : "Same units.");
     page.table(table);
   }

@@ -70,7 +70,7 @@ nlohmann::json to_json(const WindowError& w) {
 
 nlohmann::json to_json(const EventComparison& e) {
   nlohmann::json j = {{"record", e.record.name},
-                      {"record_xxh64", fmt::format("{:016x}", e.record.hash)},
+                      {"record_sha256", e.record.sha256},
                       {"begins", record::beginning(e.record)},
                       {"samples", e.record.samples()},
                       {"rate_per_s", e.record.rate()},
@@ -113,6 +113,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   out += fmt::format("\n{} ({}): measured against modelled\n\n", model.name, plant::subject(model)) +
          error_text({{"", events, fitness}});
   const auto maps = maps_of(events);
+  if (!adequacy.adequate) out += "\n" + map_sentence(maps) + "\n";
   if (verbose)
     out += (events.size() > 1 ? "\nNormalised RMS per window and band, worst of all events:\n" +
                                     report::padded(worst_map_table(maps))
@@ -135,23 +136,21 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  nlohmann::json j = {{"format", "swingbank-compare-4"},
-                      {"adequate", adequacy.adequate},
-                      {"statistically_complete", adequacy.adequate},
-                      {"fitness", fitness_json(fitness)},
-                      {"verdict", adequacy.sentence},
-                      {"adequacy", thresholds::ruling_json(adequacy.ruling)},
-                      {"cells", adequacy.cells},
-                      {"cells_exceeding", adequacy.exceeding},
-                      {"cells_telling_nothing", adequacy.vague},
-                      {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
-                      {"model",
-                       {{"name", model.name},
-                        {"file", model.origin},
-                        {"xxh64", fmt::format("{:016x}", model.hash)},
-                        {"mva", model.plant.mva}}},
-                      {"base_mva", model.record_base.mva},
-                      {"frequency_hz", model.record_base.frequency}};
+  nlohmann::json j = {
+      {"format", "swingbank-compare-4"},
+      {"adequate", adequacy.adequate},
+      {"statistically_complete", adequacy.adequate},
+      {"fitness", fitness_json(fitness)},
+      {"verdict", adequacy.sentence},
+      {"adequacy", thresholds::ruling_json(adequacy.ruling)},
+      {"cells", adequacy.cells},
+      {"cells_exceeding", adequacy.exceeding},
+      {"cells_telling_nothing", adequacy.vague},
+      {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
+      {"model",
+       {{"name", model.name}, {"file", model.origin}, {"sha256", model.sha256}, {"mva", model.plant.mva}}},
+      {"base_mva", model.record_base.mva},
+      {"frequency_hz", model.record_base.frequency}};
   j["events"] = nlohmann::json::array();
   for (const auto& e : events) j["events"].push_back(to_json(e));
   for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});

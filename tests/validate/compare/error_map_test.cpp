@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "validate/compare/error_map_table.hpp"
+
 namespace swingbank::validate::compare {
 namespace {
 
@@ -177,6 +179,25 @@ TEST(NoiseBoundTest, NoiseAloneStaysBelowAllBounds) {
   // found where there is none adds a little.
   EXPECT_LE(above, 14);
   EXPECT_GT(above, 0);
+}
+
+TEST(MapSentenceTest, NamesTheWindowAndBandThatAreFurthestOff) {
+  const auto t = times();
+  const auto w = windows();
+  std::vector<double> off = noise(1, 0, 5), also = noise(1, 0, 6), quiet = noise(1, 0, 7);
+  for (std::size_t k = 0; k < t.size(); ++k)
+    if (t[k] > w[4].from) {
+      off[k] += 20 * std::sin(2 * std::numbers::pi * 0.4 * t[k]);
+      also[k] += 5 * std::sin(2 * std::numbers::pi * 0.4 * t[k]);
+    }
+  ErrorMap a = error_map(t, off, w, white_noise(1)), b = error_map(t, also, w, white_noise(1)),
+           c = error_map(t, quiet, w, white_noise(1));
+  ErrorMap* maps[] = {&a, &b, &c};
+  set_bounds(maps, 0.02);
+  const std::string text = map_sentence(
+      {{"e1", "P", "MW", 1, &w, &a}, {"e2", "P", "MW", 1, &w, &b}, {"e1", "Q", "Mvar", 1, &w, &c}});
+  EXPECT_TRUE(text.starts_with("P is furthest off in the window “> 5 s after” at 0.1–0.8 Hz: ")) << text;
+  EXPECT_TRUE(text.ends_with(" noise, in 2 of 2 events. Q is nowhere beyond its noise.")) << text;
 }
 
 }  // namespace
