@@ -48,10 +48,6 @@ bool can_run(const sim::plant::Plant& plant) {
   return all_blocks(plant, [](const sim::plant::Block& b) { return can_run(b); });
 }
 
-bool can_exist(const sim::plant::Plant& plant) {
-  return all_blocks(plant, [](const sim::plant::Block& b) { return can_run(b) && is_ordered(b); });
-}
-
 bool can_exist_beside(const sim::plant::Plant& plant, const sim::plant::Plant& given) {
   return can_run(plant) && is_as_ordered(plant.machine, given.machine) &&
          is_as_ordered(plant.transformer, given.transformer) &&

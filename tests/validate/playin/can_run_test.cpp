@@ -26,15 +26,15 @@ struct CanRun : ::testing::Test {
   }
   void refuse() const {
     EXPECT_FALSE(can_run(plant));
-    EXPECT_FALSE(can_exist(plant));
+    EXPECT_FALSE(can_exist_beside(plant, plant));
   }
 };
 
 TEST_F(CanRun, AStandardPlantCan) {
   EXPECT_TRUE(can_run(plant));
-  EXPECT_TRUE(can_exist(plant));
+  EXPECT_TRUE(can_exist_beside(plant, plant));
   plant.transformer = {};
-  EXPECT_TRUE(can_exist(plant));
+  EXPECT_TRUE(can_exist_beside(plant, plant));
 }
 TEST_F(CanRun, TheMachineIsAsked) {
   value(plant.machine, "H") = -1;
@@ -55,9 +55,10 @@ TEST_F(CanRun, EveryInstrumentIsAsked) {
   refuse();
 }
 TEST_F(CanRun, WhatNoMachineHasMayRun) {
+  const sim::plant::Plant given = plant;
   value(plant.machine, "Xqp") = 1.01 * value(plant.machine, "Xq");  // X'q above Xq
   EXPECT_TRUE(can_run(plant));
-  EXPECT_FALSE(can_exist(plant));
+  EXPECT_FALSE(can_exist_beside(plant, given));
 }
 TEST_F(CanRun, WhatIsGivenMayStayAndNothingElseMayCome) {
   sim::plant::Plant given = plant;
