@@ -79,6 +79,19 @@ TEST(DatasetConfigFile, ACaseThatIsNotWholeIsMendedAsAsked) {
   EXPECT_EQ(netted.grid.plants.size(), 4U);
 }
 
+/// A parallel branch of the same id: refused, or kept on request, which is part of the hash.
+TEST(DatasetConfigFile, ARepeatedBranchIsKeptAsAsked) {
+  const Changed files;
+  const std::string raw = (files.path / "networks/ieee14_dataset_genrou.raw").string();
+  const std::string line = "1, 2, '1', 0.01938, 0.05917, 0.0528, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1\n";
+  write_text(raw, replaced(read_text(raw), line, line + line));
+  const std::string head = "convention = ";
+  EXPECT_THAT(files.refusal(head, head), HasSubstr("repeated"));
+  const DatasetConfig kept = files.read(head, "repeated = \"keep\"\n" + head);
+  EXPECT_THAT(kept.canonical(), HasSubstr("repeated = keep\n"));
+  EXPECT_EQ(load_study(kept).grid.plants.size(), 5U);
+}
+
 TEST(DatasetConfigFile, ValuesArriveWhereTheyBelong) {
   const Changed folder;
   const Study s = load_study(folder.read());
