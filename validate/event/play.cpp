@@ -62,8 +62,8 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
     for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
       if (std::ranges::count(event.channels, o) == 0) run.linear_slopes.push_back(o);
   }
-  if (how.input == InputKind::torque) run.torque = state.input;
-  if (how.input == InputKind::field) run.field = state.input;
+  run.torque = state.torque;
+  run.field = state.field;
   return run;
 }
 
@@ -74,6 +74,22 @@ playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& 
   const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
   const auto given = playin::given_of(event.record, curve.switchings(), event.start);
   return playin::observe(run_of(tested, event, state, how, curve, given ? &*given : nullptr), along);
+}
+
+Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                               const EventState& state, InputKind input) {
+  const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
+  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
+  using Kind = playin::Direction::Kind;
+  return playin::rates_by_input(run_of(tested, event, state, {}, curve, given ? &*given : nullptr),
+                                input == InputKind::torque ? Kind::torque : Kind::field);
+}
+
+std::vector<playin::Seen> seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                                     const EventState& state) {
+  const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
+  const auto given = playin::given_of(event.record, curve.switchings(), event.start);
+  return playin::seen_along(run_of(tested, event, state, {}, curve, given ? &*given : nullptr));
 }
 
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,

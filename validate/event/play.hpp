@@ -21,7 +21,13 @@ struct EventState {
   /// Offsets of the operating point and of the first states. Of an exciter or a governor P is that of Efd or
   /// Pm, and the others mean nothing.
   double P = 0, Q = 0, angle = 0, speed = 0;
-  playin::PiecewiseLinear input = {};  ///< what was added to Tm or Efd [pu]
+  playin::PiecewiseLinear torque = {}, field = {};  ///< what is added to Tm and Efd [pu]
+  [[nodiscard]] playin::PiecewiseLinear& input(InputKind kind) {
+    return kind == InputKind::torque ? torque : field;
+  }
+  [[nodiscard]] const playin::PiecewiseLinear& input(InputKind kind) const {
+    return kind == InputKind::torque ? torque : field;
+  }
 };
 
 /// How an event is played.
@@ -39,7 +45,6 @@ struct Playing {
   bool linear_slopes = false;                           ///< slopes as playin::Drive has them: for a search
   std::shared_ptr<const playin::Past>* past = nullptr;  ///< as playin::Drive has it
   bool instants_stand = false;                          ///< as playin::Drive has it
-  InputKind input = InputKind::none;                    ///< where the state's input acts
   double until = 1e300;                                 ///< samples after it are left out [s]
 };
 
@@ -58,5 +63,12 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
                                                            const sim::Conventions& conventions,
                                                            const FitEvent& event, const EventState& state,
                                                            const Playing& how = {});
+
+/// How fast each state of the plant follows 1 pu of an input at the start [1/s]; the state has that input.
+Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                               const EventState& state, InputKind input);
+/// What the plant's controls see along the event.
+std::vector<playin::Seen> seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                                     const EventState& state);
 
 }  // namespace swingbank::validate::event

@@ -183,7 +183,7 @@ class Search {
     std::vector<double> s = state_of(event, from);
     s.resize(s.size() + knots);
     if (setting_.input != InputKind::none)
-      std::ranges::copy(from.input.value, s.end() - static_cast<std::ptrdiff_t>(from.input.value.size()));
+      std::ranges::copy_backward(from.input(setting_.input).value, s.end());
     return s;
   }
   void add_event(std::size_t e) {
@@ -446,7 +446,8 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& e
   setting.goes_on = !options.errors || options.input != InputKind::none;
   setting.knots.resize(events.size());
   if (options.input != InputKind::none)
-    for (std::size_t e = 0; e < events.size(); ++e) setting.knots[e] = options.start[e].input.t;
+    for (std::size_t e = 0; e < events.size(); ++e)
+      setting.knots[e] = options.start[e].input(options.input).t;
   for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
   sim::plant::Plant start = tested.plant;
   for (std::size_t i = 0; i < options.values.size(); ++i)

@@ -29,7 +29,7 @@ std::vector<double> knots_of(const event::FitEvent& event) {
 
 double MissingInput::explains(const fit::Fit& without) const {
   std::size_t knots = 0;
-  for (const auto& e : fit.events) knots += e.state.input.t.size();
+  for (const auto& e : fit.events) knots += e.state.input(kind).t.size();
   return fit::gain(without, fit, fit::data_cost) - thresholds::adequacy.knot * static_cast<double>(knots);
 }
 
@@ -53,7 +53,7 @@ MissingInput infer_input(fit::InputKind kind, const sim::plant::PlantUnderTest& 
       options.start.push_back(state);
     }
   for (std::size_t e = 0; e < events.size(); ++e) {
-    auto& input = options.start[e].input;
+    auto& input = options.start[e].input(kind);
     const auto knots = knots_of(events[e]);
     if (input.t == knots) continue;  // it goes on from there
     input.t = knots;

@@ -18,7 +18,7 @@ struct MissingInput {
   /// its knots pay for what the records know of them beyond what is believed of bends.
   [[nodiscard]] double evidence(const fit::Fit& without) const;
   [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
-    return fit.events[event].state.input;
+    return fit.events[event].state.input(kind);
   }
 };
 

@@ -53,7 +53,7 @@ struct Example {
     refused.held_out.clear();
     d.ranked.push_back(refused);
     d.field = {fit::InputKind::field, d.base};
-    for (auto& e : d.field.fit.events) e.state.input = {{0, 2, 3, 15}, {0, 0, 0.8, 0.1}};
+    for (auto& e : d.field.fit.events) e.state.field = {{0, 2, 3, 15}, {0, 0, 0.8, 0.1}};
     d.verdict = Verdict::missing;
     d.side = hypothesis::Side::excitation;
     d.effects = {d.ranked.front().hypothesis.name};

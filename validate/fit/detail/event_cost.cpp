@@ -164,8 +164,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
                                             .lenient = setting_.lenient,
                                             .allowance = &allowance_,
                                             .linear_slopes = setting_.linear_slopes,
-                                            .past = &last_.past,
-                                            .input = setting_.input});
+                                            .past = &last_.past});
     const auto n = static_cast<Eigen::Index>(along.size());
     event::RowMatrix e(event_.values(), n + 1);
     for (Eigen::Index d = 0; d < n; ++d)
@@ -182,26 +181,18 @@ EventState EventCost::at(const double* state) const {
   EventState whole = event_state(event_, state);
   if (setting_.input == InputKind::none) return whole;
   const double* s = state + switching_numbers(event_) + kStates;
-  whole.input.t = knots_;
-  whole.input.value.assign(s, s + knots_.size());
+  whole.input(setting_.input) = {knots_, {s, s + knots_.size()}};
   return whole;
 }
 
 playin::Response EventCost::answer(const sim::plant::Plant& plant, const EventState& state,
                                    bool lenient) const {
   return event::play({plant, *setting_.conventions}, event_, state, {},
-                     {.tolerance = setting_.tolerance,
-                      .lenient = lenient,
-                      .allowance = &allowance_,
-                      .input = setting_.input});
+                     {.tolerance = setting_.tolerance, .lenient = lenient, .allowance = &allowance_});
 }
 
 void EventCost::add_state_directions(std::vector<playin::Direction>& along) const {
-  for (std::size_t k = 0; k < event_.switchings.size(); ++k)
-    along.push_back({.kind = Kind::switching, .index = static_cast<int>(k), .scale = kSwitchScale});
-  for (std::size_t k = 0; event_.turns() && k < event_.switchings.size(); ++k)
-    along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale});
-  for (int k = 0; k < kStates; ++k) along.push_back({.kind = kStateKind[k], .scale = kStateScale[k]});
+  std::ranges::move(state_directions(event_), std::back_inserter(along));
   const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
   for (std::size_t k = 0; k < knots_.size(); ++k)
     along.push_back({.kind = kind, .index = static_cast<int>(k)});

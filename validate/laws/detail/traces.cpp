@@ -21,11 +21,11 @@ double trigger_of(const event::FitEvent& e, double level) {
 
 /// The plant driven with the inferred input, by the steps of the search where exact ones do not get on.
 playin::Response driven(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
-                        const fit::EventState& state, fit::InputKind kind) {
+                        const fit::EventState& state) {
   try {
-    return event::play(tested, e, state, {}, {.input = kind});
+    return event::play(tested, e, state);
   } catch (const InputError&) {
-    return event::play(tested, e, state, {}, {.lenient = true, .input = kind});
+    return event::play(tested, e, state, {}, {.lenient = true});
   }
 }
 
@@ -40,12 +40,12 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     const auto switchings = event::switchings_at(e, state);
     const playin::VoltageCurve curve(e.played(), switchings);
     // The signals are those that the instruments show, as the fit had them.
-    const playin::Response r = driven({input.fit.plant, model.conventions}, e, state, input.kind);
+    const playin::Response r = driven({input.fit.plant, model.conventions}, e, state);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;
-    t.knots = state.input.t;
-    t.input = state.input.value;
+    t.knots = state.input(input.kind).t;
+    t.input = state.input(input.kind).value;
     t.begin = t.knots.front();
     t.trigger = trigger_of(e, level);
     const auto deviation = [&](const std::vector<double>& x, double scale) {
