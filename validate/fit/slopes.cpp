@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/fit/detail/states.hpp"
+#include "validate/fit/states.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -13,7 +13,7 @@ using Kind = playin::Direction::Kind;
 /// Slopes are then accurate to 1e-5 of themselves.
 constexpr event::Playing kExact{.tolerance = 1e-7, .hasty = false};
 
-std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
+std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
   std::vector<playin::Direction> along;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (event.switchings[k].uncertainty > 0)
@@ -64,7 +64,7 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
   std::vector<playin::Direction> along;
   for (const auto& f : free)
     along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
-  std::ranges::move(state_directions(event), std::back_inserter(along));
+  std::ranges::move(own_directions(event), std::back_inserter(along));
   const playin::Response r = event::play(tested, event, state, along, kExact);
 
   EventSlopes back;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "validate/event/play.hpp"
 #include "validate/event/whitened_events.hpp"
 #include "validate/playin/play_in.hpp"
 
@@ -14,6 +15,8 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
   return event.switchings.size() * (event.turns() ? 2 : 1);
 }
 
+/// One unit of an instant [s].
+inline constexpr double kSwitchScale = 1e-3;
 /// One unit of a turn [rad], and how many of them it is believed to be off from where it was found: a
 /// reactance that is wrong by a fifth makes it wrong by so much.
 inline constexpr double kTurnScale = 1e-3, kTurnBelief = 100;
@@ -40,6 +43,46 @@ inline std::vector<double> state_beliefs(const event::FitEvent& event) {
   all.resize(switching_numbers(event), kTurnBelief);
   all.insert(all.end(), kStateBelief.begin(), kStateBelief.end());
   return all;
+}
+
+/// An event's state as the search sees it, without an input.
+inline std::vector<double> state_of(const event::FitEvent& event, const event::EventState& from) {
+  std::vector<double> s;
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    s.push_back((from.switchings[k] - event.switchings[k].time) / kSwitchScale);
+  for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
+    s.push_back(k < from.turns.size() ? (from.turns[k] - event.switchings[k].turn) / kTurnScale : 0.0);
+  const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
+  for (int k = 0; k < kStates; ++k) s.push_back(values[k] / kStateScale[k]);
+  return s;
+}
+
+/// The reverse.
+inline event::EventState event_state(const event::FitEvent& event, const double* s) {
+  event::EventState at;
+  for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
+  if (event.turns())
+    for (const auto& w : event.switchings) at.turns.push_back(w.turn + kTurnScale * *s++);
+  at.P = kStateScale[0] * s[0];
+  at.Q = kStateScale[1] * s[1];
+  at.angle = kStateScale[2] * s[2];
+  at.speed = kStateScale[3] * s[3];
+  return at;
+}
+
+/// The directions of these numbers.
+inline std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
+  using Kind = playin::Direction::Kind;
+  std::vector<playin::Direction> along;
+  const int switchings = static_cast<int>(event.switchings.size());
+  for (int k = 0; k < switchings; ++k)
+    along.push_back({.kind = Kind::switching, .index = k, .scale = kSwitchScale});
+  for (int k = 0; event.turns() && k < switchings; ++k)
+    along.push_back({.kind = Kind::turn, .index = k, .scale = kTurnScale});
+  for (int k = 0; k < kStates; ++k)
+    along.push_back(
+        {.kind = kStateKind[static_cast<std::size_t>(k)], .scale = kStateScale[static_cast<std::size_t>(k)]});
+  return along;
 }
 
 }  // namespace swingbank::validate::fit

@@ -140,6 +140,7 @@ const sim::Effect& recorded_machine() {
     e.unphysical = &RecordedMachine::unphysical;
     std::get<sim::Ops<double>>(e.ops) = sim::make_ops<RecordedMachine, double>();
     std::get<sim::Ops<sim::D8>>(e.ops) = sim::make_ops<RecordedMachine, sim::D8>();
+    std::get<sim::Ops<sim::P8>>(e.ops) = sim::make_ops<RecordedMachine, sim::P8>();
     return e;
   }();
   return effect;

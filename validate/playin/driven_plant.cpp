@@ -410,7 +410,38 @@ class Past {
   Response answer;
 };
 
+std::vector<Seen> seen_along(const Drive& run) {
+  Trace trace;
+  Driven<double>(run, {}).run(&trace);
+  DrivenEquations<double> equations(run, {});
+  const std::size_t n = equations.x0.size();
+  std::vector<double> dx(n);
+  std::vector<Seen> all;
+  for (std::size_t k = 0; k < trace.nodes.size(); ++k) {
+    const Trace::Node& node = trace.nodes[k];
+    equations.side = node.side;
+    equations.evaluate(node.t, trace.x.data() + k * n, dx.data());
+    const sim::Signals<double>& s = equations.signals;
+    all.push_back({node.t, node.side.segment, {s.Vr, s.Vi}, {s.Ir, s.Ii}, s.speed, s.Ifd, s.Efd, s.Tm});
+  }
+  return all;
+}
+
 LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
+
+Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input) {
+  constexpr double kInputStep = 1e-3;  // [pu]
+  DrivenEquations<double> equations(run, {});
+  const auto n = equations.x0.size();
+  std::vector<double> still(n), moved(n);
+  equations.evaluate(run.record->t.front(), equations.x0.data(), still.data());
+  (input == Kind::torque ? equations.more_torque : equations.more_field) = kInputStep;
+  equations.evaluate(run.record->t.front(), equations.x0.data(), moved.data());
+  using Numbers = Eigen::Map<const Eigen::VectorXd>;
+  return (Numbers(moved.data(), static_cast<Eigen::Index>(n)) -
+          Numbers(still.data(), static_cast<Eigen::Index>(n))) /
+         kInputStep;
+}
 
 Response drive(const Drive& run, std::span<const Direction> directions) {
   const bool linear = !run.linear_slopes.empty() && can_be_linear(run);

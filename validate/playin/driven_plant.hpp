@@ -25,8 +25,10 @@ struct OperatingPoint {
 
 /// A function of time through (t[k], value[k]), straight between them, zero outside.
 struct PiecewiseLinear {
-  std::vector<double> t, value;  ///< t [s], increasing
+  std::vector<double> t, value;    ///< t [s], increasing
+  std::vector<double> knots = {};  ///< of the hats that its directions are [s]; empty: t
   [[nodiscard]] double operator()(double at) const;
+  [[nodiscard]] const std::vector<double>& hats() const { return knots.empty() ? t : knots; }
 };
 
 /// What the plant answers at each sample of the record.
@@ -75,8 +77,8 @@ struct Direction {
     Q,          ///< likewise
     angle,      ///< at the start [rad]
     speed,      ///< at the start [pu]
-    torque,     ///< knot `index` of Drive::torque [pu]
-    field,      ///< knot `index` of Drive::field [pu]
+    torque,     ///< hat `index` of Drive::torque [pu]
+    field,      ///< hat `index` of Drive::field [pu]
   };
   Kind kind;
   sim::plant::ParameterId parameter = {};  ///< of Kind::parameter
@@ -103,6 +105,18 @@ struct Response {
 /// Throws InputError if the operating point cannot be held or the equations cannot be integrated.
 Response drive(const Drive& run, std::span<const Direction> directions = {});
 
+/// What the controls of a plant see at one moment of a run, at the machine's terminal and on its base.
+struct Seen {
+  double t;           ///< [s]
+  int segment;        ///< of the voltage curve
+  Complex V, I;       ///< voltage, current out of the machine [pu]
+  double speed, Ifd;  ///< [pu]
+  double Efd, Tm;     ///< that drive the machine, inputs included [pu]
+};
+/// At the start, at every sample, at every step between them, and on both sides of every instant. Throws as
+/// drive().
+std::vector<Seen> seen_along(const Drive& run);
+
 /// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,
 /// change of theta [rad]) and y = all outputs, in the units of Response.
 struct LinearPlant {
@@ -110,5 +124,7 @@ struct LinearPlant {
 };
 /// Throws InputError if the operating point cannot be held.
 LinearPlant linearise(const Drive& run);
+/// How fast each state follows 1 pu of the run's torque or field at the start [1/s]. Throws as linearise().
+Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input);
 
 }  // namespace swingbank::validate::playin

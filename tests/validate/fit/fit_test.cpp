@@ -36,7 +36,7 @@ TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
 }
 TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
-  const auto from = [](double start) { return fitting::Axis{{}, start, 0.1, 1e3, true, 1.0}; };
+  const auto from = [](double start) { return Axis{{}, start, 0.1, 1e3, true, 1.0}; };
   for (const double bound : {0.1, 0.2, 0.3, 0.7, 5.0})
     for (const double start : {15.0, 30.0, 60.0, 7.3}) {
       EXPECT_EQ(from(start).value(from(start).z(bound)), from(60).value(from(60).z(bound))) << bound;

@@ -8,50 +8,12 @@
 #include <cmath>
 
 #include "sim/plant/orderings.hpp"
-#include "sim/plant/usual.hpp"
-#include "validate/fit/detail/states.hpp"
-#include "validate/fit/fit.hpp"
-#include "validate/fit/sign.hpp"
+#include "validate/fit/axis.hpp"
+#include "validate/fit/states.hpp"
 
 namespace swingbank::validate::fit::fitting {
 
 using Kind = playin::Direction::Kind;
-
-constexpr double kSwitchScale = 1e-3;  ///< [s]
-
-/// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
-struct Axis {
-  FreeParameter where;
-  double start, low, high;  ///< of the parameter
-  bool logarithmic;
-  double unit;  ///< of z, where linear
-  /// The value is rounded to 40 binary digits, so that parameters at the same bound stay equal wherever they
-  /// started from.
-  [[nodiscard]] double value(double z) const {
-    const double v = logarithmic ? start * std::exp(z) : start + unit * z;
-    if (v == 0 || !std::isfinite(v)) return v;
-    const int digits = 39 - std::ilogb(v);
-    return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
-  }
-  [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
-  [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
-  /// Standard deviation of the belief in z.
-  [[nodiscard]] double spread() const { return where.spread; }
-};
-
-inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
-  const sim::Parameter& record = parameter_record(plant, f.id);
-  const double start = parameter_value(plant, f.id);
-  const sim::plant::SearchRange range = sim::plant::search_range(record, start);
-  Axis a{f, start, range.low, range.high, moves_by_logarithm(record, start), 1.0};
-  if (a.logarithmic) {
-    a.low = std::max(a.low, 1e-3 * start);
-    a.high = std::min(a.high, 1e3 * start);
-  } else {
-    a.unit = start != 0 ? std::abs(start) : 0.05 * std::min(record.high - record.low, 20.0);
-  }
-  return a;
-}
 
 /// What stands fixed during a fit.
 struct Setting {
@@ -73,31 +35,6 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
   for (std::size_t i = 0; i < s.axes.size(); ++i)
     parameter_value(plant, s.axes[i].where.id) = s.axes[i].value(z[i]);
   return plant;
-}
-
-/// An event's state as the search sees it, without an input.
-inline std::vector<double> state_of(const event::FitEvent& event, const EventState& from) {
-  std::vector<double> s;
-  for (std::size_t k = 0; k < event.switchings.size(); ++k)
-    s.push_back((from.switchings[k] - event.switchings[k].time) / kSwitchScale);
-  for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
-    s.push_back(k < from.turns.size() ? (from.turns[k] - event.switchings[k].turn) / kTurnScale : 0.0);
-  const double values[kStates] = {from.P, from.Q, from.angle, from.speed};
-  for (int k = 0; k < kStates; ++k) s.push_back(values[k] / kStateScale[k]);
-  return s;
-}
-
-/// The reverse.
-inline EventState event_state(const event::FitEvent& event, const double* s) {
-  EventState at;
-  for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
-  if (event.turns())
-    for (const auto& w : event.switchings) at.turns.push_back(w.turn + kTurnScale * *s++);
-  at.P = kStateScale[0] * s[0];
-  at.Q = kStateScale[1] * s[1];
-  at.angle = kStateScale[2] * s[2];
-  at.speed = kStateScale[3] * s[3];
-  return at;
 }
 
 /// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the

@@ -131,8 +131,9 @@ class DrivenEquations {
       equations_.from_grid(c.data(), x, scratch_.data(), er, ei, s, ir, ii);
     if (!has_torque_ && !has_field_) return equations_.derivative(c.data(), x, scratch_.data(), s, dx);
     equations_.derivative_with(c.data(), x, scratch_.data(),
-                               added(run_.torque, Kind::torque, t) + more_torque,
-                               added(run_.field, Kind::field, t) + more_field, s, dx);
+                               added(run_.torque, Kind::torque, std::min(t, side.last_moment)) + more_torque,
+                               added(run_.field, Kind::field, std::min(t, side.last_moment)) + more_field, s,
+                               dx);
   }
   /// By the signals as they stand.
   [[nodiscard]] std::array<T, kOutputs> outputs(const T* x) const {
@@ -243,7 +244,7 @@ class DrivenEquations {
     T value(input(t));
     each([&](const Direction& d, std::size_t i) {
       if (d.kind == kind)
-        Seeds<T>::add(value, i, d.scale * hat(input.t, static_cast<std::size_t>(d.index), t));
+        Seeds<T>::add(value, i, d.scale * hat(input.hats(), static_cast<std::size_t>(d.index), t));
     });
     return value;
   }

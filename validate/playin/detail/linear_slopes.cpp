@@ -70,7 +70,7 @@ class LinearSlopes {
     begin_.assign(m_, -std::numeric_limits<double>::infinity());
     for (std::size_t d = 0; d < m_; ++d)
       if (const PiecewiseLinear* input = input_of(directions[d]))
-        begin_[d] = input->t[static_cast<std::size_t>(std::max(0, directions[d].index - 1))];
+        begin_[d] = input->hats()[static_cast<std::size_t>(std::max(0, directions[d].index - 1))];
     x_.resize(n_);
     dx_.resize(n_);
     factors_.resize(n_);
@@ -123,7 +123,8 @@ class LinearSlopes {
     if (!has_torque_ && !has_field_) return;
     for (std::size_t d = 0; d < active_; ++d)
       if (const PiecewiseLinear* input = input_of(directions_[d]))
-        heights_[d] = directions_[d].scale * hat(input->t, static_cast<std::size_t>(directions_[d].index), t);
+        heights_[d] =
+            directions_[d].scale * hat(input->hats(), static_cast<std::size_t>(directions_[d].index), t);
   }
   [[nodiscard]] const PiecewiseLinear* input_of(const Direction& d) const {
     return d.kind == Kind::torque ? &run_.torque : d.kind == Kind::field ? &run_.field : nullptr;

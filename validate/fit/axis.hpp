@@ -1,0 +1,46 @@
+#pragma once
+// The axis on which a fit moves a free parameter.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/plant/usual.hpp"
+#include "validate/fit/fit.hpp"
+#include "validate/fit/sign.hpp"
+
+namespace swingbank::validate::fit {
+
+/// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
+struct Axis {
+  FreeParameter where;
+  double start, low, high;  ///< of the parameter
+  bool logarithmic;
+  double unit;  ///< of z, where linear
+  /// The value is rounded to 40 binary digits, so that parameters at the same bound stay equal wherever they
+  /// started from.
+  [[nodiscard]] double value(double z) const {
+    const double v = logarithmic ? start * std::exp(z) : start + unit * z;
+    if (v == 0 || !std::isfinite(v)) return v;
+    const int digits = 39 - std::ilogb(v);
+    return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
+  }
+  [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
+  [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
+  /// Standard deviation of the belief in z.
+  [[nodiscard]] double spread() const { return where.spread; }
+};
+
+inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
+  const sim::Parameter& record = parameter_record(plant, f.id);
+  const double start = parameter_value(plant, f.id);
+  const sim::plant::SearchRange range = sim::plant::search_range(record, start);
+  Axis a{f, start, range.low, range.high, moves_by_logarithm(record, start), 1.0};
+  if (a.logarithmic) {
+    a.low = std::max(a.low, 1e-3 * start);
+    a.high = std::min(a.high, 1e3 * start);
+  } else {
+    a.unit = start != 0 ? std::abs(start) : 0.05 * std::min(record.high - record.low, 20.0);
+  }
+  return a;
+}
+
+}  // namespace swingbank::validate::fit
