@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/support.hpp"
+#include "validate/event/event.hpp"
+#include "validate/hypothesis/hypothesis.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/reduced/identify.hpp"
+
+namespace swingbank::validate::reduced {
+namespace {
+
+/// The example of README: four faults at a plant whose model has no exciter.
+class Reduced : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    model_ = new plant::PlantModel(plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml")));
+    std::vector<record::Record> records;
+    for (int k = 1; k <= 4; ++k)
+      records.push_back(record::read_record(
+          test::source("configs/records/record-example/avr_ev" + std::to_string(k) + ".csv"),
+          model_->record_base));
+    events_ = new event::WhitenedEvents(event::prepare_events(*model_, records, {.measured_states = false}));
+    reduction_ = new Reduction(infer(model_->under_test(), *events_, fit::free_parameters(model_->plant, 0.3),
+                                     {.torque = true, .field = true}, 1),
+                               *events_, model_->conventions);
+  }
+  static void TearDownTestSuite() {
+    delete reduction_;
+    delete events_;
+    delete model_;
+  }
+  static plant::PlantModel* model_;
+  static event::WhitenedEvents* events_;
+  static Reduction* reduction_;
+};
+plant::PlantModel* Reduced::model_;
+event::WhitenedEvents* Reduced::events_;
+Reduction* Reduced::reduction_;
+
+TEST_F(Reduced, BothInputsFreeLeaveNothingButNoiseFromTheSubmittedModel) {
+  EXPECT_LE(reduction_->inference().steps, 5);
+  EXPECT_LT(reduction_->inference().misfit(), 1.05);
+}
+
+/// What a reduced plant says of the inferred course itself is what the inference left, and no more.
+TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
+  const ReducedPlant field(*reduction_, event::InputKind::field, nullptr);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
+  const double inferred = reduction_->inference().chi2,
+               there = field.costs(reduction_->course(event::InputKind::field), still)[0],
+               without = field.costs(none, still)[0];
+  EXPECT_LT(there, 1.01 * inferred);  // the plant follows: a step that the inference did not take
+  EXPECT_GT(there, 0.9 * inferred);
+  EXPECT_GT(without, 3 * there);
+  // a torque that is given as it was inferred costs as much as one that is free
+  const ReducedPlant given(*reduction_, event::InputKind::field,
+                           &reduction_->course(event::InputKind::torque));
+  EXPECT_NEAR(given.costs(reduction_->course(event::InputKind::field), still)[0], there, 0.01 * there);
+}
+
+/// The gradient of a course's cost is that of its differences, by the gain's number too.
+TEST_F(Reduced, TheBowlIsTheCostsOwn) {
+  EXPECT_NEAR(reduction_->gain(event::InputKind::field).exponent, -1, 1e-3);
+  EXPECT_NEAR(reduction_->gain(event::InputKind::torque).exponent, -1, 1e-3);
+  for (const auto kind : {event::InputKind::field, event::InputKind::torque}) {
+    const ReducedPlant plant(*reduction_, kind, nullptr);
+    Eigen::VectorXd course(reduction_->knots()), along(reduction_->knots());
+    for (Eigen::Index k = 0; k < course.size(); ++k) {
+      course[k] = std::sin(0.1 * static_cast<double>(k));
+      along[k] = std::cos(0.3 * static_cast<double>(k));
+    }
+    const double gain = 0.1, h = 1e-4;
+    const auto bowl = plant.bowl(course, gain, along);
+    const auto cost = [&](double by_gain, double by_course) {
+      return plant.costs(course + by_course * along, Eigen::VectorXd::Constant(1, gain + by_gain))[0];
+    };
+    const double by_gain = (cost(h, 0) - cost(-h, 0)) / (4 * h),
+                 by_course = (cost(0, h) - cost(0, -h)) / (4 * h);
+    EXPECT_NEAR(bowl.gradient[0], by_gain, 1e-4 * std::abs(by_gain));
+    EXPECT_NEAR(bowl.gradient[1], by_course, 1e-4 * std::abs(by_course));
+  }
+}
+
+/// The exciter that made the records is identified alone, before anything else is known of it.
+TEST_F(Reduced, TheExciterThatMadeTheRecordsLeads) {
+  std::vector<std::pair<double, std::string>> costs;
+  for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
+    if (h.name != "SEXS" && h.name != "IEEET1" && h.name != "ESST4B") continue;
+    const auto found =
+        identify(*reduction_, event::InputKind::field, {h.plant, h.free, 1}, nullptr, {64, 4, 8});
+    ASSERT_FALSE(found.empty()) << h.name;
+    costs.emplace_back(found.front().cost, h.name);
+  }
+  ASSERT_EQ(costs.size(), 3U);
+  EXPECT_EQ(std::ranges::min(costs).second, "SEXS");
+}
+
+}  // namespace
+}  // namespace swingbank::validate::reduced

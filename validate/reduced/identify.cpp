@@ -1,0 +1,352 @@
+#include "validate/reduced/identify.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/stop_signal.hpp"
+#include "sim/core/noise.hpp"
+#include "validate/fit/axis.hpp"
+#include "validate/playin/can_run.hpp"
+#include "validate/playin/component.hpp"
+
+namespace swingbank::validate::reduced {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double kDifference = 1e-3;  ///< of an axis, for slopes
+constexpr double kDrawWidth = 1.2;    ///< of draws, in spreads
+/// A quarter of all values lie as evenly in every decade down to a hundredth of the usual: a limit that acts
+/// is as low as the signal that it limits, whatever its usual value.
+constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
+constexpr double kShortestTime = 0.2;  ///< sampling intervals
+constexpr int kRedraws = 20;
+constexpr double kStartSettled = 0.02;                        ///< a step that gains less ends a start
+constexpr double kGivenUp = 1e6;                              ///< damping
+constexpr double kSameOptimum = 1.0;                          ///< costs closer than this are one optimum
+constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< of an axis in one step
+constexpr double kLengths[] = {0.1, 1.0, 10.0, 1000.0};       ///< damping of the steps that are tried at once
+
+record::Component part_of(event::InputKind input) {
+  return input == event::InputKind::torque ? record::Component::governor : record::Component::exciter;
+}
+
+playin::Made made_by(event::InputKind input) {
+  return input == event::InputKind::torque ? playin::Made::torque : playin::Made::field;
+}
+
+/// What parts of plants answer, at the knots of all events: [knot][plant].
+MatrixXd answered(const Reduction& reduction, event::InputKind input,
+                  const std::vector<sim::plant::Plant>& parts) {
+  MatrixXd all(reduction.knots(), static_cast<Index>(parts.size()));
+  Index row = 0;
+  for (const Reduction::Event& e : reduction.events()) {
+    all.middleRows(row, e.over_hats.rows()) = e.over_hats * e.loop.run(made_by(input), parts);
+    row += e.over_hats.rows();
+  }
+  return all;
+}
+
+/// One trial.
+class Identifying {
+ public:
+  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial, const VectorXd* other)
+      : reduction_(reduction),
+        input_(input),
+        trial_(trial),
+        reduced_(reduction, input, other, held_by(reduction.inference(), trial.plant)) {
+    for (const auto& f : trial.free) {
+      fit::Axis axis = fit::make_axis(trial.plant, f);
+      // a time that is far below what was sampled is zero as far as the records can tell
+      if (parameter_record(trial.plant, f.id).unit == "s")
+        axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduction.step()));
+      axes_.push_back(axis);
+    }
+    without_ =
+        answered(reduction, input, {playin::component_of(reduction.inference().plant, part_of(input))});
+  }
+
+  std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
+    if (!without_.allFinite()) return {};
+    begin(options, known);
+    for (int step = 0; step < options.steps; ++step) {
+      interruption_point();
+      if (!advance()) break;
+    }
+    return optima();
+  }
+
+ private:
+  struct Start {
+    VectorXd z;
+    double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
+    bool done = false;
+  };
+
+  [[nodiscard]] sim::plant::Plant plant_at(const VectorXd& z) const {
+    sim::plant::Plant plant = trial_.plant;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      parameter_value(plant, trial_.free[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
+    return plant;
+  }
+  /// Courses of the input that these values make beside the plant's own.
+  [[nodiscard]] MatrixXd courses(const std::vector<VectorXd>& all) const {
+    std::vector<sim::plant::Plant> parts;
+    for (const VectorXd& z : all) parts.push_back(playin::component_of(plant_at(z), part_of(input_)));
+    MatrixXd made = answered(reduction_, input_, parts);
+    made.colwise() -= without_.col(0);
+    return made;
+  }
+  [[nodiscard]] double believed(const VectorXd& z) const {
+    double cost = 0;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (const double spread = axes_[i].spread(); spread > 0)
+        cost += std::pow(z[static_cast<Index>(i)] / spread, 2);
+    return cost;
+  }
+  /// Costs; infinite where a trial cannot be run.
+  [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
+                               const VectorXd& gains) const {
+    VectorXd cost = reduced_.costs(made, gains);
+    for (Index k = 0; k < cost.size(); ++k) {
+      cost[k] += believed(all[static_cast<std::size_t>(k)]);
+      if (!std::isfinite(cost[k])) cost[k] = std::numeric_limits<double>::infinity();
+    }
+    return cost;
+  }
+  [[nodiscard]] VectorXd within(VectorXd z) const {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      double& value = z[static_cast<Index>(i)];
+      value = std::clamp(value, std::min(0.0, axes_[i].z(axes_[i].low)),
+                         std::max(0.0, axes_[i].z(axes_[i].high)));
+    }
+    return z;
+  }
+  [[nodiscard]] VectorXd drawn(int draw, int again) const {
+    VectorXd z(static_cast<Index>(axes_.size()));
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const auto number = static_cast<std::uint32_t>(64 * again) + static_cast<std::uint32_t>(i);
+      const auto sample = static_cast<std::uint64_t>(draw);
+      const auto [which, where] = sim::uniform_pair(trial_.stream, 2 * number, sample);
+      const double factor = std::pow(10.0, -kDecadesBelow * where);
+      z[static_cast<Index>(i)] =
+          which >= kShareOfLow
+              ? kDrawWidth * axes_[i].spread() * sim::normal_pair(trial_.stream, 2 * number + 1, sample)[0]
+          : axes_[i].logarithmic ? std::log(factor)
+                                 : axes_[i].z(factor * axes_[i].start);
+    }
+    return within(z);
+  }
+  void begin(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
+    std::vector<VectorXd> all{VectorXd::Zero(static_cast<Index>(axes_.size()))};
+    for (const auto& values : known) {
+      VectorXd z(static_cast<Index>(axes_.size()));
+      for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
+      all.push_back(within(z));
+    }
+    const std::size_t given = all.size();
+    for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw)
+      for (int again = 0; again < kRedraws; ++again) {
+        VectorXd z = drawn(draw, again);
+        if (!runs(z)) continue;
+        all.push_back(std::move(z));
+        break;
+      }
+    MatrixXd made(reduction_.knots(), static_cast<Index>(all.size()));
+    constexpr std::size_t kDrawsAbreast = 8;
+    for (std::size_t k = 0; k < all.size(); k += kDrawsAbreast) {
+      const std::vector<VectorXd> some(
+          all.begin() + static_cast<std::ptrdiff_t>(k),
+          all.begin() + static_cast<std::ptrdiff_t>(std::min(k + kDrawsAbreast, all.size())));
+      made.middleCols(static_cast<Index>(k), static_cast<Index>(some.size())) = courses(some);
+    }
+    if (!(made.array().abs() > 0).any()) return;  // nothing that is tried answers
+    const VectorXd cost = costs(made, all, VectorXd::Zero(static_cast<Index>(all.size())));
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (std::isfinite(cost[static_cast<Index>(k)]))
+        starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
+    std::ranges::stable_sort(starts_, {}, &Start::cost);
+    starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
+    for (std::size_t k = 0; k < given; ++k)  // draws that hardly act always look better at first
+      if (std::isfinite(cost[static_cast<Index>(k)]))
+        starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
+  }
+  [[nodiscard]] bool runs(const VectorXd& z) const {
+    const sim::plant::Plant plant = plant_at(z);
+    return std::ranges::all_of(trial_.free, [&](const fit::FreeParameter& f) {
+      return playin::can_run(sim::plant::block_at(plant, f.id.block));
+    });
+  }
+  /// One step of every start that has not arrived; false where all have.
+  bool advance() {
+    const auto np = static_cast<Index>(axes_.size());
+    std::vector<Start*> moving;
+    std::vector<VectorXd> looked;
+    for (Start& s : starts_) {
+      if (s.done) continue;
+      moving.push_back(&s);
+      looked.push_back(s.z);
+      for (Index i = 0; i < np; ++i) {
+        VectorXd z = s.z;
+        z[i] += kDifference;
+        if (within(z) != z) z[i] = s.z[i] - kDifference;
+        looked.push_back(std::move(z));
+      }
+    }
+    if (moving.empty()) return false;
+    MatrixXd made(reduction_.knots(), static_cast<Index>(looked.size()));
+    for (Index at = 0; at < made.cols(); at += np + 1)  // a start and its neighbours in the same steps
+      made.middleCols(at, np + 1) = courses({looked.begin() + at, looked.begin() + at + np + 1});
+    std::vector<VectorXd> tried;
+    VectorXd gains(static_cast<Index>(std::size(kLengths) * moving.size()));
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const Start& s = *moving[k];
+      const auto at = static_cast<Index>(k) * (np + 1);
+      MatrixXd slopes = made.middleCols(at + 1, np);
+      for (Index i = 0; i < np; ++i) {
+        const double move = looked[static_cast<std::size_t>(at + 1 + i)][i] - s.z[i];
+        slopes.col(i) = (slopes.col(i) - made.col(at)) / move;
+        if (!slopes.col(i).allFinite()) slopes.col(i).setZero();
+      }
+      ReducedPlant::Bowl bowl = reduced_.bowl(made.col(at), s.gain, slopes);
+      for (Index i = 0; i < np; ++i)
+        if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
+          bowl.curvature(1 + i, 1 + i) += 1 / (spread * spread);
+          bowl.gradient[1 + i] += s.z[i] / (spread * spread);
+        }
+      for (const double length : kLengths) {
+        const VectorXd step = bounded_step(bowl, s, length * s.damping);
+        gains[static_cast<Index>(tried.size())] = s.gain + std::clamp(step[0], -kLongestGain, kLongestGain);
+        tried.push_back(within(s.z + step.tail(np).cwiseMax(-kLongestAxisStep).cwiseMin(kLongestAxisStep)));
+      }
+    }
+    MatrixXd there(reduction_.knots(), static_cast<Index>(tried.size()));
+    constexpr auto kLengthsCount = static_cast<Index>(std::size(kLengths));
+    for (Index at = 0; at < there.cols(); at += kLengthsCount)
+      there.middleCols(at, kLengthsCount) = courses({tried.begin() + at, tried.begin() + at + kLengthsCount});
+    const VectorXd cost = costs(there, tried, gains);
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      Start& s = *moving[k];
+      Index best = static_cast<Index>(k * std::size(kLengths)), at = best;
+      for (std::size_t l = 1; l < std::size(kLengths); ++l)
+        if (cost[at + static_cast<Index>(l)] < cost[best]) best = at + static_cast<Index>(l);
+      if (cost[best] < s.cost) {
+        s.done = s.cost - cost[best] < kStartSettled;
+        s.z = tried[static_cast<std::size_t>(best)];
+        s.gain = gains[best];
+        s.cost = cost[best];
+        s.damping = std::max(1e-7, s.damping * std::min(100.0, kLengths[best - at]));
+      } else {
+        s.damping *= 1e4;
+        s.done = s.damping > kGivenUp;
+      }
+    }
+    return true;
+  }
+  /// Least of the bowl, damped; what a bound stops stays there, and the others go on without it.
+  [[nodiscard]] VectorXd bounded_step(const ReducedPlant::Bowl& bowl, const Start& s, double damping) const {
+    constexpr double kRidge = 1e-12;
+    MatrixXd curvature = bowl.curvature;
+    VectorXd gradient = bowl.gradient;
+    curvature.diagonal() =
+        curvature.diagonal() * (1 + damping) + VectorXd::Constant(curvature.rows(), kRidge);
+    std::vector<char> stopped(axes_.size(), 0);
+    VectorXd step = curvature.ldlt().solve(-gradient);
+    for (bool more = true; more;) {
+      more = false;
+      for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const auto at = static_cast<Index>(i) + 1;
+        const double low = std::min(0.0, axes_[i].z(axes_[i].low)),
+                     high = std::max(0.0, axes_[i].z(axes_[i].high)), to = s.z[at - 1] + step[at];
+        if (stopped[i] || (to >= low && to <= high)) continue;
+        const double left = std::clamp(to, low, high) - s.z[at - 1];
+        gradient += curvature.col(at) * left;
+        curvature.row(at).setZero();
+        curvature.col(at).setZero();
+        curvature(at, at) = 1;
+        gradient[at] = -left;
+        stopped[i] = 1;
+        more = true;
+      }
+      if (more) step = curvature.ldlt().solve(-gradient);
+    }
+    return step;
+  }
+  [[nodiscard]] std::vector<Optimum> optima() {
+    std::ranges::stable_sort(starts_, {}, &Start::cost);
+    std::vector<Optimum> all;
+    for (const Start& s : starts_) {
+      if (!all.empty() && s.cost - all.back().cost < kSameOptimum) {
+        ++all.back().starts;
+        continue;
+      }
+      Optimum found;
+      for (std::size_t i = 0; i < axes_.size(); ++i)
+        found.values.push_back(axes_[i].value(s.z[static_cast<Index>(i)]));
+      found.course = courses({s.z}).col(0);
+      found.plant = reduced_.plant_of(found.course, s.gain);
+      found.cost = s.cost;
+      found.starts = 1;
+      all.push_back(std::move(found));
+    }
+    return all;
+  }
+
+  const Reduction& reduction_;
+  event::InputKind input_;
+  const Trial& trial_;
+  ReducedPlant reduced_;
+  std::vector<fit::Axis> axes_;
+  MatrixXd without_;  ///< what the plant's own controls answer
+  std::vector<Start> starts_;
+};
+
+}  // namespace
+
+std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
+                              const VectorXd* other, const IdentifyOptions& options,
+                              const std::vector<std::vector<double>>& known) {
+  return Identifying(reduction, input, trial, other).run(options, known);
+}
+
+std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant) {
+  std::vector<char> marks;
+  for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.plant, f.id) ? 0 : 1);
+  return marks;
+}
+
+std::vector<event::EventState> with_course_of(const sim::plant::PlantUnderTest& tested,
+                                              const sim::plant::Plant& without, event::InputKind input,
+                                              const event::WhitenedEvents& events,
+                                              std::vector<event::EventState> states) {
+  const auto part = part_of(input);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    states[e].torque = states[e].field = {};
+    const std::vector<playin::Seen> seen = event::seen_along(tested, events[e], states[e]);
+    const playin::OpenLoop loop(seen, events[e].record.t, tested.conventions);
+    const MatrixXd own = loop.run(made_by(input), std::array{playin::component_of(without, part)});
+    playin::PiecewiseLinear& course = states[e].input(input);
+    const auto& moments = loop.moments();
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const playin::Seen& s = seen[k];
+      const bool ends = k + 1 < seen.size() && seen[k + 1].segment != s.segment;
+      const double t = s.t - (ends ? sim::plant::kBeforeSwitching : 0.0);
+      if (s.segment < moments.front().segment || (!course.t.empty() && t <= course.t.back())) continue;
+      while (at + 1 < moments.size() && (moments[at + 1].segment < s.segment ||
+                                         (moments[at + 1].segment == s.segment && moments[at + 1].t <= s.t)))
+        ++at;
+      double base = own(static_cast<Index>(at), 0);
+      if (at + 1 < moments.size() && moments[at + 1].segment == s.segment)
+        base += (own(static_cast<Index>(at) + 1, 0) - base) * (s.t - moments[at].t) /
+                (moments[at + 1].t - moments[at].t);
+      course.t.push_back(t);
+      course.value.push_back((input == event::InputKind::torque ? s.Tm : s.Efd) - base);
+    }
+  }
+  return states;
+}
+
+}  // namespace swingbank::validate::reduced

@@ -1,0 +1,404 @@
+#include "validate/reduced/infer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/in_parallel.hpp"
+#include "validate/fit/axis.hpp"
+#include "validate/fit/states.hpp"
+#include "validate/playin/can_run.hpp"
+
+namespace swingbank::validate::reduced {
+namespace {
+
+using Kind = playin::Direction::Kind;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr double kJumpGap = 1e-9;  ///< between the two sides of a jump [s]
+
+/// Knots lie as close as samples for this long behind a switching, then ever further apart.
+constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;  // [s], factor, [s]
+constexpr double kMostKnots = 100;                                          ///< of what lies far apart
+
+/// By how much an input may jump at an instant [pu]: a turbine's torque does not, a rectifier's voltage may.
+constexpr double kFirstTorque = 1e-3, kFirstField = 10.0;
+
+Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
+  const double h = event.record.step(), last = event.record.t.back();
+  const double far_apart = std::max(kFarApart, (last - event.record.t.front()) / kMostKnots);
+  std::vector<double> begins = state.switchings;
+  if (begins.empty())
+    begins.push_back(event.record.t[static_cast<std::size_t>(std::max(event.start.samples - 1, 0))]);
+  Knots knots;
+  for (std::size_t part = 0; part < begins.size(); ++part) {
+    const bool ends = part + 1 < begins.size();
+    const double from = begins[part], to = ends ? begins[part + 1] - kJumpGap : last;
+    double gap = h;
+    for (double t = from; t < to - (ends ? gap : 0.5 * gap); t += gap) {
+      knots.t.push_back(t);
+      if (t - from >= kCloseKnots) gap = std::min(far_apart, gap * kKnotGrowth);
+    }
+    if (ends) knots.jumps.push_back(knots.t.size());
+    knots.t.push_back(to);
+  }
+  return knots;
+}
+
+struct Point {
+  VectorXd z;
+  std::vector<VectorXd> states, torques, fields;  ///< per event
+};
+
+class Inferring {
+ public:
+  Inferring(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+            const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads)
+      : tested_(tested), events_(events), free_(free), inputs_(inputs), threads_(threads) {
+    for (const auto& f : free) axes_.push_back(fit::make_axis(tested.plant, f));
+  }
+
+  /// From the submitted model, or from states whose inputs stand as they are.
+  void begin(const sim::plant::Plant& plant, std::vector<event::EventState> states) {
+    inputs_stand_ = !states.empty();
+    at_.z.resize(static_cast<Index>(axes_.size()));
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      at_.z[static_cast<Index>(i)] = axes_[i].z(parameter_value(plant, free_[i].id));
+    states.resize(events_.size());
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      event::EventState& s = states[e];
+      if (s.switchings.empty())
+        for (const auto& w : events_[e].switchings) s.switchings.push_back(w.time);
+      const auto numbers = fit::state_of(events_[e], s);
+      at_.states.emplace_back(Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size())));
+      knots_.push_back(knots_of(events_[e], s));
+      at_.torques.push_back(VectorXd::Zero(static_cast<Index>(knots_.back().t.size())));
+      at_.fields.push_back(at_.torques.back());
+    }
+    given_ = std::move(states);
+  }
+
+  Inference run(int steps) {
+    std::vector<EventSlopes> slopes = linearise(at_);
+    double cost = believed(at_);
+    for (const auto& e : slopes) cost += e.residual.squaredNorm();
+    double damping = kFirstDamping;
+    int taken = 0;
+    while (taken < steps) {
+      const Normal normal = normal_of(slopes, at_);
+      bool moved = false;
+      double gained = 0;
+      for (int attempt = 0; attempt < kDampings && !moved; ++attempt) {
+        const Point to = stepped(normal, damping);
+        const double there = cost_at(to);
+        if (there < cost) {
+          gained = cost - there;
+          at_ = to;
+          cost = there;
+          moved = true;
+          damping = std::max(1e-8, 0.2 * damping);
+        } else {
+          damping *= 8;
+        }
+      }
+      if (!moved) break;
+      ++taken;
+      slopes = linearise(at_);
+      if (gained < kWorthAStep) break;
+    }
+    Inference found;
+    found.inputs = inputs_;
+    found.criterion = cost + occam(normal_of(slopes, at_));
+    found.plant = plant_at(at_.z);
+    found.free = free_;
+    found.offset = at_.z;
+    found.noise = events_.noise_model();
+    found.steps = taken;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      found.states.push_back(state_at(at_, e));
+      found.chi2 += slopes[e].residual.squaredNorm();
+      found.values += events_[e].values();
+    }
+    found.events = std::move(slopes);
+    return found;
+  }
+
+ private:
+  static constexpr double kFirstDamping = 1e-3;
+  static constexpr int kDampings = 8;
+  static constexpr double kWorthAStep = 1.0;  ///< of chi2
+  static constexpr double kLongestLog = 0.5;  ///< step of a logarithm
+
+  /// Curvature and gradient: of the plant's numbers, of each event's own, and between the two.
+  struct Normal {
+    MatrixXd plant;
+    VectorXd gradient;
+    std::vector<MatrixXd> own, cross;
+    std::vector<VectorXd> own_gradient;
+  };
+
+  [[nodiscard]] sim::plant::Plant plant_at(const VectorXd& z) const {
+    sim::plant::Plant plant = tested_.plant;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      parameter_value(plant, free_[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
+    return plant;
+  }
+  [[nodiscard]] event::EventState state_at(const Point& p, std::size_t e) const {
+    event::EventState s = fit::event_state(events_[e], p.states[e].data());
+    const Knots knots = knots_of_moved(e, s);
+    if (inputs_stand_) {
+      s.torque = given_[e].torque;
+      s.field = given_[e].field;
+      s.torque.knots = s.field.knots = knots.t;
+    } else {
+      s.torque = {knots.t, {p.torques[e].begin(), p.torques[e].end()}};
+      s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
+    }
+    return s;
+  }
+  /// The knots on instants go with these.
+  [[nodiscard]] Knots knots_of_moved(std::size_t e, const event::EventState& s) const {
+    Knots knots = knots_[e];
+    if (s.switchings.empty()) return knots;
+    knots.t.front() = s.switchings.front();
+    for (std::size_t j = 0; j < knots.jumps.size(); ++j) {
+      knots.t[knots.jumps[j]] = s.switchings[j + 1] - kJumpGap;
+      knots.t[knots.jumps[j] + 1] = s.switchings[j + 1];
+    }
+    return knots;
+  }
+  [[nodiscard]] std::vector<EventSlopes> linearise(const Point& p) const {
+    std::vector<EventSlopes> all(events_.size());
+    const sim::plant::Plant plant = plant_at(p.z);
+    in_parallel(
+        events_.size(), [&](std::size_t e) { all[e] = event_slopes(p, plant, e); }, [](int) {}, threads_);
+    return all;
+  }
+  [[nodiscard]] EventSlopes event_slopes(const Point& p, const sim::plant::Plant& plant,
+                                         std::size_t e) const {
+    const event::FitEvent& event = events_[e];
+    const event::EventState state = state_at(p, e);
+    std::vector<playin::Direction> along;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      along.push_back({.kind = Kind::parameter,
+                       .parameter = free_[i].id,
+                       .scale = axes_[i].slope(p.z[static_cast<Index>(i)])});
+    std::ranges::move(fit::state_directions(event), std::back_inserter(along));
+    const Index own = p.states[e].size(), knots = p.torques[e].size();
+    for (int k = 0; k < knots; ++k)  // in the order in which they begin
+      for (const Kind kind : {Kind::torque, Kind::field}) along.push_back({.kind = kind, .index = k});
+    const playin::Response r =
+        event::play({plant, tested_.conventions}, event, state, along, {.linear_slopes = true});
+    event::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
+    for (std::size_t d = 0; d < along.size(); ++d)
+      columns.col(static_cast<Index>(d)) = event.collected(r.slopes[d].value, false);
+    columns.rightCols(1) = event.collected(r.value, true);
+    events_.noise(e).whiten(columns);
+    EventSlopes slopes;
+    slopes.knots = knots_of_moved(e, state);
+    const auto n = static_cast<Index>(axes_.size());
+    slopes.plant = columns.leftCols(n);
+    slopes.state = columns.middleCols(n, own);
+    slopes.torque = columns(Eigen::all, Eigen::seqN(n + own, knots, 2));
+    slopes.field = columns(Eigen::all, Eigen::seqN(n + own + 1, knots, 2));
+    slopes.residual = columns.rightCols(1);
+    slopes.state_at = p.states[e];
+    return slopes;
+  }
+  /// Infinite where the plant cannot be run.
+  [[nodiscard]] double cost_at(const Point& p) const {
+    const sim::plant::Plant plant = plant_at(p.z);
+    if (!playin::can_exist_beside(plant, tested_.plant)) return kInfinite;
+    std::vector<double> parts(events_.size(), kInfinite);
+    in_parallel(
+        events_.size(),
+        [&](std::size_t e) {
+          try {
+            const playin::Response r = event::play({plant, tested_.conventions}, events_[e], state_at(p, e));
+            event::RowMatrix residual = events_[e].collected(r.value, true);
+            events_.noise(e).whiten(residual);
+            parts[e] = residual.squaredNorm();
+          } catch (const InputError&) {  // it costs infinitely much
+          }
+        },
+        [](int) {}, threads_);
+    double cost = believed(p);
+    for (const double part : parts) cost += std::isfinite(part) ? part : kInfinite;
+    return cost;
+  }
+  [[nodiscard]] double believed(const Point& p) const {
+    double cost = 0;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (const double spread = axes_[i].spread(); spread > 0)
+        cost += std::pow(p.z[static_cast<Index>(i)] / spread, 2);
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const auto beliefs = own_beliefs(events_[e]);
+      for (std::size_t k = 0; k < beliefs.size(); ++k)
+        if (beliefs[k] > 0) cost += std::pow(p.states[e][static_cast<Index>(k)] / beliefs[k], 2);
+      cost += walked(knots_[e], event::InputKind::torque, p.torques[e]) +
+              walked(knots_[e], event::InputKind::field, p.fields[e]);
+    }
+    return cost;
+  }
+  static double walked(const Knots& knots, event::InputKind kind, const VectorXd& input) {
+    const VectorXd weight = walk_weights(knots, kind);
+    double cost = std::pow(weight[0] * input[0], 2);
+    for (Index k = 1; k < input.size(); ++k) cost += std::pow(weight[k] * (input[k] - input[k - 1]), 2);
+    return cost;
+  }
+  static void add_walk(const Knots& knots, event::InputKind kind, const VectorXd& input, Index first,
+                       MatrixXd& curvature, VectorXd& gradient) {
+    const VectorXd weight = walk_weights(knots, kind);
+    for (Index k = 0; k < input.size(); ++k) {
+      const double w = weight[k] * weight[k], before = k > 0 ? input[k - 1] : 0.0;
+      const Index at = first + k;
+      curvature(at, at) += w;
+      gradient[at] += w * (input[k] - before);
+      if (k == 0) continue;
+      curvature(at - 1, at - 1) += w;
+      curvature(at, at - 1) -= w;
+      curvature(at - 1, at) -= w;
+      gradient[at - 1] -= w * (input[k] - before);
+    }
+  }
+  [[nodiscard]] Normal normal_of(const std::vector<EventSlopes>& slopes, const Point& p) const {
+    const auto n = static_cast<Index>(axes_.size());
+    Normal normal{MatrixXd::Zero(n, n), VectorXd::Zero(n), {}, {}, {}};
+    for (Index i = 0; i < n; ++i)
+      if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
+        normal.plant(i, i) += 1 / (spread * spread);
+        normal.gradient[i] += p.z[i] / (spread * spread);
+      }
+    for (std::size_t e = 0; e < slopes.size(); ++e) {
+      const EventSlopes& s = slopes[e];
+      const Index states = s.state.cols(), torques = inputs_.torque ? s.torque.cols() : 0,
+                  fields = inputs_.field ? s.field.cols() : 0, own = states + torques + fields;
+      MatrixXd all(s.residual.size(), n + own);
+      all << s.plant, s.state, s.torque.leftCols(torques), s.field.leftCols(fields);
+      MatrixXd products = MatrixXd::Zero(n + own, n + own);
+      products.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+      products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
+      const VectorXd gradient = all.transpose() * s.residual;
+      normal.plant += products.topLeftCorner(n, n);
+      normal.gradient += gradient.head(n);
+      MatrixXd inner = products.bottomRightCorner(own, own);
+      VectorXd inner_gradient = gradient.tail(own);
+      const auto beliefs = own_beliefs(events_[e]);
+      for (Index k = 0; k < states; ++k)
+        if (const double b = beliefs[static_cast<std::size_t>(k)]; b > 0) {
+          inner(k, k) += 1 / (b * b);
+          inner_gradient[k] += p.states[e][k] / (b * b);
+        }
+      if (inputs_.torque)
+        add_walk(s.knots, event::InputKind::torque, p.torques[e], states, inner, inner_gradient);
+      if (inputs_.field)
+        add_walk(s.knots, event::InputKind::field, p.fields[e], states + torques, inner, inner_gradient);
+      normal.own.push_back(std::move(inner));
+      normal.cross.push_back(products.bottomLeftCorner(own, n));
+      normal.own_gradient.push_back(std::move(inner_gradient));
+    }
+    return normal;
+  }
+  /// Log determinant of what is known of all free numbers, in units of what is believed of them.
+  [[nodiscard]] double occam(const Normal& normal) const {
+    MatrixXd curvature = normal.plant;
+    double sum = 0;
+    for (const fit::Axis& axis : axes_) sum += axis.spread() > 0 ? 2 * std::log(axis.spread()) : 0.0;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const Eigen::LDLT<MatrixXd> own(normal.own[e]);
+      sum += own.vectorD().array().log().sum();
+      curvature -= normal.cross[e].transpose() * own.solve(normal.cross[e]);
+      for (const double b : own_beliefs(events_[e])) sum += b > 0 ? 2 * std::log(b) : 0.0;
+      for (const event::InputKind kind : {event::InputKind::torque, event::InputKind::field})
+        if (kind == event::InputKind::torque ? inputs_.torque : inputs_.field)
+          sum -= 2 * walk_weights(knots_[e], kind).array().log().sum();
+    }
+    return sum + curvature.ldlt().vectorD().array().log().sum();
+  }
+  [[nodiscard]] Point stepped(const Normal& normal, double damping) const {
+    MatrixXd curvature = normal.plant;
+    VectorXd gradient = normal.gradient;
+    curvature.diagonal() *= 1 + damping;
+    std::vector<Eigen::LDLT<MatrixXd>> solvers;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      MatrixXd own = normal.own[e];
+      own.diagonal() *= 1 + damping;
+      solvers.emplace_back(own);
+      curvature -= normal.cross[e].transpose() * solvers[e].solve(normal.cross[e]);
+      gradient -= normal.cross[e].transpose() * solvers[e].solve(normal.own_gradient[e]);
+    }
+    const VectorXd step = curvature.ldlt().solve(-gradient);
+    Point to = at_;
+    for (Index i = 0; i < step.size(); ++i) {
+      const fit::Axis& axis = axes_[static_cast<std::size_t>(i)];
+      to.z[i] = std::clamp(at_.z[i] + std::clamp(step[i], -kLongestLog, kLongestLog),
+                           std::min(at_.z[i], axis.z(axis.low)), std::max(at_.z[i], axis.z(axis.high)));
+    }
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const VectorXd own = solvers[e].solve(-normal.own_gradient[e] - normal.cross[e] * step);
+      const Index states = at_.states[e].size(), knots = at_.torques[e].size();
+      to.states[e] += own.head(states);
+      for (std::size_t k = 0; k < events_[e].switchings.size(); ++k) {
+        const double room = events_[e].switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
+        double& instant = to.states[e][static_cast<Index>(k)];
+        instant = std::clamp(instant, -room, room);
+      }
+      if (inputs_.torque) to.torques[e] += own.segment(states, knots);
+      if (inputs_.field) to.fields[e] += own.tail(knots);
+    }
+    return to;
+  }
+
+  static constexpr double kInfinite = 1e300;
+  const sim::plant::PlantUnderTest& tested_;
+  const event::WhitenedEvents& events_;
+  const std::vector<fit::FreeParameter>& free_;
+  Inputs inputs_;
+  int threads_;
+  std::vector<fit::Axis> axes_;
+  std::vector<Knots> knots_;
+  std::vector<event::EventState> given_;  ///< whose inputs stand
+  bool inputs_stand_ = false;
+  Point at_;
+};
+
+}  // namespace
+
+std::vector<double> own_beliefs(const event::FitEvent& event) {
+  constexpr double kKnown = 1e-6;  // of the units
+  std::vector<double> beliefs = fit::state_beliefs(event);
+  for (std::size_t k = 0; k < event.switchings.size(); ++k)
+    beliefs[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
+  return beliefs;
+}
+
+Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {
+  const bool torque = kind == event::InputKind::torque;
+  constexpr double kLeastGap = 1e-6;  // [s]: a torque does not jump
+  VectorXd weight(static_cast<Index>(knots.t.size()));
+  weight[0] = 1 / (torque ? kFirstTorque : kFirstField);
+  for (Index k = 1; k < weight.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const double gap = std::max(kLeastGap, knots.t[at] - knots.t[at - 1]);
+    weight[k] = 1 / std::sqrt((torque ? kTorqueWalk : kFieldWalk) * gap);
+  }
+  if (!torque)
+    for (const std::size_t jump : knots.jumps) weight[static_cast<Index>(jump) + 1] = 1 / kFirstField;
+  return weight;
+}
+
+Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads, int steps) {
+  Inferring inferring(tested, events, free, inputs, threads);
+  inferring.begin(tested.plant, {});
+  return inferring.run(steps);
+}
+
+Inference infer_beside(const sim::plant::PlantUnderTest& tested, const sim::plant::Plant& plant,
+                       const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
+                       std::vector<event::EventState> states, int threads, int steps) {
+  Inferring inferring(tested, events, free, {}, threads);
+  inferring.begin(plant, std::move(states));
+  return inferring.run(steps);
+}
+
+}  // namespace swingbank::validate::reduced

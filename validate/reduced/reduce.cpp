@@ -1,0 +1,252 @@
+#include "validate/reduced/reduce.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/fit/axis.hpp"
+
+namespace swingbank::validate::reduced {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using event::InputKind;
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// The upper triangle with the same products of columns, from column `first` on.
+MatrixXd triangle(const MatrixXd& all, Index first) {
+  const Eigen::HouseholderQR<MatrixXd> qr(all);
+  const Index left = all.cols() - first;
+  return qr.matrixQR().block(first, first, left, left).triangularView<Eigen::Upper>();
+}
+
+/// Mean of what is known at moments over each knot's hat: [knot][moment].
+Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::Moment>& moments) {
+  const auto count = static_cast<Index>(knots.t.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  VectorXd whole = VectorXd::Zero(count);
+  const auto end_of = [&](std::size_t part) {
+    return part < knots.jumps.size() ? knots.jumps[part] : knots.t.size() - 1;
+  };
+  const auto begin_of = [&](std::size_t part) { return part == 0 ? 0 : end_of(part - 1) + 1; };
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    const playin::OpenLoop::Moment& m = moments[k];
+    double width = 0;
+    if (k > 0 && moments[k - 1].segment == m.segment) width += 0.5 * (m.t - moments[k - 1].t);
+    if (k + 1 < moments.size() && moments[k + 1].segment == m.segment)
+      width += 0.5 * (moments[k + 1].t - m.t);
+    const auto part = static_cast<std::size_t>(m.segment - moments.front().segment);
+    const auto begin = knots.t.begin() + static_cast<std::ptrdiff_t>(begin_of(part)),
+               end = knots.t.begin() + static_cast<std::ptrdiff_t>(end_of(part)) + 1;
+    if (m.t < *begin) continue;
+    const auto above = std::upper_bound(begin + 1, end - 1, m.t);
+    const double share = std::clamp((m.t - *(above - 1)) / (*above - *(above - 1)), 0.0, 1.0);
+    const Index low = above - 1 - knots.t.begin();
+    for (const auto& [knot, height] : {std::pair(low, 1 - share), std::pair(low + 1, share)}) {
+      if (height * width == 0) continue;
+      entries.emplace_back(knot, static_cast<Index>(k), height * width);
+      whole[knot] += height * width;
+    }
+  }
+  for (auto& e : entries) e = {e.row(), e.col(), e.value() / whole[e.row()]};
+  Sparse weights(count, static_cast<Index>(moments.size()));
+  weights.setFromTriplets(entries.begin(), entries.end());
+  return weights;
+}
+
+VectorXd at_moments(const playin::PiecewiseLinear& input,
+                    const std::vector<playin::OpenLoop::Moment>& moments) {
+  VectorXd values(static_cast<Index>(moments.size()));
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    // the end of a segment is on its own side of the instant
+    const bool ends = k + 1 < moments.size() && moments[k + 1].segment != moments[k].segment;
+    values[static_cast<Index>(k)] = input(moments[k].t - (ends ? sim::plant::kBeforeSwitching : 0.0));
+  }
+  return values;
+}
+
+}  // namespace
+
+Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
+                     const sim::Conventions& conventions)
+    : inference_(std::move(inference)), conventions_(conventions) {
+  for (std::size_t e = 0; e < events.size(); ++e) knots_ += inference_.events[e].torque.cols();
+  step_ = events.front().record.step();
+  torque_.resize(knots_);
+  field_.resize(knots_);
+  Index row = 0;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const EventSlopes& s = inference_.events[e];
+    playin::OpenLoop loop(event::seen_along({inference_.plant, conventions}, events[e], inference_.states[e]),
+                          events[e].record.t, conventions);
+    const Sparse hats = over_hats(s.knots, loop.moments());
+    const Index states = s.state.cols(), knots = s.torque.cols(), values = s.residual.size();
+    const VectorXd torque = hats * at_moments(inference_.states[e].torque, loop.moments()),
+                   field = hats * at_moments(inference_.states[e].field, loop.moments());
+    torque_.segment(row, knots) = torque;
+    field_.segment(row, knots) = field;
+    row += knots;
+    MatrixXd all = MatrixXd::Zero(values + states, states + s.plant.cols() + 2 * knots + 1);
+    all.topRows(values) << s.state, s.plant, s.torque, s.field,
+        s.residual - s.torque * torque - s.field * field;
+    const auto beliefs = own_beliefs(events[e]);
+    for (Index k = 0; k < states; ++k)
+      if (const double b = beliefs[static_cast<std::size_t>(k)]; b > 0) {
+        all(values + k, k) = 1 / b;
+        all(values + k, all.cols() - 1) = s.state_at[k] / b;
+      }
+    events_.push_back({std::move(loop), hats, triangle(all, states), s.knots});
+  }
+  torque_gain_ = find_gain(events, InputKind::torque);
+  field_gain_ = find_gain(events, InputKind::field);
+}
+
+Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputKind kind) const {
+  constexpr double kGainMove = 1e-4, kNoExponent = 0.1;  // of a logarithm, of an exponent
+  const auto rates = [&](const sim::plant::Plant& plant) {
+    return event::rates_by_input({plant, conventions_}, events.front(), inference_.states.front(), kind)
+        .norm();
+  };
+  const double still = rates(inference_.plant);
+  Gain gain;
+  for (std::size_t i = 0; i < inference_.free.size(); ++i) {
+    const auto& f = inference_.free[i];
+    const fit::Axis axis = fit::make_axis(inference_.plant, f);
+    if (f.id.block != sim::plant::kMachineBlock || !axis.logarithmic) continue;
+    sim::plant::Plant moved = inference_.plant;
+    parameter_value(moved, f.id) = axis.value(kGainMove);
+    const double exponent = std::log(rates(moved) / still) / kGainMove;
+    if (std::abs(exponent) > std::max(kNoExponent, std::abs(gain.exponent)))
+      gain = {static_cast<Index>(i), exponent};
+  }
+  return gain;
+}
+
+ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const VectorXd* other,
+                           const std::vector<char>& held)
+    : gain_(reduction.gain(kind)) {
+  const Inference& at = reduction.inference();
+  const auto n = static_cast<Index>(at.free.size());
+  numbers_ = n;
+  const bool field = kind == InputKind::field;
+  const auto stands = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
+  if (gain_.number >= 0 && stands(gain_.number)) gain_ = {};
+  for (Index i = 0; i < n; ++i) {
+    const double spread = at.free[static_cast<std::size_t>(i)].spread,
+                 precision = spread > 0 ? 1 / (spread * spread) : 0.0;
+    if (i == gain_.number) {
+      gain_precision_ = precision;
+      gain_offset_ = at.offset[i];
+      continue;
+    }
+    believed_ += precision * at.offset[i] * at.offset[i];
+    if (!stands(i)) free_.push_back(i);
+  }
+  const auto m = static_cast<Index>(free_.size());
+  MatrixXd curvature = MatrixXd::Zero(m, m);
+  first_.resize(m);
+  for (Index k = 0; k < m; ++k) {
+    const Index i = free_[static_cast<std::size_t>(k)];
+    const double spread = at.free[static_cast<std::size_t>(i)].spread;
+    curvature(k, k) = spread > 0 ? 1 / (spread * spread) : 0.0;
+    first_[k] = curvature(k, k) * at.offset[i];
+  }
+  Index row = 0;
+  for (const Reduction::Event& e : reduction.events()) {
+    const MatrixXd& R = e.triangle;
+    const auto K = static_cast<Index>(e.knots.t.size());
+    MatrixXd plant = R.leftCols(n);
+    const MatrixXd explained = R.middleCols(n + (field ? K : 0), K),
+                   rest = R.middleCols(n + (field ? 0 : K), K);
+    // the gain's number moves while what it multiplies stands still
+    if (gain_.number >= 0)
+      plant.col(gain_.number) -= gain_.exponent * (explained * reduction.course(kind).segment(row, K));
+    MatrixXd all;
+    Index first = 0;
+    if (other) {
+      all.resize(R.rows(), n + K + 1);
+      all << plant, explained, R.rightCols(1) + rest * other->segment(row, K);
+    } else {
+      first = K;
+      all = MatrixXd::Zero(R.rows() + K, 2 * K + n + 1);
+      all.topRows(R.rows()) << rest, plant, explained, R.rightCols(1);
+      const VectorXd weight = walk_weights(e.knots, field ? InputKind::torque : InputKind::field);
+      for (Index k = 0; k < K; ++k) {
+        all(R.rows() + k, k) = weight[k];
+        if (k > 0) all(R.rows() + k, k - 1) = -weight[k];
+      }
+    }
+    const MatrixXd left = triangle(all, first);
+    Event event;
+    event.T = left(Eigen::all, free_);
+    event.by_gain = gain_.number >= 0 ? VectorXd(left.col(gain_.number)) : VectorXd::Zero(left.rows());
+    event.L = left.middleCols(n, K);
+    event.r = left.rightCols(1);
+    curvature += event.T.transpose() * event.T;
+    events_.push_back(std::move(event));
+    row += K;
+  }
+  inverse_ = curvature.ldlt().solve(MatrixXd::Identity(m, m));
+}
+
+VectorXd ReducedPlant::costs(const MatrixXd& courses, const VectorXd& gains) const {
+  const Index count = courses.cols();
+  VectorXd cost = VectorXd::Constant(count, believed_);
+  cost.array() += gain_precision_ * (gains.array() + gain_offset_).square();
+  MatrixXd gradient = first_.replicate(1, count);
+  const VectorXd factors = (gain_.exponent * gains).array().exp();
+  Index row = 0;
+  for (const Event& e : events_) {
+    const Index K = e.L.cols();
+    MatrixXd left = e.L * (courses.middleRows(row, K) * factors.asDiagonal());
+    left.colwise() += e.r;
+    left += e.by_gain * gains.transpose();
+    cost += left.colwise().squaredNorm();
+    gradient += e.T.transpose() * left;
+    row += K;
+  }
+  cost -= (gradient.array() * (inverse_ * gradient).array()).colwise().sum().matrix();
+  return cost;
+}
+
+ReducedPlant::Bowl ReducedPlant::bowl(const VectorXd& course, double gain, const MatrixXd& slopes) const {
+  const Index n = slopes.cols() + 1, m = static_cast<Index>(free_.size());
+  Bowl bowl{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  MatrixXd cross = MatrixXd::Zero(m, n);
+  VectorXd gradient = first_;
+  bowl.curvature(0, 0) = gain_precision_;
+  bowl.gradient[0] = gain_precision_ * (gain_offset_ + gain);
+  Index row = 0;
+  for (const Event& e : events_) {
+    const Index K = e.L.cols();
+    MatrixXd by(e.r.size(), n);
+    by.rightCols(n - 1) = factor(gain) * (e.L * slopes.middleRows(row, K));
+    const VectorXd shown = factor(gain) * (e.L * course.segment(row, K));
+    by.col(0) = e.by_gain + gain_.exponent * shown;
+    const VectorXd left = e.r + shown + gain * e.by_gain;
+    bowl.curvature += by.transpose() * by;
+    bowl.gradient += by.transpose() * left;
+    cross += e.T.transpose() * by;
+    gradient += e.T.transpose() * left;
+    row += K;
+  }
+  bowl.curvature -= cross.transpose() * inverse_ * cross;
+  bowl.gradient -= cross.transpose() * (inverse_ * gradient);
+  return bowl;
+}
+
+VectorXd ReducedPlant::plant_of(const VectorXd& course, double gain) const {
+  VectorXd gradient = first_;
+  Index row = 0;
+  for (const Event& e : events_) {
+    const Index K = e.L.cols();
+    gradient += e.T.transpose() * (e.r + factor(gain) * (e.L * course.segment(row, K)) + gain * e.by_gain);
+    row += K;
+  }
+  const VectorXd step = -(inverse_ * gradient);
+  VectorXd all = VectorXd::Zero(numbers_);
+  for (std::size_t k = 0; k < free_.size(); ++k) all[free_[k]] = step[static_cast<Index>(k)];
+  if (gain_.number >= 0) all[gain_.number] = gain;
+  return all;
+}
+
+}  // namespace swingbank::validate::reduced
