@@ -92,7 +92,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
-  result["format"] = "swingbank-add-2";
+  result["format"] = "swingbank-add-3";
   result["command"] = a.command;
   result["standard_values"] = before.standard;
   result["records"] = a.told;

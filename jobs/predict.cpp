@@ -93,7 +93,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
                      const std::vector<Estimated>& all) {
   const train::run::NetworkInfo& n = network.info();
   ordered_json j;
-  j["format"] = "swingbank-estimate-1";
+  j["format"] = "swingbank-estimate-2";
   j["software"] = "swingbank " SWINGBANK_VERSION;
   j["network"] = {{"file", network.file().string()},
                   {"run", n.run},

@@ -69,7 +69,7 @@ r = json.load(open(sys.argv[1]))
 model, curve, ours = r["side_by_side"]
 assert [w["way"] for w in r["side_by_side"]] == ["model", "curve fit", "calibrate"]
 assert model["truth"]["rms_relative"] == 0 and curve["truth"]["mse_raw_units"] > ours["truth"]["mse_raw_units"] > 0, curve["truth"]
-assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-2"
+assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-3"
 PYTHON
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
 cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"

@@ -44,7 +44,7 @@ bool within_reach(double value, double low, double high, double spread) {
 NetworkEstimate read_estimate(const std::filesystem::path& file) {
   note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
-  if (j.is_object() && j.value("format", "") == "swingbank-estimate-1") {
+  if (j.is_object() && j.value("format", "") == "swingbank-estimate-2") {
     try {
       return parse(j, file);
     } catch (const json::exception&) {  // said below

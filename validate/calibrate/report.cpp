@@ -185,7 +185,7 @@ json event_json(const EventScore& e) {
 }
 
 json calibration_json(const Calibration& c) {
-  json j = {{"format", "swingbank-calibrate-2"},
+  json j = {{"format", "swingbank-calibrate-3"},
             {"version", SWINGBANK_VERSION},
             {"model", c.model.origin},
             {"model_sha256", c.model.sha256},

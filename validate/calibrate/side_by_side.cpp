@@ -264,7 +264,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {
-  json j = {{"format", "swingbank-curve-fit-2"}, {"version", SWINGBANK_VERSION}, {"model", f.model.origin},
+  json j = {{"format", "swingbank-curve-fit-3"}, {"version", SWINGBANK_VERSION}, {"model", f.model.origin},
             {"model_sha256", f.model.sha256},    {"sentence", f.sentence},       {"misfit_before", f.before},
             {"misfit_after", f.after},           {"misfit_limit", f.limit},      {"adequate", f.adequate},
             {"converged", f.converged},          {"iterations", f.iterations},   {"seconds", f.seconds},

@@ -137,7 +137,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
   nlohmann::json j = {
-      {"format", "swingbank-compare-4"},
+      {"format", "swingbank-compare-5"},
       {"adequate", adequacy.adequate},
       {"statistically_complete", adequacy.adequate},
       {"fitness", fitness_json(fitness)},

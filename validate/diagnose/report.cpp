@@ -226,7 +226,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
                               const report::Provenance& rows) {
   const ReportFigures figures = report_figures(d);
   nlohmann::json j = {
-      {"format", "swingbank-diagnosis-1"},
+      {"format", "swingbank-diagnosis-2"},
       {"verdict", verdict_name(d.verdict)},
       {"sentence", d.sentence},
       {"adequacy", thresholds::ruling_json(d.ruling)},

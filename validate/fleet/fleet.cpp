@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kFormat = "swingbank-fleet-plant-2";
+constexpr const char* kFormat = "swingbank-fleet-plant-3";
 
 /// Files that a name or glob stands for, in order; "RUN.h5#TERMINAL" keeps its terminal.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {

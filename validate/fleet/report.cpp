@@ -107,7 +107,7 @@ std::string fleet_text(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
-  nlohmann::json j = {{"format", "swingbank-fleet-2"},
+  nlohmann::json j = {{"format", "swingbank-fleet-3"},
                       {"fleet", fleet.file.string()},
                       {"software", "swingbank " SWINGBANK_VERSION},
                       {"summary", fleet_summary(rows)},

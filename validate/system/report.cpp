@@ -194,7 +194,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
 }
 
 std::string system_json(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
-  json j = {{"format", "swingbank-system-compare-1"},
+  json j = {{"format", "swingbank-system-compare-2"},
             {"name", s.name},
             {"adequate", c.adequacy.adequate},
             {"verdict", c.adequacy.sentence},

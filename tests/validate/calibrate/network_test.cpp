@@ -39,7 +39,7 @@ class EstimateFile {
     static int count = 0;
     file_ = std::filesystem::temp_directory_path() / fmt::format("estimate-{}-{}.json", ::getpid(), ++count);
     std::ofstream(file_) << json{
-        {"format", "swingbank-estimate-1"},
+        {"format", "swingbank-estimate-2"},
         {"network", {{"file", "x.network"}, {"kind", "cnn"}, {"machine_model", machine}, {"dataset", "d"}}},
         {"records", {{{"file", "avr_ev1.csv"}, {"sha256", hash}}}},
         {"parameters", std::move(parameters)}};
