@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
       fmt::print("{}: none {:.1f}, as inferred {:.1f}\n",
                  input == event::InputKind::torque ? "torque" : "field",
                  plant.costs(Eigen::VectorXd::Zero(reduction.knots()), zero)[0],
-                 plant.costs(reduction.course(input), zero)[0]);
+                 plant.costs(reduction.series(input), zero)[0]);
     }
     for (Row& r : rows) {
       const double start = seconds();
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
     std::vector<event::EventState> states = reduction.inference().states;
     for (std::size_t i = 0; i < free.size(); ++i)
       parameter_value(leader, free[i].id) = parameter_value(reduction.inference().plant, free[i].id);
-    states = reduced::with_course_of({leader, model.conventions}, reduction.inference().plant,
+    states = reduced::with_series_of({leader, model.conventions}, reduction.inference().plant,
                                      event::InputKind::field, events, states);
     start = seconds();
     const reduced::Inference beside =
@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
                beside.steps, beside.misfit());
     reduction = reduced::Reduction(beside, events, model.conventions);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction.knots());
-    const Eigen::VectorXd field = reduction.course(event::InputKind::field);
+    const Eigen::VectorXd field = reduction.series(event::InputKind::field);
     round(reduction, &none, &field);
     fmt::print("after {:.2f} s\n", seconds() - begin);
   }

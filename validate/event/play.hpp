@@ -67,7 +67,7 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
 /// How fast each state of the plant follows 1 pu of an input at the start [1/s]; the state has that input.
 Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                                const EventState& state, InputKind input);
-/// What the plant's controls see along the event.
+/// Inputs of the plant's controls along the event.
 std::vector<playin::Seen> seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                                      const EventState& state);
 

@@ -25,7 +25,7 @@ struct Axis {
   }
   [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
   [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
-  /// Standard deviation of the belief in z.
+  /// Prior standard deviation of z.
   [[nodiscard]] double spread() const { return where.spread; }
 };
 

@@ -15,7 +15,7 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
   return event.switchings.size() * (event.turns() ? 2 : 1);
 }
 
-/// One unit of an instant [s].
+/// One unit of a switching time [s].
 inline constexpr double kSwitchScale = 1e-3;
 /// One unit of a turn [rad], and how many of them it is believed to be off from where it was found: a
 /// reactance that is wrong by a fifth makes it wrong by so much.

@@ -105,7 +105,7 @@ struct Response {
 /// Throws InputError if the operating point cannot be held or the equations cannot be integrated.
 Response drive(const Drive& run, std::span<const Direction> directions = {});
 
-/// What the controls of a plant see at one moment of a run, at the machine's terminal and on its base.
+/// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
 struct Seen {
   double t;           ///< [s]
   int segment;        ///< of the voltage curve
@@ -113,8 +113,7 @@ struct Seen {
   double speed, Ifd;  ///< [pu]
   double Efd, Tm;     ///< that drive the machine, inputs included [pu]
 };
-/// At the start, at every sample, at every step between them, and on both sides of every instant. Throws as
-/// drive().
+/// At every sample and integration step, and on both sides of every switching time. Throws as drive().
 std::vector<Seen> seen_along(const Drive& run);
 
 /// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,

@@ -14,21 +14,18 @@ namespace swingbank::validate::playin {
 namespace {
 
 using sim::P8;
-constexpr auto kAbreast = std::size_t(P8::lanes);
+constexpr auto kBlockLanes = std::size_t(P8::lanes);
 
 /// Runge-Kutta's classical formula is stable up to 2.78 over the fastest rate, and per cents off up to this.
 constexpr double kStable = 1.2;
-/// So long behind an instant, Heun's formula does [s], where it is that far from its own limit.
-constexpr double kLongBehind = 0.5, kStableHeun = 0.8;
-/// What is faster than a tenth of the step needs no more steps than these: it would stand in its own
-/// equilibrium, and such plants are given up.
+/// A plant that needs more of them runs away: its response is not finite.
 constexpr int kMostSubsteps = 16;
 
 /// Controls of up to eight plants in lanes.
-class Abreast {
+class BlockLanes {
  public:
-  Abreast(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
-          const sim::Conventions& conventions)
+  BlockLanes(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
+             const sim::Conventions& conventions)
       : made_(made), equations_(plants.front()), ifd_(start.Ifd) {
     const double P = (start.V * std::conj(start.I)).real(), Q = (start.V * std::conj(start.I)).imag();
     scratch_.resize(static_cast<std::size_t>(equations_.scratch()));
@@ -46,20 +43,20 @@ class Abreast {
         const int l = static_cast<int>(lane);
         for (std::size_t i = 0; i < c_.size(); ++i) c_[i].set(l, at.c[i]);
         for (std::size_t i = 0; i < x_.size(); ++i) x_[i].set(l, at.x[i]);
-        stands_[lane] = 1;
-      } catch (const InputError&) {  // its column stays empty
+        initialised_[lane] = 1;
+      } catch (const InputError&) {  // no steady state: its column stays NaN
       }
     }
-    for (auto& k : k_) k.assign(x_.size(), P8(0.0));  // the recorded machine stands still
+    for (auto& k : k_) k.assign(x_.size(), P8(0.0));  // the recorded machine has no dynamics
     trial_.resize(x_.size());
   }
   [[nodiscard]] bool any() const { return !c_.empty(); }
-  [[nodiscard]] bool stands(std::size_t lane) const { return stands_[lane] != 0; }
-  [[nodiscard]] double answer(std::size_t lane) const { return answer_[static_cast<int>(lane)]; }
+  [[nodiscard]] bool initialised(std::size_t lane) const { return initialised_[lane] != 0; }
+  [[nodiscard]] double response(std::size_t lane) const { return response_[static_cast<int>(lane)]; }
 
-  /// Derivatives of the states, and the answer. A state at a limit may lead beyond it: steps bring it back,
-  /// so that one which meets its limit within a step is right at its end.
-  void look(const Seen& at, const std::vector<P8>& x, std::vector<P8>& dx) {
+  /// Derivatives of the states, and the response. Derivatives are not held at non-windup limits: each stage
+  /// is clipped instead, so that a state which meets its limit within a step ends at that limit exactly.
+  void evaluate(const Seen& at, const std::vector<P8>& x, std::vector<P8>& dx) {
     sim::Signals<P8>& s = signals_;
     s.Efd = P8(efd_);
     s.Tm = P8(tm_);
@@ -71,28 +68,20 @@ class Abreast {
     scratch_[recorded::speed] = P8(at.speed);
     scratch_[recorded::dIfd] = P8(at.Ifd - ifd_);
     equations_.signals(c_.data(), x.data(), scratch_.data(), s, dx.data());
-    answer_ = made_ == Made::field ? s.Efd : s.Tm;
+    response_ = made_ == Made::field ? s.Efd : s.Tm;
   }
-  void look(const Seen& at) { look(at, x_, k_[0]); }
-  /// From where look() has just looked.
+  void evaluate(const Seen& at) { evaluate(at, x_, k_[0]); }
+  /// One Runge-Kutta step from where evaluate() was called last.
   void step(double h, const Seen& middle, const Seen& end) {
     const std::size_t n = x_.size();
     move(0.5 * h, k_[0]);
-    look(middle, trial_, k_[1]);
+    evaluate(middle, trial_, k_[1]);
     move(0.5 * h, k_[1]);
-    look(middle, trial_, k_[2]);
+    evaluate(middle, trial_, k_[2]);
     move(h, k_[2]);
-    look(end, trial_, k_[3]);
+    evaluate(end, trial_, k_[3]);
     for (std::size_t i = 0; i < n; ++i)
       x_[i] = x_[i] + P8(h / 6) * (k_[0][i] + P8(2.0) * (k_[1][i] + k_[2][i]) + k_[3][i]);
-    P8 moved(0.0);
-    equations_.clamp_states(c_.data(), x_.data(), moved);
-  }
-  /// The same by Heun's formula, of order 2.
-  void short_step(double h, const Seen& end) {
-    move(h, k_[0]);
-    look(end, trial_, k_[1]);
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = x_[i] + P8(0.5 * h) * (k_[0][i] + k_[1][i]);
     P8 moved(0.0);
     equations_.clamp_states(c_.data(), x_.data(), moved);
   }
@@ -100,23 +89,23 @@ class Abreast {
   [[nodiscard]] double fastest(const Seen& start) {
     const std::size_t n = x_.size();
     std::vector<P8> still(n), moved(n), x = x_;
-    std::array<Eigen::MatrixXd, kAbreast> A;
+    std::array<Eigen::MatrixXd, kBlockLanes> A;
     A.fill(Eigen::MatrixXd(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)));
-    for (auto& value : x) value = value + P8(kRateMove);  // beside the corner that a dead-band has there
-    look(start, x, still);
+    for (auto& value : x) value = value + P8(kRateMove);  // away from the corner of a dead-band
+    evaluate(start, x, still);
     for (std::size_t j = 0; j < n; ++j) {
       const P8 before = x[j];
       x[j] = before + P8(kRateMove);
-      look(start, x, moved);
+      evaluate(start, x, moved);
       x[j] = before;
       for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t lane = 0; lane < kAbreast; ++lane)
+        for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
           A[lane](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
               (moved[i][static_cast<int>(lane)] - still[i][static_cast<int>(lane)]) / kRateMove;
     }
     double most = 0;
-    for (std::size_t lane = 0; lane < kAbreast; ++lane)
-      if (stands(lane) && A[lane].allFinite())
+    for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
+      if (initialised(lane) && A[lane].allFinite())
         most = std::max(most, A[lane].eigenvalues().cwiseAbs().maxCoeff());
     return most;
   }
@@ -134,8 +123,8 @@ class Abreast {
   double ifd_, efd_ = 0, tm_ = 0;
   std::vector<P8> c_, x_, trial_, scratch_;
   std::array<std::vector<P8>, 4> k_;
-  std::array<char, kAbreast> stands_{};
-  P8 answer_{0.0};
+  std::array<char, kBlockLanes> initialised_{};
+  P8 response_{0.0};
   sim::Signals<P8> signals_;  ///< what nothing writes stays zero
 };
 
@@ -158,21 +147,20 @@ OpenLoop::OpenLoop(std::vector<Seen> seen, const std::vector<double>& samples,
   for (int s = segments > 1 ? 1 : 0; s < segments; ++s) {
     const double from = seen_[first_of_[static_cast<std::size_t>(s)]].t,
                  to = seen_[first_of_[static_cast<std::size_t>(s) + 1] - 1].t;
-    moments_.push_back({from, s});
-    constexpr double kMomentsApart = 1e-7;  // [s]
-    while (sample < samples.size() && samples[sample] <= from + kMomentsApart) ++sample;
-    for (; sample < samples.size() && samples[sample] < to - kMomentsApart; ++sample)
-      moments_.push_back({samples[sample], s});
-    if (to > from + kMomentsApart) moments_.push_back({to, s});
+    times_.push_back({from, s});
+    constexpr double kTimesApart = 1e-7;  // [s]
+    while (sample < samples.size() && samples[sample] <= from + kTimesApart) ++sample;
+    for (; sample < samples.size() && samples[sample] < to - kTimesApart; ++sample)
+      times_.push_back({samples[sample], s});
+    if (to > from + kTimesApart) times_.push_back({to, s});
   }
-  for (std::size_t k = 0; k + 1 < moments_.size(); ++k) {
-    const Moment &a = moments_[k], &b = moments_[k + 1];
+  for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
+    const TimePoint &a = times_[k], &b = times_[k + 1];
     if (a.segment != b.segment)
-      steps_.push_back({0, false, between(a.segment, a.t), {}, {}});
+      steps_.push_back({0, between(a.segment, a.t), {}, {}});
     else
-      steps_.push_back(
-          {b.t - a.t, a.t - seen_[first_of_[static_cast<std::size_t>(a.segment)]].t > kLongBehind,
-           between(a.segment, a.t), between(a.segment, 0.5 * (a.t + b.t)), between(a.segment, b.t)});
+      steps_.push_back({b.t - a.t, between(a.segment, a.t), between(a.segment, 0.5 * (a.t + b.t)),
+                        between(a.segment, b.t)});
   }
 }
 
@@ -188,25 +176,26 @@ Seen OpenLoop::between(int segment, double t) const {
 }
 
 Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plants) const {
-  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(moments_.size()),
+  Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times_.size()),
                                                   static_cast<Eigen::Index>(plants.size()),
                                                   std::numeric_limits<double>::quiet_NaN());
-  // all take the same steps: what differs between their answers is theirs then, not the formula's
-  std::vector<Abreast> packs;
+  // all take the same steps, so that the integration error is common to the responses that are compared
+  std::vector<BlockLanes> packs;
   double fastest = 0;
-  for (std::size_t first = 0; first < plants.size(); first += kAbreast) {
-    packs.emplace_back(made, plants.subspan(first, std::min(kAbreast, plants.size() - first)), seen_.front(),
-                       conventions_);
+  for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
+    packs.emplace_back(made, plants.subspan(first, std::min(kBlockLanes, plants.size() - first)),
+                       seen_.front(), conventions_);
     if (packs.back().any()) fastest = std::max(fastest, packs.back().fastest(seen_.front()));
   }
-  for (std::size_t first = 0; first < plants.size(); first += kAbreast) {
-    const auto some = plants.subspan(first, std::min(kAbreast, plants.size() - first));
-    Abreast& controls = packs[first / kAbreast];
+  for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
+    const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
+    BlockLanes& controls = packs[first / kBlockLanes];
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {
       for (std::size_t lane = 0; lane < some.size(); ++lane)
-        if (controls.stands(lane))
-          all(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(first + lane)) = controls.answer(lane);
+        if (controls.initialised(lane))
+          all(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(first + lane)) =
+              controls.response(lane);
     };
     for (std::size_t k = 0; k < steps_.size(); ++k) {
       const Step& s = steps_[k];
@@ -214,19 +203,15 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
         return share <= 0.5 ? mixed(s.begin, s.middle, 2 * share) : mixed(s.middle, s.end, 2 * share - 1);
       };
       const int substeps = std::clamp(static_cast<int>(std::ceil(s.h * fastest / kStable)), 1, kMostSubsteps);
-      controls.look(s.begin);
+      controls.evaluate(s.begin);
       keep(k);
-      if (s.settled && s.h * fastest < kStableHeun) {
-        controls.short_step(s.h, s.end);
-        continue;
-      }
       for (int part = 0; part < substeps && s.h > 0; ++part) {
-        if (part > 0) controls.look(at(double(part) / substeps));
+        if (part > 0) controls.evaluate(at(double(part) / substeps));
         controls.step(s.h / substeps, at((part + 0.5) / substeps), at((part + 1.0) / substeps));
       }
     }
     if (!steps_.empty()) {
-      controls.look(steps_.back().end);
+      controls.evaluate(steps_.back().end);
       keep(steps_.size());
     }
   }

@@ -18,11 +18,10 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< of an axis, for slopes
 constexpr double kDrawWidth = 1.2;    ///< of draws, in spreads
-/// A quarter of all values lie as evenly in every decade down to a hundredth of the usual: a limit that acts
-/// is as low as the signal that it limits, whatever its usual value.
+/// A quarter of the values are drawn log-uniformly down to a hundredth of the standard value: a limit acts
+/// only if it is as low as its signal.
 constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
-constexpr double kShortestTime = 0.2;  ///< sampling intervals
-constexpr int kRedraws = 20;
+constexpr double kShortestTime = 0.2;                         ///< sampling intervals
 constexpr double kStartSettled = 0.02;                        ///< a step that gains less ends a start
 constexpr double kGivenUp = 1e6;                              ///< damping
 constexpr double kSameOptimum = 1.0;                          ///< costs closer than this are one optimum
@@ -37,9 +36,9 @@ playin::Made made_by(event::InputKind input) {
   return input == event::InputKind::torque ? playin::Made::torque : playin::Made::field;
 }
 
-/// What parts of plants answer, at the knots of all events: [knot][plant].
-MatrixXd answered(const Reduction& reduction, event::InputKind input,
-                  const std::vector<sim::plant::Plant>& parts) {
+/// Responses of parts of plants, at the knots of all events: [knot][plant].
+MatrixXd responses(const Reduction& reduction, event::InputKind input,
+                   const std::vector<sim::plant::Plant>& parts) {
   MatrixXd all(reduction.knots(), static_cast<Index>(parts.size()));
   Index row = 0;
   for (const Reduction::Event& e : reduction.events()) {
@@ -59,13 +58,13 @@ class Identifying {
         reduced_(reduction, input, other, held_by(reduction.inference(), trial.plant)) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
-      // a time that is far below what was sampled is zero as far as the records can tell
+      // the records cannot tell a time constant far below the sampling interval from zero
       if (parameter_record(trial.plant, f.id).unit == "s")
         axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduction.step()));
       axes_.push_back(axis);
     }
     without_ =
-        answered(reduction, input, {playin::component_of(reduction.inference().plant, part_of(input))});
+        responses(reduction, input, {playin::component_of(reduction.inference().plant, part_of(input))});
   }
 
   std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
@@ -91,27 +90,27 @@ class Identifying {
       parameter_value(plant, trial_.free[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
     return plant;
   }
-  /// Courses of the input that these values make beside the plant's own.
-  [[nodiscard]] MatrixXd courses(const std::vector<VectorXd>& all) const {
+  /// Time series of the input that these values add to the plant's own controls.
+  [[nodiscard]] MatrixXd series(const std::vector<VectorXd>& all) const {
     std::vector<sim::plant::Plant> parts;
     for (const VectorXd& z : all) parts.push_back(playin::component_of(plant_at(z), part_of(input_)));
-    MatrixXd made = answered(reduction_, input_, parts);
+    MatrixXd made = responses(reduction_, input_, parts);
     made.colwise() -= without_.col(0);
     return made;
   }
-  [[nodiscard]] double believed(const VectorXd& z) const {
+  [[nodiscard]] double prior_cost(const VectorXd& z) const {
     double cost = 0;
     for (std::size_t i = 0; i < axes_.size(); ++i)
       if (const double spread = axes_[i].spread(); spread > 0)
         cost += std::pow(z[static_cast<Index>(i)] / spread, 2);
     return cost;
   }
-  /// Costs; infinite where a trial cannot be run.
+  /// Costs; infinite where a trial cannot be simulated.
   [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
                                const VectorXd& gains) const {
     VectorXd cost = reduced_.costs(made, gains);
     for (Index k = 0; k < cost.size(); ++k) {
-      cost[k] += believed(all[static_cast<std::size_t>(k)]);
+      cost[k] += prior_cost(all[static_cast<std::size_t>(k)]);
       if (!std::isfinite(cost[k])) cost[k] = std::numeric_limits<double>::infinity();
     }
     return cost;
@@ -124,10 +123,10 @@ class Identifying {
     }
     return z;
   }
-  [[nodiscard]] VectorXd drawn(int draw, int again) const {
+  [[nodiscard]] VectorXd drawn(int draw) const {
     VectorXd z(static_cast<Index>(axes_.size()));
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-      const auto number = static_cast<std::uint32_t>(64 * again) + static_cast<std::uint32_t>(i);
+      const auto number = static_cast<std::uint32_t>(i);
       const auto sample = static_cast<std::uint64_t>(draw);
       const auto [which, where] = sim::uniform_pair(trial_.stream, 2 * number, sample);
       const double factor = std::pow(10.0, -kDecadesBelow * where);
@@ -148,28 +147,23 @@ class Identifying {
     }
     const std::size_t given = all.size();
     for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw)
-      for (int again = 0; again < kRedraws; ++again) {
-        VectorXd z = drawn(draw, again);
-        if (!runs(z)) continue;
-        all.push_back(std::move(z));
-        break;
-      }
+      if (VectorXd z = drawn(draw); runs(z)) all.push_back(std::move(z));
     MatrixXd made(reduction_.knots(), static_cast<Index>(all.size()));
-    constexpr std::size_t kDrawsAbreast = 8;
-    for (std::size_t k = 0; k < all.size(); k += kDrawsAbreast) {
+    constexpr auto kLanes = std::size_t(sim::P8::lanes);
+    for (std::size_t k = 0; k < all.size(); k += kLanes) {
       const std::vector<VectorXd> some(
           all.begin() + static_cast<std::ptrdiff_t>(k),
-          all.begin() + static_cast<std::ptrdiff_t>(std::min(k + kDrawsAbreast, all.size())));
-      made.middleCols(static_cast<Index>(k), static_cast<Index>(some.size())) = courses(some);
+          all.begin() + static_cast<std::ptrdiff_t>(std::min(k + kLanes, all.size())));
+      made.middleCols(static_cast<Index>(k), static_cast<Index>(some.size())) = series(some);
     }
-    if (!(made.array().abs() > 0).any()) return;  // nothing that is tried answers
+    if (!(made.array().abs() > 0).any()) return;  // the block has no effect
     const VectorXd cost = costs(made, all, VectorXd::Zero(static_cast<Index>(all.size())));
     for (std::size_t k = 0; k < all.size(); ++k)
       if (std::isfinite(cost[static_cast<Index>(k)]))
         starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
     std::ranges::stable_sort(starts_, {}, &Start::cost);
     starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
-    for (std::size_t k = 0; k < given; ++k)  // draws that hardly act always look better at first
+    for (std::size_t k = 0; k < given; ++k)  // given starts are optimised in any case
       if (std::isfinite(cost[static_cast<Index>(k)]))
         starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
   }
@@ -179,26 +173,26 @@ class Identifying {
       return playin::can_run(sim::plant::block_at(plant, f.id.block));
     });
   }
-  /// One step of every start that has not arrived; false where all have.
+  /// One step of every start that has not converged; false where all have.
   bool advance() {
     const auto np = static_cast<Index>(axes_.size());
     std::vector<Start*> moving;
-    std::vector<VectorXd> looked;
+    std::vector<VectorXd> points;
     for (Start& s : starts_) {
       if (s.done) continue;
       moving.push_back(&s);
-      looked.push_back(s.z);
+      points.push_back(s.z);
       for (Index i = 0; i < np; ++i) {
         VectorXd z = s.z;
         z[i] += kDifference;
         if (within(z) != z) z[i] = s.z[i] - kDifference;
-        looked.push_back(std::move(z));
+        points.push_back(std::move(z));
       }
     }
     if (moving.empty()) return false;
-    MatrixXd made(reduction_.knots(), static_cast<Index>(looked.size()));
-    for (Index at = 0; at < made.cols(); at += np + 1)  // a start and its neighbours in the same steps
-      made.middleCols(at, np + 1) = courses({looked.begin() + at, looked.begin() + at + np + 1});
+    MatrixXd made(reduction_.knots(), static_cast<Index>(points.size()));
+    for (Index at = 0; at < made.cols(); at += np + 1)  // a start and its neighbours take the same steps
+      made.middleCols(at, np + 1) = series({points.begin() + at, points.begin() + at + np + 1});
     std::vector<VectorXd> tried;
     VectorXd gains(static_cast<Index>(std::size(kLengths) * moving.size()));
     for (std::size_t k = 0; k < moving.size(); ++k) {
@@ -206,18 +200,18 @@ class Identifying {
       const auto at = static_cast<Index>(k) * (np + 1);
       MatrixXd slopes = made.middleCols(at + 1, np);
       for (Index i = 0; i < np; ++i) {
-        const double move = looked[static_cast<std::size_t>(at + 1 + i)][i] - s.z[i];
+        const double move = points[static_cast<std::size_t>(at + 1 + i)][i] - s.z[i];
         slopes.col(i) = (slopes.col(i) - made.col(at)) / move;
         if (!slopes.col(i).allFinite()) slopes.col(i).setZero();
       }
-      ReducedPlant::Bowl bowl = reduced_.bowl(made.col(at), s.gain, slopes);
+      ReducedPlant::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, slopes);
       for (Index i = 0; i < np; ++i)
         if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
-          bowl.curvature(1 + i, 1 + i) += 1 / (spread * spread);
-          bowl.gradient[1 + i] += s.z[i] / (spread * spread);
+          quadratic.curvature(1 + i, 1 + i) += 1 / (spread * spread);
+          quadratic.gradient[1 + i] += s.z[i] / (spread * spread);
         }
       for (const double length : kLengths) {
-        const VectorXd step = bounded_step(bowl, s, length * s.damping);
+        const VectorXd step = bounded_step(quadratic, s, length * s.damping);
         gains[static_cast<Index>(tried.size())] = s.gain + std::clamp(step[0], -kLongestGain, kLongestGain);
         tried.push_back(within(s.z + step.tail(np).cwiseMax(-kLongestAxisStep).cwiseMin(kLongestAxisStep)));
       }
@@ -225,7 +219,7 @@ class Identifying {
     MatrixXd there(reduction_.knots(), static_cast<Index>(tried.size()));
     constexpr auto kLengthsCount = static_cast<Index>(std::size(kLengths));
     for (Index at = 0; at < there.cols(); at += kLengthsCount)
-      there.middleCols(at, kLengthsCount) = courses({tried.begin() + at, tried.begin() + at + kLengthsCount});
+      there.middleCols(at, kLengthsCount) = series({tried.begin() + at, tried.begin() + at + kLengthsCount});
     const VectorXd cost = costs(there, tried, gains);
     for (std::size_t k = 0; k < moving.size(); ++k) {
       Start& s = *moving[k];
@@ -245,11 +239,13 @@ class Identifying {
     }
     return true;
   }
-  /// Least of the bowl, damped; what a bound stops stays there, and the others go on without it.
-  [[nodiscard]] VectorXd bounded_step(const ReducedPlant::Bowl& bowl, const Start& s, double damping) const {
+  /// Damped minimum; a parameter at its bound is fixed there and the others are solved for again (active
+  /// set).
+  [[nodiscard]] VectorXd bounded_step(const ReducedPlant::Quadratic& quadratic, const Start& s,
+                                      double damping) const {
     constexpr double kRidge = 1e-12;
-    MatrixXd curvature = bowl.curvature;
-    VectorXd gradient = bowl.gradient;
+    MatrixXd curvature = quadratic.curvature;
+    VectorXd gradient = quadratic.gradient;
     curvature.diagonal() =
         curvature.diagonal() * (1 + damping) + VectorXd::Constant(curvature.rows(), kRidge);
     std::vector<char> stopped(axes_.size(), 0);
@@ -285,8 +281,8 @@ class Identifying {
       Optimum found;
       for (std::size_t i = 0; i < axes_.size(); ++i)
         found.values.push_back(axes_[i].value(s.z[static_cast<Index>(i)]));
-      found.course = courses({s.z}).col(0);
-      found.plant = reduced_.plant_of(found.course, s.gain);
+      found.series = series({s.z}).col(0);
+      found.plant = reduced_.plant_of(found.series, s.gain);
       found.cost = s.cost;
       found.starts = 1;
       all.push_back(std::move(found));
@@ -299,7 +295,7 @@ class Identifying {
   const Trial& trial_;
   ReducedPlant reduced_;
   std::vector<fit::Axis> axes_;
-  MatrixXd without_;  ///< what the plant's own controls answer
+  MatrixXd without_;  ///< response of the plant's own controls
   std::vector<Start> starts_;
 };
 
@@ -317,7 +313,7 @@ std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& p
   return marks;
 }
 
-std::vector<event::EventState> with_course_of(const sim::plant::PlantUnderTest& tested,
+std::vector<event::EventState> with_series_of(const sim::plant::PlantUnderTest& tested,
                                               const sim::plant::Plant& without, event::InputKind input,
                                               const event::WhitenedEvents& events,
                                               std::vector<event::EventState> states) {
@@ -327,23 +323,23 @@ std::vector<event::EventState> with_course_of(const sim::plant::PlantUnderTest& 
     const std::vector<playin::Seen> seen = event::seen_along(tested, events[e], states[e]);
     const playin::OpenLoop loop(seen, events[e].record.t, tested.conventions);
     const MatrixXd own = loop.run(made_by(input), std::array{playin::component_of(without, part)});
-    playin::PiecewiseLinear& course = states[e].input(input);
-    const auto& moments = loop.moments();
+    playin::PiecewiseLinear& series = states[e].input(input);
+    const auto& times = loop.times();
     std::size_t at = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const playin::Seen& s = seen[k];
       const bool ends = k + 1 < seen.size() && seen[k + 1].segment != s.segment;
       const double t = s.t - (ends ? sim::plant::kBeforeSwitching : 0.0);
-      if (s.segment < moments.front().segment || (!course.t.empty() && t <= course.t.back())) continue;
-      while (at + 1 < moments.size() && (moments[at + 1].segment < s.segment ||
-                                         (moments[at + 1].segment == s.segment && moments[at + 1].t <= s.t)))
+      if (s.segment < times.front().segment || (!series.t.empty() && t <= series.t.back())) continue;
+      while (at + 1 < times.size() && (times[at + 1].segment < s.segment ||
+                                       (times[at + 1].segment == s.segment && times[at + 1].t <= s.t)))
         ++at;
       double base = own(static_cast<Index>(at), 0);
-      if (at + 1 < moments.size() && moments[at + 1].segment == s.segment)
-        base += (own(static_cast<Index>(at) + 1, 0) - base) * (s.t - moments[at].t) /
-                (moments[at + 1].t - moments[at].t);
-      course.t.push_back(t);
-      course.value.push_back((input == event::InputKind::torque ? s.Tm : s.Efd) - base);
+      if (at + 1 < times.size() && times[at + 1].segment == s.segment)
+        base += (own(static_cast<Index>(at) + 1, 0) - base) * (s.t - times[at].t) /
+                (times[at + 1].t - times[at].t);
+      series.t.push_back(t);
+      series.value.push_back((input == event::InputKind::torque ? s.Tm : s.Efd) - base);
     }
   }
   return states;

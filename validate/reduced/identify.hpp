@@ -1,7 +1,7 @@
 #pragma once
-// Blocks identified against the input that the records ask for: each by itself, driven by what it sees, from
-// many starts at once. The plant follows every trial in closed form (reduce.hpp), so that no trial runs the
-// plant.
+// Identification of single blocks against the inferred input: each is simulated open loop, from many starts
+// at once, and the plant's parameters are eliminated in closed form (reduce.hpp), so that no trial simulates
+// the plant.
 #include <cstdint>
 #include <vector>
 
@@ -9,42 +9,41 @@
 
 namespace swingbank::validate::reduced {
 
-/// What is tried: a plant with the block in it, at the values that beliefs are about, and its free
-/// parameters.
+/// A candidate: the plant with the block at its prior mean, and the block's free parameters.
 struct Trial {
   sim::plant::Plant plant;
   std::vector<fit::FreeParameter> free;
-  std::uint64_t stream = 0;  ///< of the draws: the same trial gets the same ones wherever it is made
+  std::uint64_t stream = 0;  ///< of the random draws, which depend on nothing else
 };
 
-/// An optimum that was found.
+/// A local minimum.
 struct Optimum {
   std::vector<double> values;  ///< of the trial's free parameters
-  Eigen::VectorXd plant;       ///< moves of the plant's numbers, on the inference's axes
-  Eigen::VectorXd course;      ///< that the block makes beside the plant's own controls, at all knots [pu]
-  double cost = 0;             ///< chi2 of the records, with what is believed of plant and block
+  Eigen::VectorXd plant;       ///< changes of the plant's parameters, on the inference's axes
+  Eigen::VectorXd series;      ///< that the block adds to the plant's own controls, at all knots [pu]
+  double cost = 0;             ///< chi2 of the records and of the priors of plant and block
   int starts = 0;              ///< how many ended within 1 of this cost
 };
 
 struct IdentifyOptions {
-  int draws = 192;  ///< looked at
-  int kept = 8;     ///< the best of them, which are fitted
+  int draws = 192;  ///< evaluated
+  int kept = 8;     ///< the best of them, which are optimised
   int steps = 12;   ///< of each
 };
 
-/// Different optima, best first; none where no draw can be run. `other`: course of the other input at all
-/// knots, null: it stays free. `known`: values of the trial's free parameters to start from as well.
+/// Distinct local minima, best first; none where no draw can be simulated. `other`: time series of the other
+/// input at all knots; null: it stays free. `known`: further starting values of the trial's free parameters.
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
                               const Eigen::VectorXd* other, const IdentifyOptions& options = {},
                               const std::vector<std::vector<double>>& known = {});
 
-/// Numbers of the inference's plant whose blocks a plant does not have.
+/// Marks parameters of the inference's plant whose blocks `plant` does not have.
 std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant);
 
-/// The events' states with what a plant's controls add to those of another as its input, at every moment;
-/// each is driven by what it sees in the first plant. The other input becomes zero. Throws InputError where
-/// the plant cannot be run.
-std::vector<event::EventState> with_course_of(const sim::plant::PlantUnderTest& tested,
+/// The events' states, with the difference between the controls of the tested plant and those of `without` as
+/// the input's time series; both see the tested plant's signals. The other input becomes zero. Throws
+/// InputError where the tested plant cannot be simulated.
+std::vector<event::EventState> with_series_of(const sim::plant::PlantUnderTest& tested,
                                               const sim::plant::Plant& without, event::InputKind input,
                                               const event::WhitenedEvents& events,
                                               std::vector<event::EventState> states);

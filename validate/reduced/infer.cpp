@@ -14,13 +14,12 @@ namespace {
 using Kind = playin::Direction::Kind;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double kJumpGap = 1e-9;  ///< between the two sides of a jump [s]
-
-/// Knots lie as close as samples for this long behind a switching, then ever further apart.
+/// Knots are one sample apart for this long after a switching time; then their spacing grows.
 constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;  // [s], factor, [s]
 constexpr double kMostKnots = 100;                                          ///< of what lies far apart
 
-/// By how much an input may jump at an instant [pu]: a turbine's torque does not, a rectifier's voltage may.
+/// Prior standard deviation of an input's jump at a switching time [pu]: a turbine's torque does not jump, a
+/// rectifier's voltage may.
 constexpr double kFirstTorque = 1e-3, kFirstField = 10.0;
 
 Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
@@ -32,7 +31,7 @@ Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
   Knots knots;
   for (std::size_t part = 0; part < begins.size(); ++part) {
     const bool ends = part + 1 < begins.size();
-    const double from = begins[part], to = ends ? begins[part + 1] - kJumpGap : last;
+    const double from = begins[part], to = ends ? begins[part + 1] - sim::plant::kBeforeSwitching : last;
     double gap = h;
     for (double t = from; t < to - (ends ? gap : 0.5 * gap); t += gap) {
       knots.t.push_back(t);
@@ -57,9 +56,9 @@ class Inferring {
     for (const auto& f : free) axes_.push_back(fit::make_axis(tested.plant, f));
   }
 
-  /// From the submitted model, or from states whose inputs stand as they are.
+  /// From the submitted model, or from states whose inputs are fixed.
   void begin(const sim::plant::Plant& plant, std::vector<event::EventState> states) {
-    inputs_stand_ = !states.empty();
+    inputs_fixed_ = !states.empty();
     at_.z.resize(static_cast<Index>(axes_.size()));
     for (std::size_t i = 0; i < axes_.size(); ++i)
       at_.z[static_cast<Index>(i)] = axes_[i].z(parameter_value(plant, free_[i].id));
@@ -79,7 +78,7 @@ class Inferring {
 
   Inference run(int steps) {
     std::vector<EventSlopes> slopes = linearise(at_);
-    double cost = believed(at_);
+    double cost = prior_cost(at_);
     for (const auto& e : slopes) cost += e.residual.squaredNorm();
     double damping = kFirstDamping;
     int taken = 0;
@@ -145,7 +144,7 @@ class Inferring {
   [[nodiscard]] event::EventState state_at(const Point& p, std::size_t e) const {
     event::EventState s = fit::event_state(events_[e], p.states[e].data());
     const Knots knots = knots_of_moved(e, s);
-    if (inputs_stand_) {
+    if (inputs_fixed_) {
       s.torque = given_[e].torque;
       s.field = given_[e].field;
       s.torque.knots = s.field.knots = knots.t;
@@ -155,13 +154,13 @@ class Inferring {
     }
     return s;
   }
-  /// The knots on instants go with these.
+  /// Knots at switching times move with them.
   [[nodiscard]] Knots knots_of_moved(std::size_t e, const event::EventState& s) const {
     Knots knots = knots_[e];
     if (s.switchings.empty()) return knots;
     knots.t.front() = s.switchings.front();
     for (std::size_t j = 0; j < knots.jumps.size(); ++j) {
-      knots.t[knots.jumps[j]] = s.switchings[j + 1] - kJumpGap;
+      knots.t[knots.jumps[j]] = s.switchings[j + 1] - sim::plant::kBeforeSwitching;
       knots.t[knots.jumps[j] + 1] = s.switchings[j + 1];
     }
     return knots;
@@ -217,23 +216,23 @@ class Inferring {
             event::RowMatrix residual = events_[e].collected(r.value, true);
             events_.noise(e).whiten(residual);
             parts[e] = residual.squaredNorm();
-          } catch (const InputError&) {  // it costs infinitely much
+          } catch (const InputError&) {  // its cost stays infinite
           }
         },
         [](int) {}, threads_);
-    double cost = believed(p);
+    double cost = prior_cost(p);
     for (const double part : parts) cost += std::isfinite(part) ? part : kInfinite;
     return cost;
   }
-  [[nodiscard]] double believed(const Point& p) const {
+  [[nodiscard]] double prior_cost(const Point& p) const {
     double cost = 0;
     for (std::size_t i = 0; i < axes_.size(); ++i)
       if (const double spread = axes_[i].spread(); spread > 0)
         cost += std::pow(p.z[static_cast<Index>(i)] / spread, 2);
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      const auto beliefs = own_beliefs(events_[e]);
-      for (std::size_t k = 0; k < beliefs.size(); ++k)
-        if (beliefs[k] > 0) cost += std::pow(p.states[e][static_cast<Index>(k)] / beliefs[k], 2);
+      const auto priors = own_priors(events_[e]);
+      for (std::size_t k = 0; k < priors.size(); ++k)
+        if (priors[k] > 0) cost += std::pow(p.states[e][static_cast<Index>(k)] / priors[k], 2);
       cost += walked(knots_[e], event::InputKind::torque, p.torques[e]) +
               walked(knots_[e], event::InputKind::field, p.fields[e]);
     }
@@ -282,9 +281,9 @@ class Inferring {
       normal.gradient += gradient.head(n);
       MatrixXd inner = products.bottomRightCorner(own, own);
       VectorXd inner_gradient = gradient.tail(own);
-      const auto beliefs = own_beliefs(events_[e]);
+      const auto priors = own_priors(events_[e]);
       for (Index k = 0; k < states; ++k)
-        if (const double b = beliefs[static_cast<std::size_t>(k)]; b > 0) {
+        if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
           inner(k, k) += 1 / (b * b);
           inner_gradient[k] += p.states[e][k] / (b * b);
         }
@@ -298,7 +297,7 @@ class Inferring {
     }
     return normal;
   }
-  /// Log determinant of what is known of all free numbers, in units of what is believed of them.
+  /// Log determinant of the posterior precision of all free parameters relative to the prior's.
   [[nodiscard]] double occam(const Normal& normal) const {
     MatrixXd curvature = normal.plant;
     double sum = 0;
@@ -307,7 +306,7 @@ class Inferring {
       const Eigen::LDLT<MatrixXd> own(normal.own[e]);
       sum += own.vectorD().array().log().sum();
       curvature -= normal.cross[e].transpose() * own.solve(normal.cross[e]);
-      for (const double b : own_beliefs(events_[e])) sum += b > 0 ? 2 * std::log(b) : 0.0;
+      for (const double b : own_priors(events_[e])) sum += b > 0 ? 2 * std::log(b) : 0.0;
       for (const event::InputKind kind : {event::InputKind::torque, event::InputKind::field})
         if (kind == event::InputKind::torque ? inputs_.torque : inputs_.field)
           sum -= 2 * walk_weights(knots_[e], kind).array().log().sum();
@@ -339,8 +338,8 @@ class Inferring {
       to.states[e] += own.head(states);
       for (std::size_t k = 0; k < events_[e].switchings.size(); ++k) {
         const double room = events_[e].switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
-        double& instant = to.states[e][static_cast<Index>(k)];
-        instant = std::clamp(instant, -room, room);
+        double& switching = to.states[e][static_cast<Index>(k)];
+        switching = std::clamp(switching, -room, room);
       }
       if (inputs_.torque) to.torques[e] += own.segment(states, knots);
       if (inputs_.field) to.fields[e] += own.tail(knots);
@@ -357,18 +356,18 @@ class Inferring {
   std::vector<fit::Axis> axes_;
   std::vector<Knots> knots_;
   std::vector<event::EventState> given_;  ///< whose inputs stand
-  bool inputs_stand_ = false;
+  bool inputs_fixed_ = false;
   Point at_;
 };
 
 }  // namespace
 
-std::vector<double> own_beliefs(const event::FitEvent& event) {
+std::vector<double> own_priors(const event::FitEvent& event) {
   constexpr double kKnown = 1e-6;  // of the units
-  std::vector<double> beliefs = fit::state_beliefs(event);
+  std::vector<double> priors = fit::state_beliefs(event);
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
-    beliefs[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
-  return beliefs;
+    priors[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
+  return priors;
 }
 
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {

@@ -1,9 +1,8 @@
 #pragma once
-// Which torque and which field voltage the records ask for, whatever made them: free in time beside the model
-// as it was submitted, with its parameters, each event's start and its switching times. With these inputs
-// free the machine's equations hold whatever is missing in its controls, so that the model is not bent to
-// mimic what it lacks, and a few Gauss-Newton steps from the submitted values arrive. Which of them are
-// needed the evidence tells.
+// Inference of the torque and the field voltage that the records imply: time series estimated together with
+// the parameters of the submitted model and with the start and switching times of each event. The machine's
+// equations hold whatever its controls lack, so a few Gauss-Newton steps from the submitted values suffice.
+// The evidence decides which of the two inputs is needed.
 #include <Eigen/Dense>
 #include <vector>
 
@@ -11,21 +10,21 @@
 
 namespace swingbank::validate::reduced {
 
-/// Moments at which the inputs of an event are free, straight lines between them. Behind the first switching
-/// they may jump at each further one; there two moments lie a nanosecond apart.
+/// Knots of an event's inputs, which are linear between them. An input may jump at each switching time after
+/// the first; two knots lie a nanosecond apart there.
 struct Knots {
   std::vector<double> t;           ///< [s]
   std::vector<std::size_t> jumps;  ///< the first of each such pair
 };
 
-/// Whitened residuals of one event (model - measured) and their slopes about the point of an Inference:
-/// [value][number]. Numbers of the plant are on the axes of a fit (fit/axis.hpp), the state's in its units
-/// (fit/states.hpp), inputs in pu.
+/// Whitened residuals of one event (model - measured) and their Jacobians at the point of an Inference:
+/// [value][parameter]. Plant parameters are on the axes of a fit (fit/axis.hpp), the event's state in its
+/// units (fit/states.hpp), inputs in pu.
 struct EventSlopes {
   Knots knots;
   Eigen::MatrixXd plant, state, torque, field;
   Eigen::VectorXd residual;
-  Eigen::VectorXd state_at;  ///< where the state stands, in its units
+  Eigen::VectorXd state_at;  ///< estimate of the state, in its units
 };
 
 /// Which inputs are free.
@@ -35,34 +34,34 @@ struct Inputs {
 
 struct Inference {
   Inputs inputs;
-  sim::plant::Plant plant;  ///< with the values that were found
+  sim::plant::Plant plant;  ///< with the estimated values
   std::vector<fit::FreeParameter> free;
-  Eigen::VectorXd offset;                 ///< of the free parameters from what is believed, on their axes
+  Eigen::VectorXd offset;                 ///< of the free parameters from their prior mean, on their axes
   std::vector<event::EventState> states;  ///< with both inputs
   std::vector<EventSlopes> events;
   event::NoiseModel noise;
   double chi2 = 0;
-  /// -2 log of the evidence by Laplace's approximation, up to what all inferences of these events share: what
-  /// is free pays for what the records know of it beyond what is believed.
+  /// -2 log of the evidence by Laplace's approximation, up to a constant that all inferences of
+  /// these events share.
   double criterion = 0;
   int values = 0, steps = 0;
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
 
-/// How an input moves by itself: a random walk [pu^2/s]. A field voltage may run from one ceiling to the
-/// other within a second, a turbine moves by a tenth of its rating in that time.
+/// Prior of an input: the variance of a random walk [pu^2/s]. A field voltage may run from one ceiling to the
+/// other within a second; a turbine moves by a tenth of its rating in that time.
 inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;
-/// Square root of the precision with which one knot is believed to follow the one before [1/pu].
+/// Square root of the prior precision of each knot given the one before [1/pu].
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 
-/// How far each number of an event's state is believed to be off, in its units: an instant by its
+/// Prior standard deviation of each number of an event's state, in its units: of a switching time its
 /// uncertainty.
-std::vector<double> own_beliefs(const event::FitEvent& event);
+std::vector<double> own_priors(const event::FitEvent& event);
 
 /// `steps`: Gauss-Newton steps at most. Throws InputError where the model as submitted cannot be run.
 Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads, int steps = 5);
-/// The same from another plant and with inputs that are given, which stand as they are.
+/// The same from another plant, with inputs that are given and fixed.
 Inference infer_beside(const sim::plant::PlantUnderTest& tested, const sim::plant::Plant& plant,
                        const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        std::vector<event::EventState> states, int threads, int steps = 5);

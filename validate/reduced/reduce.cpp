@@ -19,8 +19,8 @@ MatrixXd triangle(const MatrixXd& all, Index first) {
   return qr.matrixQR().block(first, first, left, left).triangularView<Eigen::Upper>();
 }
 
-/// Mean of what is known at moments over each knot's hat: [knot][moment].
-Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::Moment>& moments) {
+/// Weights that average values at the time points over each knot's hat function: [knot][time point].
+Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::TimePoint>& times) {
   const auto count = static_cast<Index>(knots.t.size());
   std::vector<Eigen::Triplet<double>> entries;
   VectorXd whole = VectorXd::Zero(count);
@@ -28,13 +28,12 @@ Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::Moment>
     return part < knots.jumps.size() ? knots.jumps[part] : knots.t.size() - 1;
   };
   const auto begin_of = [&](std::size_t part) { return part == 0 ? 0 : end_of(part - 1) + 1; };
-  for (std::size_t k = 0; k < moments.size(); ++k) {
-    const playin::OpenLoop::Moment& m = moments[k];
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const playin::OpenLoop::TimePoint& m = times[k];
     double width = 0;
-    if (k > 0 && moments[k - 1].segment == m.segment) width += 0.5 * (m.t - moments[k - 1].t);
-    if (k + 1 < moments.size() && moments[k + 1].segment == m.segment)
-      width += 0.5 * (moments[k + 1].t - m.t);
-    const auto part = static_cast<std::size_t>(m.segment - moments.front().segment);
+    if (k > 0 && times[k - 1].segment == m.segment) width += 0.5 * (m.t - times[k - 1].t);
+    if (k + 1 < times.size() && times[k + 1].segment == m.segment) width += 0.5 * (times[k + 1].t - m.t);
+    const auto part = static_cast<std::size_t>(m.segment - times.front().segment);
     const auto begin = knots.t.begin() + static_cast<std::ptrdiff_t>(begin_of(part)),
                end = knots.t.begin() + static_cast<std::ptrdiff_t>(end_of(part)) + 1;
     if (m.t < *begin) continue;
@@ -48,18 +47,18 @@ Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::Moment>
     }
   }
   for (auto& e : entries) e = {e.row(), e.col(), e.value() / whole[e.row()]};
-  Sparse weights(count, static_cast<Index>(moments.size()));
+  Sparse weights(count, static_cast<Index>(times.size()));
   weights.setFromTriplets(entries.begin(), entries.end());
   return weights;
 }
 
-VectorXd at_moments(const playin::PiecewiseLinear& input,
-                    const std::vector<playin::OpenLoop::Moment>& moments) {
-  VectorXd values(static_cast<Index>(moments.size()));
-  for (std::size_t k = 0; k < moments.size(); ++k) {
-    // the end of a segment is on its own side of the instant
-    const bool ends = k + 1 < moments.size() && moments[k + 1].segment != moments[k].segment;
-    values[static_cast<Index>(k)] = input(moments[k].t - (ends ? sim::plant::kBeforeSwitching : 0.0));
+VectorXd at_times(const playin::PiecewiseLinear& input,
+                  const std::vector<playin::OpenLoop::TimePoint>& times) {
+  VectorXd values(static_cast<Index>(times.size()));
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    // the end of a segment lies before the switching time
+    const bool ends = k + 1 < times.size() && times[k + 1].segment != times[k].segment;
+    values[static_cast<Index>(k)] = input(times[k].t - (ends ? sim::plant::kBeforeSwitching : 0.0));
   }
   return values;
 }
@@ -78,19 +77,19 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
     const EventSlopes& s = inference_.events[e];
     playin::OpenLoop loop(event::seen_along({inference_.plant, conventions}, events[e], inference_.states[e]),
                           events[e].record.t, conventions);
-    const Sparse hats = over_hats(s.knots, loop.moments());
+    const Sparse hats = over_hats(s.knots, loop.times());
     const Index states = s.state.cols(), knots = s.torque.cols(), values = s.residual.size();
-    const VectorXd torque = hats * at_moments(inference_.states[e].torque, loop.moments()),
-                   field = hats * at_moments(inference_.states[e].field, loop.moments());
+    const VectorXd torque = hats * at_times(inference_.states[e].torque, loop.times()),
+                   field = hats * at_times(inference_.states[e].field, loop.times());
     torque_.segment(row, knots) = torque;
     field_.segment(row, knots) = field;
     row += knots;
     MatrixXd all = MatrixXd::Zero(values + states, states + s.plant.cols() + 2 * knots + 1);
     all.topRows(values) << s.state, s.plant, s.torque, s.field,
         s.residual - s.torque * torque - s.field * field;
-    const auto beliefs = own_beliefs(events[e]);
+    const auto priors = own_priors(events[e]);
     for (Index k = 0; k < states; ++k)
-      if (const double b = beliefs[static_cast<std::size_t>(k)]; b > 0) {
+      if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
         all(values + k, k) = 1 / b;
         all(values + k, all.cols() - 1) = s.state_at[k] / b;
       }
@@ -128,8 +127,8 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const Vec
   const auto n = static_cast<Index>(at.free.size());
   numbers_ = n;
   const bool field = kind == InputKind::field;
-  const auto stands = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
-  if (gain_.number >= 0 && stands(gain_.number)) gain_ = {};
+  const auto is_held = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
+  if (gain_.number >= 0 && is_held(gain_.number)) gain_ = {};
   for (Index i = 0; i < n; ++i) {
     const double spread = at.free[static_cast<std::size_t>(i)].spread,
                  precision = spread > 0 ? 1 / (spread * spread) : 0.0;
@@ -138,8 +137,8 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const Vec
       gain_offset_ = at.offset[i];
       continue;
     }
-    believed_ += precision * at.offset[i] * at.offset[i];
-    if (!stands(i)) free_.push_back(i);
+    prior_cost_ += precision * at.offset[i] * at.offset[i];
+    if (!is_held(i)) free_.push_back(i);
   }
   const auto m = static_cast<Index>(free_.size());
   MatrixXd curvature = MatrixXd::Zero(m, m);
@@ -157,9 +156,9 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const Vec
     MatrixXd plant = R.leftCols(n);
     const MatrixXd explained = R.middleCols(n + (field ? K : 0), K),
                    rest = R.middleCols(n + (field ? 0 : K), K);
-    // the gain's number moves while what it multiplies stands still
+    // derivative by the gain's parameter at constant product of gain and input
     if (gain_.number >= 0)
-      plant.col(gain_.number) -= gain_.exponent * (explained * reduction.course(kind).segment(row, K));
+      plant.col(gain_.number) -= gain_.exponent * (explained * reduction.series(kind).segment(row, K));
     MatrixXd all;
     Index first = 0;
     if (other) {
@@ -188,16 +187,16 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const Vec
   inverse_ = curvature.ldlt().solve(MatrixXd::Identity(m, m));
 }
 
-VectorXd ReducedPlant::costs(const MatrixXd& courses, const VectorXd& gains) const {
-  const Index count = courses.cols();
-  VectorXd cost = VectorXd::Constant(count, believed_);
+VectorXd ReducedPlant::costs(const MatrixXd& series, const VectorXd& gains) const {
+  const Index count = series.cols();
+  VectorXd cost = VectorXd::Constant(count, prior_cost_);
   cost.array() += gain_precision_ * (gains.array() + gain_offset_).square();
   MatrixXd gradient = first_.replicate(1, count);
   const VectorXd factors = (gain_.exponent * gains).array().exp();
   Index row = 0;
   for (const Event& e : events_) {
     const Index K = e.L.cols();
-    MatrixXd left = e.L * (courses.middleRows(row, K) * factors.asDiagonal());
+    MatrixXd left = e.L * (series.middleRows(row, K) * factors.asDiagonal());
     left.colwise() += e.r;
     left += e.by_gain * gains.transpose();
     cost += left.colwise().squaredNorm();
@@ -208,38 +207,39 @@ VectorXd ReducedPlant::costs(const MatrixXd& courses, const VectorXd& gains) con
   return cost;
 }
 
-ReducedPlant::Bowl ReducedPlant::bowl(const VectorXd& course, double gain, const MatrixXd& slopes) const {
+ReducedPlant::Quadratic ReducedPlant::quadratic(const VectorXd& series, double gain,
+                                                const MatrixXd& slopes) const {
   const Index n = slopes.cols() + 1, m = static_cast<Index>(free_.size());
-  Bowl bowl{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  Quadratic quadratic{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
   MatrixXd cross = MatrixXd::Zero(m, n);
   VectorXd gradient = first_;
-  bowl.curvature(0, 0) = gain_precision_;
-  bowl.gradient[0] = gain_precision_ * (gain_offset_ + gain);
+  quadratic.curvature(0, 0) = gain_precision_;
+  quadratic.gradient[0] = gain_precision_ * (gain_offset_ + gain);
   Index row = 0;
   for (const Event& e : events_) {
     const Index K = e.L.cols();
     MatrixXd by(e.r.size(), n);
     by.rightCols(n - 1) = factor(gain) * (e.L * slopes.middleRows(row, K));
-    const VectorXd shown = factor(gain) * (e.L * course.segment(row, K));
+    const VectorXd shown = factor(gain) * (e.L * series.segment(row, K));
     by.col(0) = e.by_gain + gain_.exponent * shown;
     const VectorXd left = e.r + shown + gain * e.by_gain;
-    bowl.curvature += by.transpose() * by;
-    bowl.gradient += by.transpose() * left;
+    quadratic.curvature += by.transpose() * by;
+    quadratic.gradient += by.transpose() * left;
     cross += e.T.transpose() * by;
     gradient += e.T.transpose() * left;
     row += K;
   }
-  bowl.curvature -= cross.transpose() * inverse_ * cross;
-  bowl.gradient -= cross.transpose() * (inverse_ * gradient);
-  return bowl;
+  quadratic.curvature -= cross.transpose() * inverse_ * cross;
+  quadratic.gradient -= cross.transpose() * (inverse_ * gradient);
+  return quadratic;
 }
 
-VectorXd ReducedPlant::plant_of(const VectorXd& course, double gain) const {
+VectorXd ReducedPlant::plant_of(const VectorXd& series, double gain) const {
   VectorXd gradient = first_;
   Index row = 0;
   for (const Event& e : events_) {
     const Index K = e.L.cols();
-    gradient += e.T.transpose() * (e.r + factor(gain) * (e.L * course.segment(row, K)) + gain * e.by_gain);
+    gradient += e.T.transpose() * (e.r + factor(gain) * (e.L * series.segment(row, K)) + gain * e.by_gain);
     row += K;
   }
   const VectorXd step = -(inverse_ * gradient);

@@ -1,11 +1,11 @@
 #pragma once
-// The plant as its inputs see it. About an inference the residuals of an event are linear in the plant's
-// numbers, the event's own, torque and field voltage. What the event's own numbers can do is taken out by
-// orthogonal triangles. What stays says how well any course u(t) of one input, made by whatever block, would
-// fit the records with everything else following:
-//   |r + T d + L g u|^2 + |(offset + d) / spread|^2, least over the plant's numbers d.
-// One of these, d_g, acts through the input's gain too: the rate at which a machine's state follows the input
-// is 1/T'do of a field voltage, 1/2H of a torque. It stays explicit: g = exp(exponent d_g).
+// The reduced plant. Near an inference the residuals of an event are linear in the plant's parameters, the
+// event's state, torque and field voltage. A QR decomposition eliminates the event's state. What remains is
+// the cost of any time series u(t) of one input, whichever block makes it, minimised over the plant's
+// parameters d:
+//   |r + T d + L g u|^2 + |(offset + d) / spread|^2
+// One parameter, d_g, also scales the effect of the input: a machine's state follows it at the rate 1/T'do
+// (field voltage) or 1/2H (torque). It stays explicit: g = exp(exponent d_g).
 #include <Eigen/SparseCore>
 
 #include "validate/playin/open_loop.hpp"
@@ -22,8 +22,9 @@ class Reduction {
   [[nodiscard]] const sim::Conventions& conventions() const { return conventions_; }
   /// One event.
   struct Event {
-    playin::OpenLoop loop;                                   ///< what the plant's controls see
-    Eigen::SparseMatrix<double, Eigen::RowMajor> over_hats;  ///< mean over each knot's hat: [knot][moment]
+    playin::OpenLoop loop;  ///< of the plant's controls
+    Eigen::SparseMatrix<double, Eigen::RowMajor>
+        over_hats;  ///< mean over each knot's hat function: [knot][time point]
     /// Rows of [plant | torque | field | residual without either input].
     Eigen::MatrixXd triangle;
     Knots knots;
@@ -33,11 +34,11 @@ class Reduction {
   [[nodiscard]] Eigen::Index knots() const { return knots_; }
   /// Between two samples [s].
   [[nodiscard]] double step() const { return step_; }
-  /// What an input was at the inference, at the knots of all events.
-  [[nodiscard]] const Eigen::VectorXd& course(event::InputKind kind) const {
+  /// An input as inferred, at the knots of all events.
+  [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
-  /// The plant's number that is in an input's gain, and its exponent.
+  /// The plant parameter that scales an input, and its exponent.
   struct Gain {
     Eigen::Index number = -1;  ///< -1: none is
     double exponent = 0;
@@ -57,41 +58,42 @@ class Reduction {
   Gain torque_gain_, field_gain_;
 };
 
-/// One input of the plant, its course to be explained.
+/// Cost of one input's time series.
 class ReducedPlant {
  public:
-  /// `other`: the course of the other input at the knots of all events, null: it stays free in time. `held`
-  /// marks numbers of the plant that stand still, because their blocks are not there; empty: none.
+  /// `other`: time series of the other input at the knots of all events; null: it stays free. `held` marks
+  /// plant parameters that are fixed because their blocks are absent; empty: none.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const Eigen::VectorXd* other,
                const std::vector<char>& held = {});
 
-  /// Cost of each course [knot of all events][course] with its move of the gain's number.
-  [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& courses, const Eigen::VectorXd& gains) const;
-  /// Half the gradient and the Gauss-Newton curvature of one course's cost, by the gain's number and by what
-  /// moves the course as `slopes` [knot][number] do; the plant follows.
-  struct Bowl {
+  /// Cost of each time series [knot of all events][series], each with its change of the gain's parameter.
+  [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
+  /// Half the gradient and the Gauss-Newton Hessian of the cost of one time series, by the gain's parameter
+  /// and by those whose Jacobian `slopes` [knot][parameter] is; the other plant parameters are eliminated.
+  struct Quadratic {
     Eigen::MatrixXd curvature;
     Eigen::VectorXd gradient;
   };
-  [[nodiscard]] Bowl bowl(const Eigen::VectorXd& course, double gain, const Eigen::MatrixXd& slopes) const;
-  /// Moves of the plant's numbers that belong to a course.
-  [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& course, double gain) const;
+  [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
+                                    const Eigen::MatrixXd& slopes) const;
+  /// Changes of the plant parameters that minimise the cost of a time series.
+  [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
 
  private:
   struct Event {
     Eigen::VectorXd r, by_gain;
-    Eigen::MatrixXd T, L;  ///< by the numbers that follow, by the course
+    Eigen::MatrixXd T, L;  ///< by the eliminated parameters, by the time series
   };
   [[nodiscard]] double factor(double gain) const { return std::exp(gain_.exponent * gain); }
 
   Reduction::Gain gain_;
-  std::vector<Eigen::Index> free_;  ///< numbers that follow
+  std::vector<Eigen::Index> free_;  ///< eliminated parameters
   Eigen::Index numbers_;
   std::vector<Event> events_;
-  Eigen::MatrixXd inverse_;  ///< of the curvature by the numbers that follow
-  Eigen::VectorXd first_;    ///< half the gradient by them that beliefs have
-  double believed_ = 0;      ///< cost of the numbers where they stand
+  Eigen::MatrixXd inverse_;  ///< of their Hessian
+  Eigen::VectorXd first_;    ///< half the gradient of their prior
+  double prior_cost_ = 0;    ///< of the present values
   double gain_precision_ = 0, gain_offset_ = 0;
 };
 

@@ -8,7 +8,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// An exciter by itself, driven by what it saw in the plant, answers as it did there.
+/// An exciter simulated open loop with its signals in the plant responds as it did there.
 TEST(OpenLoop, AnswersAsThePlantDid) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
@@ -22,15 +22,15 @@ TEST(OpenLoop, AnswersAsThePlantDid) {
   const std::vector<sim::plant::Plant> parts = {component_of(example.model.plant, record::Component::exciter),
                                                 component_of(slow, record::Component::exciter)};
   const Eigen::MatrixXd made = loop.run(Made::field, parts);
-  ASSERT_EQ(made.rows(), static_cast<Eigen::Index>(loop.moments().size()));
+  ASSERT_EQ(made.rows(), static_cast<Eigen::Index>(loop.times().size()));
   ASSERT_TRUE(made.allFinite());
   double worst = 0, other = 0, moved = 0;
   for (const Seen& s : seen) {
-    const auto m = std::ranges::find_if(loop.moments(), [&](const OpenLoop::Moment& at) {
+    const auto m = std::ranges::find_if(loop.times(), [&](const OpenLoop::TimePoint& at) {
       return at.segment == s.segment && std::abs(at.t - s.t) < 1e-9;
     });
-    if (m == loop.moments().end()) continue;
-    const auto row = m - loop.moments().begin();
+    if (m == loop.times().end()) continue;
+    const auto row = m - loop.times().begin();
     worst = std::max(worst, std::abs(made(row, 0) - s.Efd));
     other = std::max(other, std::abs(made(row, 1) - s.Efd));
     moved = std::max(moved, std::abs(s.Efd - seen.front().Efd));

@@ -42,42 +42,42 @@ TEST_F(Reduced, BothInputsFreeLeaveNothingButNoiseFromTheSubmittedModel) {
   EXPECT_LT(reduction_->inference().misfit(), 1.05);
 }
 
-/// What a reduced plant says of the inferred course itself is what the inference left, and no more.
+/// What a reduced plant says of the inferred series itself is what the inference left, and no more.
 TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
   const ReducedPlant field(*reduction_, event::InputKind::field, nullptr);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
   const double inferred = reduction_->inference().chi2,
-               there = field.costs(reduction_->course(event::InputKind::field), still)[0],
+               there = field.costs(reduction_->series(event::InputKind::field), still)[0],
                without = field.costs(none, still)[0];
   EXPECT_LT(there, 1.01 * inferred);  // the plant follows: a step that the inference did not take
   EXPECT_GT(there, 0.9 * inferred);
   EXPECT_GT(without, 3 * there);
   // a torque that is given as it was inferred costs as much as one that is free
   const ReducedPlant given(*reduction_, event::InputKind::field,
-                           &reduction_->course(event::InputKind::torque));
-  EXPECT_NEAR(given.costs(reduction_->course(event::InputKind::field), still)[0], there, 0.01 * there);
+                           &reduction_->series(event::InputKind::torque));
+  EXPECT_NEAR(given.costs(reduction_->series(event::InputKind::field), still)[0], there, 0.01 * there);
 }
 
-/// The gradient of a course's cost is that of its differences, by the gain's number too.
+/// The gradient of a series's cost is that of its differences, by the gain's number too.
 TEST_F(Reduced, TheBowlIsTheCostsOwn) {
   EXPECT_NEAR(reduction_->gain(event::InputKind::field).exponent, -1, 1e-3);
   EXPECT_NEAR(reduction_->gain(event::InputKind::torque).exponent, -1, 1e-3);
   for (const auto kind : {event::InputKind::field, event::InputKind::torque}) {
     const ReducedPlant plant(*reduction_, kind, nullptr);
-    Eigen::VectorXd course(reduction_->knots()), along(reduction_->knots());
-    for (Eigen::Index k = 0; k < course.size(); ++k) {
-      course[k] = std::sin(0.1 * static_cast<double>(k));
+    Eigen::VectorXd series(reduction_->knots()), along(reduction_->knots());
+    for (Eigen::Index k = 0; k < series.size(); ++k) {
+      series[k] = std::sin(0.1 * static_cast<double>(k));
       along[k] = std::cos(0.3 * static_cast<double>(k));
     }
     const double gain = 0.1, h = 1e-4;
-    const auto bowl = plant.bowl(course, gain, along);
+    const auto quadratic = plant.quadratic(series, gain, along);
     const auto cost = [&](double by_gain, double by_course) {
-      return plant.costs(course + by_course * along, Eigen::VectorXd::Constant(1, gain + by_gain))[0];
+      return plant.costs(series + by_course * along, Eigen::VectorXd::Constant(1, gain + by_gain))[0];
     };
     const double by_gain = (cost(h, 0) - cost(-h, 0)) / (4 * h),
                  by_course = (cost(0, h) - cost(0, -h)) / (4 * h);
-    EXPECT_NEAR(bowl.gradient[0], by_gain, 1e-4 * std::abs(by_gain));
-    EXPECT_NEAR(bowl.gradient[1], by_course, 1e-4 * std::abs(by_course));
+    EXPECT_NEAR(quadratic.gradient[0], by_gain, 1e-4 * std::abs(by_gain));
+    EXPECT_NEAR(quadratic.gradient[1], by_course, 1e-4 * std::abs(by_course));
   }
 }
 
