@@ -85,11 +85,11 @@ Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const F
                                 input == InputKind::torque ? Kind::torque : Kind::field);
 }
 
-std::vector<playin::Seen> seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
-                                     const EventState& state) {
+playin::SeenAlong seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                             const EventState& state, std::span<const double> times) {
   const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
   const auto given = playin::given_of(event.record, curve.switchings(), event.start);
-  return playin::seen_along(run_of(tested, event, state, {}, curve, given ? &*given : nullptr));
+  return playin::seen_along(run_of(tested, event, state, {}, curve, given ? &*given : nullptr), times);
 }
 
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,

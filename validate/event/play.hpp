@@ -67,8 +67,8 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
 /// How fast each state of the plant follows 1 pu of an input at the start [1/s]; the state has that input.
 Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                                const EventState& state, InputKind input);
-/// Inputs of the plant's controls along the event.
-std::vector<playin::Seen> seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
-                                     const EventState& state);
+/// Inputs of the plant's controls along the event, at these times too (playin::seen_along).
+playin::SeenAlong seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                             const EventState& state, std::span<const double> times = {});
 
 }  // namespace swingbank::validate::event

@@ -402,6 +402,17 @@ std::string_view output_name(Output output) {
   return names[static_cast<std::size_t>(output)];
 }
 
+namespace {
+
+/// The cubic with these values and slopes at the ends of an interval of h, at a share of it.
+double hermite(double share, double h, double from, double slope_from, double to, double slope_to) {
+  const double rest = 1 - share;
+  return rest * rest * ((1 + 2 * share) * from + share * h * slope_from) +
+         share * share * ((1 + 2 * rest) * to - rest * h * slope_to);
+}
+
+}  // namespace
+
 /// A run and where it went.
 class Past {
  public:
@@ -410,19 +421,41 @@ class Past {
   Response answer;
 };
 
-std::vector<Seen> seen_along(const Drive& run) {
+SeenAlong seen_along(const Drive& run, std::span<const double> times) {
   Trace trace;
   Driven<double>(run, {}).run(&trace);
-  DrivenEquations<double> equations(run, {});
+  Drive still = run;
+  still.angle = still.speed = 0;
+  still.torque = still.field = {};
+  DrivenEquations<double> standing(still, {}), equations(run, {});
   const std::size_t n = equations.x0.size();
-  std::vector<double> dx(n);
-  std::vector<Seen> all;
+  std::vector<double> x(n), dx(n);
+  const auto seen = [](double t, const Side& side, const sim::Signals<double>& s) -> Seen {
+    return {t, side.segment, {s.Vr, s.Vi}, {s.Ir, s.Ii}, s.speed, s.Ifd, s.Efd, s.Tm};
+  };
+  SeenAlong all;
+  const Complex v = run.start.voltage;
+  const double begin = run.record->t.front();
+  standing.evaluate_at(v.real(), v.imag(), begin, standing.x0.data(), dx.data());
+  all.standing = seen(begin, standing.side, standing.signals);
+  const auto see = [&](double t, const Side& side, const double* states) {
+    equations.side = side;
+    equations.evaluate(t, states, dx.data());
+    all.seen.push_back(seen(t, side, equations.signals));
+  };
+  std::size_t next = 0;
   for (std::size_t k = 0; k < trace.nodes.size(); ++k) {
     const Trace::Node& node = trace.nodes[k];
-    equations.side = node.side;
-    equations.evaluate(node.t, trace.x.data() + k * n, dx.data());
-    const sim::Signals<double>& s = equations.signals;
-    all.push_back({node.t, node.side.segment, {s.Vr, s.Vi}, {s.Ir, s.Ii}, s.speed, s.Ifd, s.Efd, s.Tm});
+    for (; k > 0 && next < times.size() && times[next] < node.t; ++next) {
+      const double from = trace.nodes[k - 1].t, h = node.t - from, share = (times[next] - from) / h;
+      if (share <= 0) continue;
+      for (std::size_t i = 0; i < n; ++i) {  // the cubic through both nodes
+        const std::size_t a = (k - 1) * n + i, b = k * n + i;
+        x[i] = hermite(share, h, trace.x[a], trace.dx[a], trace.x[b], trace.dx[b]);
+      }
+      see(times[next], trace.nodes[k - 1].side, x.data());
+    }
+    see(node.t, node.side, trace.x.data() + k * n);
   }
   return all;
 }

@@ -113,8 +113,13 @@ struct Seen {
   double speed, Ifd;  ///< [pu]
   double Efd, Tm;     ///< that drive the machine, inputs included [pu]
 };
-/// At every sample and integration step, and on both sides of every switching time. Throws as drive().
-std::vector<Seen> seen_along(const Drive& run);
+struct SeenAlong {
+  Seen standing;           ///< at the operating point, in steady state
+  std::vector<Seen> seen;  ///< along the run
+};
+/// At every sample and integration step, on both sides of every switching time, and at these times [s]
+/// (ascending). Throws as drive().
+SeenAlong seen_along(const Drive& run, std::span<const double> times = {});
 
 /// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,
 /// change of theta [rad]) and y = all outputs, in the units of Response.

@@ -16,10 +16,41 @@ namespace {
 using sim::P8;
 constexpr auto kBlockLanes = std::size_t(P8::lanes);
 
-/// Runge-Kutta's classical formula is stable up to 2.78 over the fastest rate, and per cents off up to this.
-constexpr double kStable = 1.2;
-/// A plant that needs more of them runs away: its response is not finite.
-constexpr int kMostSubsteps = 16;
+/// ROS34PW2, a linearly implicit formula of order 3 whatever matrix stands for the Jacobian: L-stable, and a
+/// lag far faster than a step ends at its input exactly (J. Rang, L. Angermann, BIT 45 (2005) 761, table 4).
+/// By rows, below the diagonal: what a stage adds of those before it to the state, and to its right-hand
+/// side.
+constexpr int kFormulaStages = 4;
+using Stages = std::array<std::array<double, kFormulaStages>, kFormulaStages>;
+constexpr double kGamma = 0.435866521508459;
+constexpr Stages kAlpha = {
+    {{}, {0.87173304301691801}, {0.84457060015369423, -0.11299064236484185}, {0.0, 0.0, 1.0}}};
+constexpr Stages kGammas = {{{kGamma},
+                             {-0.87173304301691801, kGamma},
+                             {-0.90338057013044082, 0.054180672388095326, kGamma},
+                             {0.24212380706095346, -1.2232505839045147, 0.54526025533510214, kGamma}}};
+
+/// The formula in terms of u = gammas k, which needs no product with the Jacobian (E. Hairer, G. Wanner,
+/// Solving Ordinary Differential Equations II, IV.7).
+struct Transformed {
+  Stages inverse{};                         ///< of the gammas
+  Stages a{};                               ///< alpha times that
+  std::array<double, kFormulaStages> at{};  ///< of the step, where a stage sees its inputs
+  constexpr Transformed() {
+    for (std::size_t j = 0; j < kFormulaStages; ++j)
+      for (std::size_t i = j; i < kFormulaStages; ++i) {
+        double left = i == j ? 1.0 : 0.0;
+        for (std::size_t k = j; k < i; ++k) left -= kGammas[i][k] * inverse[k][j];
+        inverse[i][j] = left / kGamma;
+      }
+    for (std::size_t i = 0; i < kFormulaStages; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        at[i] += kAlpha[i][j];
+        for (std::size_t k = j; k < i; ++k) a[i][j] += kAlpha[i][k] * inverse[k][j];
+      }
+  }
+};
+constexpr Transformed kFormula;
 
 /// Controls of up to eight plants in lanes.
 class BlockLanes {
@@ -47,8 +78,14 @@ class BlockLanes {
       } catch (const InputError&) {  // no steady state: its column stays NaN
       }
     }
-    for (auto& k : k_) k.assign(x_.size(), P8(0.0));  // the recorded machine has no dynamics
-    trial_.resize(x_.size());
+    const std::size_t n = x_.size();
+    dx_.resize(n);
+    trial_.resize(n);
+    for (auto& u : u_) u.resize(n);
+    jacobian_.resize(n * n);
+    if (!any()) return;
+    linearise(start);
+    find_entries();
   }
   [[nodiscard]] bool any() const { return !c_.empty(); }
   [[nodiscard]] bool initialised(std::size_t lane) const { return initialised_[lane] != 0; }
@@ -70,59 +107,104 @@ class BlockLanes {
     equations_.signals(c_.data(), x.data(), scratch_.data(), s, dx.data());
     response_ = made_ == Made::field ? s.Efd : s.Tm;
   }
-  void evaluate(const Seen& at) { evaluate(at, x_, k_[0]); }
-  /// One Runge-Kutta step from where evaluate() was called last.
-  void step(double h, const Seen& middle, const Seen& end) {
+  void evaluate(const Seen& at) { evaluate(at, x_, dx_); }
+  /// One step from where evaluate() was called last; `seen` of the stages after the first.
+  void step(double h, std::span<const Seen, kFormulaStages - 1> seen) {
     const std::size_t n = x_.size();
-    move(0.5 * h, k_[0]);
-    evaluate(middle, trial_, k_[1]);
-    move(0.5 * h, k_[1]);
-    evaluate(middle, trial_, k_[2]);
-    move(h, k_[2]);
-    evaluate(end, trial_, k_[3]);
-    for (std::size_t i = 0; i < n; ++i)
-      x_[i] = x_[i] + P8(h / 6) * (k_[0][i] + P8(2.0) * (k_[1][i] + k_[2][i]) + k_[3][i]);
-    P8 moved(0.0);
-    equations_.clamp_states(c_.data(), x_.data(), moved);
+    const std::vector<P8>& triangles = triangles_for(h);
+    for (std::size_t stage = 0; stage < kFormulaStages; ++stage) {
+      if (stage > 0) {
+        trial_ = x_;
+        for (std::size_t j = 0; j < stage; ++j) add(trial_, kFormula.a[stage][j], u_[j]);
+        clip(trial_);
+        evaluate(seen[stage - 1], trial_, dx_);
+      }
+      std::vector<P8>& u = u_[stage];
+      u = dx_;
+      for (std::size_t j = 0; j < stage; ++j) add(u, -kFormula.inverse[stage][j] / h, u_[j]);
+      for (std::size_t i = 0; i < n; ++i)
+        for (const std::size_t j : left_[i]) u[i] = u[i] - triangles[i * n + j] * u[j];
+      for (std::size_t i = n; i-- > 0;) {
+        for (const std::size_t j : right_[i]) u[i] = u[i] - triangles[i * n + j] * u[j];
+        u[i] = u[i] * triangles[i * n + i];
+      }
+    }
+    // the last stage stands at the end of the step but for its own share
+    for (std::size_t j = 0; j + 1 < kFormulaStages; ++j) add(x_, kFormula.a.back()[j], u_[j]);
+    add(x_, 1.0, u_.back());
+    clip(x_);
   }
-  /// The fastest rate of any plant, as it is linear about its start [1/s].
-  [[nodiscard]] double fastest(const Seen& start) {
+
+ private:
+  static void add(std::vector<P8>& to, double factor, const std::vector<P8>& from) {
+    if (factor == 0.0) return;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = to[i] + P8(factor) * from[i];
+  }
+  void clip(std::vector<P8>& x) {
+    P8 moved(0.0);
+    equations_.clamp_states(c_.data(), x.data(), moved);
+  }
+  /// The Jacobian of the controls at their start, by differences.
+  void linearise(const Seen& start) {
+    constexpr double kRateMove = 1e-6;
     const std::size_t n = x_.size();
-    std::vector<P8> still(n), moved(n), x = x_;
-    std::array<Eigen::MatrixXd, kBlockLanes> A;
-    A.fill(Eigen::MatrixXd(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)));
+    std::vector<P8> moved(n), x = x_;
     for (auto& value : x) value = value + P8(kRateMove);  // away from the corner of a dead-band
-    evaluate(start, x, still);
+    evaluate(start, x, dx_);
     for (std::size_t j = 0; j < n; ++j) {
       const P8 before = x[j];
       x[j] = before + P8(kRateMove);
       evaluate(start, x, moved);
       x[j] = before;
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
-          A[lane](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-              (moved[i][static_cast<int>(lane)] - still[i][static_cast<int>(lane)]) / kRateMove;
+      for (std::size_t i = 0; i < n; ++i) jacobian_[i * n + j] = (moved[i] - dx_[i]) * P8(1 / kRateMove);
     }
-    double most = 0;
-    for (std::size_t lane = 0; lane < kBlockLanes; ++lane)
-      if (initialised(lane) && A[lane].allFinite())
-        most = std::max(most, A[lane].eigenvalues().cwiseAbs().maxCoeff());
-    return most;
   }
-
- private:
-  static constexpr double kRateMove = 1e-6;
-  void move(double h, const std::vector<P8>& k) {
-    for (std::size_t i = 0; i < x_.size(); ++i) trial_[i] = x_[i] + P8(h) * k[i];
-    P8 moved(0.0);
-    equations_.clamp_states(c_.data(), trial_.data(), moved);
+  /// Triangles of 1 / (gamma h) - Jacobian, with one over the diagonal in its place. Controls are chains of
+  /// lags, so that few of the entries are not zero; pivots are large, because the lags' own rates are
+  /// negative.
+  const std::vector<P8>& triangles_for(double h) {
+    for (const auto& [known, triangles] : triangles_)
+      if (known == h) return triangles;
+    const std::size_t n = x_.size();
+    std::vector<P8> all(n * n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        all[i * n + j] = P8(i == j ? 1 / (kGamma * h) : 0.0) - jacobian_[i * n + j];
+    for (std::size_t k = 0; k < n; ++k) {
+      all[k * n + k] = P8(1.0) / all[k * n + k];
+      for (std::size_t i = k + 1; i < n; ++i) {
+        if (std::ranges::count(left_[i], k) == 0) continue;
+        const P8 factor = all[i * n + k] = all[i * n + k] * all[k * n + k];
+        for (const std::size_t j : right_[k]) all[i * n + j] = all[i * n + j] - factor * all[k * n + j];
+      }
+    }
+    return triangles_.emplace_back(h, std::move(all)).second;
+  }
+  /// Columns of entries left and right of the diagonal that are not zero, those included that elimination
+  /// makes.
+  void find_entries() {
+    const std::size_t n = x_.size();
+    std::vector<char> there(n * n);
+    for (std::size_t i = 0; i < n * n; ++i)
+      there[i] = any_positive(jacobian_[i]) || any_positive(-jacobian_[i]);
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t i = k + 1; i < n; ++i)
+        for (std::size_t j = k + 1; there[i * n + k] && j < n; ++j)
+          there[i * n + j] = there[i * n + j] || there[k * n + j];
+    left_.resize(n);
+    right_.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (i != j && there[i * n + j]) (j < i ? left_ : right_)[i].push_back(j);
   }
 
   Made made_;
   sim::plant::PlantEquations<P8> equations_;
   double ifd_, efd_ = 0, tm_ = 0;
-  std::vector<P8> c_, x_, trial_, scratch_;
-  std::array<std::vector<P8>, 4> k_;
+  std::vector<P8> c_, x_, dx_, trial_, scratch_, jacobian_;
+  std::vector<std::vector<std::size_t>> left_, right_;
+  std::array<std::vector<P8>, kFormulaStages> u_;
+  std::vector<std::pair<double, std::vector<P8>>> triangles_;  ///< for each length of a step [s]
   std::array<char, kBlockLanes> initialised_{};
   P8 response_{0.0};
   sim::Signals<P8> signals_;  ///< what nothing writes stays zero
@@ -134,34 +216,45 @@ Seen mixed(const Seen& a, const Seen& b, double share) {
           of(a.speed, b.speed), of(a.Ifd, b.Ifd), of(a.Efd, b.Efd), of(a.Tm, b.Tm)};
 }
 
+/// Without the last digits of times, so that equal steps are equal.
+double rounded(double h) { return static_cast<double>(static_cast<float>(h)); }
+
 }  // namespace
 
-OpenLoop::OpenLoop(std::vector<Seen> seen, const std::vector<double>& samples,
-                   const sim::Conventions& conventions)
-    : seen_(std::move(seen)), conventions_(conventions) {
+OpenLoop::OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::Conventions& conventions)
+    : standing_(run.standing), seen_(std::move(run.seen)), conventions_(conventions) {
   const int segments = seen_.back().segment + 1;
   for (int s = 0; s <= segments; ++s)
     first_of_.push_back(
         static_cast<std::size_t>(std::ranges::lower_bound(seen_, s, {}, &Seen::segment) - seen_.begin()));
-  std::size_t sample = 0;
+  std::size_t next = 0;
   for (int s = segments > 1 ? 1 : 0; s < segments; ++s) {
     const double from = seen_[first_of_[static_cast<std::size_t>(s)]].t,
                  to = seen_[first_of_[static_cast<std::size_t>(s) + 1] - 1].t;
     times_.push_back({from, s});
     constexpr double kTimesApart = 1e-7;  // [s]
-    while (sample < samples.size() && samples[sample] <= from + kTimesApart) ++sample;
-    for (; sample < samples.size() && samples[sample] < to - kTimesApart; ++sample)
-      times_.push_back({samples[sample], s});
+    while (next < times.size() && times[next] <= from + kTimesApart) ++next;
+    for (; next < times.size() && times[next] < to - kTimesApart; ++next) times_.push_back({times[next], s});
     if (to > from + kTimesApart) times_.push_back({to, s});
   }
   for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
     const TimePoint &a = times_[k], &b = times_[k + 1];
-    if (a.segment != b.segment)
-      steps_.push_back({0, between(a.segment, a.t), {}, {}});
-    else
-      steps_.push_back({b.t - a.t, between(a.segment, a.t), between(a.segment, 0.5 * (a.t + b.t)),
-                        between(a.segment, b.t)});
+    const double h = a.segment == b.segment ? rounded(b.t - a.t) : 0.0;
+    Step& step = steps_.emplace_back(h, between(a.segment, a.t));
+    for (std::size_t stage = 1; h > 0 && stage < kFormulaStages; ++stage)
+      step.stages[stage - 1] = between(a.segment, a.t + kFormula.at[stage] * h);
   }
+}
+
+std::vector<double> OpenLoop::looks(const std::vector<double>& times) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    all.push_back(times[k]);
+    for (std::size_t stage = 1; k + 1 < times.size() && stage < kFormulaStages; ++stage)
+      all.push_back(times[k] + kFormula.at[stage] * (times[k + 1] - times[k]));
+  }
+  std::ranges::sort(all);
+  return all;
 }
 
 Seen OpenLoop::between(int segment, double t) const {
@@ -179,17 +272,9 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times_.size()),
                                                   static_cast<Eigen::Index>(plants.size()),
                                                   std::numeric_limits<double>::quiet_NaN());
-  // all take the same steps, so that the integration error is common to the responses that are compared
-  std::vector<BlockLanes> packs;
-  double fastest = 0;
-  for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
-    packs.emplace_back(made, plants.subspan(first, std::min(kBlockLanes, plants.size() - first)),
-                       seen_.front(), conventions_);
-    if (packs.back().any()) fastest = std::max(fastest, packs.back().fastest(seen_.front()));
-  }
   for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
     const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
-    BlockLanes& controls = packs[first / kBlockLanes];
+    BlockLanes controls(made, some, standing_, conventions_);
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {
       for (std::size_t lane = 0; lane < some.size(); ++lane)
@@ -198,22 +283,12 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
               controls.response(lane);
     };
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-      const Step& s = steps_[k];
-      const auto at = [&](double share) {
-        return share <= 0.5 ? mixed(s.begin, s.middle, 2 * share) : mixed(s.middle, s.end, 2 * share - 1);
-      };
-      const int substeps = std::clamp(static_cast<int>(std::ceil(s.h * fastest / kStable)), 1, kMostSubsteps);
-      controls.evaluate(s.begin);
+      controls.evaluate(steps_[k].begin);
       keep(k);
-      for (int part = 0; part < substeps && s.h > 0; ++part) {
-        if (part > 0) controls.evaluate(at(double(part) / substeps));
-        controls.step(s.h / substeps, at((part + 0.5) / substeps), at((part + 1.0) / substeps));
-      }
+      if (steps_[k].h > 0) controls.step(steps_[k].h, steps_[k].stages);
     }
-    if (!steps_.empty()) {
-      controls.evaluate(steps_.back().end);
-      keep(steps_.size());
-    }
+    controls.evaluate(between(times_.back().segment, times_.back().t));
+    keep(steps_.size());
   }
   return all;
 }

@@ -24,6 +24,7 @@ constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
 constexpr double kShortestTime = 0.2;                         ///< sampling intervals
 constexpr double kStartSettled = 0.02;                        ///< a step that gains less ends a start
 constexpr double kGivenUp = 1e6;                              ///< damping
+constexpr std::size_t kLastStarts = 2;                        ///< so many are optimised to the end
 constexpr double kSameOptimum = 1.0;                          ///< costs closer than this are one optimum
 constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< of an axis in one step
 constexpr double kLengths[] = {0.1, 1.0, 10.0, 1000.0};       ///< damping of the steps that are tried at once
@@ -54,7 +55,7 @@ class Identifying {
   Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial, const VectorXd* other)
       : reduction_(reduction),
         input_(input),
-        trial_(trial),
+        trial_(about(reduction.inference(), trial)),
         reduced_(reduction, input, other, held_by(reduction.inference(), trial.plant)) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
@@ -70,14 +71,27 @@ class Identifying {
   std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
     if (!without_.allFinite()) return {};
     begin(options, known);
-    for (int step = 0; step < options.steps; ++step) {
-      interruption_point();
-      if (!advance()) break;
+    for (int steps = options.steps;; steps *= 2) {
+      for (int step = 0; step < steps; ++step) {
+        interruption_point();
+        if (!advance()) break;
+      }
+      std::ranges::stable_sort(starts_, {}, &Start::cost);
+      if (starts_.size() <= kLastStarts) break;
+      starts_.resize((starts_.size() + 1) / 2);
     }
     return optima();
   }
 
  private:
+  /// The trial whose other blocks are as they are at the inference.
+  static Trial about(const Inference& inference, Trial trial) {
+    for (const auto& f : inference.free)
+      if (const auto id = same_parameter(trial.plant, inference.plant, f.id);
+          id && std::ranges::none_of(trial.free, [&](const auto& own) { return own.id == *id; }))
+        parameter_value(trial.plant, *id) = parameter_value(inference.plant, f.id);
+    return trial;
+  }
   struct Start {
     VectorXd z;
     double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
@@ -123,6 +137,11 @@ class Identifying {
     }
     return z;
   }
+  [[nodiscard]] VectorXd point_of(const std::vector<double>& values) const {
+    VectorXd z(static_cast<Index>(axes_.size()));
+    for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
+    return within(z);
+  }
   [[nodiscard]] VectorXd drawn(int draw) const {
     VectorXd z(static_cast<Index>(axes_.size()));
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -140,22 +159,11 @@ class Identifying {
   }
   void begin(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
     std::vector<VectorXd> all{VectorXd::Zero(static_cast<Index>(axes_.size()))};
-    for (const auto& values : known) {
-      VectorXd z(static_cast<Index>(axes_.size()));
-      for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
-      all.push_back(within(z));
-    }
+    for (const auto& values : known) all.push_back(point_of(values));
     const std::size_t given = all.size();
     for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw)
       if (VectorXd z = drawn(draw); runs(z)) all.push_back(std::move(z));
-    MatrixXd made(reduction_.knots(), static_cast<Index>(all.size()));
-    constexpr auto kLanes = std::size_t(sim::P8::lanes);
-    for (std::size_t k = 0; k < all.size(); k += kLanes) {
-      const std::vector<VectorXd> some(
-          all.begin() + static_cast<std::ptrdiff_t>(k),
-          all.begin() + static_cast<std::ptrdiff_t>(std::min(k + kLanes, all.size())));
-      made.middleCols(static_cast<Index>(k), static_cast<Index>(some.size())) = series(some);
-    }
+    const MatrixXd made = series(all);
     if (!(made.array().abs() > 0).any()) return;  // the block has no effect
     const VectorXd cost = costs(made, all, VectorXd::Zero(static_cast<Index>(all.size())));
     for (std::size_t k = 0; k < all.size(); ++k)
@@ -190,9 +198,7 @@ class Identifying {
       }
     }
     if (moving.empty()) return false;
-    MatrixXd made(reduction_.knots(), static_cast<Index>(points.size()));
-    for (Index at = 0; at < made.cols(); at += np + 1)  // a start and its neighbours take the same steps
-      made.middleCols(at, np + 1) = series({points.begin() + at, points.begin() + at + np + 1});
+    const MatrixXd made = series(points);
     std::vector<VectorXd> tried;
     VectorXd gains(static_cast<Index>(std::size(kLengths) * moving.size()));
     for (std::size_t k = 0; k < moving.size(); ++k) {
@@ -216,10 +222,7 @@ class Identifying {
         tried.push_back(within(s.z + step.tail(np).cwiseMax(-kLongestAxisStep).cwiseMin(kLongestAxisStep)));
       }
     }
-    MatrixXd there(reduction_.knots(), static_cast<Index>(tried.size()));
-    constexpr auto kLengthsCount = static_cast<Index>(std::size(kLengths));
-    for (Index at = 0; at < there.cols(); at += kLengthsCount)
-      there.middleCols(at, kLengthsCount) = series({tried.begin() + at, tried.begin() + at + kLengthsCount});
+    const MatrixXd there = series(tried);
     const VectorXd cost = costs(there, tried, gains);
     for (std::size_t k = 0; k < moving.size(); ++k) {
       Start& s = *moving[k];
@@ -271,7 +274,6 @@ class Identifying {
     return step;
   }
   [[nodiscard]] std::vector<Optimum> optima() {
-    std::ranges::stable_sort(starts_, {}, &Start::cost);
     std::vector<Optimum> all;
     for (const Start& s : starts_) {
       if (!all.empty() && s.cost - all.back().cost < kSameOptimum) {
@@ -292,7 +294,7 @@ class Identifying {
 
   const Reduction& reduction_;
   event::InputKind input_;
-  const Trial& trial_;
+  Trial trial_;
   ReducedPlant reduced_;
   std::vector<fit::Axis> axes_;
   MatrixXd without_;  ///< response of the plant's own controls
@@ -320,8 +322,11 @@ std::vector<event::EventState> with_series_of(const sim::plant::PlantUnderTest& 
   const auto part = part_of(input);
   for (std::size_t e = 0; e < events.size(); ++e) {
     states[e].torque = states[e].field = {};
-    const std::vector<playin::Seen> seen = event::seen_along(tested, events[e], states[e]);
-    const playin::OpenLoop loop(seen, events[e].record.t, tested.conventions);
+    const std::vector<double>& samples = events[e].record.t;
+    const playin::SeenAlong run =
+        event::seen_along(tested, events[e], states[e], playin::OpenLoop::looks(samples));
+    const std::vector<playin::Seen>& seen = run.seen;
+    const playin::OpenLoop loop(run, samples, tested.conventions);
     const MatrixXd own = loop.run(made_by(input), std::array{playin::component_of(without, part)});
     playin::PiecewiseLinear& series = states[e].input(input);
     const auto& times = loop.times();

@@ -26,9 +26,9 @@ struct Optimum {
 };
 
 struct IdentifyOptions {
-  int draws = 192;  ///< evaluated
-  int kept = 8;     ///< the best of them, which are optimised
-  int steps = 12;   ///< of each
+  int draws = 96;  ///< evaluated
+  int kept = 6;    ///< the best of them, which are optimised
+  int steps = 5;   ///< of each; then the better half takes twice as many, and so on (successive halving)
 };
 
 /// Distinct local minima, best first; none where no draw can be simulated. `other`: time series of the other

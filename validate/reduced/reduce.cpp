@@ -52,6 +52,18 @@ Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::TimePoi
   return weights;
 }
 
+/// Ends of the blocks' steps: a few between two knots, none shorter than a sample.
+std::vector<double> steps_between(const Knots& knots, double sample) {
+  constexpr double kStepsPerKnot = 4;
+  std::vector<double> times{knots.t.front()};
+  for (std::size_t k = 1; k < knots.t.size(); ++k) {
+    const double gap = knots.t[k] - knots.t[k - 1];
+    const int steps = std::max(1, static_cast<int>(std::min(kStepsPerKnot, std::round(gap / sample))));
+    for (int i = 1; i <= steps; ++i) times.push_back(knots.t[k - 1] + gap * i / steps);
+  }
+  return times;
+}
+
 VectorXd at_times(const playin::PiecewiseLinear& input,
                   const std::vector<playin::OpenLoop::TimePoint>& times) {
   VectorXd values(static_cast<Index>(times.size()));
@@ -75,8 +87,10 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
   Index row = 0;
   for (std::size_t e = 0; e < events.size(); ++e) {
     const EventSlopes& s = inference_.events[e];
-    playin::OpenLoop loop(event::seen_along({inference_.plant, conventions}, events[e], inference_.states[e]),
-                          events[e].record.t, conventions);
+    const std::vector<double> times = steps_between(s.knots, step_);
+    playin::OpenLoop loop(event::seen_along({inference_.plant, conventions}, events[e], inference_.states[e],
+                                            playin::OpenLoop::looks(times)),
+                          times, conventions);
     const Sparse hats = over_hats(s.knots, loop.times());
     const Index states = s.state.cols(), knots = s.torque.cols(), values = s.residual.size();
     const VectorXd torque = hats * at_times(inference_.states[e].torque, loop.times()),
