@@ -11,6 +11,7 @@
 #include "base/constants.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/playin/detail/driven_equations.hpp"
+#include "validate/playin/detail/hermite.hpp"
 #include "validate/playin/detail/linear_slopes.hpp"
 #include "validate/playin/detail/pairs.hpp"
 
@@ -401,17 +402,6 @@ std::string_view output_name(Output output) {
                                                             "Ifd", "Pm", "gate",  "V"};
   return names[static_cast<std::size_t>(output)];
 }
-
-namespace {
-
-/// The cubic with these values and slopes at the ends of an interval of h, at a share of it.
-double hermite(double share, double h, double from, double slope_from, double to, double slope_to) {
-  const double rest = 1 - share;
-  return rest * rest * ((1 + 2 * share) * from + share * h * slope_from) +
-         share * share * ((1 + 2 * rest) * to - rest * h * slope_to);
-}
-
-}  // namespace
 
 /// A run and where it went.
 class Past {

@@ -129,7 +129,7 @@ class BlockLanes {
         u[i] = u[i] * triangles[i * n + i];
       }
     }
-    // the last stage stands at the end of the step but for its own share
+    // the formula is stiffly accurate: its weights are the last stage's, and one for its own u
     for (std::size_t j = 0; j + 1 < kFormulaStages; ++j) add(x_, kFormula.a.back()[j], u_[j]);
     add(x_, 1.0, u_.back());
     clip(x_);

@@ -1,0 +1,13 @@
+#pragma once
+// Interpolation between two nodes of a run.
+
+namespace swingbank::validate::playin {
+
+/// The cubic with these values and slopes at the ends of an interval of h, at a share of it.
+inline double hermite(double share, double h, double from, double slope_from, double to, double slope_to) {
+  const double rest = 1 - share;
+  return rest * rest * ((1 + 2 * share) * from + share * h * slope_from) +
+         share * share * ((1 + 2 * rest) * to - rest * h * slope_to);
+}
+
+}  // namespace swingbank::validate::playin
