@@ -37,7 +37,7 @@ TEST(OpenLoop, AnswersAsThePlantDid) {
     moved = std::max(moved, std::abs(s.Efd - seen.front().Efd));
   }
   EXPECT_GT(moved, 1.0);
-  EXPECT_LT(worst, 0.002 * moved);
+  EXPECT_LT(worst, 5e-4 * moved);  // 2e-4 when this was written
   EXPECT_GT(other, 0.1 * moved);
 }
 
