@@ -240,7 +240,7 @@ OpenLoop::OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::C
   for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
     const TimePoint &a = times_[k], &b = times_[k + 1];
     const double h = a.segment == b.segment ? rounded(b.t - a.t) : 0.0;
-    Step& step = steps_.emplace_back(h, between(a.segment, a.t));
+    Step& step = steps_.emplace_back(Step{.h = h, .begin = between(a.segment, a.t)});
     for (std::size_t stage = 1; h > 0 && stage < kFormulaStages; ++stage)
       step.stages[stage - 1] = between(a.segment, a.t + kFormula.at[stage] * h);
   }
