@@ -33,11 +33,13 @@ site() { # site FILE KEY=VALUE...
   printf '%s\n' generate_nodes=2 generate_ranks=4 fold_cpus=1 generate_time=1 fold_time=1 tables_time=2 warn_before=58 fold_mem=4G "${@:2}" >>"$1"
 }
 job_state() { scontrol -o show job "$1" | grep -o 'JobState=[A-Z_]*' | sort -u | cut -d= -f2 | paste -sd,; }
-# signal_generate OUT JOB: as Slurm does before the time limit
+# signal_generate OUT JOB: as Slurm does before the time limit. Slurm's own warning may come first: it looks every 30 s.
 has_shards() { [[ $(grep -c . "$1/data/journal.jsonl" 2>/dev/null) -ge 3 ]]; }
+has_failed() { [[ $(job_state "$1") == FAILED ]]; }
+shards_or_failed() { has_shards "$1" || has_failed "$2"; }
 signal_generate() {
-  cluster_retry 300 has_shards "$1" || fail "generate has made nothing after 300 s"
-  scancel --batch --signal=USR1 "$2"
+  cluster_retry 300 shards_or_failed "$1" "$2" || fail "generate has made nothing after 300 s"
+  has_failed "$2" || scancel --batch --signal=USR1 "$2"
 }
 job_of() { awk -v stage="$1" '$1 == stage {print $2}' "$work/jobs"; }
 all_ended() { [[ -z $(squeue -h) ]]; }
