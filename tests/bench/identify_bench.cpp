@@ -22,6 +22,11 @@ double seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+bool has(const reduced::Reduction& reduction, event::InputKind input) {
+  const reduced::Inputs inputs = reduction.inference().inputs;
+  return input == event::InputKind::torque ? inputs.torque : inputs.field;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -81,11 +86,10 @@ int main(int argc, char** argv) {
     if (h.free.empty()) continue;
     rows.push_back({h.name, {h.plant, h.free, std::hash<std::string>{}(h.name)}, input, {}});
   }
-  const auto round = [&](const reduced::Reduction& reduction, const Eigen::VectorXd* torque,
-                         const Eigen::VectorXd* field) {
+  const auto round = [&](const reduced::Reduction& reduction) {
     for (const auto input : {event::InputKind::torque, event::InputKind::field}) {
-      const Eigen::VectorXd* other = input == event::InputKind::torque ? field : torque;
-      const reduced::ReducedPlant plant(reduction, input, other);
+      if (!has(reduction, input)) continue;
+      const reduced::ReducedPlant plant(reduction, input);
       const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
       fmt::print("{}: none {:.1f}, as inferred {:.1f}\n",
                  input == event::InputKind::torque ? "torque" : "field",
@@ -93,11 +97,11 @@ int main(int argc, char** argv) {
                  plant.costs(reduction.series(input), zero)[0]);
     }
     for (Row& r : rows) {
+      if (!has(reduction, r.input)) continue;
       const double start = seconds();
       std::vector<std::vector<double>> known;
       if (r.optima > 0) known.push_back(r.best.values);
-      const auto found = reduced::identify(
-          reduction, r.input, r.trial, r.input == event::InputKind::torque ? field : torque, options, known);
+      const auto found = reduced::identify(reduction, r.input, r.trial, options, known);
       r.time = seconds() - start;
       r.optima = found.size();
       if (!found.empty()) r.best = found.front();
@@ -115,8 +119,7 @@ int main(int argc, char** argv) {
   double start = seconds();
   reduced::Reduction reduction(*best, events, model.conventions);
   fmt::print("reduced: {:.3f} s\n", seconds() - start);
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(reduction.knots());
-  round(reduction, best->inputs.torque ? nullptr : &still, best->inputs.field ? nullptr : &still);
+  round(reduction);
   fmt::print("after {:.2f} s\n", seconds() - begin);
   // linear anew about the leader of the field, the torque as the model has it
   for (int again = 0; again < 2; ++again) {
@@ -126,18 +129,15 @@ int main(int argc, char** argv) {
       parameter_value(leader, lead->trial.free[i].id) = lead->best.values[i];
     std::vector<event::EventState> states = reduction.inference().states;
     for (std::size_t i = 0; i < free.size(); ++i)
-      parameter_value(leader, free[i].id) = parameter_value(reduction.inference().plant, free[i].id);
-    states = reduced::with_series_of({leader, model.conventions}, reduction.inference().plant,
-                                     event::InputKind::field, events, states);
+      parameter_value(leader, free[i].id) = parameter_value(reduction.inference().base, free[i].id);
+    for (auto& state : states) state.torque = state.field = {};
     start = seconds();
     const reduced::Inference beside =
-        reduced::infer_beside(model.under_test(), reduction.inference().plant, events, free, states, 1);
+        reduced::linear_about(leader, model.under_test(), events, free, states, {.field = true}, 1);
     fmt::print("about {}: {:.3f} s, {} steps, chi2 per value {:.4f}\n", lead->name, seconds() - start,
                beside.steps, beside.misfit());
     reduction = reduced::Reduction(beside, events, model.conventions);
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction.knots());
-    const Eigen::VectorXd field = reduction.series(event::InputKind::field);
-    round(reduction, &none, &field);
+    round(reduction);
     fmt::print("after {:.2f} s\n", seconds() - begin);
   }
 }

@@ -9,7 +9,6 @@
 #include "sim/core/noise.hpp"
 #include "validate/fit/axis.hpp"
 #include "validate/playin/can_run.hpp"
-#include "validate/playin/component.hpp"
 
 namespace swingbank::validate::reduced {
 namespace {
@@ -29,34 +28,21 @@ constexpr double kSameOptimum = 1.0;                          ///< costs closer 
 constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< of an axis in one step
 constexpr double kLengths[] = {0.1, 1.0, 10.0, 1000.0};       ///< damping of the steps that are tried at once
 
-record::Component part_of(event::InputKind input) {
-  return input == event::InputKind::torque ? record::Component::governor : record::Component::exciter;
-}
-
-playin::Made made_by(event::InputKind input) {
-  return input == event::InputKind::torque ? playin::Made::torque : playin::Made::field;
-}
-
-/// Responses of parts of plants, at the knots of all events: [knot][plant].
-MatrixXd responses(const Reduction& reduction, event::InputKind input,
-                   const std::vector<sim::plant::Plant>& parts) {
-  MatrixXd all(reduction.knots(), static_cast<Index>(parts.size()));
-  Index row = 0;
-  for (const Reduction::Event& e : reduction.events()) {
-    all.middleRows(row, e.over_hats.rows()) = e.over_hats * e.loop.run(made_by(input), parts);
-    row += e.over_hats.rows();
-  }
-  return all;
+/// Marks parameters of the submitted plant whose blocks `plant` does not have.
+std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant) {
+  std::vector<char> marks;
+  for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.base, f.id) ? 0 : 1);
+  return marks;
 }
 
 /// One trial.
 class Identifying {
  public:
-  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial, const VectorXd* other)
+  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial)
       : reduction_(reduction),
         input_(input),
         trial_(about(reduction.inference(), trial)),
-        reduced_(reduction, input, other, held_by(reduction.inference(), trial.plant)) {
+        reduced_(reduction, input, held_by(reduction.inference(), trial.plant)) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
       // the records cannot tell a time constant far below the sampling interval from zero
@@ -64,8 +50,7 @@ class Identifying {
         axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduction.step()));
       axes_.push_back(axis);
     }
-    without_ =
-        responses(reduction, input, {playin::component_of(reduction.inference().plant, part_of(input))});
+    without_ = reduction.responses(input, {reduction.inference().base});
   }
 
   std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
@@ -87,9 +72,9 @@ class Identifying {
   /// The trial whose other blocks are as they are at the inference.
   static Trial about(const Inference& inference, Trial trial) {
     for (const auto& f : inference.free)
-      if (const auto id = same_parameter(trial.plant, inference.plant, f.id);
+      if (const auto id = same_parameter(trial.plant, inference.base, f.id);
           id && std::ranges::none_of(trial.free, [&](const auto& own) { return own.id == *id; }))
-        parameter_value(trial.plant, *id) = parameter_value(inference.plant, f.id);
+        parameter_value(trial.plant, *id) = parameter_value(inference.base, f.id);
     return trial;
   }
   struct Start {
@@ -106,9 +91,9 @@ class Identifying {
   }
   /// Time series of the input that these values add to the plant's own controls.
   [[nodiscard]] MatrixXd series(const std::vector<VectorXd>& all) const {
-    std::vector<sim::plant::Plant> parts;
-    for (const VectorXd& z : all) parts.push_back(playin::component_of(plant_at(z), part_of(input_)));
-    MatrixXd made = responses(reduction_, input_, parts);
+    std::vector<sim::plant::Plant> plants;
+    for (const VectorXd& z : all) plants.push_back(plant_at(z));
+    MatrixXd made = reduction_.responses(input_, plants);
     made.colwise() -= without_.col(0);
     return made;
   }
@@ -297,57 +282,15 @@ class Identifying {
   Trial trial_;
   ReducedPlant reduced_;
   std::vector<fit::Axis> axes_;
-  MatrixXd without_;  ///< response of the plant's own controls
+  MatrixXd without_;  ///< response of the submitted plant's own controls
   std::vector<Start> starts_;
 };
 
 }  // namespace
 
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
-                              const VectorXd* other, const IdentifyOptions& options,
-                              const std::vector<std::vector<double>>& known) {
-  return Identifying(reduction, input, trial, other).run(options, known);
-}
-
-std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant) {
-  std::vector<char> marks;
-  for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.plant, f.id) ? 0 : 1);
-  return marks;
-}
-
-std::vector<event::EventState> with_series_of(const sim::plant::PlantUnderTest& tested,
-                                              const sim::plant::Plant& without, event::InputKind input,
-                                              const event::WhitenedEvents& events,
-                                              std::vector<event::EventState> states) {
-  const auto part = part_of(input);
-  for (std::size_t e = 0; e < events.size(); ++e) {
-    states[e].torque = states[e].field = {};
-    const std::vector<double>& samples = events[e].record.t;
-    const playin::SeenAlong run =
-        event::seen_along(tested, events[e], states[e], playin::OpenLoop::looks(samples));
-    const std::vector<playin::Seen>& seen = run.seen;
-    const playin::OpenLoop loop(run, samples, tested.conventions);
-    const MatrixXd own = loop.run(made_by(input), std::array{playin::component_of(without, part)});
-    playin::PiecewiseLinear& series = states[e].input(input);
-    const auto& times = loop.times();
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      const playin::Seen& s = seen[k];
-      const bool ends = k + 1 < seen.size() && seen[k + 1].segment != s.segment;
-      const double t = s.t - (ends ? sim::plant::kBeforeSwitching : 0.0);
-      if (s.segment < times.front().segment || (!series.t.empty() && t <= series.t.back())) continue;
-      while (at + 1 < times.size() && (times[at + 1].segment < s.segment ||
-                                       (times[at + 1].segment == s.segment && times[at + 1].t <= s.t)))
-        ++at;
-      double base = own(static_cast<Index>(at), 0);
-      if (at + 1 < times.size() && times[at + 1].segment == s.segment)
-        base += (own(static_cast<Index>(at) + 1, 0) - base) * (s.t - times[at].t) /
-                (times[at + 1].t - times[at].t);
-      series.t.push_back(t);
-      series.value.push_back((input == event::InputKind::torque ? s.Tm : s.Efd) - base);
-    }
-  }
-  return states;
+                              const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
+  return Identifying(reduction, input, trial).run(options, known);
 }
 
 }  // namespace swingbank::validate::reduced

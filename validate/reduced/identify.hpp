@@ -31,21 +31,10 @@ struct IdentifyOptions {
   int steps = 5;   ///< of each; then the better half takes twice as many, and so on (successive halving)
 };
 
-/// Distinct local minima, best first; none where no draw can be simulated. `other`: time series of the other
-/// input at all knots; null: it stays free. `known`: further starting values of the trial's free parameters.
+/// Distinct local minima, best first; none where no draw can be simulated. `known`: further starting values
+/// of the trial's free parameters.
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
-                              const Eigen::VectorXd* other, const IdentifyOptions& options = {},
+                              const IdentifyOptions& options = {},
                               const std::vector<std::vector<double>>& known = {});
-
-/// Marks parameters of the inference's plant whose blocks `plant` does not have.
-std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant);
-
-/// The events' states, with the difference between the controls of the tested plant and those of `without` as
-/// the input's time series; both see the tested plant's signals. The other input becomes zero. Throws
-/// InputError where the tested plant cannot be simulated.
-std::vector<event::EventState> with_series_of(const sim::plant::PlantUnderTest& tested,
-                                              const sim::plant::Plant& without, event::InputKind input,
-                                              const event::WhitenedEvents& events,
-                                              std::vector<event::EventState> states);
 
 }  // namespace swingbank::validate::reduced

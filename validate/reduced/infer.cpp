@@ -56,15 +56,15 @@ class Inferring {
     for (const auto& f : free) axes_.push_back(fit::make_axis(tested.plant, f));
   }
 
-  /// From the submitted model, or from states whose inputs are fixed.
-  void begin(const sim::plant::Plant& plant, std::vector<event::EventState> states) {
-    inputs_fixed_ = !states.empty();
-    at_.z.resize(static_cast<Index>(axes_.size()));
-    for (std::size_t i = 0; i < axes_.size(); ++i)
-      at_.z[static_cast<Index>(i)] = axes_[i].z(parameter_value(plant, free_[i].id));
-    states.resize(events_.size());
+  void begin(const sim::plant::Plant& plant, const std::vector<event::EventState>& states) {
+    simulated_ = plant;
+    at_.z = VectorXd::Zero(static_cast<Index>(axes_.size()));
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      ids_.push_back(same_parameter(plant, tested_.plant, free_[i].id));
+      if (ids_[i]) at_.z[static_cast<Index>(i)] = axes_[i].z(parameter_value(plant, *ids_[i]));
+    }
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      event::EventState& s = states[e];
+      event::EventState s = states.empty() ? event::EventState{} : states[e];
       if (s.switchings.empty())
         for (const auto& w : events_[e].switchings) s.switchings.push_back(w.time);
       const auto numbers = fit::state_of(events_[e], s);
@@ -73,7 +73,6 @@ class Inferring {
       at_.torques.push_back(VectorXd::Zero(static_cast<Index>(knots_.back().t.size())));
       at_.fields.push_back(at_.torques.back());
     }
-    given_ = std::move(states);
   }
 
   Inference run(int steps) {
@@ -107,6 +106,9 @@ class Inferring {
     Inference found;
     found.inputs = inputs_;
     found.criterion = cost + occam(normal_of(slopes, at_));
+    found.base = tested_.plant;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      parameter_value(found.base, free_[i].id) = axes_[i].value(at_.z[static_cast<Index>(i)]);
     found.plant = plant_at(at_.z);
     found.free = free_;
     found.offset = at_.z;
@@ -136,22 +138,16 @@ class Inferring {
   };
 
   [[nodiscard]] sim::plant::Plant plant_at(const VectorXd& z) const {
-    sim::plant::Plant plant = tested_.plant;
+    sim::plant::Plant plant = simulated_;
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      parameter_value(plant, free_[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
+      if (ids_[i]) parameter_value(plant, *ids_[i]) = axes_[i].value(z[static_cast<Index>(i)]);
     return plant;
   }
   [[nodiscard]] event::EventState state_at(const Point& p, std::size_t e) const {
     event::EventState s = fit::event_state(events_[e], p.states[e].data());
     const Knots knots = knots_of_moved(e, s);
-    if (inputs_fixed_) {
-      s.torque = given_[e].torque;
-      s.field = given_[e].field;
-      s.torque.knots = s.field.knots = knots.t;
-    } else {
-      s.torque = {knots.t, {p.torques[e].begin(), p.torques[e].end()}};
-      s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
-    }
+    if (inputs_.torque) s.torque = {knots.t, {p.torques[e].begin(), p.torques[e].end()}};
+    if (inputs_.field) s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
     return s;
   }
   /// Knots at switching times move with them.
@@ -177,14 +173,21 @@ class Inferring {
     const event::FitEvent& event = events_[e];
     const event::EventState state = state_at(p, e);
     std::vector<playin::Direction> along;
-    for (std::size_t i = 0; i < axes_.size(); ++i)
+    std::vector<Index> numbers;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      if (!ids_[i]) continue;
+      numbers.push_back(static_cast<Index>(i));
       along.push_back({.kind = Kind::parameter,
-                       .parameter = free_[i].id,
+                       .parameter = *ids_[i],
                        .scale = axes_[i].slope(p.z[static_cast<Index>(i)])});
+    }
     std::ranges::move(fit::state_directions(event), std::back_inserter(along));
     const Index own = p.states[e].size(), knots = p.torques[e].size();
+    std::vector<Kind> kinds;
+    if (inputs_.torque) kinds.push_back(Kind::torque);
+    if (inputs_.field) kinds.push_back(Kind::field);
     for (int k = 0; k < knots; ++k)  // in the order in which they begin
-      for (const Kind kind : {Kind::torque, Kind::field}) along.push_back({.kind = kind, .index = k});
+      for (const Kind kind : kinds) along.push_back({.kind = kind, .index = k});
     const playin::Response r =
         event::play({plant, tested_.conventions}, event, state, along, {.linear_slopes = true});
     event::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
@@ -194,11 +197,16 @@ class Inferring {
     events_.noise(e).whiten(columns);
     EventSlopes slopes;
     slopes.knots = knots_of_moved(e, state);
-    const auto n = static_cast<Index>(axes_.size());
-    slopes.plant = columns.leftCols(n);
+    const auto n = static_cast<Index>(numbers.size()), width = static_cast<Index>(kinds.size());
+    slopes.plant = MatrixXd::Zero(columns.rows(), static_cast<Index>(axes_.size()));
+    slopes.plant(Eigen::all, numbers) = columns.leftCols(n);
     slopes.state = columns.middleCols(n, own);
-    slopes.torque = columns(Eigen::all, Eigen::seqN(n + own, knots, 2));
-    slopes.field = columns(Eigen::all, Eigen::seqN(n + own + 1, knots, 2));
+    slopes.torque.resize(columns.rows(), 0);
+    slopes.field.resize(columns.rows(), 0);
+    Index first = n + own;
+    for (const Kind kind : kinds)
+      (kind == Kind::torque ? slopes.torque : slopes.field) =
+          columns(Eigen::all, Eigen::seqN(first++, knots, width));
     slopes.residual = columns.rightCols(1);
     slopes.state_at = p.states[e];
     return slopes;
@@ -269,10 +277,9 @@ class Inferring {
       }
     for (std::size_t e = 0; e < slopes.size(); ++e) {
       const EventSlopes& s = slopes[e];
-      const Index states = s.state.cols(), torques = inputs_.torque ? s.torque.cols() : 0,
-                  fields = inputs_.field ? s.field.cols() : 0, own = states + torques + fields;
+      const Index states = s.state.cols(), torques = s.torque.cols(), own = states + torques + s.field.cols();
       MatrixXd all(s.residual.size(), n + own);
-      all << s.plant, s.state, s.torque.leftCols(torques), s.field.leftCols(fields);
+      all << s.plant, s.state, s.torque, s.field;
       MatrixXd products = MatrixXd::Zero(n + own, n + own);
       products.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
       products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
@@ -336,11 +343,7 @@ class Inferring {
       const VectorXd own = solvers[e].solve(-normal.own_gradient[e] - normal.cross[e] * step);
       const Index states = at_.states[e].size(), knots = at_.torques[e].size();
       to.states[e] += own.head(states);
-      for (std::size_t k = 0; k < events_[e].switchings.size(); ++k) {
-        const double room = events_[e].switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
-        double& switching = to.states[e][static_cast<Index>(k)];
-        switching = std::clamp(switching, -room, room);
-      }
+      keep_in_range(events_[e], to.states[e]);
       if (inputs_.torque) to.torques[e] += own.segment(states, knots);
       if (inputs_.field) to.fields[e] += own.tail(knots);
     }
@@ -355,8 +358,8 @@ class Inferring {
   int threads_;
   std::vector<fit::Axis> axes_;
   std::vector<Knots> knots_;
-  std::vector<event::EventState> given_;  ///< whose inputs stand
-  bool inputs_fixed_ = false;
+  sim::plant::Plant simulated_;
+  std::vector<std::optional<sim::plant::ParameterId>> ids_;  ///< of the free parameters in it
   Point at_;
 };
 
@@ -368,6 +371,14 @@ std::vector<double> own_priors(const event::FitEvent& event) {
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     priors[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
   return priors;
+}
+
+void keep_in_range(const event::FitEvent& event, VectorXd& state) {
+  for (std::size_t k = 0; k < event.switchings.size(); ++k) {
+    const double room = event.switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
+    double& switching = state[static_cast<Index>(k)];
+    switching = std::clamp(switching, -room, room);
+  }
 }
 
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {
@@ -392,12 +403,12 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedE
   return inferring.run(steps);
 }
 
-Inference infer_beside(const sim::plant::PlantUnderTest& tested, const sim::plant::Plant& plant,
+Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
                        const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
-                       std::vector<event::EventState> states, int threads, int steps) {
-  Inferring inferring(tested, events, free, {}, threads);
-  inferring.begin(plant, std::move(states));
-  return inferring.run(steps);
+                       const std::vector<event::EventState>& states, Inputs inputs, int threads) {
+  Inferring inferring(tested, events, free, inputs, threads);
+  inferring.begin(plant, states);
+  return inferring.run(0);
 }
 
 }  // namespace swingbank::validate::reduced

@@ -22,7 +22,7 @@ struct Knots {
 /// units (fit/states.hpp), inputs in pu.
 struct EventSlopes {
   Knots knots;
-  Eigen::MatrixXd plant, state, torque, field;
+  Eigen::MatrixXd plant, state, torque, field;  ///< without columns: of an input that is not asked for
   Eigen::VectorXd residual;
   Eigen::VectorXd state_at;  ///< estimate of the state, in its units
 };
@@ -34,8 +34,10 @@ struct Inputs {
 
 struct Inference {
   Inputs inputs;
-  sim::plant::Plant plant;  ///< with the estimated values
-  std::vector<fit::FreeParameter> free;
+  /// The submitted plant with the estimated values, and the plant that was simulated. They differ where that
+  /// one has a block more.
+  sim::plant::Plant base, plant;
+  std::vector<fit::FreeParameter> free;   ///< of `base`
   Eigen::VectorXd offset;                 ///< of the free parameters from their prior mean, on their axes
   std::vector<event::EventState> states;  ///< with both inputs
   std::vector<EventSlopes> events;
@@ -57,13 +59,17 @@ Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 /// Prior standard deviation of each number of an event's state, in its units: of a switching time its
 /// uncertainty.
 std::vector<double> own_priors(const event::FitEvent& event);
+/// Keeps the switching times of an event's state within their uncertainties.
+void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
 
 /// `steps`: Gauss-Newton steps at most. Throws InputError where the model as submitted cannot be run.
 Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads, int steps = 5);
-/// The same from another plant, with inputs that are given and fixed.
-Inference infer_beside(const sim::plant::PlantUnderTest& tested, const sim::plant::Plant& plant,
+/// The same about `plant` as it stands, which is the tested plant or has another block in addition or in its
+/// place, in these states, with Jacobians by the inputs asked for, which are zero. Throws InputError where it
+/// cannot be run.
+Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
                        const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
-                       std::vector<event::EventState> states, int threads, int steps = 5);
+                       const std::vector<event::EventState>& states, Inputs inputs, int threads);
 
 }  // namespace swingbank::validate::reduced

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "validate/fit/axis.hpp"
+#include "validate/fit/states.hpp"
+#include "validate/playin/component.hpp"
 
 namespace swingbank::validate::reduced {
 namespace {
@@ -64,6 +66,42 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
   return times;
 }
 
+/// Switching times that would leave their range where the event's state fits best, and their moves to its
+/// end.
+std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event, const EventSlopes& slopes,
+                                                     const std::vector<double>& priors) {
+  const Index n = slopes.state.cols();
+  MatrixXd curvature = slopes.state.transpose() * slopes.state;
+  VectorXd gradient = slopes.state.transpose() * slopes.residual;
+  for (Index k = 0; k < n; ++k)
+    if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
+      curvature(k, k) += 1 / (b * b);
+      gradient[k] += slopes.state_at[k] / (b * b);
+    }
+  std::vector<std::pair<Index, double>> held;
+  for (bool changed = true; changed;) {
+    changed = false;
+    MatrixXd left = curvature;
+    VectorXd right = gradient;
+    for (const auto& [k, move] : held) {
+      right += curvature.col(k) * move;
+      left.row(k).setZero();
+      left.col(k).setZero();
+      left(k, k) = 1;
+    }
+    for (const auto& [k, move] : held) right[k] = -move;
+    const VectorXd best = slopes.state_at - left.ldlt().solve(right);
+    VectorXd kept = best;
+    keep_in_range(event, kept);
+    for (Index k = 0; k < n; ++k)
+      if (kept[k] != best[k] && std::ranges::count(held, k, &std::pair<Index, double>::first) == 0) {
+        held.emplace_back(k, kept[k] - slopes.state_at[k]);
+        changed = true;
+      }
+  }
+  return held;
+}
+
 VectorXd at_times(const playin::PiecewiseLinear& input,
                   const std::vector<playin::OpenLoop::TimePoint>& times) {
   VectorXd values(static_cast<Index>(times.size()));
@@ -80,37 +118,101 @@ VectorXd at_times(const playin::PiecewiseLinear& input,
 Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
                      const sim::Conventions& conventions)
     : inference_(std::move(inference)), conventions_(conventions) {
-  for (std::size_t e = 0; e < events.size(); ++e) knots_ += inference_.events[e].torque.cols();
   step_ = events.front().record.step();
-  torque_.resize(knots_);
-  field_.resize(knots_);
-  Index row = 0;
   for (std::size_t e = 0; e < events.size(); ++e) {
-    const EventSlopes& s = inference_.events[e];
-    const std::vector<double> times = steps_between(s.knots, step_);
+    const Knots& knots = inference_.events[e].knots;
+    const std::vector<double> times = steps_between(knots, step_);
     playin::OpenLoop loop(event::seen_along({inference_.plant, conventions}, events[e], inference_.states[e],
                                             playin::OpenLoop::looks(times)),
                           times, conventions);
-    const Sparse hats = over_hats(s.knots, loop.times());
-    const Index states = s.state.cols(), knots = s.torque.cols(), values = s.residual.size();
-    const VectorXd torque = hats * at_times(inference_.states[e].torque, loop.times()),
-                   field = hats * at_times(inference_.states[e].field, loop.times());
-    torque_.segment(row, knots) = torque;
-    field_.segment(row, knots) = field;
-    row += knots;
-    MatrixXd all = MatrixXd::Zero(values + states, states + s.plant.cols() + 2 * knots + 1);
-    all.topRows(values) << s.state, s.plant, s.torque, s.field,
-        s.residual - s.torque * torque - s.field * field;
-    const auto priors = own_priors(events[e]);
+    Sparse hats = over_hats(knots, loop.times());
+    events_.push_back({std::move(loop), std::move(hats), {}, {}, knots});
+    knots_ += static_cast<Index>(knots.t.size());
+  }
+  const auto beside = [&](InputKind kind) {
+    VectorXd series = responses(kind, {inference_.plant}) - responses(kind, {inference_.base});
+    Index row = 0;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const Sparse& hats = events_[e].over_hats;
+      const event::EventState& state = inference_.states[e];
+      series.segment(row, hats.rows()) +=
+          hats * at_times(kind == InputKind::torque ? state.torque : state.field, events_[e].loop.times());
+      row += hats.rows();
+    }
+    return series;
+  };
+  if (inference_.inputs.torque) torque_ = beside(InputKind::torque);
+  if (inference_.inputs.field) field_ = beside(InputKind::field);
+  Index row = 0;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const EventSlopes& s = inference_.events[e];
+    const Index states = s.state.cols(), values = s.residual.size(), K = events_[e].over_hats.rows();
+    VectorXd residual = s.residual;
+    if (inference_.inputs.torque) residual -= s.torque * torque_.segment(row, K);
+    if (inference_.inputs.field) residual -= s.field * field_.segment(row, K);
+    row += K;
+    MatrixXd all =
+        MatrixXd::Zero(values + states, states + s.plant.cols() + s.torque.cols() + s.field.cols() + 1);
+    all.topRows(values) << s.state, s.plant, s.torque, s.field, residual;
+    const auto priors = fit::state_beliefs(events[e]);
     for (Index k = 0; k < states; ++k)
       if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
         all(values + k, k) = 1 / b;
         all(values + k, all.cols() - 1) = s.state_at[k] / b;
       }
-    events_.push_back({std::move(loop), hats, triangle(all, states), s.knots});
+    for (const auto& [k, move] : held_at_bounds(events[e], s, priors)) {
+      all.rightCols(1) += all.col(k) * move;
+      all.col(k).setZero();
+      all.row(values + k).setZero();
+      all(values + k, k) = 1;
+      all(values + k, all.cols() - 1) = -move;
+    }
+    const Eigen::HouseholderQR<MatrixXd> qr(all);
+    const MatrixXd whole = qr.matrixQR().topRows(all.cols()).triangularView<Eigen::Upper>();
+    const Index left = all.cols() - states;
+    events_[e].triangle = whole.bottomRightCorner(left, left);
+    events_[e].by_state = whole.topRows(states);
   }
   torque_gain_ = find_gain(events, InputKind::torque);
   field_gain_ = find_gain(events, InputKind::field);
+}
+
+MatrixXd Reduction::responses(InputKind kind, const std::vector<sim::plant::Plant>& plants) const {
+  const bool torque = kind == InputKind::torque;
+  std::vector<sim::plant::Plant> parts;
+  for (const auto& plant : plants)
+    parts.push_back(
+        playin::component_of(plant, torque ? record::Component::governor : record::Component::exciter));
+  MatrixXd all(knots_, static_cast<Index>(parts.size()));
+  Index row = 0;
+  for (const Event& e : events_) {
+    all.middleRows(row, e.over_hats.rows()) =
+        e.over_hats * e.loop.run(torque ? playin::Made::torque : playin::Made::field, parts);
+    row += e.over_hats.rows();
+  }
+  return all;
+}
+
+std::vector<VectorXd> Reduction::states_at(const event::WhitenedEvents& events, InputKind kind,
+                                           const VectorXd& plant, const VectorXd& series) const {
+  const Gain g = gain(kind);
+  const double moved = g.number >= 0 ? g.exponent * plant[g.number] : 0.0;
+  std::vector<VectorXd> states;
+  Index row = 0;
+  for (std::size_t e = 0; e < events_.size(); ++e) {
+    const MatrixXd& by = events_[e].by_state;
+    const Index n = by.rows(), K = events_[e].over_hats.rows();
+    const VectorXd explained =
+        std::exp(moved) * series.segment(row, K) - moved * this->series(kind).segment(row, K);
+    const VectorXd right = by.rightCols(1) + by.middleCols(n, plant.size()) * plant +
+                           by.middleCols(n + plant.size(), K) * explained;
+    const VectorXd move = -by.leftCols(n).triangularView<Eigen::Upper>().solve(right);
+    VectorXd to = inference_.events[e].state_at + move;
+    keep_in_range(events[e], to);
+    states.push_back(std::move(to));
+    row += K;
+  }
+  return states;
 }
 
 Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputKind kind) const {
@@ -119,13 +221,13 @@ Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputK
     return event::rates_by_input({plant, conventions_}, events.front(), inference_.states.front(), kind)
         .norm();
   };
-  const double still = rates(inference_.plant);
+  const double still = rates(inference_.base);
   Gain gain;
   for (std::size_t i = 0; i < inference_.free.size(); ++i) {
     const auto& f = inference_.free[i];
-    const fit::Axis axis = fit::make_axis(inference_.plant, f);
+    const fit::Axis axis = fit::make_axis(inference_.base, f);
     if (f.id.block != sim::plant::kMachineBlock || !axis.logarithmic) continue;
-    sim::plant::Plant moved = inference_.plant;
+    sim::plant::Plant moved = inference_.base;
     parameter_value(moved, f.id) = axis.value(kGainMove);
     const double exponent = std::log(rates(moved) / still) / kGainMove;
     if (std::abs(exponent) > std::max(kNoExponent, std::abs(gain.exponent)))
@@ -134,8 +236,7 @@ Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputK
   return gain;
 }
 
-ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const VectorXd* other,
-                           const std::vector<char>& held)
+ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std::vector<char>& held)
     : gain_(reduction.gain(kind)) {
   const Inference& at = reduction.inference();
   const auto n = static_cast<Index>(at.free.size());
@@ -168,20 +269,16 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const Vec
     const MatrixXd& R = e.triangle;
     const auto K = static_cast<Index>(e.knots.t.size());
     MatrixXd plant = R.leftCols(n);
-    const MatrixXd explained = R.middleCols(n + (field ? K : 0), K),
-                   rest = R.middleCols(n + (field ? 0 : K), K);
+    const bool both = at.inputs.torque && at.inputs.field;
+    const MatrixXd explained = R.middleCols(n + (both && field ? K : 0), K),
+                   rest = R.middleCols(n + (both && !field ? K : 0), both ? K : 0);
     // derivative by the gain's parameter at constant product of gain and input
     if (gain_.number >= 0)
       plant.col(gain_.number) -= gain_.exponent * (explained * reduction.series(kind).segment(row, K));
-    MatrixXd all;
-    Index first = 0;
-    if (other) {
-      all.resize(R.rows(), n + K + 1);
-      all << plant, explained, R.rightCols(1) + rest * other->segment(row, K);
-    } else {
-      first = K;
-      all = MatrixXd::Zero(R.rows() + K, 2 * K + n + 1);
-      all.topRows(R.rows()) << rest, plant, explained, R.rightCols(1);
+    const Index first = rest.cols();
+    MatrixXd all = MatrixXd::Zero(R.rows() + first, first + n + K + 1);
+    all.topRows(R.rows()) << rest, plant, explained, R.rightCols(1);
+    if (both) {
       const VectorXd weight = walk_weights(e.knots, field ? InputKind::torque : InputKind::field);
       for (Index k = 0; k < K; ++k) {
         all(R.rows() + k, k) = weight[k];

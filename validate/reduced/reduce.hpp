@@ -13,7 +13,7 @@
 
 namespace swingbank::validate::reduced {
 
-/// Both inputs of all events.
+/// Of the inputs that an inference has, in all events.
 class Reduction {
  public:
   Reduction(Inference inference, const event::WhitenedEvents& events, const sim::Conventions& conventions);
@@ -25,8 +25,11 @@ class Reduction {
     playin::OpenLoop loop;  ///< of the plant's controls
     Eigen::SparseMatrix<double, Eigen::RowMajor>
         over_hats;  ///< mean over each knot's hat function: [knot][time point]
-    /// Rows of [plant | torque | field | residual without either input].
+    /// Rows of [plant | torque | field | residual without either input], once the event's state is
+    /// eliminated.
     Eigen::MatrixXd triangle;
+    /// The same of [state | plant | torque | field | residual]: what the state then is.
+    Eigen::MatrixXd by_state;
     Knots knots;
   };
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
@@ -34,10 +37,20 @@ class Reduction {
   [[nodiscard]] Eigen::Index knots() const { return knots_; }
   /// Between two samples [s].
   [[nodiscard]] double step() const { return step_; }
-  /// An input as inferred, at the knots of all events.
+  /// What the controls of plants with the same blocks make of the signals of the simulated plant, at all
+  /// knots: [knot][plant].
+  [[nodiscard]] Eigen::MatrixXd responses(event::InputKind kind,
+                                          const std::vector<sim::plant::Plant>& plants) const;
+  /// What the simulated plant has of an input beside the controls of the submitted plant, at all knots: as
+  /// inferred, or what its other block makes.
   [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
+  /// The events' states that minimise the cost at these changes of the plant's parameters, with this time
+  /// series of the only input, in the states' units.
+  [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const event::WhitenedEvents& events,
+                                                       event::InputKind kind, const Eigen::VectorXd& plant,
+                                                       const Eigen::VectorXd& series) const;
   /// The plant parameter that scales an input, and its exponent.
   struct Gain {
     Eigen::Index number = -1;  ///< -1: none is
@@ -61,10 +74,9 @@ class Reduction {
 /// Cost of one input's time series.
 class ReducedPlant {
  public:
-  /// `other`: time series of the other input at the knots of all events; null: it stays free. `held` marks
-  /// plant parameters that are fixed because their blocks are absent; empty: none.
-  ReducedPlant(const Reduction& reduction, event::InputKind kind, const Eigen::VectorXd* other,
-               const std::vector<char>& held = {});
+  /// The other input stays free where the reduction has it. `held` marks plant parameters that are fixed
+  /// because their blocks are absent; empty: none.
+  ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {});
 
   /// Cost of each time series [knot of all events][series], each with its change of the gain's parameter.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
