@@ -15,6 +15,7 @@
 #include "validate/diagnose/detail/base.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/rivals.hpp"
 #include "validate/hypothesis/search.hpp"
 
@@ -167,6 +168,7 @@ class Diagnoser {
     });
     if (stopped()) throw Interrupted{};  // some fits still have the former noise
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
+    hypothesis::place_unfitted(result_.ranked);
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
     return true;
   }

@@ -29,8 +29,10 @@ struct Judgement {
   double gain = 0;                ///< criterion(base) - criterion(with it): evidence in its favour
   double size = 0;                ///< what it adds to the answer: norm of the change / noise, per sqrt(value)
   std::vector<HeldOut> held_out;  ///< empty where judging was not worth it
-  bool fitted = true;             ///< false: the score test gave no hope; `fit` is without it
-  bool looked_at = false;         ///< elsewhere (try_basins)
+  bool fitted = true;             ///< false: it gave no hope; `fit` is without it
+  /// Of one that was identified and not fitted: chi2 that it leaves more than the best one.
+  double behind = 0;
+  bool looked_at = false;  ///< from all over its parameters (identified, try_basins)
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
 };

@@ -65,7 +65,7 @@ void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, con
   const fit::Fit leader =
       (*std::ranges::max_element(some, {}, [](const Judgement* j) { return j->gain; }))->fit;
   each(stage, some, event::Phase::further_starts, report, [&](Judgement& j) {
-    try_further(stage, leader, j);
+    if (!j.looked_at) try_further(stage, leader, j);
     fit_on(stage, j);
     grow(stage.events, stage.spread, j.hypothesis, j.fit);
   });
@@ -77,7 +77,7 @@ void give_rivals_a_chance(const Stage& stage, std::vector<Judgement>& tried, con
   look(stage,
        those(tried,
              [&](const Judgement& j) {
-               return rivals(tried.front(), j) && (j.gain > reach || nearly_fits(j));
+               return !j.looked_at && rivals(tried.front(), j) && (j.gain > reach || nearly_fits(j));
              }),
        report);
   best_first(tried);

@@ -9,6 +9,7 @@
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/hypothesis/detail/starts.hpp"
+#include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/posterior.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -31,8 +32,13 @@ const fit::FitOptions kBriefly = {.lenient = true, .brief = true, .errors = fals
 
 class Searcher {
  public:
-  Searcher(const Stage& stage, const event::Progress& report)
-      : stage_(stage), report_(report), starts_(stage) {}
+  /// `known`: those that were tried already, the best first.
+  Searcher(const Stage& stage, const event::Progress& report, const std::vector<Judgement>& known)
+      : stage_(stage), report_(report), starts_(stage) {
+    if (known.empty()) return;
+    known_ = known.front().gain;
+    known_cost_ = fit::penalised(known.front().fit);
+  }
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
     const auto candidates = screened(std::move(all));
@@ -118,8 +124,8 @@ class Searcher {
       fits.push_back(attempt(c, c.starts[k], o));
   }
   /// The cost from which a fit is out of reach of the best one so far.
-  static double in_reach(const std::vector<std::vector<fit::Fit>>& begun) {
-    double least = std::numeric_limits<double>::infinity();
+  [[nodiscard]] double in_reach(const std::vector<std::vector<fit::Fit>>& begun) const {
+    double least = known_cost_;
     for (const auto& fits : begun)
       for (const fit::Fit& f : fits) least = std::min(least, fit::penalised(f));
     return least + out_of_reach();
@@ -140,7 +146,7 @@ class Searcher {
     std::vector<char> onward;
     for (std::size_t i = 0; i < gains.size(); ++i) {
       const auto leader = static_cast<std::size_t>(best - gains.begin());
-      onward.push_back(FittedOn{*best, candidates[leader].hypothesis.slot, share}(
+      onward.push_back(FittedOn{std::max(*best, known_), candidates[leader].hypothesis.slot, share}(
           gains[i], candidates[i].hypothesis.slot));
     }
     return onward;
@@ -157,7 +163,7 @@ class Searcher {
                           : h.side == Side::excitation ? stage_.by_field
                                                        : std::numeric_limits<double>::infinity();
       const int slot = candidates[static_cast<std::size_t>(best - begun.begin())].hypothesis.slot;
-      allowed.push_back(FittedOn{gain_of(*best), slot}(most, h.slot));
+      allowed.push_back(FittedOn{std::max(gain_of(*best), known_), slot}(most, h.slot));
     }
     return allowed;
   }
@@ -286,13 +292,24 @@ class Searcher {
   const Stage& stage_;
   const event::Progress& report_;
   StartFinder starts_;
+  double known_ =
+             -std::numeric_limits<double>::infinity(),  ///< gain and cost of the best that was tried already
+      known_cost_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const event::Progress& report) {
-  return Searcher(stage, report).run(std::move(all));
+  const auto others =
+      std::ranges::stable_partition(all, [&](const Hypothesis& h) { return can_be_identified(stage, h); });
+  const auto begin = std::make_move_iterator(all.begin()), middle = std::make_move_iterator(others.begin()),
+             end = std::make_move_iterator(others.end());
+  std::vector<Judgement> tried = identified(stage, {begin, middle}, report);
+  std::ranges::move(Searcher(stage, report, tried).run({middle, end}), std::back_inserter(tried));
+  place_unfitted(tried);
+  std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
+  return tried;
 }
 
 }  // namespace swingbank::validate::hypothesis

@@ -26,6 +26,10 @@ struct Candidate {
   double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
 
+/// The plant that beliefs are about: the hypothesis at its first start, and the parameters of earlier
+/// stages at the values that were believed of them.
+sim::plant::Plant believed(const Stage& stage, const Hypothesis& h);
+
 class StartFinder {
  public:
   explicit StartFinder(const Stage& stage);
@@ -37,9 +41,6 @@ class StartFinder {
   [[nodiscard]] std::vector<double> unbent(const Hypothesis& h) const;
 
  private:
-  /// The plant that beliefs are about: the hypothesis at its first start, and the parameters of earlier
-  /// stages at the values that were believed of them.
-  [[nodiscard]] sim::plant::Plant believed(const Hypothesis& h) const;
   /// A limiter may wait for more than its standard values let it meet in these records. Then draws that act
   /// become its starts. Returns false where the starts stay as they were.
   bool provoke(Hypothesis& h) const;

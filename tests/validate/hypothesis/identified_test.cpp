@@ -1,0 +1,73 @@
+// Controls identified alone, then fitted with the whole plant.
+#include "validate/hypothesis/identified.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/validate/playin/support.hpp"
+#include "validate/event/event.hpp"
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+/// The example of README: four faults at a plant whose model has no exciter.
+class IdentifiedExciter : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::vector<Judgement> found(const std::vector<std::string>& names) const {
+    auto all = all_hypotheses(model_.under_test(), model_.library);
+    std::erase_if(all, [&](const Hypothesis& h) { return std::ranges::count(names, h.name) == 0; });
+    return identified(stage_, std::move(all), {});
+  }
+  static std::vector<record::Record> records(const plant::PlantModel& model) {
+    std::vector<record::Record> all;
+    for (int k = 1; k <= 4; ++k)
+      all.push_back(record::read_record(
+          test::source("configs/records/record-example/avr_ev" + std::to_string(k) + ".csv"),
+          model.record_base));
+    return all;
+  }
+  const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const event::WhitenedEvents events_ =
+      event::prepare_events(model_, records(model_), {.measured_states = false});
+  const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
+  const Stage stage_{.events = events_,
+                     .plant = model_.plant,
+                     .conventions = model_.conventions,
+                     .library = model_.library,
+                     .fit = base_};
+};
+
+TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
+  const auto all = found({"SEXS", "ESST4B"});
+  ASSERT_EQ(all.size(), 2U);
+  const Judgement& best = all.front();
+  EXPECT_EQ(best.hypothesis.name, "SEXS");
+  ASSERT_TRUE(best.fitted);
+  EXPECT_LT(best.fit.misfit(), 1.05);
+  // values of the plant that made the records
+  const auto free = free_of(best.hypothesis, stage_.spread);
+  fit::FitOptions truth{.iterations = 20, .lenient = true};
+  for (const auto& e : best.fit.events) truth.start.push_back(e.state);
+  truth.values = fit::values_of(best.hypothesis.plant, free);
+  const fit::Fit there = fit::fit({best.hypothesis.plant, best.hypothesis.conventions}, events_, free, truth);
+  EXPECT_LT(fit::penalised(best.fit), fit::penalised(there) + 5);
+  // what is far behind is not fitted, and says so
+  EXPECT_FALSE(all.back().fitted);
+  EXPECT_GT(all.back().behind, 1000);
+  EXPECT_NE(all.back().why_not.find("more of chi2 than SEXS"), std::string::npos) << all.back().why_not;
+}
+
+TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
+  const Judgement first = found({"SEXS"}).front();
+  const Stage then = after(stage_, first);
+  auto all = all_hypotheses(then.under_test(), then.library);
+  std::erase_if(all, [&](const Hypothesis& h) { return h.name != "IEEEVC" && h.name != "TGOV1"; });
+  ASSERT_EQ(all.size(), 2U);
+  for (const Judgement& j : identified(then, all, {})) {
+    EXPECT_FALSE(j.fitted) << j.hypothesis.name;
+    EXPECT_LT(j.gain, thresholds::evidence.second / 2) << j.hypothesis.name;
+  }
+}
+
+}  // namespace
+}  // namespace swingbank::validate::hypothesis

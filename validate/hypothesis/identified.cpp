@@ -1,0 +1,263 @@
+#include "validate/hypothesis/identified.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
+#include "validate/hypothesis/detail/starts.hpp"
+#include "validate/hypothesis/polish.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using event::InputKind;
+
+/// So many of the best are fitted with the whole plant, to find the leader.
+constexpr std::size_t kLeading = 3;
+/// Optima of one hypothesis that are kept.
+constexpr std::size_t kOptima = 2;
+
+std::uint64_t stream_of(const std::string& name) {  // FNV-1a
+  std::uint64_t sum = 14695981039346656037u;
+  for (const char c : name) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return sum;
+}
+
+class Identifying {
+ public:
+  Identifying(const Stage& stage, const event::Progress& report)
+      : stage_(stage), report_(report), polish_(stage), none_(fit::penalised(stage.fit)) {}
+
+  std::vector<Judgement> run(std::vector<Hypothesis> all) {
+    for (Hypothesis& h : all) {
+      reduced::Trial trial{believed(stage_, h), h.free, stream_of(full_name(h))};
+      tried_.push_back({std::move(h), std::move(trial)});
+    }
+    begin();
+    identify();
+    if (!worth_a_fit()) return judgements();
+    if (Identified* leader = fitted_leader(); leader && linearise_about(*leader)) identify();
+    fit_in_reach();
+    return judgements();
+  }
+
+ private:
+  /// What the blocks of one side are identified against; null: nothing of this side can be what is missing.
+  using Reduced = Polish::Reduced;
+
+  /// Where the stage nearly fits, the plant is linear about its fit. Where it does not, its inputs are
+  /// inferred.
+  void begin() {
+    if (stage_.fit.misfit() >= thresholds::noise.measurable) return infer();
+    std::vector<event::EventState> states;
+    for (const auto& e : stage_.fit.events) states.push_back(e.state);
+    for (const InputKind kind : {InputKind::torque, InputKind::field})
+      reduce(reduced::linear_about(stage_.fit.plant, stage_.under_test(), stage_.events, polish_.free(),
+                                   states, Polish::only(kind), stage_.threads));
+    none_ = reduced::ReducedPlant(*torque_, InputKind::torque)
+                .costs(Eigen::VectorXd::Zero(torque_->knots()), Eigen::VectorXd::Zero(1))[0];
+  }
+  /// With torque, with field voltage, and with both free: the evidence tells whether one is enough.
+  void infer() {
+    constexpr std::array kInputs = {reduced::Inputs{true, false}, reduced::Inputs{false, true},
+                                    reduced::Inputs{true, true}};
+    std::array<reduced::Inference, kInputs.size()> found;
+    in_parallel(
+        kInputs.size(),
+        [&](std::size_t i) {
+          found[i] = reduced::infer(stage_.under_test(), stage_.events, polish_.free(), kInputs[i], 1);
+        },
+        [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, stage_.threads);
+    if (found[2].criterion < std::min(found[0].criterion, found[1].criterion)) return reduce(found[2]);
+    // the better one alone; the other, too, where it comes near
+    const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i].chi2; };
+    const FittedOn allowed{std::max(takes_off(0), takes_off(1)), -1};
+    for (const std::size_t i : {0, 1})
+      if (found[i].criterion < found[1 - i].criterion || allowed(takes_off(i), -1)) reduce(found[i]);
+  }
+  void reduce(const reduced::Inference& found) {
+    const auto reduction =
+        std::make_shared<const reduced::Reduction>(found, stage_.events, stage_.conventions);
+    if (found.inputs.torque) torque_ = reduction;
+    if (found.inputs.field) field_ = reduction;
+  }
+  [[nodiscard]] const Reduced& side_of(const Identified& h) const {
+    return h.input() == InputKind::torque ? torque_ : field_;
+  }
+  /// Whether something is missing on the other side as well.
+  static bool other_is_free(const Reduced& side) {
+    return side->inference().inputs.torque && side->inference().inputs.field;
+  }
+  void identify() {
+    const Identified* leader = least();
+    const bool near = leader && nearly_fits(*leader);
+    in_parallel(
+        tried_.size(),
+        [&](std::size_t i) {
+          if (!stage_.stopped())
+            until_interrupted([&] {
+              if (!near || nearly_fits(tried_[i])) identify(tried_[i]);
+            });
+        },
+        [&](int done, std::size_t i) {
+          tell(stage_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
+               tried_[i].hypothesis.name, done, tried_.size());
+        },
+        stage_.threads);
+  }
+  [[nodiscard]] bool nearly_fits(const Identified& h) const {
+    return h.cost < thresholds::search.nearly_fits * stage_.fit.values;
+  }
+  void identify(Identified& h) const {
+    const Reduced& side = side_of(h);
+    if (!side) return;
+    std::vector<std::vector<double>> known;
+    for (const reduced::Optimum& o : h.optima) known.push_back(o.values);
+    if (known.empty()) known = h.hypothesis.starts;
+    known.resize(std::min(known.size(), kOptima));
+    if (const fit::Fit* best = h.best()) known.push_back(fit::values_of(best->plant, h.trial.free));
+    h.optima = reduced::identify(*side, h.input(), h.trial, {}, known);
+    std::erase_if(h.optima, [](const reduced::Optimum& o) { return o.series.isZero(); });
+    h.optima.resize(std::min(h.optima.size(), kOptima));
+    h.cost = h.optima.empty() ? std::numeric_limits<double>::infinity() : h.optima.front().cost;
+  }
+  [[nodiscard]] Identified* least() {
+    const auto best = std::ranges::min_element(tried_, {}, &Identified::cost);
+    return best == tried_.end() || !std::isfinite(best->cost) ? nullptr : &*best;
+  }
+  /// Whether the best of them may take off what a hypothesis needs. The reduced plant foretells that to a few
+  /// of chi2.
+  [[nodiscard]] bool worth_a_fit() {
+    const Identified* best = least();
+    return best &&
+           none_ - best->cost >
+               (stage_.with.empty() ? thresholds::evidence.accepted : thresholds::evidence.second) / 2;
+  }
+  /// The best of those that lead, fitted with the whole plant. Null: none can be.
+  [[nodiscard]] Identified* fitted_leader() {
+    std::vector<Identified*> leading;
+    for (Identified& h : tried_)
+      if (std::isfinite(h.cost)) leading.push_back(&h);
+    std::ranges::stable_sort(leading, {}, &Identified::cost);
+    leading.resize(std::min(leading.size(), kLeading));
+    each(leading, event::Phase::quick_fits, [&](Identified& h) { polish_.briefly(h, *side_of(h)); });
+    Identified* best = nullptr;
+    for (Identified* h : leading)
+      if (h->best() && (!best || fit::better(*h->best(), *best->best()))) best = h;
+    return best;
+  }
+  /// Blocks of the leader's side are then identified about its fit. False where that cannot be simulated, or
+  /// where something is missing on the other side as well.
+  [[nodiscard]] bool linearise_about(const Identified& leader) {
+    Reduced& side = leader.input() == InputKind::torque ? torque_ : field_;
+    if (other_is_free(side)) return false;
+    try {
+      side = polish_.linear_about(leader);
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  }
+  void fit_in_reach() {
+    const Identified* leader = least();
+    if (!leader) return;
+    const double reach = leader->cost + thresholds::evidence.within_reach;
+    std::vector<Identified*> some;
+    for (Identified& h : tried_) {
+      h.fits.clear();
+      if (h.cost < reach) some.push_back(&h);
+    }
+    each(some, event::Phase::full_fits, [&](Identified& h) {
+      const Reduced& side = side_of(h);
+      other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side);
+    });
+  }
+  [[nodiscard]] std::vector<Judgement> judgements() {
+    std::vector<Judgement> all;
+    const Identified* leader = nullptr;  // of those that were fitted
+    for (const Identified& h : tried_)
+      if (h.best() && (!leader || h.cost < leader->cost)) leader = &h;
+    for (const Identified& h : tried_) {
+      if (!std::isfinite(h.cost)) continue;
+      Judgement j;
+      j.hypothesis = h.hypothesis;
+      bring(stage_, j.hypothesis);
+      j.hypothesis.plant = h.trial.plant;
+      j.looked_at = true;
+      if (const fit::Fit* f = h.best()) {
+        std::optional<fit::Fit> known;
+        if (!std::isfinite(fit::criterion(*f))) known = with_errors(stage_, j.hypothesis, *f);
+        j.fit = known ? *known : *f;
+        j.gain = fit::gain(stage_.fit, j.fit,
+                           std::isfinite(fit::criterion(j.fit)) ? fit::criterion : fit::penalised);
+      } else {
+        j.fit = stage_.fit;
+        j.fitted = false;
+        if (leader) {
+          j.behind = h.cost - leader->cost;
+          j.why_not = fmt::format("identified alone it leaves {:.0f} more of chi2 than {}", j.behind,
+                                  leader->hypothesis.name);
+        } else {
+          j.gain = none_ - h.cost;
+          j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", j.gain);
+        }
+      }
+      all.push_back(std::move(j));
+    }
+    place_unfitted(all);
+    std::ranges::stable_sort(all, std::greater<>(), &Judgement::gain);
+    return all;
+  }
+  template <class F>
+  void each(const std::vector<Identified*>& some, event::Phase phase, F act) const {
+    in_parallel(
+        some.size(),
+        [&](std::size_t k) {
+          if (!stage_.stopped()) until_interrupted([&] { act(*some[k]); });
+        },
+        [&](int done, std::size_t k) { tell(phase, some[k]->hypothesis.name, done, some.size()); },
+        stage_.threads);
+  }
+  void tell(event::Phase phase, const std::string& item, int done, std::size_t total) const {
+    if (report_)
+      report_(phase, item.empty() || stage_.with.empty() ? item : item + " beside " + stage_.with, done,
+              static_cast<int>(total));
+  }
+
+  const Stage& stage_;
+  const event::Progress& report_;
+  Polish polish_;
+  std::vector<Identified> tried_;
+  Reduced torque_, field_;
+  double none_;  ///< cost without any
+};
+
+}  // namespace
+
+void place_unfitted(std::vector<Judgement>& all) {
+  double best = 0;
+  for (const Judgement& j : all)
+    if (j.fitted) best = std::max(best, j.gain);
+  for (Judgement& j : all)
+    if (j.behind > 0) j.gain = best - j.behind;
+}
+
+bool can_be_identified(const Stage& stage, const Hypothesis& h) {
+  return stage.component() == record::Component::plant && !stage.plant.machine.effect->converter &&
+         (h.side == Side::mechanical || h.side == Side::excitation) && !h.free.empty() &&
+         h.conventions.speed_voltage == stage.conventions.speed_voltage &&
+         std::ranges::none_of(stage.events, [](const event::FitEvent& e) {
+           return e.record.breaker() != nullptr || e.record.open_circuit() || !e.record.staged.empty();
+         });
+}
+
+std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
+                                  const event::Progress& report) {
+  if (all.empty()) return {};
+  return Identifying(stage, report).run(std::move(all));
+}
+
+}  // namespace swingbank::validate::hypothesis

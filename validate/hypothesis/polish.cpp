@@ -1,0 +1,179 @@
+#include "validate/hypothesis/polish.hpp"
+
+#include <algorithm>
+
+#include "validate/fit/states.hpp"
+
+namespace swingbank::validate::hypothesis {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+/// Steps of a fit of the whole plant: to find the leader, at the end.
+constexpr int kLeaderSteps = 8, kPolishSteps = 12;
+/// The plant is made linear about an optimum so often, with so many steps of the block each time, until less
+/// than this of chi2 is to be gained.
+constexpr int kLinearRounds = 3, kLinearSteps = 8;
+constexpr double kSettledCost = 1.0;
+
+}  // namespace
+
+const fit::Fit* Identified::best() const {
+  const auto least = std::ranges::min_element(fits, fit::better);
+  return least == fits.end() || !least->failed.empty() ? nullptr : &*least;
+}
+
+Polish::Polish(const Stage& stage) : stage_(stage), free_(fit::free_parameters(stage.plant, stage.spread)) {
+  for (const fit::FreeParameter& f : stage.own) {
+    std::erase_if(free_, [&](const fit::FreeParameter& known) { return known.id == f.id; });
+    free_.push_back(f);
+  }
+  for (const auto& f : free_) axes_.push_back(fit::make_axis(stage.plant, f));
+}
+
+VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) {
+  VectorXd z(static_cast<Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    z[static_cast<Index>(i)] = fit::make_axis(h.trial.plant, h.trial.free[i]).z(values[i]);
+  return z;
+}
+
+/// Where the reduced plant sees an optimum.
+Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& reduction,
+                               const reduced::Optimum& found) const {
+  Point to{reduction.inference().offset + found.plant, own_of(h, found.values),
+           reduction.states_at(stage_.events, h.input(), found.plant, found.series)};
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    double& z = to.plant[static_cast<Index>(i)];
+    z = std::clamp(z, std::min(0.0, axes_[i].z(axes_[i].low)), std::max(0.0, axes_[i].z(axes_[i].high)));
+  }
+  return to;
+}
+
+/// A parameter of a block that the hypothesis takes out is left out.
+sim::plant::Plant Polish::whole(const Identified& h, const Point& point) const {
+  sim::plant::Plant plant = h.trial.plant;
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    if (const auto id = same_parameter(plant, stage_.plant, free_[i].id))
+      parameter_value(plant, *id) = axes_[i].value(point.plant[static_cast<Index>(i)]);
+  for (std::size_t i = 0; i < h.trial.free.size(); ++i)
+    parameter_value(plant, h.trial.free[i].id) =
+        fit::make_axis(h.trial.plant, h.trial.free[i]).value(point.own[static_cast<Index>(i)]);
+  return plant;
+}
+
+std::vector<event::EventState> Polish::states_of(const Point& point) const {
+  std::vector<event::EventState> all;
+  for (std::size_t e = 0; e < point.states.size(); ++e)
+    all.push_back(fit::event_state(stage_.events[e], point.states[e].data()));
+  return all;
+}
+
+double Polish::prior_cost(const Identified& h, const Point& point) const {
+  double cost = 0;
+  const auto add = [&](double z, double spread) { cost += spread > 0 ? z * z / (spread * spread) : 0.0; };
+  for (std::size_t i = 0; i < free_.size(); ++i) add(point.plant[static_cast<Index>(i)], free_[i].spread);
+  for (std::size_t i = 0; i < h.trial.free.size(); ++i)
+    add(point.own[static_cast<Index>(i)], h.trial.free[i].spread);
+  for (std::size_t e = 0; e < point.states.size(); ++e) {
+    const auto spreads = fit::state_beliefs(stage_.events[e]);
+    for (std::size_t k = 0; k < spreads.size(); ++k) add(point.states[e][static_cast<Index>(k)], spreads[k]);
+  }
+  return cost;
+}
+
+Polish::Reduced Polish::linear_about(const Identified& h, const Point& point) const {
+  return std::make_shared<const reduced::Reduction>(
+      reduced::linear_about(whole(h, point), stage_.under_test(), stage_.events, free_, states_of(point),
+                            only(h.input()), 1),
+      stage_.events, stage_.conventions);
+}
+
+Polish::Reduced Polish::linear_about(const Identified& h) const {
+  const fit::Fit& at = *h.best();
+  Point point{VectorXd::Zero(static_cast<Index>(free_.size())),
+              own_of(h, fit::values_of(at.plant, h.trial.free)),
+              {}};
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    if (const auto id = same_parameter(at.plant, stage_.plant, free_[i].id))
+      point.plant[static_cast<Index>(i)] = axes_[i].z(parameter_value(at.plant, *id));
+  for (std::size_t e = 0; e < stage_.events.size(); ++e) {
+    const auto state = fit::state_of(stage_.events[e], at.events[e].state);
+    point.states.push_back(Eigen::Map<const VectorXd>(state.data(), static_cast<Index>(state.size())));
+  }
+  return linear_about(h, point);
+}
+
+Polish::Point Polish::reference(const Identified& h, const reduced::Reduction& reduction,
+                                const reduced::Optimum& found) {
+  Point at{reduction.inference().offset, own_of(h, found.values), {}};
+  for (const auto& e : reduction.inference().events) at.states.push_back(e.state_at);
+  return at;
+}
+
+template <class F>
+bool Polish::between(const Point& from, Point& to, F act) {
+  constexpr int kWaysBack = 5;
+  for (int k = 0; k < kWaysBack; ++k) {
+    try {
+      if (act(to)) return true;
+    } catch (const InputError&) {  // the whole plant cannot be simulated there
+    }
+    to.plant = 0.5 * (from.plant + to.plant);
+    to.own = 0.5 * (from.own + to.own);
+    for (std::size_t e = 0; e < to.states.size(); ++e) to.states[e] = 0.5 * (from.states[e] + to.states[e]);
+  }
+  return false;
+}
+
+void Polish::briefly(Identified& h, const reduced::Reduction& from) const {
+  const reduced::Optimum& found = h.optima.front();
+  const Point at = reference(h, from, found);
+  Point to = expected(h, from, found);
+  to.states = at.states;
+  between(at, to, [&](const Point& point) {
+    fit::Fit f =
+        fit_from(h, point, {.iterations = kLeaderSteps, .lenient = true, .brief = true, .errors = false});
+    if (!f.failed.empty()) return false;
+    h.fits = {std::move(f)};
+    return true;
+  });
+}
+
+void Polish::polish(Identified& h, const reduced::Reduction& from) const {
+  for (const reduced::Optimum& optimum : h.optima) {
+    Point at = reference(h, from, optimum), to = expected(h, from, optimum), best = to;
+    double least = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < kLinearRounds; ++round) {
+      Reduced reduction;
+      if (!between(at, to, [&](const Point& point) { return bool(reduction = linear_about(h, point)); }))
+        break;
+      at = to;
+      const double cost = reduction->inference().chi2 + prior_cost(h, at);
+      if (cost < least) {
+        least = cost;
+        best = at;
+      }
+      const auto nearby =
+          reduced::identify(*reduction, h.input(), h.trial, {.draws = 0, .kept = 0, .steps = kLinearSteps},
+                            {fit::values_of(whole(h, at), h.trial.free)});
+      if (nearby.empty()) break;
+      to = expected(h, *reduction, nearby.front());
+      if (cost - nearby.front().cost < kSettledCost) break;
+    }
+    if (fit::Fit f = fit_from(h, best, {.iterations = kPolishSteps, .lenient = true, .errors = false});
+        f.failed.empty())
+      h.fits.push_back(std::move(f));
+  }
+}
+
+fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptions options) const {
+  Hypothesis brought = h.hypothesis;
+  bring(stage_, brought);
+  const auto free = free_of(brought, stage_.spread);
+  options.start = states_of(point);
+  options.values = fit::values_of(whole(h, point), free);
+  return fit::fit({h.trial.plant, brought.conventions}, stage_.events, free, options);
+}
+
+}  // namespace swingbank::validate::hypothesis
