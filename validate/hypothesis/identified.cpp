@@ -19,6 +19,9 @@ using event::InputKind;
 constexpr std::size_t kLeading = 3;
 /// Optima of one hypothesis that are kept.
 constexpr std::size_t kOptima = 2;
+/// Evidence for an input that is free in time from which blocks are looked for that make it: strong, by the
+/// scale of Kass and Raftery (1995). Noise alone has 0 to 4.
+constexpr double kStrongEvidence = 6.0;
 
 std::uint64_t stream_of(const std::string& name) {  // FNV-1a
   std::uint64_t sum = 14695981039346656037u;
@@ -48,17 +51,21 @@ class Identifying {
   /// What the blocks of one side are identified against; null: nothing of this side can be what is missing.
   using Reduced = Polish::Reduced;
 
-  /// Where the stage nearly fits, the plant is linear about its fit. Where it does not, its inputs are
-  /// inferred.
+  /// Where the stage nearly fits, the plant is linear about its fit, and nothing is missing on a side whose
+  /// input, free in time, explains no more than noise. Where it does not fit, its inputs are inferred.
   void begin() {
     if (stage_.fit.misfit() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
     for (const auto& e : stage_.fit.events) states.push_back(e.state);
-    for (const InputKind kind : {InputKind::torque, InputKind::field})
-      reduce(reduced::linear_about(stage_.fit.plant, stage_.under_test(), stage_.events, polish_.free(),
-                                   states, Polish::only(kind), stage_.threads));
-    none_ = reduced::ReducedPlant(*torque_, InputKind::torque)
-                .costs(Eigen::VectorXd::Zero(torque_->knots()), Eigen::VectorXd::Zero(1))[0];
+    for (const InputKind kind : {InputKind::torque, InputKind::field}) {
+      const auto side = std::make_shared<const reduced::Reduction>(
+          reduced::linear_about(stage_.fit.plant, stage_.under_test(), stage_.events, polish_.free(), states,
+                                Polish::only(kind), stage_.threads),
+          stage_.events, stage_.conventions);
+      const reduced::ReducedPlant plant(*side, kind);
+      none_ = plant.costs(Eigen::VectorXd::Zero(side->knots()), Eigen::VectorXd::Zero(1))[0];
+      if (plant.free_evidence() > kStrongEvidence) (kind == InputKind::torque ? torque_ : field_) = side;
+    }
   }
   /// With torque, with field voltage, and with both free: the evidence tells whether one is enough.
   void infer() {
@@ -181,7 +188,8 @@ class Identifying {
     for (const Identified& h : tried_)
       if (h.best() && (!leader || h.cost < leader->cost)) leader = &h;
     for (const Identified& h : tried_) {
-      if (!std::isfinite(h.cost)) continue;
+      const bool other_side = !side_of(h);
+      if (!std::isfinite(h.cost) && !other_side) continue;
       Judgement j;
       j.hypothesis = h.hypothesis;
       bring(stage_, j.hypothesis);
@@ -196,7 +204,10 @@ class Identifying {
       } else {
         j.fit = stage_.fit;
         j.fitted = false;
-        if (leader) {
+        if (other_side) {
+          j.why_not = fmt::format("a {} that is free in time explains too little",
+                                  h.input() == InputKind::torque ? "torque" : "field voltage");
+        } else if (leader) {
           j.behind = h.cost - leader->cost;
           j.why_not = fmt::format("identified alone it leaves {:.0f} more of chi2 than {}", j.behind,
                                   leader->hypothesis.name);

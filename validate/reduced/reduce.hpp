@@ -88,6 +88,9 @@ class ReducedPlant {
   };
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
                                     const Eigen::MatrixXd& slopes) const;
+  /// Evidence (difference of -2 log) for a time series that is free in time over none: a random walk like the
+  /// input's prior, with the intensity that is the most probable. That may be zero: it is never negative.
+  [[nodiscard]] double free_evidence() const;
   /// Changes of the plant parameters that minimise the cost of a time series.
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
@@ -95,7 +98,8 @@ class ReducedPlant {
  private:
   struct Event {
     Eigen::VectorXd r, by_gain;
-    Eigen::MatrixXd T, L;  ///< by the eliminated parameters, by the time series
+    Eigen::VectorXd weight;  ///< of the input's steps between knots, by its prior (walk_weights)
+    Eigen::MatrixXd T, L;    ///< by the eliminated parameters, by the time series
   };
   [[nodiscard]] double factor(double gain) const { return std::exp(gain_.exponent * gain); }
 
@@ -103,9 +107,10 @@ class ReducedPlant {
   std::vector<Eigen::Index> free_;  ///< eliminated parameters
   Eigen::Index numbers_;
   std::vector<Event> events_;
-  Eigen::MatrixXd inverse_;  ///< of their Hessian
-  Eigen::VectorXd first_;    ///< half the gradient of their prior
-  double prior_cost_ = 0;    ///< of the present values
+  Eigen::MatrixXd precision_;  ///< of their prior
+  Eigen::MatrixXd inverse_;    ///< of their Hessian
+  Eigen::VectorXd first_;      ///< half the gradient of their prior
+  double prior_cost_ = 0;      ///< of the present values
   double gain_precision_ = 0, gain_offset_ = 0;
 };
 

@@ -52,6 +52,9 @@ TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
   EXPECT_LT(there, 1.01 * inferred);  // the plant follows: a step that the inference did not take
   EXPECT_GT(there, 0.9 * inferred);
   EXPECT_GT(without, 3 * there);
+  // its evidence is what it takes off, less what a walk that is free pays for
+  EXPECT_GT(field.free_evidence(), 0.5 * (without - there));
+  EXPECT_LT(field.free_evidence(), without - there);
 }
 
 /// The gradient of a series's cost is that of its differences, by the gain's number too.
