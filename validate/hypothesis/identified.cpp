@@ -17,6 +17,8 @@ using event::InputKind;
 
 /// So many of the best are fitted with the whole plant, to find the leader.
 constexpr std::size_t kLeading = 3;
+/// The plant is made linear about the leader, and about the next one where another leads then.
+constexpr int kLinearPoints = 2;
 /// Optima of one hypothesis that are kept.
 constexpr std::size_t kOptima = 2;
 /// Evidence for an input that is free in time from which blocks are looked for that make it: strong, by the
@@ -42,7 +44,14 @@ class Identifying {
     begin();
     identify();
     if (!worth_a_fit()) return judgements();
-    if (Identified* leader = fitted_leader(); leader && linearise_about(*leader)) identify();
+    Identified* leader = fitted_leader();
+    for (int point = 0; leader && !other_is_free(side_of(*leader)) && point < kLinearPoints; ++point) {
+      fit({leader});
+      if (!linearise_about(*leader)) break;
+      identify();
+      fit_in_reach();
+      if (leader == std::exchange(leader, best_fitted())) break;
+    }
     fit_in_reach();
     return judgements();
   }
@@ -151,16 +160,17 @@ class Identifying {
     std::ranges::stable_sort(leading, {}, &Identified::cost);
     leading.resize(std::min(leading.size(), kLeading));
     each(leading, event::Phase::quick_fits, [&](Identified& h) { polish_.briefly(h, *side_of(h)); });
+    return best_fitted();
+  }
+  [[nodiscard]] Identified* best_fitted() {
     Identified* best = nullptr;
-    for (Identified* h : leading)
-      if (h->best() && (!best || fit::better(*h->best(), *best->best()))) best = h;
+    for (Identified& h : tried_)
+      if (h.best() && (!best || fit::better(*h.best(), *best->best()))) best = &h;
     return best;
   }
-  /// Blocks of the leader's side are then identified about its fit. False where that cannot be simulated, or
-  /// where something is missing on the other side as well.
+  /// Blocks of the leader's side are then identified about its fit. False where that cannot be simulated.
   [[nodiscard]] bool linearise_about(const Identified& leader) {
     Reduced& side = leader.input() == InputKind::torque ? torque_ : field_;
-    if (other_is_free(side)) return false;
     try {
       side = polish_.linear_about(leader);
     } catch (const InputError&) {
@@ -174,12 +184,18 @@ class Identifying {
     const double reach = leader->cost + thresholds::evidence.within_reach;
     std::vector<Identified*> some;
     for (Identified& h : tried_) {
-      h.fits.clear();
       if (h.cost < reach) some.push_back(&h);
+      if (!(h.cost < reach) && !h.polished) h.fits.clear();
     }
+    fit(some);
+  }
+  /// Fits those that were not yet fitted to the end.
+  void fit(std::vector<Identified*> some) const {
+    std::erase_if(some, [](const Identified* h) { return h->polished; });
     each(some, event::Phase::full_fits, [&](Identified& h) {
       const Reduced& side = side_of(h);
       other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side);
+      h.polished = true;
     });
   }
   [[nodiscard]] std::vector<Judgement> judgements() {

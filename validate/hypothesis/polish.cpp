@@ -141,6 +141,7 @@ void Polish::briefly(Identified& h, const reduced::Reduction& from) const {
 }
 
 void Polish::polish(Identified& h, const reduced::Reduction& from) const {
+  std::vector<fit::Fit> polished;
   for (const reduced::Optimum& optimum : h.optima) {
     Point at = reference(h, from, optimum), to = expected(h, from, optimum), best = to;
     double least = std::numeric_limits<double>::infinity();
@@ -163,8 +164,9 @@ void Polish::polish(Identified& h, const reduced::Reduction& from) const {
     }
     if (fit::Fit f = fit_from(h, best, {.iterations = kPolishSteps, .lenient = true, .errors = false});
         f.failed.empty())
-      h.fits.push_back(std::move(f));
+      polished.push_back(std::move(f));
   }
+  if (!polished.empty()) h.fits = std::move(polished);
 }
 
 fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptions options) const {

@@ -17,6 +17,7 @@ struct Identified {
   std::vector<reduced::Optimum> optima = {};              ///< best first
   double cost = std::numeric_limits<double>::infinity();  ///< of the best optimum
   std::vector<fit::Fit> fits = {};                        ///< of the whole plant
+  bool polished = false;                                  ///< they went to the end
   /// Null: there is none, or all failed.
   [[nodiscard]] const fit::Fit* best() const;
   [[nodiscard]] event::InputKind input() const {
