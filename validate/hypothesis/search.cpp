@@ -301,10 +301,10 @@ class Searcher {
 
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const event::Progress& report) {
-  const auto others =
-      std::ranges::stable_partition(all, [&](const Hypothesis& h) { return can_be_identified(stage, h); });
-  const auto begin = std::make_move_iterator(all.begin()), middle = std::make_move_iterator(others.begin()),
-             end = std::make_move_iterator(others.end());
+  const auto others = std::stable_partition(all.begin(), all.end(),
+                                            [&](const Hypothesis& h) { return can_be_identified(stage, h); });
+  const auto begin = std::make_move_iterator(all.begin()), middle = std::make_move_iterator(others),
+             end = std::make_move_iterator(all.end());
   std::vector<Judgement> tried = identified(stage, {begin, middle}, report);
   std::ranges::move(Searcher(stage, report, tried).run({middle, end}), std::back_inserter(tried));
   place_unfitted(tried);
