@@ -38,7 +38,7 @@ class Identifying {
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
     for (Hypothesis& h : all) {
-      reduced::Trial trial{believed(stage_, h), h.free, stream_of(full_name(h))};
+      reduced::Trial trial{prior_mean(stage_, h), h.free, stream_of(full_name(h))};
       tried_.push_back({std::move(h), std::move(trial)});
     }
     begin();
@@ -76,7 +76,7 @@ class Identifying {
       if (plant.free_evidence() > kStrongEvidence) (kind == InputKind::torque ? torque_ : field_) = side;
     }
   }
-  /// With torque, with field voltage, and with both free: the evidence tells whether one is enough.
+  /// Inferences with torque, with field voltage, and with both: their evidence says whether one is enough.
   void infer() {
     constexpr std::array kInputs = {reduced::Inputs{true, false}, reduced::Inputs{false, true},
                                     reduced::Inputs{true, true}};

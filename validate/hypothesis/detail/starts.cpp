@@ -62,7 +62,7 @@ Candidate StartFinder::of(Hypothesis h) const {
   return c;
 }
 
-sim::plant::Plant believed(const Stage& stage, const Hypothesis& h) {
+sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h) {
   sim::plant::Plant plant = started(h, h.starts.front());
   for (const fit::FreeParameter& f : stage.own) {
     const auto id = sim::plant::same_parameter(plant, stage.plant, f.id).value();
@@ -276,7 +276,7 @@ void StartFinder::score(const Hypothesis& h, std::size_t looks, Candidate& c) co
   if (which.empty() && h.drawn) add_far(h, starts);
   c.promise = score_->joint_gain(changes);
   if (starts.empty() || std::ranges::none_of(changes, [](const auto& x) { return x.square > 0; })) return;
-  c.starts = {believed(stage_, h)};
+  c.starts = {prior_mean(stage_, h)};
   // the gain of a few large changes says little about that of a small one
   if (c.promise < thresholds::search.hopeless &&
       (!which.empty() || starts.size() >= std::min(h.starts.size(), looks)))

@@ -26,9 +26,9 @@ struct Candidate {
   double promise = 0;  ///< by how much chi2 would fall, by the score test
 };
 
-/// The plant that beliefs are about: the hypothesis at its first start, and the parameters of earlier
-/// stages at the values that were believed of them.
-sim::plant::Plant believed(const Stage& stage, const Hypothesis& h);
+/// The plant at its prior mean: the hypothesis at its first start, and the parameters of earlier stages at
+/// their prior means.
+sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h);
 
 class StartFinder {
  public:
