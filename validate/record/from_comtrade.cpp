@@ -139,7 +139,10 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     }
   const double rate = options.phasor_rate > 0 ? options.phasor_rate : base.frequency;
   const double sampled = t.size() > 1 ? 1 / (t[1] - t[0]) : 0;
-  if (t.size() > 1 && !(sampled >= kFewestPerCycle * base.frequency))
+  if (t.size() < 2)
+    problems.add(fmt::format("waveforms of {} sample", t.size()), comtrade.file,
+                 "a phasor takes the samples of a cycle", "export the stretch around the event");
+  else if (!(sampled >= kFewestPerCycle * base.frequency))
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
                  fmt::format("a cycle needs at least {:g} samples", kFewestPerCycle),
                  "export the record at a higher rate");

@@ -220,6 +220,9 @@ TEST(RecordComtradeTest, WaveformsThatCannotBeUsed) {
   w.channels.erase(w.channels.begin());
   EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("no three-phase voltage")));
   EXPECT_THAT(waveforms({}, 240, 240).faults(), Contains(HasSubstr("at least 8 samples")));
+  w = waveforms({});
+  w.samples = 1;
+  EXPECT_THAT(w.faults(), Contains(HasSubstr("a phasor takes the samples of a cycle")));
 }
 
 class ComtradeFileTest : public ::testing::Test {
