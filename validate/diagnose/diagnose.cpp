@@ -196,8 +196,9 @@ class Diagnoser {
     if (result_.ranked.empty()) return;
     look_until_one_holds(stage);
     const hypothesis::Judgement best = result_.ranked.front();
-    if (stopped() || (!best.accepted && result_.base.misfit() <= options_.adequate)) return;
+    if (stopped() || (!best.accepted && best.gain < thresholds::evidence.accepted)) return;
     auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
+    beside_companion(stage, pairs);
     if (stopped()) return;
     try_alone(pairs);
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
@@ -266,6 +267,24 @@ class Diagnoser {
       if (!pairs.empty() && pairs.front().accepted) break;
     }
     return pairs;
+  }
+  /// Pairs with an effect of the machine or of an instrument beside which some control promises more than
+  /// what was found: the controls were ranked while it was missing.
+  void beside_companion(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& pairs) const {
+    const auto most = std::ranges::max_element(result_.ranked, {}, &hypothesis::Judgement::companion_gain);
+    const auto companion = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& j) {
+      return j.hypothesis.name == most->companion && j.hypothesis.with.empty();
+    });
+    double known = 0;  // over the best single one
+    for (const hypothesis::Judgement& j : pairs)
+      if (j.accepted) known = std::max(known, j.gain - best_gain(result_.ranked));
+    if (companion == result_.ranked.end() || most->companion_gain < known + thresholds::evidence.second)
+      return;
+    hypothesis::Judgement first = *companion;
+    if (!first.fitted) hypothesis::fit_alone(stage, first);
+    if (!first.fit.failed.empty()) return;
+    std::ranges::move(judged_beside(stage, first), std::back_inserter(pairs));
+    best_first(pairs);
   }
   [[nodiscard]] bool can_be_first(const hypothesis::Judgement& single) const {
     return single.gain >= trial().evidence && single.fitted && !single.hypothesis.replaces;

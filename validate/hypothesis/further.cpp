@@ -148,6 +148,15 @@ void fit_on(const Stage& stage, Judgement& j) {
   j.fit = known && fit::gain(begin, *known, fit::criterion) > 0 ? std::move(*known) : begin;
 }
 
+void fit_alone(const Stage& stage, Judgement& j) {
+  const auto free = free_of(j.hypothesis, stage.spread);
+  fit::FitOptions o{.lenient = true};
+  for (const auto& e : stage.fit.events) o.start.push_back(e.state);
+  j.fit = fit::fit(j.hypothesis.under_test(), stage.events, free, o);
+  j.fitted = j.fit.failed.empty();
+  if (j.fitted) j.gain = fit::gain(stage.fit, j.fit, fit::criterion);
+}
+
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
   const auto free = free_of(h, stage.spread);

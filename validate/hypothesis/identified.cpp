@@ -7,6 +7,7 @@
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
+#include "validate/hypothesis/companions.hpp"
 #include "validate/hypothesis/detail/starts.hpp"
 #include "validate/hypothesis/polish.hpp"
 
@@ -19,6 +20,8 @@ using event::InputKind;
 constexpr std::size_t kLeading = 3;
 /// The plant is made linear about the leader, and about the next one where another leads then.
 constexpr int kLinearPoints = 2;
+/// So many draws suit the block, beside those of identification.
+constexpr std::size_t kSuitedDraws = 80;
 /// Optima of one hypothesis that are kept.
 constexpr std::size_t kOptima = 2;
 /// Evidence for an input that is free in time from which blocks are looked for that make it: strong, by the
@@ -39,6 +42,8 @@ class Identifying {
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
     for (Hypothesis& h : all) {
       reduced::Trial trial{prior_mean(stage_, h), h.free, stream_of(full_name(h))};
+      const auto& t = stage_.events.front().record.t;
+      if (h.drawn) trial.draws = further_draws(h, h.free.size(), kSuitedDraws, t.back() - t.front());
       tried_.push_back({std::move(h), std::move(trial)});
     }
     begin();
@@ -53,6 +58,8 @@ class Identifying {
       if (leader == std::exchange(leader, best_fitted())) break;
     }
     fit_in_reach();
+    if (const Identified* best = best_fitted(); best && stage_.with.empty() && !stage_.stopped())
+      find_companions(stage_, polish_, *best, tried_);
     return judgements();
   }
 
@@ -178,24 +185,32 @@ class Identifying {
     }
     return true;
   }
+  /// Fits what may come within reach of the best. How far behind a block with many parameters is cannot be
+  /// seen from a plant that is linear about another block, unless it does not fit at all.
   void fit_in_reach() {
     const Identified* leader = least();
     if (!leader) return;
     const double reach = leader->cost + thresholds::evidence.within_reach;
     std::vector<Identified*> some;
     for (Identified& h : tried_) {
-      if (h.cost < reach) some.push_back(&h);
+      if (h.cost < reach || (std::isfinite(h.cost) && nearly_fits(h))) some.push_back(&h);
       if (!(h.cost < reach) && !h.polished) h.fits.clear();
     }
     fit(some);
   }
   /// Fits those that were not yet fitted to the end.
-  void fit(std::vector<Identified*> some) const {
+  void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
+    const Identified* best = best_fitted();
+    const double goal = (best ? fit::penalised(*best->best()) : std::numeric_limits<double>::infinity()) +
+                        thresholds::evidence.within_reach;
     each(some, event::Phase::full_fits, [&](Identified& h) {
       const Reduced& side = side_of(h);
-      other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side);
+      other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side, goal);
       h.polished = true;
+      if (!h.best() || other_is_free(side)) return;
+      h.cost = fit::penalised(*h.best());
+      if (!(h.cost < goal)) h.fits.clear();
     });
   }
   [[nodiscard]] std::vector<Judgement> judgements() {
@@ -211,6 +226,8 @@ class Identifying {
       bring(stage_, j.hypothesis);
       j.hypothesis.plant = h.trial.plant;
       j.looked_at = true;
+      j.companion = h.companion;
+      j.companion_gain = h.companion_gain;
       if (const fit::Fit* f = h.best()) {
         std::optional<fit::Fit> known;
         if (!std::isfinite(fit::criterion(*f))) known = with_errors(stage_, j.hypothesis, *f);

@@ -32,6 +32,10 @@ struct Judgement {
   bool fitted = true;             ///< false: it gave no hope; `fit` is without it
   /// Of one that was identified and not fitted: chi2 that it leaves more than the best one.
   double behind = 0;
+  /// Of a control that was identified: the effect of the machine or of an instrument beside which it leaves
+  /// least, and by how much that is less than what the best control leaves alone. Empty: none is worth it.
+  std::string companion = {};
+  double companion_gain = 0;
   bool looked_at = false;  ///< from all over its parameters (identified, try_basins)
   bool accepted = false;
   std::string why_not;  ///< empty where accepted

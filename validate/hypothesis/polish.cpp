@@ -82,14 +82,15 @@ double Polish::prior_cost(const Identified& h, const Point& point) const {
   return cost;
 }
 
-Polish::Reduced Polish::linear_about(const Identified& h, const Point& point) const {
-  return std::make_shared<const reduced::Reduction>(
-      reduced::linear_about(whole(h, point), stage_.under_test(), stage_.events, free_, states_of(point),
-                            only(h.input()), 1),
-      stage_.events, stage_.conventions);
+Polish::Reduced Polish::linear_about(const Identified& h, const Point& point,
+                                     std::span<const reduced::Change> changes) const {
+  reduced::Inference about = reduced::linear_about(whole(h, point), stage_.under_test(), stage_.events, free_,
+                                                   states_of(point), only(h.input()), 1);
+  if (!changes.empty()) add_changes(about, stage_.events, stage_.conventions, changes, stage_.threads);
+  return std::make_shared<const reduced::Reduction>(std::move(about), stage_.events, stage_.conventions);
 }
 
-Polish::Reduced Polish::linear_about(const Identified& h) const {
+Polish::Reduced Polish::linear_about(const Identified& h, std::span<const reduced::Change> changes) const {
   const fit::Fit& at = *h.best();
   Point point{VectorXd::Zero(static_cast<Index>(free_.size())),
               own_of(h, fit::values_of(at.plant, h.trial.free)),
@@ -101,7 +102,7 @@ Polish::Reduced Polish::linear_about(const Identified& h) const {
     const auto state = fit::state_of(stage_.events[e], at.events[e].state);
     point.states.push_back(Eigen::Map<const VectorXd>(state.data(), static_cast<Index>(state.size())));
   }
-  return linear_about(h, point);
+  return linear_about(h, point, changes);
 }
 
 Polish::Point Polish::reference(const Identified& h, const reduced::Reduction& reduction,
@@ -140,29 +141,31 @@ void Polish::briefly(Identified& h, const reduced::Reduction& from) const {
   });
 }
 
-void Polish::polish(Identified& h, const reduced::Reduction& from) const {
+void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) const {
   std::vector<fit::Fit> polished;
   for (const reduced::Optimum& optimum : h.optima) {
-    Point at = reference(h, from, optimum), to = expected(h, from, optimum), best = to;
-    double least = std::numeric_limits<double>::infinity();
+    Point at = reference(h, from, optimum), to = expected(h, from, optimum);
+    double cost = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kLinearRounds; ++round) {
       Reduced reduction;
-      if (!between(at, to, [&](const Point& point) { return bool(reduction = linear_about(h, point)); }))
-        break;
+      double there = cost;
+      const auto is_lower = [&](const Point& point) {
+        reduction = linear_about(h, point);
+        there = reduction->inference().chi2 + prior_cost(h, point);
+        return there < cost;
+      };
+      if (!between(at, to, is_lower)) break;
       at = to;
-      const double cost = reduction->inference().chi2 + prior_cost(h, at);
-      if (cost < least) {
-        least = cost;
-        best = at;
-      }
+      cost = there;
       const auto nearby =
           reduced::identify(*reduction, h.input(), h.trial, {.draws = 0, .kept = 0, .steps = kLinearSteps},
                             {fit::values_of(whole(h, at), h.trial.free)});
-      if (nearby.empty()) break;
+      if (nearby.empty() || cost - nearby.front().cost < kSettledCost) break;
       to = expected(h, *reduction, nearby.front());
-      if (cost - nearby.front().cost < kSettledCost) break;
     }
-    if (fit::Fit f = fit_from(h, best, {.iterations = kPolishSteps, .lenient = true, .errors = false});
+    if (fit::Fit f = fit_from(
+            h, at,
+            {.iterations = kPolishSteps, .lenient = true, .errors = false, .goal = {goal, kPolishSteps}});
         f.failed.empty())
       polished.push_back(std::move(f));
   }

@@ -2,6 +2,7 @@
 // Joint optimisation of a plant and its hypothesis from where identification saw an optimum.
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "validate/fit/axis.hpp"
@@ -14,10 +15,13 @@ namespace swingbank::validate::hypothesis {
 struct Identified {
   Hypothesis hypothesis;
   reduced::Trial trial;
-  std::vector<reduced::Optimum> optima = {};              ///< best first
-  double cost = std::numeric_limits<double>::infinity();  ///< of the best optimum
-  std::vector<fit::Fit> fits = {};                        ///< of the whole plant
-  bool polished = false;                                  ///< they went to the end
+  std::vector<reduced::Optimum> optima = {};  ///< best first
+  /// Of the best optimum or, once the whole plant was fitted, of that.
+  double cost = std::numeric_limits<double>::infinity();
+  std::vector<fit::Fit> fits = {};  ///< of the whole plant
+  bool polished = false;            ///< they went to the end
+  std::string companion = {};       ///< see Judgement
+  double companion_gain = 0;
   /// Null: there is none, or all failed.
   [[nodiscard]] const fit::Fit* best() const;
   [[nodiscard]] event::InputKind input() const {
@@ -35,14 +39,16 @@ class Polish {
   [[nodiscard]] static reduced::Inputs only(event::InputKind kind) {
     return {.torque = kind == event::InputKind::torque, .field = kind == event::InputKind::field};
   }
-  /// The plant linear about the best fit. Throws InputError where that cannot be simulated.
-  [[nodiscard]] Reduced linear_about(const Identified& h) const;
+  /// The plant linear about the best fit, and in these changes of it. Throws InputError where that cannot be
+  /// simulated.
+  [[nodiscard]] Reduced linear_about(const Identified& h,
+                                     std::span<const reduced::Change> changes = {}) const;
   /// Fits the whole plant for a few steps from the best optimum of a linear point that may be far away.
   void briefly(Identified& h, const reduced::Reduction& from) const;
-  /// Fits the whole plant from each optimum. Before that, the plant is made linear about the optimum itself,
-  /// from where the block is identified again, a few times: the reduced plant goes along valleys in which a
-  /// fit is slow, as that of gain and T'do.
-  void polish(Identified& h, const reduced::Reduction& from) const;
+  /// Fits the whole plant from each optimum, as far as it may come below `goal`. Before that, the plant is
+  /// made linear about the optimum itself, from where the block is identified again, a few times: the reduced
+  /// plant goes along valleys in which a fit is slow, as that of gain and T'do.
+  void polish(Identified& h, const reduced::Reduction& from, double goal) const;
 
  private:
   /// Values of a whole plant and of each event, on their axes.
@@ -63,7 +69,8 @@ class Polish {
   [[nodiscard]] sim::plant::Plant whole(const Identified& h, const Point& point) const;
   [[nodiscard]] std::vector<event::EventState> states_of(const Point& point) const;
   [[nodiscard]] double prior_cost(const Identified& h, const Point& point) const;
-  [[nodiscard]] Reduced linear_about(const Identified& h, const Point& point) const;
+  [[nodiscard]] Reduced linear_about(const Identified& h, const Point& point,
+                                     std::span<const reduced::Change> changes = {}) const;
   [[nodiscard]] fit::Fit fit_from(const Identified& h, const Point& point, fit::FitOptions options) const;
 
   const Stage& stage_;

@@ -94,6 +94,9 @@ std::vector<double> by_name(const Hypothesis& h, std::vector<double> values, con
 /// everything else following.
 void try_basins(const Stage& stage, Judgement& j, std::span<const sim::plant::Plant> rivals = {});
 
+/// Fits a hypothesis that gave no hope, from its start.
+void fit_alone(const Stage& stage, Judgement& j);
+
 /// Fits `j` from where the fit of another structure ended.
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
 

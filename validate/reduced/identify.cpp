@@ -38,11 +38,12 @@ std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& p
 /// One trial.
 class Identifying {
  public:
-  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial)
+  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial,
+              const std::vector<Index>& freed)
       : reduction_(reduction),
         input_(input),
         trial_(about(reduction.inference(), trial)),
-        reduced_(reduction, input, held_by(reduction.inference(), trial.plant)) {
+        reduced_(reduction, input, held_by(reduction.inference(), trial.plant), freed) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
       // the records cannot tell a time constant far below the sampling interval from zero
@@ -110,7 +111,8 @@ class Identifying {
     VectorXd cost = reduced_.costs(made, gains);
     for (Index k = 0; k < cost.size(); ++k) {
       cost[k] += prior_cost(all[static_cast<std::size_t>(k)]);
-      if (!std::isfinite(cost[k])) cost[k] = std::numeric_limits<double>::infinity();
+      if (!std::isfinite(cost[k]) || !runs(all[static_cast<std::size_t>(k)]))
+        cost[k] = std::numeric_limits<double>::infinity();
     }
     return cost;
   }
@@ -146,9 +148,14 @@ class Identifying {
     std::vector<VectorXd> all{VectorXd::Zero(static_cast<Index>(axes_.size()))};
     for (const auto& values : known) all.push_back(point_of(values));
     const std::size_t given = all.size();
-    for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw)
-      if (VectorXd z = drawn(draw); runs(z)) all.push_back(std::move(z));
-    const MatrixXd made = series(all);
+    if (options.draws > 0)
+      for (const auto& values : trial_.draws) all.push_back(point_of(values));
+    for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw) all.push_back(drawn(draw));
+    MatrixXd made = series(all);
+    if (auto more = between_failing_and_idle(all, made, options.kept); !more.empty()) {
+      std::ranges::move(more, std::back_inserter(all));
+      made = series(all);
+    }
     if (!(made.array().abs() > 0).any()) return;  // the block has no effect
     const VectorXd cost = costs(made, all, VectorXd::Zero(static_cast<Index>(all.size())));
     for (std::size_t k = 0; k < all.size(); ++k)
@@ -159,6 +166,43 @@ class Identifying {
     for (std::size_t k = 0; k < given; ++k)  // given starts are optimised in any case
       if (std::isfinite(cost[static_cast<Index>(k)]))
         starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
+  }
+  /// Further draws where fewer than `enough` act. A limiter that has picked up before the event cannot be
+  /// simulated, and one that picks up far above its signal does nothing. On the way from such a draw to the
+  /// other lies the first point that can be simulated; they lie shortly beyond it.
+  [[nodiscard]] std::vector<VectorXd> between_failing_and_idle(const std::vector<VectorXd>& all,
+                                                               const MatrixXd& made, int enough) const {
+    constexpr std::size_t kPairs = 64;
+    constexpr int kBisections = 6;
+    constexpr std::array kFurther = {0.02, 0.05, 0.1, 0.2};  // of the rest of the way
+    std::vector<std::size_t> failing, idle;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto response = made.col(static_cast<Index>(k));
+      if (!response.allFinite())
+        failing.push_back(k);
+      else if (response.isZero())
+        idle.push_back(k);
+    }
+    const std::size_t acting = all.size() - failing.size() - idle.size();
+    if (acting >= static_cast<std::size_t>(enough) || failing.empty() || idle.empty()) return {};
+    std::array<double, kPairs> fails{}, simulated;
+    simulated.fill(1.0);
+    const auto points_at = [&](auto share_of) {
+      std::vector<VectorXd> points;
+      for (std::size_t k = 0; k < kPairs; ++k) {
+        const VectorXd &from = all[failing[k % failing.size()]], &to = all[idle[k % idle.size()]];
+        points.push_back(from + share_of(k) * (to - from));
+      }
+      return points;
+    };
+    for (int step = 0; step < kBisections; ++step) {
+      const auto middle = [&](std::size_t k) { return 0.5 * (fails[k] + simulated[k]); };
+      const MatrixXd there = series(points_at(middle));
+      for (std::size_t k = 0; k < kPairs; ++k)
+        (there.col(static_cast<Index>(k)).allFinite() ? simulated : fails)[k] = middle(k);
+    }
+    return points_at(
+        [&](std::size_t k) { return simulated[k] + kFurther[k % kFurther.size()] * (1 - simulated[k]); });
   }
   [[nodiscard]] bool runs(const VectorXd& z) const {
     const sim::plant::Plant plant = plant_at(z);
@@ -290,7 +334,7 @@ class Identifying {
 
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
                               const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
-  return Identifying(reduction, input, trial).run(options, known);
+  return Identifying(reduction, input, trial, options.freed).run(options, known);
 }
 
 }  // namespace swingbank::validate::reduced

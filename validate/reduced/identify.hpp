@@ -14,6 +14,8 @@ struct Trial {
   sim::plant::Plant plant;
   std::vector<fit::FreeParameter> free;
   std::uint64_t stream = 0;  ///< of the random draws, which depend on nothing else
+  /// Further draws, that suit the block: a limiter's pickups in their order, its times within the record's.
+  std::vector<std::vector<double>> draws = {};
 };
 
 /// A local minimum.
@@ -29,6 +31,7 @@ struct IdentifyOptions {
   int draws = 96;  ///< evaluated
   int kept = 6;    ///< the best of them, which are optimised
   int steps = 5;   ///< of each; then the better half takes twice as many, and so on (successive halving)
+  std::vector<Eigen::Index> freed = {};  ///< changes (add_changes) that are made beside the block
 };
 
 /// Distinct local minima, best first; none where no draw can be simulated. `known`: further starting values

@@ -403,6 +403,29 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedE
   return inferring.run(steps);
 }
 
+void add_changes(Inference& inference, const event::WhitenedEvents& events,
+                 const sim::Conventions& conventions, std::span<const Change> changes, int threads) {
+  in_parallel(
+      events.size(),
+      [&](std::size_t e) {
+        const auto played = [&](const sim::plant::Plant& plant) -> VectorXd {
+          event::RowMatrix residual = events[e].collected(
+              event::play({plant, conventions}, events[e], inference.states[e]).value, true);
+          events.noise(e).whiten(residual);
+          return residual;
+        };
+        MatrixXd& columns = inference.events[e].changes;
+        columns = MatrixXd::Zero(inference.events[e].residual.size(), static_cast<Index>(changes.size()));
+        for (std::size_t c = 0; c < changes.size(); ++c) {
+          try {
+            columns.col(static_cast<Index>(c)) = played(changes[c].to) - played(changes[c].from);
+          } catch (const InputError&) {  // the column stays zero
+          }
+        }
+      },
+      [](int) {}, threads);
+}
+
 Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
                        const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        const std::vector<event::EventState>& states, Inputs inputs, int threads) {

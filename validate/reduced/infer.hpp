@@ -4,6 +4,7 @@
 // equations hold whatever its controls lack, so a few Gauss-Newton steps from the submitted values suffice.
 // The evidence decides which of the two inputs is needed.
 #include <Eigen/Dense>
+#include <span>
 #include <vector>
 
 #include "validate/fit/fit.hpp"
@@ -23,6 +24,7 @@ struct Knots {
 struct EventSlopes {
   Knots knots;
   Eigen::MatrixXd plant, state, torque, field;  ///< without columns: of an input that is not asked for
+  Eigen::MatrixXd changes;                      ///< of add_changes
   Eigen::VectorXd residual;
   Eigen::VectorXd state_at;  ///< estimate of the state, in its units
 };
@@ -49,6 +51,16 @@ struct Inference {
   int values = 0, steps = 0;
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
+
+/// A change of the simulated plant that its parameters do not make: a parameter at its neutral value, an
+/// instrument's error.
+struct Change {
+  sim::plant::Plant from, to;
+};
+/// Gives an inference a column for each change: residuals with `to` less those with `from`, in the
+/// inference's states. Zero where one of them cannot be run.
+void add_changes(Inference& inference, const event::WhitenedEvents& events,
+                 const sim::Conventions& conventions, std::span<const Change> changes, int threads);
 
 /// Prior of an input: the variance of a random walk [pu^2/s]. A field voltage may run from one ceiling to the
 /// other within a second; a turbine moves by a tenth of its rating in that time.

@@ -14,6 +14,9 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using event::InputKind;
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+/// Prior precision of a change, of its column's square.
+constexpr double kChangePrecision = 1e-8;
+
 /// The upper triangle with the same products of columns, from column `first` on.
 MatrixXd triangle(const MatrixXd& all, Index first) {
   const Eigen::HouseholderQR<MatrixXd> qr(all);
@@ -146,14 +149,17 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
   Index row = 0;
   for (std::size_t e = 0; e < events.size(); ++e) {
     const EventSlopes& s = inference_.events[e];
-    const Index states = s.state.cols(), values = s.residual.size(), K = events_[e].over_hats.rows();
+    const Index states = s.state.cols(), values = s.residual.size(), K = events_[e].over_hats.rows(),
+                plant = s.plant.cols() + s.changes.cols();
     VectorXd residual = s.residual;
     if (inference_.inputs.torque) residual -= s.torque * torque_.segment(row, K);
     if (inference_.inputs.field) residual -= s.field * field_.segment(row, K);
     row += K;
-    MatrixXd all =
-        MatrixXd::Zero(values + states, states + s.plant.cols() + s.torque.cols() + s.field.cols() + 1);
-    all.topRows(values) << s.state, s.plant, s.torque, s.field, residual;
+    MatrixXd all = MatrixXd::Zero(values + states, states + plant + s.torque.cols() + s.field.cols() + 1);
+    all.topRows(values).leftCols(states + s.plant.cols()) << s.state, s.plant;
+    if (s.changes.cols() > 0)
+      all.topRows(values).middleCols(states + s.plant.cols(), s.changes.cols()) = s.changes;
+    all.topRows(values).rightCols(all.cols() - states - plant) << s.torque, s.field, residual;
     const auto priors = fit::state_beliefs(events[e]);
     for (Index k = 0; k < states; ++k)
       if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
@@ -205,7 +211,7 @@ std::vector<VectorXd> Reduction::states_at(const event::WhitenedEvents& events, 
     const VectorXd explained =
         std::exp(moved) * series.segment(row, K) - moved * this->series(kind).segment(row, K);
     const VectorXd right = by.rightCols(1) + by.middleCols(n, plant.size()) * plant +
-                           by.middleCols(n + plant.size(), K) * explained;
+                           by.middleCols(n + plant.size() + changes(), K) * explained;
     const VectorXd move = -by.leftCols(n).triangularView<Eigen::Upper>().solve(right);
     VectorXd to = inference_.events[e].state_at + move;
     keep_in_range(events[e], to);
@@ -236,15 +242,16 @@ Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputK
   return gain;
 }
 
-ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std::vector<char>& held)
+ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std::vector<char>& held,
+                           const std::vector<Index>& freed)
     : gain_(reduction.gain(kind)) {
   const Inference& at = reduction.inference();
-  const auto n = static_cast<Index>(at.free.size());
-  numbers_ = n;
+  numbers_ = static_cast<Index>(at.free.size());
+  const Index n = numbers_ + reduction.changes();
   const bool field = kind == InputKind::field;
   const auto is_held = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
   if (gain_.number >= 0 && is_held(gain_.number)) gain_ = {};
-  for (Index i = 0; i < n; ++i) {
+  for (Index i = 0; i < numbers_; ++i) {
     const double spread = at.free[static_cast<std::size_t>(i)].spread,
                  precision = spread > 0 ? 1 / (spread * spread) : 0.0;
     if (i == gain_.number) {
@@ -255,10 +262,19 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
     prior_cost_ += precision * at.offset[i] * at.offset[i];
     if (!is_held(i)) free_.push_back(i);
   }
+  const auto parameters = static_cast<Index>(free_.size());
+  for (const Index change : freed) free_.push_back(numbers_ + change);
   const auto m = static_cast<Index>(free_.size());
   MatrixXd curvature = MatrixXd::Zero(m, m);
-  first_.resize(m);
+  first_ = VectorXd::Zero(m);
   for (Index k = 0; k < m; ++k) {
+    if (k >= parameters) {  // so wide that it matters only where columns are multiples of one another
+      double square = 0;
+      for (const Reduction::Event& e : reduction.events())
+        square += e.triangle.col(free_[static_cast<std::size_t>(k)]).squaredNorm();
+      curvature(k, k) = kChangePrecision * square;
+      continue;
+    }
     const Index i = free_[static_cast<std::size_t>(k)];
     const double spread = at.free[static_cast<std::size_t>(i)].spread;
     curvature(k, k) = spread > 0 ? 1 / (spread * spread) : 0.0;
@@ -418,7 +434,8 @@ VectorXd ReducedPlant::plant_of(const VectorXd& series, double gain) const {
   }
   const VectorXd step = -(inverse_ * gradient);
   VectorXd all = VectorXd::Zero(numbers_);
-  for (std::size_t k = 0; k < free_.size(); ++k) all[free_[k]] = step[static_cast<Index>(k)];
+  for (std::size_t k = 0; k < free_.size(); ++k)
+    if (free_[k] < numbers_) all[free_[k]] = step[static_cast<Index>(k)];
   if (gain_.number >= 0) all[gain_.number] = gain;
   return all;
 }

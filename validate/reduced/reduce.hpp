@@ -25,14 +25,16 @@ class Reduction {
     playin::OpenLoop loop;  ///< of the plant's controls
     Eigen::SparseMatrix<double, Eigen::RowMajor>
         over_hats;  ///< mean over each knot's hat function: [knot][time point]
-    /// Rows of [plant | torque | field | residual without either input], once the event's state is
+    /// Rows of [plant | changes | torque | field | residual without either input], once the event's state is
     /// eliminated.
     Eigen::MatrixXd triangle;
-    /// The same of [state | plant | torque | field | residual]: what the state then is.
+    /// The same of [state | plant | changes | torque | field | residual]: what the state then is.
     Eigen::MatrixXd by_state;
     Knots knots;
   };
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  /// How many changes beside the plant's parameters (add_changes).
+  [[nodiscard]] Eigen::Index changes() const { return inference_.events.front().changes.cols(); }
   /// How many knots all events have.
   [[nodiscard]] Eigen::Index knots() const { return knots_; }
   /// Between two samples [s].
@@ -75,8 +77,9 @@ class Reduction {
 class ReducedPlant {
  public:
   /// The other input stays free where the reduction has it. `held` marks plant parameters that are fixed
-  /// because their blocks are absent; empty: none.
-  ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {});
+  /// because their blocks are absent; empty: none. Of the changes only those of `freed` are made.
+  ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
+               const std::vector<Eigen::Index>& freed = {});
 
   /// Cost of each time series [knot of all events][series], each with its change of the gain's parameter.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
@@ -91,7 +94,7 @@ class ReducedPlant {
   /// Evidence (difference of -2 log) for a time series that is free in time over none: a random walk like the
   /// input's prior, with the intensity that is the most probable. That may be zero: it is never negative.
   [[nodiscard]] double free_evidence() const;
-  /// Changes of the plant parameters that minimise the cost of a time series.
+  /// Changes of the plant parameters that minimise the cost of a time series; without those of add_changes.
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
@@ -109,6 +111,33 @@ TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
     EXPECT_GT(cost, freely);
     EXPECT_GT(plant.costs(Eigen::VectorXd::Zero(own.size()), still)[0], 3 * chi2);
   }
+}
+
+/// A change of the plant that is made freely costs what the parameter costs that it is a change of, and
+/// nothing changes where it is not made.
+TEST_F(Reduced, AFreeChangeIsAParameterMore) {
+  Inference about = reduction_->inference();
+  const auto free = about.free;
+  const auto moved = std::ranges::find_if(free, [&](const fit::FreeParameter& f) {
+    return sim::plant::parameter_record(about.plant, f.id).name == "H";
+  });
+  ASSERT_NE(moved, free.end());
+  Change change{about.plant, about.plant};
+  parameter_value(change.to, moved->id) *= 1.001;
+  add_changes(about, *events_, model_->conventions, std::array{change}, 1);
+  const Reduction with(std::move(about), *events_, model_->conventions);
+  std::vector<char> all_held(free.size(), 1), but_one = all_held;
+  but_one[static_cast<std::size_t>(moved - free.begin())] = 0;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(with.knots()), still = Eigen::VectorXd::Zero(1);
+  const auto cost = [&](const Reduction& reduction, const std::vector<char>& held,
+                        const std::vector<Eigen::Index>& freed) {
+    return ReducedPlant(reduction, event::InputKind::field, held, freed).costs(none, still)[0];
+  };
+  const double fixed = cost(with, all_held, {}), by_parameter = cost(with, but_one, {}),
+               by_change = cost(with, all_held, {0});
+  EXPECT_NEAR(fixed, cost(*reduction_, all_held, {}), 1e-6 * fixed);
+  EXPECT_LT(by_parameter, fixed - 1000);
+  EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // slopes are that near
 }
 
 /// The exciter that made the records is identified alone, before anything else is known of it.
