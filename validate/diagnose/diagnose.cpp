@@ -188,8 +188,8 @@ class Diagnoser {
         2, infer, [&](int done) { report(event::Phase::missing_input, "", done, 2); }, threads_);
   }
 
-  /// Judges the leading hypotheses. Then tries each hypothesis beside the one that holds or, where none does,
-  /// beside the best two.
+  /// Judges the leading hypotheses. Then tries each hypothesis beside the companion of the controls, or
+  /// beside the one that holds or, where none does, beside the best two.
   void search() {
     const hypothesis::Stage stage = model_stage();
     judge_leading(result_.ranked);
@@ -197,8 +197,12 @@ class Diagnoser {
     look_until_one_holds(stage);
     const hypothesis::Judgement best = result_.ranked.front();
     if (stopped() || (!best.accepted && best.gain < thresholds::evidence.accepted)) return;
-    auto pairs = best.accepted ? judged_beside(stage, best) : try_pairs(stage);
-    beside_companion(stage, pairs);
+    auto pairs = beside_companion(stage);
+    if (pairs.empty() || !pairs.front().accepted) {
+      std::ranges::move(best.accepted ? judged_beside(stage, best) : try_pairs(stage),
+                        std::back_inserter(pairs));
+      best_first(pairs);
+    }
     if (stopped()) return;
     try_alone(pairs);
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
@@ -268,23 +272,18 @@ class Diagnoser {
     }
     return pairs;
   }
-  /// Pairs with an effect of the machine or of an instrument beside which some control promises more than
-  /// what was found: the controls were ranked while it was missing.
-  void beside_companion(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& pairs) const {
+  /// Pairs with the effect of the machine or of an instrument beside which some control leaves least: the
+  /// controls were ranked while it was missing. None where no such effect is worth it.
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside_companion(const hypothesis::Stage& stage) const {
     const auto most = std::ranges::max_element(result_.ranked, {}, &hypothesis::Judgement::companion_gain);
     const auto companion = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& j) {
       return j.hypothesis.name == most->companion && j.hypothesis.with.empty();
     });
-    double known = 0;  // over the best single one
-    for (const hypothesis::Judgement& j : pairs)
-      if (j.accepted) known = std::max(known, j.gain - best_gain(result_.ranked));
-    if (companion == result_.ranked.end() || most->companion_gain < known + thresholds::evidence.second)
-      return;
+    if (companion == result_.ranked.end()) return {};
     hypothesis::Judgement first = *companion;
     if (!first.fitted) hypothesis::fit_alone(stage, first);
-    if (!first.fit.failed.empty()) return;
-    std::ranges::move(judged_beside(stage, first), std::back_inserter(pairs));
-    best_first(pairs);
+    if (!first.fit.failed.empty()) return {};
+    return judged_beside(stage, first);
   }
   [[nodiscard]] bool can_be_first(const hypothesis::Judgement& single) const {
     return single.gain >= trial().evidence && single.fitted && !single.hypothesis.replaces;
