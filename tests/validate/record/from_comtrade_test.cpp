@@ -179,6 +179,8 @@ TEST(RecordComtradeTest, FaultsOfTheConfiguration) {
   EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("multiplier a = 'x'"), HasSubstr("e.cfg:3")),
                                       AllOf(HasSubstr("7 fields"), HasSubstr("e.cfg:5")),
                                       AllOf(HasSubstr("'GIF'"), HasSubstr("FLOAT32"))));
+  w.edit = [](auto& lines) { lines.clear(); };
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("end of the configuration"), HasSubstr("e.cfg:1"))));
   w.edit = [](auto& lines) { lines.resize(8); };
   EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("end of the configuration"), HasSubstr("e.cfg:9"))));
   w.edit = [](auto& lines) { lines[2] = "1,V1 MAG,,G7,kV,1,0,0,0,0,0,0,S"; };

@@ -65,6 +65,7 @@ class Config {
 
   bool station() {
     const Fields f = next();
+    if (ended_) return false;
     c_.about.station = f[0];
     c_.about.device = f.size() > 1 ? f[1] : "";
     if (f.size() < 3 || f[2].empty()) {
