@@ -58,8 +58,7 @@ class Identifying {
       if (leader == std::exchange(leader, best_fitted())) break;
     }
     fit_in_reach();
-    if (const Identified* best = best_fitted(); best && stage_.with.empty() && !stage_.stopped())
-      find_companions(stage_, polish_, *best, tried_);
+    find_companions();
     return judgements();
   }
 
@@ -184,6 +183,15 @@ class Identifying {
       return false;
     }
     return true;
+  }
+  /// Of the leader, where nothing was added before and its plant can be made linear.
+  void find_companions() {
+    const Identified* leader = best_fitted();
+    if (!leader || !stage_.with.empty() || stage_.stopped()) return;
+    try {
+      hypothesis::find_companions(stage_, polish_, *leader, tried_);
+    } catch (const InputError&) {  // slopes take other steps, and this plant cannot be run with them
+    }
   }
   /// Fits what may come within reach of the best. How far behind a block with many parameters is cannot be
   /// seen from a plant that is linear about another block, unless it does not fit at all.

@@ -14,9 +14,13 @@ namespace {
 class IdentifiedExciter : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<Judgement> found(const std::vector<std::string>& names) const {
+    return found(stage_, names);
+  }
+  [[nodiscard]] std::vector<Judgement> found(const Stage& stage,
+                                             const std::vector<std::string>& names) const {
     auto all = all_hypotheses(model_.under_test(), model_.library);
     std::erase_if(all, [&](const Hypothesis& h) { return std::ranges::count(names, h.name) == 0; });
-    return identified(stage_, std::move(all), {});
+    return identified(stage, std::move(all), {});
   }
   static std::vector<record::Record> records(const plant::PlantModel& model) {
     std::vector<record::Record> all;
@@ -55,6 +59,31 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
   EXPECT_FALSE(all.back().fitted);
   EXPECT_GT(all.back().behind, 1000);
   EXPECT_NE(all.back().why_not.find("more of chi2 than SEXS"), std::string::npos) << all.back().why_not;
+}
+
+/// A phase error of an instrument transformer is found beside the exciter, and nothing where they are right.
+/// That of the voltage and that of the current turn the power alike.
+TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
+  EXPECT_EQ(found({"SEXS"}).front().companion, "");
+  auto wrong = records(model_);
+  for (record::Record& r : wrong)
+    for (std::size_t k = 0; k < r.t.size(); ++k) {
+      const Complex S = std::polar(1.0, 0.05) * Complex(r.P[k], r.Q[k]);
+      r.P[k] = S.real();
+      r.Q[k] = S.imag();
+    }
+  const auto events = event::prepare_events(model_, wrong, {.measured_states = false});
+  const fit::Fit base = fit::fit(model_.under_test(), events, {}, {.iterations = 0});
+  const Stage stage{.events = events,
+                    .plant = model_.plant,
+                    .conventions = model_.conventions,
+                    .library = model_.library,
+                    .fit = base};
+  for (const Judgement& j : found(stage, {"SEXS", "EXST1"})) {
+    EXPECT_TRUE(j.companion == "CTERROR" || j.companion == "PTERROR")
+        << j.hypothesis.name << ": " << j.companion;
+    EXPECT_GT(j.companion_gain, thresholds::evidence.second) << j.hypothesis.name;
+  }
 }
 
 TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
