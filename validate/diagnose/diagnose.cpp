@@ -16,7 +16,6 @@
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/hypothesis/identified.hpp"
-#include "validate/hypothesis/rivals.hpp"
 #include "validate/hypothesis/search.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -152,18 +151,14 @@ class Diagnoser {
       const fit::FitOptions o = fit::continued(how, f, free);
       return fit::fit(tested, result_.events, free, o);
     };
-    fit::FitOptions how{.iterations = kOnwards, .lenient = true};
+    const fit::FitOptions how{.iterations = kOnwards, .lenient = true};
     result_.base =
         go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base, how);
     require_fitted(result_.base, model_);
-    const hypothesis::FittedOn leading{best.gain, best.hypothesis.slot};
     each(result_.ranked, event::Phase::noise_again, [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      fit::FitOptions its = how;
-      if (!leading(j.gain, j.hypothesis.slot))
-        its.iterations = 0;  // it was given up: what it leaves is counted anew
       j.fit =
-          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, its);
+          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, how);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     if (stopped()) throw Interrupted{};  // some fits still have the former noise
@@ -194,7 +189,6 @@ class Diagnoser {
     const hypothesis::Stage stage = model_stage();
     judge_leading(result_.ranked);
     if (result_.ranked.empty()) return;
-    look_until_one_holds(stage);
     const hypothesis::Judgement best = result_.ranked.front();
     if (stopped() || (!best.accepted && best.gain < thresholds::evidence.accepted)) return;
     auto pairs = beside_companion(stage);
@@ -219,29 +213,7 @@ class Diagnoser {
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
                           std::make_move_iterator(pairs.end()));
   }
-  /// Where something is missing but nothing holds alone, what nearly fits is looked at elsewhere, until one
-  /// holds.
-  void look_until_one_holds(const hypothesis::Stage& stage) {
-    const auto holds = [&] { return std::ranges::any_of(result_.ranked, &hypothesis::Judgement::accepted); };
-    while (result_.base.misfit() > options_.adequate && !holds() && !stopped()) {
-      const auto looked = hypothesis::look_at_next(stage, result_.ranked, options_.progress);
-      if (looked.empty()) break;
-      const double reach = best_gain(result_.ranked) - thresholds::evidence.within_reach;
-      in_parallel(
-          looked.size(),
-          [&](std::size_t k) {
-            hypothesis::Judgement& j = result_.ranked[looked[k]];
-            if (j.gain > reach && !stopped()) judge_one(j);
-          },
-          [](int) {}, threads_);
-    }
-    best_first(result_.ranked);
-  }
   [[nodiscard]] hypothesis::Stage model_stage() const {
-    const auto takes_off = [&](const hypothesis::MissingInput& m) {
-      return m.fit.events.empty() || !m.fit.failed.empty() ? std::numeric_limits<double>::infinity()
-                                                           : fit::gain(result_.base, m.fit);
-    };
     return {.events = result_.events,
             .plant = model_.plant,
             .conventions = model_.conventions,
@@ -249,9 +221,7 @@ class Diagnoser {
             .fit = result_.base,
             .spread = options_.spread,
             .threads = threads_,
-            .stop = [this] { return stopped(); },
-            .by_torque = takes_off(result_.torque),
-            .by_field = takes_off(result_.field)};
+            .stop = [this] { return stopped(); }};
   }
   /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
   /// pair beside the one before holds.
@@ -299,7 +269,7 @@ class Diagnoser {
                                                              const hypothesis::Judgement& pair) const {
     auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
     each(rivals, event::Phase::pair_exchanges, [&](hypothesis::Judgement& j) {
-      hypothesis::try_exchange(stage, pair, j);
+      hypothesis::try_begun(stage, j);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
@@ -405,7 +375,6 @@ class Diagnoser {
   /// none of them holds, three are judged.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
-    hypothesis::give_rivals_a_chance(model_stage(), tried, options_.progress);
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
     int leading = 0;
     for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence

@@ -182,8 +182,8 @@ class DiagnosisPage {
     if (d_.ranked.empty()) return;
     page_.section("What could be missing");
     page_.text(fmt::format(
-        "{} effects were added one at a time. A score test beside the refitted model says first what each "
-        "could gain; what promises something is fitted, the model's parameters with it. "
+        "{} effects were added one at a time, each fitted together with the model's parameters as far as it "
+        "came near the best. "
         "Evidence is 2 ln(Bayes factor) of the effect (Laplace's "
         "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
         "for its parameters. "

@@ -29,8 +29,6 @@ enum class Phase {
   quick_fits,
   full_fits,
   noise_again,
-  further_starts,
-  other_optima,
   unseen_events,
   laws,
   // diagnose, with a second effect beside the best one

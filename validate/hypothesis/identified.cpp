@@ -8,7 +8,6 @@
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/hypothesis/companions.hpp"
-#include "validate/hypothesis/detail/starts.hpp"
 #include "validate/hypothesis/polish.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -39,7 +38,7 @@ class Identifying {
   Identifying(const Stage& stage, const event::Progress& report)
       : stage_(stage), report_(report), polish_(stage), none_(fit::penalised(stage.fit)) {}
 
-  std::vector<Judgement> run(std::vector<Hypothesis> all) {
+  std::vector<Judgement> run(std::vector<Hypothesis> all, const std::function<double(double)>& fit_others) {
     for (Hypothesis& h : all) {
       reduced::Trial trial{prior_mean(stage_, h), h.free, stream_of(full_name(h))};
       const auto& t = stage_.events.front().record.t;
@@ -48,11 +47,12 @@ class Identifying {
     }
     begin();
     identify();
-    if (!worth_a_fit()) return judgements();
-    Identified* leader = fitted_leader();
+    Identified* leader = worth_a_fit() ? fitted_leader() : nullptr;
+    others_ = fit_others(least_fitted());
+    if (!leader) return judgements();
     for (int point = 0; leader && !other_is_free(side_of(*leader)) && point < kLinearPoints; ++point) {
       fit({leader});
-      if (!linearise_about(*leader)) break;
+      if (!leader->best() || !linearise_about(*leader)) break;
       identify();
       fit_in_reach();
       if (leader == std::exchange(leader, best_fitted())) break;
@@ -96,9 +96,11 @@ class Identifying {
     if (found[2].criterion < std::min(found[0].criterion, found[1].criterion)) return reduce(found[2]);
     // the better one alone; the other, too, where it comes near
     const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i].chi2; };
-    const FittedOn allowed{std::max(takes_off(0), takes_off(1)), -1};
     for (const std::size_t i : {0, 1})
-      if (found[i].criterion < found[1 - i].criterion || allowed(takes_off(i), -1)) reduce(found[i]);
+      if (found[i].criterion < found[1 - i].criterion ||
+          takes_off(i) > takes_off(1 - i) - thresholds::evidence.within_reach ||
+          takes_off(i) > thresholds::search.fair * takes_off(1 - i))
+        reduce(found[i]);
   }
   void reduce(const reduced::Inference& found) {
     const auto reduction =
@@ -174,6 +176,10 @@ class Identifying {
       if (h.best() && (!best || fit::better(*h.best(), *best->best()))) best = &h;
     return best;
   }
+  [[nodiscard]] double least_fitted() {
+    const Identified* best = best_fitted();
+    return best ? fit::penalised(*best->best()) : std::numeric_limits<double>::infinity();
+  }
   /// Blocks of the leader's side are then identified about its fit. False where that cannot be simulated.
   [[nodiscard]] bool linearise_about(const Identified& leader) {
     Reduced& side = leader.input() == InputKind::torque ? torque_ : field_;
@@ -187,7 +193,7 @@ class Identifying {
   /// Of the leader, where nothing was added before and its plant can be made linear.
   void find_companions() {
     const Identified* leader = best_fitted();
-    if (!leader || !stage_.with.empty() || stage_.stopped()) return;
+    if (!leader || !stage_.with.empty() || stage_.stopped() || others_ < leader->cost) return;
     try {
       hypothesis::find_companions(stage_, polish_, *leader, tried_);
     } catch (const InputError&) {  // slopes take other steps, and this plant cannot be run with them
@@ -209,14 +215,12 @@ class Identifying {
   /// Fits those that were not yet fitted to the end.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
-    const Identified* best = best_fitted();
-    const double goal = (best ? fit::penalised(*best->best()) : std::numeric_limits<double>::infinity()) +
-                        thresholds::evidence.within_reach;
+    const double goal = std::min(others_, least_fitted()) + thresholds::evidence.within_reach;
     each(some, event::Phase::full_fits, [&](Identified& h) {
       const Reduced& side = side_of(h);
       other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side, goal);
       h.polished = true;
-      if (!h.best() || other_is_free(side)) return;
+      if (!h.best() || other_is_free(side)) return;  // polish() has the cost of what it gave up
       h.cost = fit::penalised(*h.best());
       if (!(h.cost < goal)) h.fits.clear();
     });
@@ -233,7 +237,6 @@ class Identifying {
       j.hypothesis = h.hypothesis;
       bring(stage_, j.hypothesis);
       j.hypothesis.plant = h.trial.plant;
-      j.looked_at = true;
       j.companion = h.companion;
       j.companion_gain = h.companion_gain;
       if (const fit::Fit* f = h.best()) {
@@ -284,7 +287,8 @@ class Identifying {
   Polish polish_;
   std::vector<Identified> tried_;
   Reduced torque_, field_;
-  double none_;  ///< cost without any
+  double none_;                                              ///< cost without any
+  double others_ = std::numeric_limits<double>::infinity();  ///< least cost of a hypothesis of another kind
 };
 
 }  // namespace
@@ -307,9 +311,9 @@ bool can_be_identified(const Stage& stage, const Hypothesis& h) {
 }
 
 std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
+                                  const std::function<double(double least)>& fit_others,
                                   const event::Progress& report) {
-  if (all.empty()) return {};
-  return Identifying(stage, report).run(std::move(all));
+  return Identifying(stage, report).run(std::move(all), fit_others);
 }
 
 }  // namespace swingbank::validate::hypothesis

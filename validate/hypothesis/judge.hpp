@@ -36,7 +36,6 @@ struct Judgement {
   /// least, and by how much that is less than what the best control leaves alone. Empty: none is worth it.
   std::string companion = {};
   double companion_gain = 0;
-  bool looked_at = false;  ///< from all over its parameters (identified, try_basins)
   bool accepted = false;
   std::string why_not;  ///< empty where accepted
 };

@@ -87,11 +87,6 @@ void try_begun(const Stage& stage, Judgement& j) {
     j.fit = std::move(f);
 }
 
-void try_exchange(const Stage& stage, const Judgement& pair, Judgement& j) {
-  try_begun(stage, j);
-  if (fit::gain(j.fit, pair.fit) > thresholds::search.exchange_behind) try_further(stage, pair.fit, j);
-}
-
 Judgement crossed(const Stage& stage, const Cross& cross) {
   Judgement none;
   none.hypothesis.with = cross.stays;

@@ -1,6 +1,7 @@
 #include "validate/hypothesis/polish.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "validate/fit/states.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 
 /// Steps of a fit of the whole plant: to find the leader, at the end.
-constexpr int kLeaderSteps = 8, kPolishSteps = 12;
+constexpr int kLeaderSteps = 8, kPolishSteps = 40;
 /// The plant is made linear about an optimum so often, with so many steps of the block each time, until less
 /// than this of chi2 is to be gained.
 constexpr int kLinearRounds = 3, kLinearSteps = 8;
@@ -143,9 +144,11 @@ void Polish::briefly(Identified& h, const reduced::Reduction& from) const {
 
 void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) const {
   std::vector<fit::Fit> polished;
+  double given_up = std::numeric_limits<double>::infinity();
   for (const reduced::Optimum& optimum : h.optima) {
     Point at = reference(h, from, optimum), to = expected(h, from, optimum);
     double cost = std::numeric_limits<double>::infinity();
+    bool out_of_reach = false;
     for (int round = 0; round < kLinearRounds; ++round) {
       Reduced reduction;
       double there = cost;
@@ -161,15 +164,25 @@ void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) 
           reduced::identify(*reduction, h.input(), h.trial, {.draws = 0, .kept = 0, .steps = kLinearSteps},
                             {fit::values_of(whole(h, at), h.trial.free)});
       if (nearby.empty() || cost - nearby.front().cost < kSettledCost) break;
+      // what the plant says that is linear about a point far from the optimum does not count yet
+      if (round > 0 && nearby.front().cost > goal) {
+        given_up = std::min(given_up, nearby.front().cost);
+        out_of_reach = true;
+        break;
+      }
       to = expected(h, *reduction, nearby.front());
     }
+    if (out_of_reach) continue;
     if (fit::Fit f = fit_from(
             h, at,
             {.iterations = kPolishSteps, .lenient = true, .errors = false, .goal = {goal, kPolishSteps}});
         f.failed.empty())
       polished.push_back(std::move(f));
   }
-  if (!polished.empty()) h.fits = std::move(polished);
+  if (!polished.empty())
+    h.fits = std::move(polished);
+  else if (h.fits.empty() && std::isfinite(given_up))
+    h.cost = given_up;
 }
 
 fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptions options) const {

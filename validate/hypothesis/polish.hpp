@@ -45,7 +45,8 @@ class Polish {
                                      std::span<const reduced::Change> changes = {}) const;
   /// Fits the whole plant for a few steps from the best optimum of a linear point that may be far away.
   void briefly(Identified& h, const reduced::Reduction& from) const;
-  /// Fits the whole plant from each optimum, as far as it may come below `goal`. Before that, the plant is
+  /// Fits the whole plant from each optimum, as far as it may come below `goal`; there is no fit where the
+  /// plant that is linear about the optimum itself says that it does not. Before that, the plant is
   /// made linear about the optimum itself, from where the block is identified again, a few times: the reduced
   /// plant goes along valleys in which a fit is slow, as that of gain and T'do.
   void polish(Identified& h, const reduced::Reduction& from, double goal) const;

@@ -1,303 +1,233 @@
 #include "validate/hypothesis/search.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
-#include "validate/hypothesis/detail/starts.hpp"
 #include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/posterior.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Steps of the fits: from each start, from the best two of them, and from the stage's fit.
-constexpr int kFirstSteps = 4, kMoreSteps = 8, kNestedSteps = 12;
-/// Steps from each start beside a stage that nearly fits, and from the best of them.
-constexpr int kNearSteps = 3, kOnwardSteps = 9;
-/// Steps of the fit that starts with the blocks which the stage has bent as the model has them.
-constexpr int kUnbentSteps = 8;
-/// A fit goes on in so many rounds at most.
-constexpr int kRounds = 5;
-/// Steps that later stages may give it: the noise measured again, further starts.
-constexpr int kLaterSteps = 22;
-/// All hypotheses try so many starts.
-constexpr std::size_t kFirstStarts = 2;
+/// Steps of the fit from each start, and of the fit that goes on from the best of them, at most.
+constexpr int kFirstSteps = 4, kLastSteps = 40;
+/// Draws of an added effect that are evaluated, beside those of its starts.
+constexpr std::size_t kFurtherDraws = 80;
 
-const fit::FitOptions kBriefly = {.lenient = true, .brief = true, .errors = false};
+/// Values of all free parameters of a hypothesis, and the events' states.
+struct Start {
+  std::vector<double> values;
+  std::vector<fit::EventState> states;  ///< empty: as prepared
+};
 
-class Searcher {
+/// A hypothesis that is fitted with the whole plant.
+struct Candidate {
+  Hypothesis hypothesis;
+  sim::plant::Plant prior = {};  ///< its prior mean
+  std::vector<fit::FreeParameter> free = {};
+  std::vector<Start> starts = {};  ///< none: it changes nothing
+  std::vector<fit::Fit> fits = {};
+};
+
+/// Hypotheses that cannot be identified alone. Draws are evaluated in lanes about two points: the submitted
+/// values and the stage's fit. The best of each point and the standard values are fitted for a few steps,
+/// and the best of these to the end, as far as it may come within reach of the best hypothesis.
+class WholeFits {
  public:
-  /// `known`: those that were tried already, the best first.
-  Searcher(const Stage& stage, const event::Progress& report, const std::vector<Judgement>& known)
-      : stage_(stage), report_(report), starts_(stage) {
-    if (known.empty()) return;
-    known_ = known.front().gain;
-    known_cost_ = fit::penalised(known.front().fit);
+  /// `least`: cost of the best that was fitted already.
+  WholeFits(const Stage& stage, const event::Progress& report, double least)
+      : stage_(stage), report_(report), least_(least) {
+    for (const auto& e : stage.fit.events) fitted_states_.push_back(e.state);
   }
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
-    const auto candidates = screened(std::move(all));
-    std::vector<Judgement> tried(candidates.size());
-    if (starts_.near()) {
-      std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      each(candidates, first_steps_phase(), [&](std::size_t i) {
-        if (!stage_.stopped()) near_first(candidates[i], begun[i]);
-      });
-      auto onward = promising(candidates, begun, thresholds::search.fair);
-      // a fit that is worse than nothing has not arrived yet, and another start is left
-      for (std::size_t i = 0; i < candidates.size(); ++i)
-        if (!candidates[i].unbent.empty() && gain_of(begun[i]) < 0) onward[i] = 1;
-      const double reach = in_reach(begun);
-      each(candidates, full_fits_phase(), [&](std::size_t i) {
-        const Candidate& c = candidates[i];
-        tried[i] = c.nested.empty() ? hopeless(c) : begun_only(c, begun[i]);
-        if (!c.nested.empty() && !stage_.stopped())
-          tried[i] = onward[i] ? near_onward(c, std::move(begun[i]), reach) : judgement(c, begun[i]);
-      });
-    } else {
-      std::vector<std::vector<fit::Fit>> begun(candidates.size());
-      const auto start = [&](std::size_t tries, const std::vector<char>& which) {
-        const double reach = in_reach(begun);
-        each(candidates, first_steps_phase(), [&](std::size_t i) {
-          if (which[i] && !stage_.stopped()) first_steps(candidates[i], tries, reach, begun[i]);
-        });
-      };
-      start(1, std::vector<char>(candidates.size(), 1));
-      const auto allowed = allowed_by_inputs(candidates, begun);
-      start(kFirstStarts, allowed);
-      auto fair = promising(candidates, begun, thresholds::search.fair_at_first);
-      for (std::size_t i = 0; i < fair.size(); ++i) fair[i] = fair[i] && allowed[i];
-      start(kTries, fair);
-      const auto onward = promising(candidates, begun, thresholds::search.fair);
-      each(candidates, full_fits_phase(), [&](std::size_t i) {
-        tried[i] = begun_only(candidates[i], begun[i]);
-        if (!stage_.stopped())
-          tried[i] = onward[i] ? more_steps(candidates[i], begun[i]) : judgement(candidates[i], begun[i]);
-      });
+    std::vector<Candidate> candidates;
+    for (Hypothesis& h : all) candidates.push_back({std::move(h)});
+    const event::Phase screening = first() ? event::Phase::screening : event::Phase::second_screening;
+    each(candidates, screening, [&](Candidate& c) { find_starts(c); });
+    std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
+    double goal = this->goal(candidates);
+    each(candidates, screening, [&](Candidate& c) {
+      for (const Start& start : c.starts)
+        keep(c, attempt(c, start.values, start.states,
+                        {.iterations = kFirstSteps,
+                         .lenient = true,
+                         .brief = true,
+                         .errors = false,
+                         .goal = {goal, 2 * kFirstSteps}}));
+    });
+    std::erase_if(candidates, [](const Candidate& c) { return c.fits.empty(); });
+    goal = this->goal(candidates);
+    each(candidates, first() ? event::Phase::full_fits : event::Phase::second_full_fits, [&](Candidate& c) {
+      const fit::Fit& from = *std::ranges::min_element(c.fits, fit::better);
+      std::vector<fit::EventState> states;
+      for (const auto& e : from.events) states.push_back(e.state);
+      keep(c, attempt(c, fit::values_of(from.plant, c.free), states,
+                      {.iterations = kLastSteps, .lenient = true, .goal = {goal, kLastSteps}}));
+    });
+    std::vector<Judgement> tried;
+    for (Candidate& c : candidates) {
+      Judgement j;
+      j.hypothesis = std::move(c.hypothesis);
+      j.fit = std::move(c.fits.back());
+      j.gain = fit::gain(stage_.fit, j.fit,
+                         std::isfinite(fit::criterion(j.fit)) ? fit::criterion : fit::penalised);
+      tried.push_back(std::move(j));
     }
-    std::erase_if(tried, [](const Judgement& j) { return j.fit.events.empty(); });
-    std::ranges::sort(tried, std::greater<>(), &Judgement::gain);
     return tried;
   }
 
  private:
+  void find_starts(Candidate& c) const {
+    Hypothesis& h = c.hypothesis;
+    const std::size_t own = h.free.size();
+    bring(stage_, h);
+    auto draws = h.starts;
+    if (h.drawn) {
+      const auto& t = stage_.events.front().record.t;
+      for (auto& draw : further_draws(h, own, kFurtherDraws, t.back() - t.front())) {
+        draw.insert(draw.end(), draws.front().begin() + static_cast<std::ptrdiff_t>(own),
+                    draws.front().end());
+        draws.push_back(std::move(draw));
+      }
+    }
+    c.prior = prior_mean(stage_, h);
+    c.free = free_of(h, stage_.spread);
+    bool changes = false;
+    const auto add_best = [&](const sim::plant::Plant& about, const std::vector<fit::EventState>& states,
+                              bool submitted) {
+      const double without = chi2_of_each(std::array{about}, stage_.conventions, stage_.events, states)[0];
+      std::vector<sim::plant::Plant> plants;
+      for (const auto& draw : draws) {
+        sim::plant::Plant plant = started(h, draw);
+        for (const fit::FreeParameter& f : c.free)
+          if (const auto id = sim::plant::same_parameter(about, plant, f.id))
+            if (std::ranges::find(h.free, f.id, &fit::FreeParameter::id) == h.free.end())
+              sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(about, *id);
+        plants.push_back(std::move(plant));
+      }
+      const auto chi2 = chi2_of_each(plants, h.conventions, stage_.events, states);
+      for (const double left : chi2)
+        changes |= std::isfinite(left) && std::abs(left - without) > thresholds::search.other_steps;
+      const auto best = static_cast<std::size_t>(std::ranges::min_element(chi2) - chi2.begin());
+      const auto add = [&](std::size_t k) {
+        if (!std::isfinite(chi2[k])) return;
+        c.starts.push_back({fit::values_of(plants[k], c.free), {}});
+        if (!submitted) c.starts.back().states = states;
+      };
+      if (submitted && best != 0) add(0);  // the one that leaves least may hardly act
+      add(best);
+    };
+    sim::plant::Plant plant = stage_.plant;
+    for (const fit::FreeParameter& f : stage_.own)
+      sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(stage_.fit.plant, f.id);
+    add_best(plant, std::vector<fit::EventState>(stage_.events.size()), true);
+    add_best(stage_.fit.plant, fitted_states_, false);
+    if (!changes) c.starts.clear();
+  }
+  [[nodiscard]] fit::Fit attempt(const Candidate& c, const std::vector<double>& values,
+                                 const std::vector<fit::EventState>& states, fit::FitOptions options) const {
+    options.values = values;
+    options.start = states;
+    return fit::fit({c.prior, c.hypothesis.conventions}, stage_.events, c.free, options);
+  }
+  static void keep(Candidate& c, fit::Fit f) {
+    if (f.failed.empty()) c.fits.push_back(std::move(f));
+  }
+  /// The cost from which a fit is worth going on: within reach of the best, and with half the evidence that
+  /// is needed.
+  [[nodiscard]] double goal(const std::vector<Candidate>& candidates) const {
+    double least = least_;
+    for (const Candidate& c : candidates)
+      for (const fit::Fit& f : c.fits) least = std::min(least, fit::penalised(f));
+    const double needed = first() ? thresholds::evidence.accepted : thresholds::evidence.second;
+    return std::min(least + out_of_reach(), fit::penalised(stage_.fit) - needed / 2);
+  }
   template <class F>
-  void each(const std::vector<Candidate>& candidates, event::Phase phase, F act) const {
+  void each(std::vector<Candidate>& candidates, event::Phase phase, F act) const {
     in_parallel(
-        candidates.size(), [&](std::size_t i) { until_interrupted([&] { act(i); }); },
-        [&](int done, std::size_t i) {
-          report(phase, candidates[i].hypothesis.name, done, candidates.size());
-        },
-        stage_.threads);
-  }
-  /// Every hypothesis that acts here.
-  std::vector<Candidate> screened(std::vector<Hypothesis> all) const {
-    std::vector<Candidate> candidates(all.size());
-    in_parallel(
-        all.size(),
+        candidates.size(),
         [&](std::size_t i) {
-          if (!stage_.stopped()) until_interrupted([&] { candidates[i] = starts_.of(std::move(all[i])); });
+          if (!stage_.stopped()) until_interrupted([&] { act(candidates[i]); });
         },
-        [&](int done) {
-          report(first() ? event::Phase::screening : event::Phase::second_screening, "", done, all.size());
+        [&](int done, std::size_t i) {
+          if (!report_) return;
+          const std::string& name = candidates[i].hypothesis.name;
+          report_(phase, first() ? name : name + " beside " + stage_.with, done,
+                  static_cast<int>(candidates.size()));
         },
         stage_.threads);
-    std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
-    return candidates;
-  }
-  fit::Fit attempt(const Candidate& c, const sim::plant::Plant& start, const fit::FitOptions& o) const {
-    return fit::fit({start, c.hypothesis.conventions}, stage_.events, free_of(c.hypothesis, stage_.spread),
-                    o);
-  }
-  /// Fits the first `tries` starts, the standard values and then the draws, leaving out those that `fits`
-  /// holds already.
-  void first_steps(const Candidate& c, std::size_t tries, double reach, std::vector<fit::Fit>& fits) const {
-    fit::FitOptions o = kBriefly;
-    o.iterations = kFirstSteps;
-    o.goal = {reach, kFirstSteps + kMoreSteps + kLaterSteps};
-    for (std::size_t k = fits.size(); k < std::min(c.starts.size(), tries); ++k)
-      fits.push_back(attempt(c, c.starts[k], o));
-  }
-  /// The cost from which a fit is out of reach of the best one so far.
-  [[nodiscard]] double in_reach(const std::vector<std::vector<fit::Fit>>& begun) const {
-    double least = known_cost_;
-    for (const auto& fits : begun)
-      for (const fit::Fit& f : fits) least = std::min(least, fit::penalised(f));
-    return least + out_of_reach();
-  }
-  /// What the best of the fits gains over the stage; minus infinity if there is none.
-  double gain_of(const std::vector<fit::Fit>& fits) const {
-    double gain = -std::numeric_limits<double>::infinity();
-    for (const fit::Fit& f : fits) gain = std::max(gain, fit::gain(stage_.fit, f));
-    return gain;
-  }
-  /// Marks the hypotheses whose first steps gain a fair share of what the best one's do, and the rivals of
-  /// its slot.
-  std::vector<char> promising(const std::vector<Candidate>& candidates,
-                              const std::vector<std::vector<fit::Fit>>& begun, double share) const {
-    std::vector<double> gains;
-    for (const auto& fits : begun) gains.push_back(gain_of(fits));
-    const auto best = std::ranges::max_element(gains);
-    std::vector<char> onward;
-    for (std::size_t i = 0; i < gains.size(); ++i) {
-      const auto leader = static_cast<std::size_t>(best - gains.begin());
-      onward.push_back(FittedOn{std::max(*best, known_), candidates[leader].hypothesis.slot, share}(
-          gains[i], candidates[i].hypothesis.slot));
-    }
-    return onward;
-  }
-  /// Marks the hypotheses that could come to a fair share of what the best one gains, as far as an input that
-  /// is free in time could.
-  std::vector<char> allowed_by_inputs(const std::vector<Candidate>& candidates,
-                                      const std::vector<std::vector<fit::Fit>>& begun) const {
-    const auto best = std::ranges::max_element(begun, {}, [&](const auto& fits) { return gain_of(fits); });
-    std::vector<char> allowed;
-    for (const Candidate& c : candidates) {
-      const Hypothesis& h = c.hypothesis;
-      const double most = h.side == Side::mechanical   ? stage_.by_torque
-                          : h.side == Side::excitation ? stage_.by_field
-                                                       : std::numeric_limits<double>::infinity();
-      const int slot = candidates[static_cast<std::size_t>(best - begun.begin())].hypothesis.slot;
-      allowed.push_back(FittedOn{std::max(gain_of(*best), known_), slot}(most, h.slot));
-    }
-    return allowed;
-  }
-  /// Goes on from the best draw and from the standard values. These are not left out for being slow, because
-  /// draws that hardly act always look better at first. Beliefs are about the start, not about where its
-  /// first steps led.
-  Judgement more_steps(const Candidate& c, const std::vector<fit::Fit>& begun) const {
-    const auto free = free_of(c.hypothesis, stage_.spread);
-    fit::FitOptions o = kBriefly;
-    o.iterations = kMoreSteps;
-    std::vector<fit::Fit> fits;
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < begun.size(); ++k)
-      if (begun[k].failed.empty() && (best == 0 || fit::better(begun[k], begun[best]))) best = k;
-    for (const std::size_t k : {std::size_t{0}, best})
-      if (begun[k].failed.empty() && (k > 0 || fits.empty()))
-        fits.push_back(attempt(c, c.starts[k], fit::continued(o, begun[k], free)));
-    std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
-    const bool worse = fits.empty() || fit::better(stage_.fit, *std::ranges::min_element(fits, fit::better));
-    if (!c.nested.empty() && (worse || stage_.fit.misfit() < thresholds::search.nested)) {
-      o.iterations = kNestedSteps;
-      o.values = std::ranges::min_element(c.nested)->second;
-      o.start.clear();
-      for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
-      if (fit::Fit f = attempt(c, c.starts.front(), o); f.failed.empty()) fits.push_back(std::move(f));
-    }
-    return judgement(c, scanned(c, std::move(fits)));
-  }
-  Judgement hopeless(const Candidate& c) const {
-    Judgement j;
-    j.hypothesis = c.hypothesis;
-    j.fit = stage_.fit;
-    j.fitted = false;
-    j.gain = c.promise;
-    j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", c.promise);
-    return j;
-  }
-  /// Fits from the values and states at which a stage that nearly fits has ended.
-  fit::Fit from_stage(const Candidate& c, const std::vector<double>& values, int steps) const {
-    fit::FitOptions o = kBriefly;
-    o.iterations = steps;
-    o.values = values;
-    for (const auto& e : stage_.fit.events) o.start.push_back(e.state);
-    return attempt(c, c.starts.front(), o);
-  }
-  void near_first(const Candidate& c, std::vector<fit::Fit>& fits) const {
-    for (std::size_t k = 0; k < std::min(c.nested.size(), kTries); ++k)
-      if (fit::Fit f = from_stage(c, c.nested[k].second, kNearSteps); f.failed.empty())
-        fits.push_back(std::move(f));
-  }
-  Judgement near_onward(const Candidate& c, std::vector<fit::Fit> fits, double reach) const {
-    if (fits.empty()) return judgement(c, fits);
-    fit::Fit best = in_rounds(c, *std::ranges::min_element(fits, fit::better), reach);
-    if (!c.unbent.empty())
-      if (fit::Fit f = from_stage(c, c.unbent, kUnbentSteps);
-          fit::gain(best, f) > -thresholds::evidence.within_reach)
-        fits.push_back(in_rounds(c, std::move(f), reach));
-    fits.push_back(std::move(best));
-    return judgement(c, scanned(c, std::move(fits)));
-  }
-  /// The best of the fits, after parameters without a slope have been scanned as well.
-  std::vector<fit::Fit> scanned(const Candidate& c, std::vector<fit::Fit> fits) const {
-    if (fits.empty()) return fits;
-    return {past_blind(stage_, c.hypothesis, c.starts.front(),
-                       std::move(*std::ranges::min_element(fits, fit::better)))};
-  }
-  /// Fits on in rounds, as long as that is worth it.
-  fit::Fit in_rounds(const Candidate& c, fit::Fit best, double reach) const {
-    fit::FitOptions o = kBriefly;
-    o.iterations = kOnwardSteps;
-    const auto free = free_of(c.hypothesis, stage_.spread);
-    for (int round = 0; round < kRounds; ++round) {
-      o.goal = {reach, (kRounds - round) * kOnwardSteps + kLaterSteps};
-      const fit::Fit from = std::exchange(best, attempt(c, c.starts.front(), fit::continued(o, best, free)));
-      const double left = fit::gain(best, stage_.fit);
-      const bool gets_there = left < thresholds::search.coming * fit::gain(from, stage_.fit);
-      if (best.converged || fit::gain(from, best) < thresholds::search.worth_a_round ||
-          (left > 0 && !gets_there))
-        break;
-    }
-    return best;
-  }
-  /// The best of the first fits, for a search that is interrupted: its evidence lacks what the errors add.
-  Judgement begun_only(const Candidate& c, const std::vector<fit::Fit>& fits) const {
-    Judgement j;
-    j.hypothesis = c.hypothesis;
-    const auto best = std::ranges::min_element(fits, fit::better);
-    if (best == fits.end() || !best->failed.empty()) return j;
-    j.fit = *best;
-    j.gain = fit::gain(stage_.fit, j.fit);
-    return j;
-  }
-  /// Makes a judgement of the best of the fits.
-  Judgement judgement(const Candidate& c, std::vector<fit::Fit> fits) const {
-    Judgement j;
-    j.hypothesis = c.hypothesis;
-    std::erase_if(fits, [](const fit::Fit& f) { return !f.failed.empty(); });
-    if (fits.empty()) return j;
-    j.fit = with_errors(c, std::move(*std::ranges::min_element(fits, fit::better)));
-    j.gain = fit::gain(stage_.fit, j.fit, fit::criterion);
-    return j;
-  }
-  /// The same fit with errors, which its evidence needs.
-  fit::Fit with_errors(const Candidate& c, fit::Fit f) const {
-    const auto free = free_of(c.hypothesis, stage_.spread);
-    fit::FitOptions o = fit::continued({.iterations = 0, .lenient = true}, f, free);
-    fit::Fit known = attempt(c, c.starts.front(), o);
-    if (!known.failed.empty()) return f;
-    known.iterations = f.iterations;
-    known.converged = f.converged;
-    return known;
   }
   /// Whether nothing was added to the model before.
   [[nodiscard]] bool first() const { return stage_.with.empty(); }
-  [[nodiscard]] event::Phase first_steps_phase() const {
-    return first() ? event::Phase::quick_fits : event::Phase::second_quick_fits;
-  }
-  [[nodiscard]] event::Phase full_fits_phase() const {
-    return first() ? event::Phase::full_fits : event::Phase::second_full_fits;
-  }
-  void report(event::Phase phase, const std::string& item, int done, std::size_t total) const {
-    if (report_)
-      report_(phase, first() ? item : item + " beside " + stage_.with, done, static_cast<int>(total));
-  }
 
   const Stage& stage_;
   const event::Progress& report_;
-  StartFinder starts_;
-  double known_ =
-             -std::numeric_limits<double>::infinity(),  ///< gain and cost of the best that was tried already
-      known_cost_ = std::numeric_limits<double>::infinity();
+  std::vector<fit::EventState> fitted_states_;
+  double least_;
 };
 
 }  // namespace
+
+std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
+                                 const sim::Conventions& conventions, const event::WhitenedEvents& events,
+                                 const std::vector<fit::EventState>& states) {
+  std::vector<double> chi2(plants.size(), 0.0);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const auto answers = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
+    for (std::size_t k = 0; k < plants.size(); ++k) {
+      fit::EventFit f;
+      if (answers[k]) fit::compare(events, e, *answers[k], f);
+      chi2[k] += answers[k] ? f.chi2 : std::numeric_limits<double>::infinity();
+    }
+  }
+  return chi2;
+}
+
+sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h) {
+  sim::plant::Plant plant = started(h, h.starts.front());
+  for (const fit::FreeParameter& f : stage.own) {
+    const auto id = sim::plant::same_parameter(plant, stage.plant, f.id).value();
+    sim::plant::parameter_value(plant, id) = sim::plant::parameter_value(stage.plant, f.id);
+  }
+  return plant;
+}
+
+std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f) {
+  const auto free = free_of(h, stage.spread);
+  fit::Fit known = fit::fit(h.under_test(), stage.events, free,
+                            fit::continued({.iterations = 0, .lenient = true}, f, free));
+  if (!known.failed.empty()) return std::nullopt;
+  return known;
+}
+
+void fit_alone(const Stage& stage, Judgement& j) {
+  const auto free = free_of(j.hypothesis, stage.spread);
+  fit::FitOptions o{.lenient = true};
+  for (const auto& e : stage.fit.events) o.start.push_back(e.state);
+  j.fit = fit::fit(j.hypothesis.under_test(), stage.events, free, o);
+  j.fitted = j.fit.failed.empty();
+  if (j.fitted) j.gain = fit::gain(stage.fit, j.fit, fit::criterion);
+}
+
+void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
+  const Hypothesis& h = j.hypothesis;
+  const auto free = free_of(h, stage.spread);
+  fit::FitOptions o{.lenient = true};
+  for (const fit::FreeParameter& f : free) {
+    const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
+    o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)
+                          : sim::plant::parameter_value(j.fit.plant, f.id));
+  }
+  for (const auto& e : other.events) o.start.push_back(e.state);
+  if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o); f.failed.empty() && fit::better(f, j.fit))
+    j.fit = std::move(f);
+}
 
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const event::Progress& report) {
@@ -305,8 +235,14 @@ std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis
                                             [&](const Hypothesis& h) { return can_be_identified(stage, h); });
   const auto begin = std::make_move_iterator(all.begin()), middle = std::make_move_iterator(others),
              end = std::make_move_iterator(all.end());
-  std::vector<Judgement> tried = identified(stage, {begin, middle}, report);
-  std::ranges::move(Searcher(stage, report, tried).run({middle, end}), std::back_inserter(tried));
+  std::vector<Judgement> whole;
+  const auto fit_others = [&](double least) {
+    whole = WholeFits(stage, report, least).run({middle, end});
+    for (const Judgement& j : whole) least = std::min(least, fit::penalised(j.fit));
+    return least;
+  };
+  std::vector<Judgement> tried = identified(stage, {begin, middle}, fit_others, report);
+  std::ranges::move(whole, std::back_inserter(tried));
   place_unfitted(tried);
   std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);
   return tried;

@@ -31,8 +31,6 @@ struct Evidence {
       "evidence.within_reach", 200, "chi2",
       "a long fit may add this much to a short one; what lies further behind the best is neither "
       "fitted on for that reason nor judged (decision 19)"};
-  Threshold near{"evidence.near", 0.2, "share of the best one's evidence",
-                 "from here a rival of the leader's slot gets further starts (decision 19)"};
   Threshold escape{
       "evidence.escape", 0.5, "share of the leading extension's evidence",
       "where a better start of the model alone explains more, the diagnosis begins anew (decision 19)"};
@@ -124,44 +122,14 @@ struct Noise {
 };
 inline constexpr Noise noise;
 
-/// Which hypotheses are fitted, and how far (decision 19).
+/// Which hypotheses are fitted, and how far.
 struct Search {
-  Threshold hopeless{
-      "search.hopeless", evidence.accepted / 2, "chi2",
-      "a hypothesis is not fitted if the score test promises less: half the evidence asked for "
-      "(decision 19)"};
-  Threshold nearly_fits{"search.nearly_fits", 1.5, "chi2 per value",
-                        "below this misfit of the stage the score test chooses the starts (decision 19)"};
-  Threshold nested{"search.nested", 4, "chi2 per value",
-                   "below this misfit the stage's fitted values are good starts for all but what is missing "
-                   "(decision 19)"};
-  Threshold fair_at_first{"search.fair_at_first", 0.05, "share of the best gain",
-                          "from here further starts are tried (decision 19)"};
-  Threshold fair{"search.fair", 0.2, "share of the best gain",
-                 "from here a hypothesis is fitted on (decision 19)"};
-  Threshold worth_a_round{"search.worth_a_round", 10, "chi2",
-                          "a fit goes on while a round gains this (decision 19)"};
-  Threshold coming{"search.coming", 0.8, "share of the distance to the stage",
-                   "a fit that is worse than the stage goes on only if a round leaves less of the distance "
-                   "(decision 19)"};
-  Threshold exchange_behind{"search.exchange_behind", 10, "chi2",
-                            "a rival of a pair's first effect that is behind by more gets further starts "
-                            "(decision 20)"};
-  Threshold bent{"search.bent", 2, "standard deviations of the belief",
-                 "from here a parameter counts as bent by the refit (decision 19)"};
-  Threshold out_of_reach{"search.out_of_reach", 100, "multiple of chi2",
-                         "from a start that raises chi2 by more no fit leads back (decision 19)"};
-  Threshold acting{"search.acting", 10, "chi2",
-                   "a start acts if the squared change of an event's answer exceeds this (decision 19)"};
-  Threshold off{"search.off", 1e-6, "share of the standard start's squared answer",
-                "below this an effect is off: more states make other steps (decision 19)"};
-  Threshold off_beside{
-      "search.off_beside", 0.01, "share of the standard start's squared answer",
-      "as off, where a limiter's timer runs and the answer stays below acting (decision 19)"};
-  Threshold without_slope{
-      "search.without_slope", 1, "chi2",
-      "a parameter whose changes move chi2 by less does not act at all and is not scanned "
-      "(decision 19)"};
+  Threshold nearly_fits{
+      "search.nearly_fits", 1.5, "chi2 per value",
+      "what leaves less is fitted with the whole plant, however far behind identification saw it (decision 61)"};
+  Threshold fair{
+      "search.fair", 0.2, "share of the best gain",
+      "blocks of a side are identified if its input, free in time, takes off as much (decision 61)"};
   Threshold other_steps{"search.other_steps", 4, "chi2",
                         "two runs of one model may differ by this, because other states make other steps"};
 };

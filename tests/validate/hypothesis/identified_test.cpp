@@ -20,7 +20,7 @@ class IdentifiedExciter : public ::testing::Test {
                                              const std::vector<std::string>& names) const {
     auto all = all_hypotheses(model_.under_test(), model_.library);
     std::erase_if(all, [&](const Hypothesis& h) { return std::ranges::count(names, h.name) == 0; });
-    return identified(stage, std::move(all), {});
+    return identified(stage, std::move(all), [](double least) { return least; }, {});
   }
   static std::vector<record::Record> records(const plant::PlantModel& model) {
     std::vector<record::Record> all;
@@ -92,7 +92,7 @@ TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
   auto all = all_hypotheses(then.under_test(), then.library);
   std::erase_if(all, [&](const Hypothesis& h) { return h.name != "IEEEVC" && h.name != "TGOV1"; });
   ASSERT_EQ(all.size(), 2U);
-  for (const Judgement& j : identified(then, all, {})) {
+  for (const Judgement& j : identified(then, all, [](double least) { return least; }, {})) {
     EXPECT_FALSE(j.fitted) << j.hypothesis.name;
     EXPECT_LT(j.gain, thresholds::evidence.second / 2) << j.hypothesis.name;
     if (j.hypothesis.name == "TGOV1") {

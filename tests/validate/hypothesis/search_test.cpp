@@ -5,6 +5,7 @@
 
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/exciter_example.hpp"
+#include "tests/validate/hypothesis/hidden_exciter.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -12,6 +13,24 @@ namespace {
 using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
+
+using WholeFit = HiddenExciter;
+
+/// An armature resistance that the model lacks. A load compensator without an exciter changes nothing.
+TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
+  Hypothesis truth = named("GENROU:Ra");
+  constexpr double kRa = 0.03;
+  sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
+  record_answer_of(truth.under_test());
+  base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, stage_.spread));
+  const auto tried = try_hypotheses(stage_, {named("PTERROR"), truth, named("IEEEVC")});
+  ASSERT_EQ(tried.size(), 2U);
+  EXPECT_EQ(tried.front().hypothesis.name, "GENROU:Ra");
+  EXPECT_GT(tried.front().gain, thresholds::evidence.accepted);
+  const fit::FittedParameter& Ra = tried.front().fit.parameters.back();
+  EXPECT_NEAR(Ra.value, kRa, 3 * Ra.error);
+  EXPECT_EQ(tried.back().hypothesis.name, "PTERROR");
+}
 
 class Exchange : public ::testing::Test {
  protected:

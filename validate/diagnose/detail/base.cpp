@@ -1,8 +1,11 @@
 #include "validate/diagnose/detail/base.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
+#include "sim/plant/usual.hpp"
 #include "validate/fit/noise.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -37,10 +40,26 @@ fit::Fit from_extensions(const hypothesis::Stage& stage, const std::vector<hypot
     if (ranked[k].fitted) hypothesis::try_from(stage, ranked[k].fit, base);
   return std::move(base.fit);
 }
-fit::Fit from_limits(const hypothesis::Stage& stage) {
-  hypothesis::Hypothesis base = alone(stage);
-  base.free = fit::free_parameters(stage.plant, stage.spread);
-  return hypothesis::past_blind(stage, base, stage.plant, stage.fit);
+/// From where one other value of the model leaves least. A limit that is never met has no slope.
+fit::Fit from_another_value(const hypothesis::Stage& stage) {
+  constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
+  const auto free = fit::free_parameters(stage.plant, stage.spread);
+  std::vector<fit::EventState> states;
+  for (const auto& e : stage.fit.events) states.push_back(e.state);
+  std::vector<sim::plant::Plant> plants;
+  for (const fit::FreeParameter& f : free)
+    for (const double multiple : kMultiples) {
+      plants.push_back(stage.fit.plant);
+      double& value = sim::plant::parameter_value(plants.back(), f.id);
+      const auto range = sim::plant::search_range(sim::plant::parameter_record(stage.plant, f.id), value);
+      value = std::clamp(value * multiple, range.low, range.high);
+    }
+  const auto chi2 = hypothesis::chi2_of_each(plants, stage.conventions, stage.events, states);
+  const auto least = std::ranges::min_element(chi2);
+  if (least == chi2.end() || !std::isfinite(*least)) return stage.fit;
+  fit::FitOptions o = fit::continued({.lenient = true}, stage.fit, free);
+  o.values = fit::values_of(plants[static_cast<std::size_t>(least - chi2.begin())], free);
+  return fit::fit(stage.under_test(), stage.events, free, o);
 }
 
 }  // namespace
@@ -75,7 +94,8 @@ std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, cons
       return from(f);
   const double by_inputs = std::max(d.torque.explains(d.base), d.field.explains(d.base));
   if (by_inputs - leads < thresholds::evidence.accepted) return std::nullopt;
-  if (const fit::Fit f = from_limits(stage); fit::gain(stage.fit, f) - leads > thresholds::evidence.accepted)
+  if (const fit::Fit f = from_another_value(stage);
+      fit::gain(stage.fit, f) - leads > thresholds::evidence.accepted)
     return from(f);
   return std::nullopt;
 }
