@@ -41,10 +41,10 @@ class SampledCurve {
   /// Whether the samples jump between k and k + 1: by far more than on either side of it.
   [[nodiscard]] bool jump(std::ptrdiff_t k) const {
     constexpr double kFarMore = 8.0;
-    const double rise = std::abs(at(k + 1) - at(k));
-    const double before = k > 0 ? std::abs(at(k) - at(k - 1)) : 0.0;
-    const double after = k + 2 < size() ? std::abs(at(k + 2) - at(k + 1)) : 0.0;
-    return rise > kFarMore * std::max(before, after);
+    const double rise = std::norm(at(k + 1) - at(k));
+    const double before = k > 0 ? std::norm(at(k) - at(k - 1)) : 0.0;
+    const double after = k + 2 < size() ? std::norm(at(k + 2) - at(k + 1)) : 0.0;
+    return rise > kFarMore * kFarMore * std::max(before, after);
   }
   [[nodiscard]] static std::size_t index(std::ptrdiff_t k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] std::ptrdiff_t size() const { return static_cast<std::ptrdiff_t>(y_.size()); }
