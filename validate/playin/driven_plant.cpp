@@ -146,6 +146,7 @@ class Driven {
   void mark(Trace::Node::Kind kind, int switching, const T* derivative, Trace::Passed passed = {}) {
     if (!trace_) return;
     trace_->nodes.push_back({t_, equations_.side, kind, switching, passed});
+    trace_->v.push_back(equations_.voltage(t_));
     for (std::size_t i = 0; i < x_.size(); ++i) {
       trace_->x.push_back(sim::value_of(x_[i]));
       trace_->dx.push_back(sim::value_of(derivative[i]));
@@ -221,8 +222,9 @@ class Driven {
     }
     refresh();
     const std::vector<T> derivative = k_[0];
+    const double value = sim::value_of(guards_[static_cast<std::size_t>(guard)]);
     const T rate = rate_of(guard), missing = T(0.0) - guards_[static_cast<std::size_t>(guard)] / rate;
-    mark(Trace::Node::Kind::before, -1, derivative.data(), {guard, sim::value_of(rate)});
+    mark(Trace::Node::Kind::before, -1, derivative.data(), {guard, sim::value_of(rate), value});
     attempt(after - before);
     look_at_guards(trial_, guards_at_end_);
     take(after - before);
@@ -356,6 +358,8 @@ class Driven {
     const double frame = run_.start.drift / (constants::turn * run_.conventions.frequency);
     back.voltage.push_back(equations_.voltage(t_));
     auto out = equations_.outputs(x_.data());
+    if (trace_)
+      for (std::size_t o = 0; auto& y : trace_->y.emplace_back()) y = sim::value_of(out[o++]);
     out[static_cast<std::size_t>(Output::speed)] = equations_.signals.speed + T(frame);
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));

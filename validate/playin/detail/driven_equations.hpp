@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -102,10 +103,14 @@ class DrivenEquations {
   /// A converter and a recorded machine have none, which might stand elsewhere.
   [[nodiscard]] bool has_rotor() const { return !recorded_ && !run_.plant->machine.effect->converter; }
   /// As seen from a frame that turns with the pre-event angle.
-  [[nodiscard]] Complex voltage(double t) const {
+  [[nodiscard]] Complex voltage(double t) {
     if (breaker_) return run_.start.voltage;
-    const Complex v = run_.voltage_factor * (*run_.curve)(side.segment, t);
-    return run_.start.drift == 0 ? v : v * std::polar(1.0, -run_.start.drift * t);
+    if (t == voltage_at_ && side.segment == voltage_segment_) return voltage_;
+    voltage_at_ = t;
+    voltage_segment_ = side.segment;
+    voltage_ = run_.voltage_factor * (*run_.curve)(side.segment, t);
+    if (run_.start.drift != 0) voltage_ = voltage_ * std::polar(1.0, -run_.start.drift * t);
+    return voltage_;
   }
   /// Signals and derivative at states x and time t.
   void evaluate(double t, const T* x, T* dx) {
@@ -255,7 +260,10 @@ class DrivenEquations {
   std::vector<T> scratch_;
   bool recorded_, breaker_;  ///< the machine is the recorded one; its breaker opens
   bool has_torque_ = false, has_field_ = false;
-  int gate_ = -1;  ///< state that is compared with a recorded gate
+  int gate_ = -1;    ///< state that is compared with a recorded gate
+  Complex voltage_;  ///< as it was asked for last
+  double voltage_at_ = std::numeric_limits<double>::quiet_NaN();
+  int voltage_segment_ = 0;
 };
 
 }  // namespace swingbank::validate::playin

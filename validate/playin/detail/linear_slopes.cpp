@@ -2,9 +2,10 @@
 #include "validate/playin/detail/linear_slopes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <utility>
 
 #include "base/stop_signal.hpp"
 
@@ -12,41 +13,92 @@ namespace swingbank::validate::playin {
 namespace {
 
 using Kind = Direction::Kind;
+using NodeKind = Trace::Node::Kind;
 using sim::P8;
 
 constexpr double kNodeMove = 1e-6;  ///< of a difference, relative to 1 + |state|
-constexpr std::size_t kBase = 7;    ///< the lane of a pack that nothing moves
 constexpr double kAtLimit = 1e-9;   ///< relative to 1 + |state|
 constexpr auto kLanes = std::size_t(P8::lanes);
 
-/// Rows of numbers, each a whole number of packs.
-class Rows {
+/// A matrix stored by packs of eight columns, the rows of each pack contiguous.
+class Matrix {
  public:
-  Rows(std::size_t rows, std::size_t columns)
-      : packs_((columns + kLanes - 1) / kLanes), all_(rows * packs_, P8(0.0)) {}
-  P8* row(std::size_t i) { return all_.data() + i * packs_; }
-  [[nodiscard]] const P8* row(std::size_t i) const { return all_.data() + i * packs_; }
-  double& at(std::size_t i, std::size_t j) { return reinterpret_cast<double*>(row(i))[j]; }
-  [[nodiscard]] double at(std::size_t i, std::size_t j) const { return row(i)[j / kLanes][int(j % kLanes)]; }
-  void clear(std::size_t i) { std::fill_n(row(i), packs_, P8(0.0)); }
+  Matrix(std::size_t rows, std::size_t columns)
+      : rows_(rows), packs_((columns + kLanes - 1) / kLanes), all_(rows * packs_, P8(0.0)) {}
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] std::size_t packs() const { return packs_; }
+  P8* pack(std::size_t p) { return all_.data() + p * rows_; }
+  [[nodiscard]] const P8* pack(std::size_t p) const { return all_.data() + p * rows_; }
+  /// Row i + 1 of the column is kLanes further.
+  double* column(std::size_t j) { return reinterpret_cast<double*>(pack(j / kLanes)) + j % kLanes; }
+  [[nodiscard]] const double* column(std::size_t j) const {
+    return reinterpret_cast<const double*>(pack(j / kLanes)) + j % kLanes;
+  }
+  double& operator()(std::size_t i, std::size_t j) { return column(j)[i * kLanes]; }
+  double operator()(std::size_t i, std::size_t j) const { return column(j)[i * kLanes]; }
+  void clear(std::size_t p) { std::fill_n(pack(p), rows_, P8(0.0)); }
 
  private:
-  std::size_t packs_;
+  std::size_t rows_, packs_;
   std::vector<P8> all_;
 };
 
-/// to += factor * from
-void add(P8* to, double factor, const P8* from, std::size_t packs) {
-  if (factor == 0.0) return;
-  for (std::size_t p = 0; p < packs; ++p) to[p] = to[p] + P8(factor) * from[p];
+/// Adds factors * from to `count` rows of one pack from row `first` on; `inner`: rows of `from`.
+template <std::size_t count>
+void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const P8* from, P8* to) {
+  P8 sum[count];
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < count; ++i) sum[i] = to[first + i];
+  for (std::size_t begin = 0; begin < inner; begin += kLanes) {
+    const double* factor = factors.column(begin) + first * kLanes;
+    for (std::size_t j = begin; j < std::min(inner, begin + kLanes); ++j, ++factor) {
+      const P8 row = from[j];
+#pragma GCC unroll 8
+      for (std::size_t i = 0; i < count; ++i) sum[i] = sum[i] + P8(factor[i * kLanes]) * row;
+    }
+  }
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < count; ++i) to[first + i] = sum[i];
+}
+/// Computes to += factors * from for one pack of columns, from row i on.
+template <std::size_t count = sim::kRegisterBytes == 64 ? 8 : 4>  // their sums stay in registers
+void add_product(const Matrix& factors, std::size_t inner, const P8* from, P8* to, std::size_t i = 0) {
+  for (; i + count <= factors.rows(); i += count) add_rows<count>(factors, i, inner, from, to);
+  if constexpr (count > 1) add_product<count / 2>(factors, inner, from, to, i);
+}
+/// Computes inverse = left^-1 by Gauss-Jordan elimination with partial pivoting; left is overwritten.
+void invert(Matrix& left, Matrix& inverse) {
+  const std::size_t n = left.rows();
+  for (std::size_t p = 0; p < inverse.packs(); ++p) inverse.clear(p);
+  for (std::size_t i = 0; i < n; ++i) inverse(i, i) = 1.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(left(i, k)) > std::abs(left(pivot, k))) pivot = i;
+    if (pivot != k)
+      for (Matrix* m : {&left, &inverse})
+        for (std::size_t p = 0; p < m->packs(); ++p) std::swap(m->pack(p)[k], m->pack(p)[pivot]);
+    const P8 per(1 / left(k, k));
+    const double* factor = left.column(k);
+    const auto eliminate = [&](P8* rows) {
+      const P8 row = rows[k] * per;
+      for (std::size_t i = 0; i < n; ++i)
+        if (const double f = factor[i * kLanes]; f != 0.0) rows[i] = rows[i] - P8(f) * row;
+      rows[k] = row;
+    };
+    for (std::size_t p = 0; p < inverse.packs(); ++p) eliminate(inverse.pack(p));
+    for (std::size_t p = left.packs(); p-- > k / kLanes;) eliminate(left.pack(p));  // the factors' own last
+  }
 }
 
-/// The plant about a node: x' = A x + B, y = C x + D, by states and by directions.
+/// The plant about a node: x' = A x + B, y = C x + D, by states and inputs, and by directions. The last row
+/// of C and D is the guard that is passed.
 struct Linear {
-  Linear(std::size_t n, std::size_t m, std::size_t outputs)
-      : A(n, n), B(n, m), C(outputs, n), D(outputs, m), held(n, 0) {}
-  Rows A, B, C, D;
-  std::vector<char> held;  ///< states that stand at a limit; their slopes are the limit's
+  Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
+      : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), held(n, 0) {}
+  Matrix A, B, C, D;
+  std::vector<std::size_t> hats;  ///< packs of B and D with hats that are not zero
+  std::vector<char> held;         ///< states that stand at a limit; their slopes are the limit's
 };
 
 class LinearSlopes {
@@ -58,344 +110,258 @@ class LinearSlopes {
         answer_(answer),
         n_(trace.x.size() / trace.nodes.size()),
         m_(directions.size()),
+        inputs_(n_ + (std::ranges::any_of(directions, is_input) ? 2 : 0)),
         S_(n_, m_),
         limits_(n_, m_),
+        some_(n_, 1),
+        right_(n_, 1),
         shown_(run.linear_slopes.size()),
-        before_(n_, m_, shown_),
-        now_(n_, m_, shown_),
+        before_(n_, inputs_, m_, shown_),
+        now_(n_, inputs_, m_, shown_),
         left_(n_, n_),
-        right_(n_, m_),
-        guard_(2, std::max(n_, m_)) {
+        inverse_(n_, n_),
+        y_(shown_ + 1, m_),
+        has_coefficients_(S_.packs(), 0),
+        x_(n_),
+        dx_(n_),
+        move_(copies_for(inputs_) * kLanes, kNodeMove),
+        limit_(n_),
+        outward_(n_) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      lane_[l] = P8(0.0);
+      lane_[l].set(int(l), 1.0);
+    }
     start();
-    begin_.assign(m_, -std::numeric_limits<double>::infinity());
-    for (std::size_t d = 0; d < m_; ++d)
-      if (const PiecewiseLinear* input = input_of(directions[d]))
-        begin_[d] = input->hats()[static_cast<std::size_t>(std::max(0, directions[d].index - 1))];
-    x_.resize(n_);
-    dx_.resize(n_);
-    factors_.resize(n_);
-    more_factors_.resize(n_);
-    sign_.resize(n_);
-    outward_.resize(n_);
-    later_.resize(m_);
+    for (std::size_t d = 0; d < m_; ++d) {
+      double begin = -std::numeric_limits<double>::infinity();
+      if (is_input(directions_[d])) {
+        const auto& knots = input_of(directions_[d].kind).hats();
+        const auto index = static_cast<std::size_t>(directions_[d].index);
+        begin = knots[std::max<std::size_t>(index, 1) - 1];
+        auto& hats = hats_[directions_[d].kind == Kind::torque ? 0 : 1];
+        hats.resize(knots.size(), m_);
+        hats[index] = d;
+      }
+      begins_.emplace_back(begin, d + 1);
+    }
+    std::ranges::sort(begins_);
   }
 
   bool run() {
     answer_.slopes.resize(m_);
     for (auto& slope : answer_.slopes)
-      for (const Output o : run_.linear_slopes)
-        slope.value[static_cast<int>(o)].reserve(run_.record->t.size());
-    for (std::size_t k = 0; k < trace_.nodes.size(); ++k) {
+      for (const Output o : run_.linear_slopes) {
+        auto& values = slope.value[static_cast<int>(o)];
+        values.resize(trace_.y.size());
+        to_.push_back(values.data());
+      }
+    for (std::size_t k = 0, sample = 0; k < trace_.nodes.size(); ++k) {
       interruption_point();
       const Trace::Node& node = trace_.nodes[k];
-      std::swap(before_, now_);
-      look_at(std::min(node.t, node.side.last_moment));
-      linearise(k);
-      if (node.kind == Trace::Node::Kind::after)
+      linearise(k, sample);
+      if (node.kind == NodeKind::after)
         cross(k);
       else if (k > 0 && node.t > trace_.nodes[k - 1].t)
         step(node.t - trace_.nodes[k - 1].t);
       for (std::size_t i = 0; i < n_; ++i)
-        if (now_.held[i]) std::copy_n(limits_.row(i), packs(), S_.row(i));
-      if (node.kind == Trace::Node::Kind::sample) record();
+        for (std::size_t p = 0; now_.held[i] && p < wide(); ++p) S_.pack(p)[i] = limits_.pack(p)[i];
+      if (node.kind == NodeKind::sample) record(sample++);
     }
-    for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t d = 0; d < m_; ++d)
-        if (!std::isfinite(S_.at(i, d))) return false;
+    for (std::size_t d = 0; d < m_; ++d)
+      for (std::size_t i = 0; i < n_; ++i)
+        if (!std::isfinite(S_(i, d))) return false;
     return true;
   }
 
  private:
-  /// Eight copies of the plant, seven of them moved each in its own way.
-  struct Pack {
+  /// Eight copies of the plant, each moved in its own way.
+  struct Copies {
     DrivenEquations<P8> equations;
-    P8 per_move;  ///< 1 / what the lane is moved by; of a state its sign is not in it
+    bool by_state;     ///< else by direction
+    std::size_t pack;  ///< of columns that are their slopes
   };
-  [[nodiscard]] std::size_t packs() const { return (active_ + kLanes - 1) / kLanes; }
-  /// Directions that follow one another in the moves and among all directions.
-  struct Run {
-    std::size_t first, length;
-  };
-  /// Inputs that have begun by t, and how high they stand.
-  void look_at(double t) {
-    for (std::size_t d = m_; d > active_; --d)
-      if (begin_[d - 1] <= t) active_ = d;
-    if (!has_torque_ && !has_field_) return;
-    for (std::size_t d = 0; d < active_; ++d)
-      if (const PiecewiseLinear* input = input_of(directions_[d]))
-        heights_[d] =
-            directions_[d].scale * hat(input->hats(), static_cast<std::size_t>(directions_[d].index), t);
-  }
-  [[nodiscard]] const PiecewiseLinear* input_of(const Direction& d) const {
-    return d.kind == Kind::torque ? &run_.torque : d.kind == Kind::field ? &run_.field : nullptr;
+  static std::size_t copies_for(std::size_t columns) { return (columns + kLanes - 1) / kLanes; }
+  /// Packs of directions whose input has begun.
+  [[nodiscard]] std::size_t wide() const { return copies_for(active_); }
+  static bool is_input(const Direction& d) { return d.kind == Kind::torque || d.kind == Kind::field; }
+  [[nodiscard]] const PiecewiseLinear& input_of(Kind kind) const {
+    return kind == Kind::torque ? run_.torque : run_.field;
   }
   static bool moves_coefficients(const Direction& d) {
     return d.kind == Kind::parameter || d.kind == Kind::P || d.kind == Kind::Q;
   }
 
-  /// Slopes of the start, and the moved copies: by states, by directions that are in the coefficients, by
-  /// torque and field voltage.
+  /// Slopes of the start, and the moved copies: by states and inputs, and by directions that are in the
+  /// coefficients.
   void start() {
-    std::vector<std::vector<double>> c;
-    std::vector<double> Efd, Tm;
     sim::plant::OperatingOf<P8> at;
-    for (std::size_t first = 0; first < m_; first += sim::kDirections) {
-      const auto some = directions_.subspan(first, std::min<std::size_t>(sim::kDirections, m_ - first));
-      if (first > 0 && std::ranges::all_of(some, [&](const Direction& d) { return input_of(d); })) continue;
+    for (std::size_t first = 0; first < m_; first += kLanes) {
+      const auto some = directions_.subspan(first, std::min(kLanes, m_ - first));
+      if (first > 0 && std::ranges::all_of(some, is_input)) continue;
       const DrivenEquations<sim::D8> seeded(run_, some);
       if (first == 0) {
         for (const auto& value : seeded.c) at.c.emplace_back(value.a);
         at.Efd = P8(seeded.Efd.a);
         at.Tm = P8(seeded.Tm.a);
-      }
-      for (std::size_t d = 0; d < some.size(); ++d) {
-        for (std::size_t i = 0; i < n_; ++i) S_.at(i, first + d) = seeded.x0[i].d[d];
-        if (!moves_coefficients(some[d])) continue;
-        ++seeded_;
-        if (!runs_.empty() && runs_.back().first + runs_.back().length == first + d)
-          ++runs_.back().length;
-        else
-          runs_.push_back({first + d, 1});
-        auto& own = c.emplace_back();
-        for (const auto& value : seeded.c) own.push_back(value.d[d]);
-        Efd.push_back(seeded.Efd.d[d]);
-        Tm.push_back(seeded.Tm.d[d]);
-      }
-    }
-    for (const Direction& d : directions_) {
-      has_torque_ = has_torque_ || d.kind == Kind::torque;
-      has_field_ = has_field_ || d.kind == Kind::field;
-    }
-    const std::size_t inputs = n_ + seeded_;
-    const std::size_t moves = inputs + (has_torque_ ? 1 : 0) + (has_field_ ? 1 : 0);
-    for (std::size_t first = 0; first < moves; first += kBase) {
-      Pack pack{{run_, {}, at}, P8(1 / kNodeMove)};
-      for (std::size_t lane = 0; lane < kBase && first + lane < moves; ++lane) {
-        const std::size_t move = first + lane;
-        const int l = static_cast<int>(lane);
-        if (move >= inputs) {
-          (has_torque_ && move == inputs ? pack.equations.more_torque : pack.equations.more_field)
-              .set(l, kNodeMove);
-        } else if (move >= n_) {
-          const std::size_t d = move - n_;
-          for (std::size_t i = 0; i < at.c.size(); ++i)
-            pack.equations.c[i].set(l, at.c[i][0] + kNodeMove * c[d][i]);
-          pack.equations.Efd.set(l, at.Efd[0] + kNodeMove * Efd[d]);
-          pack.equations.Tm.set(l, at.Tm[0] + kNodeMove * Tm[d]);
+        for (std::size_t p = 0; p < copies_for(inputs_); ++p) copies_.push_back({{run_, {}, at}, true, p});
+        for (std::size_t i = n_; i < inputs_; ++i) {
+          auto& equations = copies_[i / kLanes].equations;
+          (i == n_ ? equations.more_torque : equations.more_field).set(int(i % kLanes), kNodeMove);
         }
       }
-      packs_.push_back(std::move(pack));
+      for (std::size_t d = 0; d < some.size(); ++d)
+        for (std::size_t i = 0; i < n_; ++i) S_(i, first + d) = seeded.x0[i].d[d];
+      if (!std::ranges::any_of(some, moves_coefficients)) continue;
+      has_coefficients_[first / kLanes] = 1;
+      Copies& copies = copies_.emplace_back(DrivenEquations<P8>{run_, {}, at}, false, first / kLanes);
+      for (std::size_t d = 0; d < some.size(); ++d) {
+        if (!moves_coefficients(some[d])) continue;
+        const auto move = [lane = int(d)](P8& value, const sim::D8& along) {
+          value.set(lane, along.a + kNodeMove * along.d[lane]);
+        };
+        for (std::size_t i = 0; i < seeded.c.size(); ++i) move(copies.equations.c[i], seeded.c[i]);
+        move(copies.equations.Efd, seeded.Efd);
+        move(copies.equations.Tm, seeded.Tm);
+      }
     }
-    moves_ = kBase * packs_.size() + 1;
-    slopes_.resize((2 * n_ + shown_ + 1) * moves_);
-    moved_guards_.assign(static_cast<std::size_t>(packs_.front().equations.of_plant().guards()), P8(0.0));
-    heights_.resize(m_);
+    guards_.assign(static_cast<std::size_t>(copies_.front().equations.of_plant().guards()), P8(0.0));
   }
 
-  /// Finds the states at their limits, and on which side of them the others may be moved.
+  /// Finds the states at their limits, and how the others may be moved.
   void find_limits(const double* x, const double* dx) {
-    std::ranges::fill(sign_, 1.0);
+    for (std::size_t i = 0; i < n_; ++i) move_[i] = kNodeMove * (1 + std::abs(x[i]));
     std::ranges::fill(now_.held, 0);
     any_held_ = false;
-    const auto& equations = packs_.front().equations;
+    const auto& equations = copies_.front().equations;
     if (!equations.of_plant().limited()) return;
     constexpr int kUp = 0, kDown = 1;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double move = kNodeMove * (1 + std::abs(x[i]));
-      x_[i] = P8(x[i]);
-      x_[i].set(kUp, x[i] + move);
-      x_[i].set(kDown, x[i] - move);
-    }
+    for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]) + P8(move_[i]) * (lane_[kUp] - lane_[kDown]);
     P8 moved(0.0);
     equations.of_plant().clamp_states(equations.c.data(), x_.data(), moved);
     for (std::size_t i = 0; i < n_; ++i) {
       const double scale = 1 + std::abs(x[i]);
       const double up = (x_[i][kUp] - x[i]) / scale, down = (x[i] - x_[i][kDown]) / scale;
       const bool high = up < kAtLimit, low = down < kAtLimit;
-      sign_[i] = low || (!high && up < kNodeMove * (1 - 1e-3)) ? -1.0 : 1.0;
+      if (low || (!high && up < kNodeMove * (1 - 1e-3)))
+        move_[i] = -move_[i];  // a state is moved away from its limit
       if (!(high || low) || dx[i] != 0.0) continue;
       now_.held[i] = 1;
       any_held_ = true;
+      limit_[i] = x_[i][high ? kUp : kDown];
       outward_[i] = (high ? 1.0 : -1.0) * scale;
     }
   }
-  /// Puts the states that are held at the limit of each lane.
-  void hold(const Pack& pack, const double* x) {
-    for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(now_.held[i] ? x[i] + outward_[i] : x[i]);
+  /// The states of a node, those that are held at the limit of each lane.
+  void place(const DrivenEquations<P8>& equations, const double* x) {
+    for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
+    if (!any_held_) return;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (now_.held[i]) x_[i] = P8(x[i] + outward_[i]);
     P8 moved(0.0);
-    pack.equations.of_plant().clamp_states(pack.equations.c.data(), x_.data(), moved);
+    equations.of_plant().clamp_states(equations.c.data(), x_.data(), moved);
     for (std::size_t i = 0; i < n_; ++i)
       if (!now_.held[i]) x_[i] = P8(x[i]);
   }
-  void linearise(std::size_t k) {
+  /// Makes `now_` the plant about a node, and `before_` what that was.
+  void linearise(std::size_t k, std::size_t sample) {
+    std::swap(before_, now_);
     const Trace::Node& node = trace_.nodes[k];
-    const double* x = trace_.x.data() + k * n_;
-    find_limits(x, trace_.dx.data() + k * n_);
-    for (std::size_t i = 0; i < n_; ++i) limits_.clear(i);
-    packs_.front().equations.side = node.side;
-    const Complex v = packs_.front().equations.voltage(node.t);
-    for (std::size_t p = 0; p < packs_.size(); ++p) {
-      Pack& pack = packs_[p];
-      if (any_held_)
-        hold(pack, x);
-      else
-        for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
-      P8 per_move = pack.per_move;
-      for (std::size_t lane = 0; lane < kBase && p * kBase + lane < n_; ++lane) {
-        const std::size_t i = p * kBase + lane;
-        if (now_.held[i]) continue;
-        const double move = sign_[i] * kNodeMove * (1 + std::abs(x[i]));
-        x_[i].set(static_cast<int>(lane), x[i] + move);
-        per_move.set(static_cast<int>(lane), 1 / (x_[i][static_cast<int>(lane)] - x[i]));
+    const double *x = trace_.x.data() + k * n_, *dx = trace_.dx.data() + k * n_;
+    const P8 vr(trace_.v[k].real()), vi(trace_.v[k].imag());
+    const bool is_sample = node.kind == NodeKind::sample, at_guard = node.passed.guard >= 0;
+    // a copy may have been moved to the other side of the jump
+    const bool jumps = at_guard || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
+    if (jumps) now_ = before_;
+    find_limits(x, dx);
+    for (auto& [equations, by_state, pack] : copies_) {
+      place(equations, x);
+      P8 per_move(1 / kNodeMove);
+      if (by_state) {
+        per_move = P8(1.0) / P8::load(move_.data() + pack * kLanes);
+        for (std::size_t i = pack * kLanes; i < std::min(n_, (pack + 1) * kLanes); ++i)
+          if (!now_.held[i]) x_[i] = x_[i] + P8(move_[i]) * lane_[i % kLanes];
       }
-      pack.equations.side = node.side;
-      pack.equations.evaluate_at(P8(v.real()), P8(v.imag()), node.t, x_.data(), dx_.data());
-      const auto y = pack.equations.outputs(x_.data());
-      for (std::size_t i = 0; i < n_; ++i) keep(p, dx_[i], per_move, i);
-      for (std::size_t o = 0; o < shown_; ++o)
-        keep(p, y[static_cast<std::size_t>(run_.linear_slopes[o])], per_move, n_ + o);
-      if (node.passed.guard >= 0) {
-        const auto& equations = pack.equations;
-        equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, moved_guards_.data());
-        keep(p, moved_guards_[static_cast<std::size_t>(node.passed.guard)], per_move, 2 * n_ + shown_);
+      equations.side = node.side;
+      equations.evaluate_at(vr, vi, node.t, x_.data(), dx_.data());
+      P8* const by = (by_state ? now_.A : now_.B).pack(pack);
+      for (std::size_t i = 0; !jumps && i < n_; ++i) by[i] = (dx_[i] - P8(dx[i])) * per_move;
+      P8* const shown = (by_state ? now_.C : now_.D).pack(pack);
+      if (is_sample) {
+        const auto y = equations.outputs(x_.data());
+        for (std::size_t o = 0; o < shown_; ++o) {
+          const auto output = static_cast<std::size_t>(run_.linear_slopes[o]);
+          shown[o] = (y[output] - P8(trace_.y[sample][output])) * per_move;
+        }
       }
-      if (!any_held_) continue;
-      for (std::size_t i = 0; i < n_; ++i)
-        if (now_.held[i]) keep(p, x_[i], per_move, n_ + shown_ + i);
+      if (at_guard) {
+        equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
+        shown[shown_] =
+            (guards_[static_cast<std::size_t>(node.passed.guard)] - P8(node.passed.value)) * per_move;
+      }
+      for (std::size_t i = 0; !by_state && any_held_ && i < n_; ++i)
+        if (now_.held[i]) limits_.pack(pack)[i] = (x_[i] - P8(limit_[i])) * per_move;
     }
-    if (node.passed.guard >= 0) take(2 * n_ + shown_, guard_.row(0), guard_.row(1));
-    if (node.passed.guard >= 0 || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0)) {
-      // a copy may have been moved to the other side of the jump
-      now_.A = before_.A;
-      now_.B = before_.B;
-    } else {
-      for (std::size_t i = 0; i < n_; ++i) take(i, now_.A.row(i), now_.B.row(i));
-    }
-    for (std::size_t o = 0; o < shown_; ++o) take(n_ + o, now_.C.row(o), now_.D.row(o));
-    for (std::size_t i = 0; i < n_; ++i)
-      if (now_.held[i]) take(n_ + shown_ + i, nullptr, limits_.row(i));
+    raise_hats(std::min(node.t, node.side.last_moment));
   }
-  /// Slopes of what a pack's lanes answer. The lane that nothing moves is overwritten by the next pack.
-  void keep(std::size_t pack, const P8& lanes, const P8& per_move, std::size_t row) {
-    const P8 slopes = (lanes - P8(lanes[kBase])) * per_move;
-    slopes.store(slopes_.data() + row * moves_ + pack * kBase);
-  }
-  /// A row of these by states and by directions.
-  void take(std::size_t row, P8* by_state, P8* by_direction) {
-    const double* slopes = slopes_.data() + row * moves_;
-    auto* directions = reinterpret_cast<double*>(by_direction);
-    if (by_state) std::memcpy(by_state, slopes, n_ * sizeof(double));
-    slopes += n_;
-    for (const Run& r : runs_) {
-      std::memcpy(directions + r.first, slopes, r.length * sizeof(double));
-      slopes += r.length;
-    }
+  /// Columns of inputs that have begun by t: what the input does, times how high their hat is.
+  void raise_hats(double t) {
+    while (begun_ < begins_.size() && begins_[begun_].first <= t)
+      active_ = std::max(active_, begins_[begun_++].second);
+    for (const std::size_t p : now_.hats)
+      for (std::size_t lane = 0; lane < kLanes && p * kLanes + lane < m_; ++lane)
+        if (is_input(directions_[p * kLanes + lane])) set_column(p * kLanes + lane, n_, 0.0);
+    now_.hats.clear();
     for (const Kind kind : {Kind::torque, Kind::field}) {
-      if (!(kind == Kind::torque ? has_torque_ : has_field_)) continue;
-      const double slope = *slopes++;
-      for (std::size_t d = 0; d < active_; ++d)
-        if (directions_[d].kind == kind) directions[d] = slope * heights_[d];
+      const auto& hats = hats_[kind == Kind::torque ? 0 : 1];
+      if (hats.empty()) continue;
+      const auto& knots = input_of(kind).hats();
+      const auto behind = static_cast<std::size_t>(std::ranges::upper_bound(knots, t) - knots.begin());
+      for (std::size_t k = std::max<std::size_t>(behind, 1) - 1; k < std::min(behind + 1, knots.size()); ++k)
+        if (const double height = hat(knots, k, t); hats[k] < m_ && height != 0.0) {
+          set_column(hats[k], n_ + (kind == Kind::torque ? 0 : 1), directions_[hats[k]].scale * height);
+          now_.hats.push_back(hats[k] / kLanes);
+        }
     }
+  }
+  void set_column(std::size_t d, std::size_t input, double height) {
+    for (std::size_t i = 0; i < n_; ++i) now_.B(i, d) = now_.A(i, input) * height;
+    for (std::size_t o = 0; o <= shown_; ++o) now_.D(o, d) = now_.C(o, input) * height;
   }
 
-  /// Over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0 S0/3 + h (B0 + B)/2 - h^2 A
-  /// B/6, which is the formula with the derivatives of A and B between the two nodes as their differences.
-  void step(double h) {
-    const std::size_t wide = packs(), square = (n_ + kLanes - 1) / kLanes;
-    const Linear& end = meets_a_limit() ? before_ : now_;
-    for (std::size_t i = 0; i < n_; ++i) {
-      left_.clear(i);
-      left_.at(i, i) = 1.0;
-      add(left_.row(i), -h / 2, end.A.row(i), square);
-      add(left_.row(i), -h / 6, before_.A.row(i), square);
-      for (std::size_t j = 0; j < n_; ++j) {
-        factors_[j] = h * h / 6 * end.A.at(i, j);
-        more_factors_[j] = h / 3 * before_.A.at(i, j);
-      }
-      in_chunks(square, [&]<std::size_t count>(std::size_t first) {
-        P8 sum[count];
-        std::copy_n(left_.row(i) + first, count, sum);
-        add_rows<count>(sum, factors_.data(), end.A, 0, n_, first);
-        std::copy_n(sum, count, left_.row(i) + first);
-      });
-      for (double& factor : factors_) factor = -factor;
-      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
-        P8 sum[count];
-        const P8 half(h / 2);
-        for (std::size_t p = 0; p < count; ++p)
-          sum[p] = S_.row(i)[first + p] + half * (before_.B.row(i)[first + p] + end.B.row(i)[first + p]);
-        add_rows<count>(sum, factors_.data(), end.B, 0, n_, first);
-        add_rows<count>(sum, more_factors_.data(), S_, 0, n_, first);
-        std::copy_n(sum, count, right_.row(i) + first);
-      });
-    }
-    factorise(square);
-    solve(wide);
-    std::swap(S_, right_);
-  }
-  /// Calls act<packs>(first) for runs of packs so short that their sums stay in registers.
-  template <class Act>
-  static void in_chunks(std::size_t packs, Act act) {
-    std::size_t first = 0;
-    for (; first + 4 <= packs; first += 4) act.template operator()<4>(first);
-    if (packs - first == 3) act.template operator()<3>(first);
-    if (packs - first == 2) act.template operator()<2>(first);
-    if (packs - first == 1) act.template operator()<1>(first);
-  }
-  /// sum += factors * rows from `begin` to `end`, of the packs from `first` on.
-  template <std::size_t count>
-  static void add_rows(P8* sum, const double* factors, const Rows& rows, std::size_t begin, std::size_t end,
-                       std::size_t first) {
-    for (std::size_t j = begin; j < end; ++j) {
-      if (factors[j] == 0.0) continue;
-      const P8 factor(factors[j]);
-      const P8* row = rows.row(j) + first;
-      for (std::size_t p = 0; p < count; ++p) sum[p] = sum[p] + factor * row[p];
-    }
-  }
   /// A state that is held at the end alone moved until then.
   [[nodiscard]] bool meets_a_limit() const {
     for (std::size_t i = 0; any_held_ && i < n_; ++i)
       if (now_.held[i] && !before_.held[i]) return true;
     return false;
   }
-  /// left <- its triangles, with pivots: right's rows go with them.
-  void factorise(std::size_t square) {
-    for (std::size_t k = 0; k < n_; ++k) {
-      std::size_t pivot = k;
-      for (std::size_t i = k + 1; i < n_; ++i)
-        if (std::abs(left_.at(i, k)) > std::abs(left_.at(pivot, k))) pivot = i;
-      if (pivot != k) {
-        std::swap_ranges(left_.row(k), left_.row(k) + square, left_.row(pivot));
-        std::swap_ranges(right_.row(k), right_.row(k) + packs(), right_.row(pivot));
+  /// Over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0 S0/3 + h (B0 + B)/2 - h^2 A
+  /// B/6, which is the formula with the derivatives of A and B between the two nodes as their differences.
+  void step(double h) {
+    const Linear& end = meets_a_limit() ? before_ : now_;
+    const P8 half(h / 2), third(h / 3), sixth(h / 6), square(h * h / 6);
+    for (std::size_t p = 0; p < left_.packs(); ++p) {
+      P8* left = left_.pack(p);
+      const P8 *A0 = before_.A.pack(p), *A = end.A.pack(p);
+      for (std::size_t i = 0; i < n_; ++i) {
+        left[i] = P8(0.0) - half * A[i] - sixth * A0[i];
+        inverse_.pack(p)[i] = square * A[i];
       }
-      const double per = 1 / left_.at(k, k);
-      for (std::size_t i = k + 1; i < n_; ++i) {
-        const double factor = left_.at(i, k) *= per;
-        for (std::size_t j = k + 1; factor != 0.0 && j < n_; ++j) left_.at(i, j) -= factor * left_.at(k, j);
+      add_product(end.A, n_, inverse_.pack(p), left);
+    }
+    for (std::size_t i = 0; i < n_; ++i) left_(i, i) += 1.0;
+    invert(left_, inverse_);
+    for (std::size_t p = 0; p < wide(); ++p) {
+      P8 *S = S_.pack(p), *some = some_.pack(0), *right = right_.pack(0);
+      const P8 *B0 = before_.B.pack(p), *B = end.B.pack(p);
+      for (std::size_t i = 0; i < n_; ++i) {
+        right[i] = S[i] + half * (B0[i] + B[i]);
+        some[i] = third * S[i];
+        S[i] = P8(0.0) - square * B[i];
       }
-    }
-  }
-  /// right <- left^-1 right, by its triangles.
-  void solve(std::size_t wide) {
-    for (std::size_t i = 1; i < n_; ++i) {
-      for (std::size_t j = 0; j < i; ++j) factors_[j] = -left_.at(i, j);
-      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
-        P8 sum[count];
-        std::copy_n(right_.row(i) + first, count, sum);
-        add_rows<count>(sum, factors_.data(), right_, 0, i, first);
-        std::copy_n(sum, count, right_.row(i) + first);
-      });
-    }
-    for (std::size_t i = n_; i-- > 0;) {
-      for (std::size_t j = i + 1; j < n_; ++j) factors_[j] = -left_.at(i, j);
-      const P8 per(1 / left_.at(i, i));
-      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
-        P8 sum[count];
-        std::copy_n(right_.row(i) + first, count, sum);
-        add_rows<count>(sum, factors_.data(), right_, i + 1, n_, first);
-        for (std::size_t p = 0; p < count; ++p) right_.row(i)[first + p] = sum[p] * per;
-      });
+      add_product(before_.A, n_, some, right);
+      if (has_coefficients_[p] || std::ranges::count(end.hats, p) > 0) add_product(end.A, n_, S, right);
+      std::fill_n(S, n_, P8(0.0));
+      add_product(inverse_, n_, right, S);
     }
   }
   /// To the other side of an instant.
@@ -403,13 +369,11 @@ class LinearSlopes {
     const Trace::Passed& passed = trace_.nodes[k - 1].passed;
     if (passed.guard < 0) return switch_over(k);
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
-    for (std::size_t d = 0; d < m_; ++d) {
-      double moved = d < active_ ? guard_.at(1, d) : 0.0;  // the guard, at the instant as it is
-      for (std::size_t i = 0; i < n_; ++i) moved += guard_.at(0, i) * S_.at(i, d);
-      later_[d] = -moved / passed.rate;
+    for (std::size_t d = 0; d < active_; ++d) {
+      double moved = before_.D(shown_, d);  // the guard, at the instant as it is
+      for (std::size_t i = 0; i < n_; ++i) moved += before_.C(shown_, i) * S_(i, d);
+      for (std::size_t i = 0; i < n_; ++i) S_(i, d) -= moved / passed.rate * (before[i] - after[i]);
     }
-    for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t d = 0; d < m_; ++d) S_.at(i, d) += later_[d] * (before[i] - after[i]);
   }
   /// To the other side of a switching, which its directions move and turn.
   void switch_over(std::size_t k) {
@@ -418,24 +382,17 @@ class LinearSlopes {
     for (std::size_t d = 0; d < m_; ++d) {
       const Direction& along = directions_[d];
       if (switching < 0 || along.index != switching) continue;
-      if (along.kind == Kind::turn && packs_.front().equations.has_rotor()) S_.at(0, d) -= along.scale;
+      if (along.kind == Kind::turn && copies_.front().equations.has_rotor()) S_(0, d) -= along.scale;
       for (std::size_t i = 0; along.kind == Kind::switching && i < n_; ++i)
-        S_.at(i, d) += along.scale * (before[i] - after[i]);
+        S_(i, d) += along.scale * (before[i] - after[i]);
     }
   }
-  void record() {
-    const std::size_t wide = packs();
-    std::vector<P8>& y = row_;
-    y.assign((m_ + kLanes - 1) / kLanes, P8(0.0));
-    for (std::size_t o = 0; o < shown_; ++o) {
-      const auto output = static_cast<std::size_t>(run_.linear_slopes[o]);
-      std::copy_n(now_.D.row(o), wide, y.data());
-      for (std::size_t i = 0; i < n_; ++i) factors_[i] = now_.C.at(o, i);
-      in_chunks(wide, [&]<std::size_t count>(std::size_t first) {
-        add_rows<count>(y.data() + first, factors_.data(), S_, 0, n_, first);
-      });
-      for (std::size_t d = 0; d < m_; ++d)
-        answer_.slopes[d].value[output].push_back(d < active_ ? y[d / kLanes][int(d % kLanes)] : 0.0);
+  void record(std::size_t sample) {
+    for (std::size_t p = 0; p < wide(); ++p) {
+      std::copy_n(now_.D.pack(p), shown_ + 1, y_.pack(p));
+      add_product(now_.C, n_, S_.pack(p), y_.pack(p));
+      for (std::size_t d = p * kLanes; d < std::min(m_, (p + 1) * kLanes); ++d)
+        for (std::size_t o = 0; o < shown_; ++o) to_[d * shown_ + o][sample] = y_(o, d);
     }
   }
 
@@ -443,22 +400,22 @@ class LinearSlopes {
   std::span<const Direction> directions_;
   const Trace& trace_;
   Response& answer_;
-  const std::size_t n_, m_;    ///< states, directions
-  std::size_t active_ = 0;     ///< directions whose input has begun
-  std::vector<double> begin_;  ///< of a direction's input [s]
-  std::vector<Run> runs_;      ///< directions that are in the coefficients
-  std::size_t seeded_ = 0;     ///< how many
-  std::size_t moves_ = 0;      ///< length of a row of `slopes_`
-  bool has_torque_ = false, has_field_ = false, any_held_ = false;
-  std::vector<Pack> packs_;
-  Rows S_, limits_;
+  const std::size_t n_, m_, inputs_;  ///< states, directions; states, torque and field voltage
+  std::size_t active_ = 0;            ///< directions whose input has begun
+  std::size_t begun_ = 0;             ///< of these:
+  std::vector<std::pair<double, std::size_t>> begins_;  ///< of a direction's input [s], and its number + 1
+  std::array<std::vector<std::size_t>, 2> hats_;        ///< directions of the hats of torque and field
+  std::vector<Copies> copies_;
+  Matrix S_, limits_, some_, right_;
   std::size_t shown_;  ///< outputs whose slopes are asked for
   Linear before_, now_;
-  Rows left_, right_, guard_;  ///< the last: slopes of the guard that is passed, by states and by directions
-  std::vector<double> factors_, more_factors_, later_;
-  std::vector<P8> x_, dx_, row_, moved_guards_;
-  std::vector<double> sign_, outward_, heights_;
-  std::vector<double> slopes_;  ///< of derivatives, outputs, limits, by moves
+  Matrix left_, inverse_, y_;
+  std::vector<char> has_coefficients_;  ///< whether a pack of directions moves any
+  bool any_held_ = false;
+  std::array<P8, kLanes> lane_;  ///< one in the lane, zero elsewhere
+  std::vector<P8> x_, dx_, guards_;
+  std::vector<double> move_, limit_, outward_;
+  std::vector<double*> to_;  ///< the answer's slopes [direction][output]
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 // Slopes of a driven plant's answer from the plant as it is linear about the ends of each step: for a search,
 // which needs no last digits of them.
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,10 @@ namespace swingbank::validate::playin {
 
 /// Where a run without slopes went: every step and sample, and both sides of every instant.
 struct Trace {
-  /// A guard of the equations that passes zero just behind a node, and how fast [1/s].
+  /// A guard of the equations that passes zero just behind a node, its rate [1/s] and its value there.
   struct Passed {
     int guard = -1;
-    double rate = 0;
+    double rate = 0, value = 0;
   };
   struct Node {
     double t;  ///< [s]
@@ -23,7 +24,9 @@ struct Trace {
     Passed passed = {};
   };
   std::vector<Node> nodes;
-  std::vector<double> x, dx;  ///< [node][state]: states and their derivatives
+  std::vector<double> x, dx;                    ///< [node][state]: states and their derivatives
+  std::vector<Complex> v;                       ///< [node]: terminal voltage in the plant's frame [pu]
+  std::vector<std::array<double, kOutputs>> y;  ///< [sample]: outputs, speed in the plant's frame
 };
 
 /// Whether slopes of this run can be had from its trace.
