@@ -35,6 +35,11 @@ for line in open(sys.argv[1]):
 assert last is not None, "no time left is told"
 PYTHON
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
+# the same with another number of threads, but for what the run itself is: command, time, duration
+"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 2 --quiet --out "$work/again" >/dev/null || true
+diff "$work/found/diagnosis.json" "$work/again/diagnosis.json" | grep '^[<>]' |
+  grep -vE '"seconds": |"value": "(swingbank diagnose |[0-9-]+ [0-9:]+ UTC")' >"$work/differs" &&
+  fail "two threads change the result: $(head -4 "$work/differs")"
 grep -q 'SEXS' "$work/found/report.html" || fail "the report does not name the exciter"
 python3 - "$work/found/diagnosis.json" <<'PYTHON'
 import json, sys
