@@ -213,7 +213,7 @@ class LinearSlopes {
         for (std::size_t i = 0; i < n_; ++i) S_(i, first + d) = seeded.x0[i].d[d];
       if (!std::ranges::any_of(some, moves_coefficients)) continue;
       has_coefficients_[first / kLanes] = 1;
-      Copies& copies = copies_.emplace_back(DrivenEquations<P8>{run_, {}, at}, false, first / kLanes);
+      Copies& copies = copies_.emplace_back(Copies{DrivenEquations<P8>{run_, {}, at}, false, first / kLanes});
       for (std::size_t d = 0; d < some.size(); ++d) {
         if (!moves_coefficients(some[d])) continue;
         const auto move = [lane = int(d)](P8& value, const sim::D8& along) {
