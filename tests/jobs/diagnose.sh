@@ -36,7 +36,9 @@ assert last is not None, "no time left is told"
 PYTHON
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
 # the same with another number of threads, but for what the run itself is: command, time, duration
-"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 2 --quiet --out "$work/again" >/dev/null || true
+status=0
+"$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 2 --quiet --out "$work/again" >/dev/null || status=$?
+((status == 3)) || fail "exit code $status with two threads, expected 3"
 diff "$work/found/diagnosis.json" "$work/again/diagnosis.json" | grep '^[<>]' |
   grep -vE '"seconds": |"value": "(swingbank diagnose |[0-9-]+ [0-9:]+ UTC")' >"$work/differs" &&
   fail "two threads change the result: $(head -4 "$work/differs")"

@@ -364,13 +364,13 @@ class LinearSlopes {
       add_product(inverse_, n_, right, S);
     }
   }
-  /// To the other side of an instant.
+  /// To the other side of a switching time.
   void cross(std::size_t k) {
     const Trace::Passed& passed = trace_.nodes[k - 1].passed;
     if (passed.guard < 0) return switch_over(k);
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
     for (std::size_t d = 0; d < active_; ++d) {
-      double moved = before_.D(shown_, d);  // the guard, at the instant as it is
+      double moved = before_.D(shown_, d);  // the guard, while its time stands
       for (std::size_t i = 0; i < n_; ++i) moved += before_.C(shown_, i) * S_(i, d);
       for (std::size_t i = 0; i < n_; ++i) S_(i, d) -= moved / passed.rate * (before[i] - after[i]);
     }
