@@ -98,10 +98,12 @@ class Diagnoser {
     passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
                     fit::voltage_noise(result_.base, result_.events));
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
-    if (again) infer_inputs(true);
+    if (again) infer_inputs();
     keep();
-    for (hypothesis::MissingInput* m : {&result_.torque, &result_.field})
+    for (reduced::FreeInput* m : {&result_.torque, &result_.field}) {
       fit::count_passed(&*passed_, model_.conventions, m->fit);
+      m->evidence -= m->fit.passes_less;
+    }
     if (stopped()) return false;
     search();
     if (stopped()) return false;
@@ -167,17 +169,12 @@ class Diagnoser {
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
     return true;
   }
-  /// Infers both inputs; `again`: from where they were, because only the noise was measured again.
-  void infer_inputs(bool again = false) {
+  void infer_inputs() {
     const auto free = fit::free_parameters(model_.plant, options_.spread);
-    fit::FitOptions from;  // parameters that are bent far out of shape are no start
-    if (result_.base.misfit() < thresholds::noise.measurable) from = fit::continued({}, result_.base, free);
     const auto infer = [&](std::size_t i) {
-      hypothesis::MissingInput& m = i == 0 ? result_.torque : result_.field;
-      const bool known = again && m.fit.failed.empty();
-      m = hypothesis::infer_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field,
-                                  model_.under_test(), result_.events, options_.spread,
-                                  known ? fit::continued({}, m.fit, free) : from);
+      (i == 0 ? result_.torque : result_.field) =
+          reduced::free_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field, model_.under_test(),
+                              result_.events, free, result_.base, 1);
     };
     in_parallel(
         2, infer, [&](int done) { report(event::Phase::missing_input, "", done, 2); }, threads_);
@@ -221,7 +218,9 @@ class Diagnoser {
             .fit = result_.base,
             .spread = options_.spread,
             .threads = threads_,
-            .stop = [this] { return stopped(); }};
+            .stop = [this] { return stopped(); },
+            .torque = &result_.torque,
+            .field = &result_.field};
   }
   /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
   /// pair beside the one before holds.
@@ -407,7 +406,7 @@ class Diagnoser {
   void judge_one(hypothesis::Judgement& j) const {
     hypothesis::judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
-      if (j.accepted && m->explains(result_.base) > fit::gain(result_.base, j.fit, fit::data_cost)) {
+      if (j.accepted && m->evidence > j.gain) {
         j.accepted = false;
         j.why_not = fmt::format("a {} free in time explains more", what);
       }

@@ -10,9 +10,9 @@
 #include "validate/fit/fewest.hpp"
 #include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"
-#include "validate/hypothesis/missing_input.hpp"
 #include "validate/hypothesis/posterior.hpp"
 #include "validate/laws/search.hpp"
+#include "validate/reduced/free_input.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -41,7 +41,7 @@ struct Diagnosis {
   /// they.
   std::optional<fit::Fewest> wrong;
   double wrong_evidence = 0;  ///< of only these being wrong, over every parameter refitted [chi2]
-  hypothesis::MissingInput torque, field;
+  reduced::FreeInput torque, field;  ///< each beside the model alone
   laws::LawSearch laws;  ///< laws that were searched, where no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< best first
   event::WhitenedEvents events;               ///< with the noise in which all fits are measured

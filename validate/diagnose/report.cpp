@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-const hypothesis::MissingInput* better_input(const Diagnosis& d) {
+const reduced::FreeInput* better_input(const Diagnosis& d) {
   const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
   if (torque && (!field || d.torque.misfit() <= d.field.misfit())) return &d.torque;
   return field ? &d.field : nullptr;
@@ -111,12 +111,17 @@ nlohmann::json parameters_json(const fit::Fit& fit) {
   return rows;
 }
 
-nlohmann::json input_json(const Diagnosis& d, const hypothesis::MissingInput& input) {
+nlohmann::json input_json(const Diagnosis& d, const reduced::FreeInput& input) {
   if (input.fit.events.empty()) return nullptr;
-  nlohmann::json j = {{"normalised_rms", std::sqrt(input.misfit())}, {"events", nlohmann::json::array()}};
+  nlohmann::json j = {{"normalised_rms", std::sqrt(input.misfit())},
+                      {"evidence", input.evidence},
+                      {"events", nlohmann::json::array()}};
   for (std::size_t e = 0; e < input.fit.events.size(); ++e)
-    j["events"].push_back(
-        {{"record", d.events[e].record.name}, {"t_s", input.of(e).t}, {"value_pu", input.of(e).value}});
+    j["events"].push_back({{"record", d.events[e].record.name},
+                           {"t_s", input.of(e).t},
+                           {"value_pu", input.of(e).value},
+                           {"standard_deviation_pu",
+                            std::vector<double>(input.deviation[e].begin(), input.deviation[e].end())}});
   return j;
 }
 
@@ -192,7 +197,7 @@ ReportFigures report_figures(const Diagnosis& d) {
     figures.after = &best->fit;
     figures.after_name = hypothesis::full_name(best->hypothesis);
   } else if (d.verdict == Verdict::unexplained) {
-    if (const hypothesis::MissingInput* input = better_input(d)) {
+    if (const reduced::FreeInput* input = better_input(d)) {
       figures.after = &input->fit;
       figures.after_name =
           input->kind == fit::InputKind::torque ? "the inferred torque" : "the inferred field voltage";

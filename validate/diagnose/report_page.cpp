@@ -239,6 +239,7 @@ class DiagnosisPage {
     if (!with_after() && !d_.ruling.adequate) return;  // fitted values of a model that is rejected
     page_.section("Parameters");
     const fit::Fit& last = with_after() ? *figures_.after : d_.base;
+    if (last.parameters.empty()) return;  // an inferred input
     report::Table table{
         "95 % intervals. The last column says how much of the interval "
         "the records decide; the rest is what was believed before.",
@@ -290,13 +291,22 @@ class DiagnosisPage {
         fmt::format("Error map of {}{}.", r.name, with_after() ? ", with " + figures_.after_name : "");
     page_.table(table);
   }
-  void input(std::size_t index, const hypothesis::MissingInput& m, const std::string& title,
+  void input(std::size_t index, const reduced::FreeInput& m, const std::string& title,
              const std::string& label) {
     if (index >= m.fit.events.size() || m.of(index).t.empty()) return;
     const std::string& name = figures_.events[index].event->record.name;
     report::Curves curves{
         title, "t [s]", label, name, m.of(index).t, {}, fault_bands(*figures_.events[index].event)};
-    curves.series.push_back({title, "#7d3c98", false, m.of(index).value});
+    const auto& value = m.of(index).value;
+    curves.series.push_back({title, "#7d3c98", false, value});
+    std::vector<double> low, high;
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      const double half = constants::normal95 * m.deviation[index][static_cast<Eigen::Index>(k)];
+      low.push_back(value[k] - half);
+      high.push_back(value[k] + half);
+    }
+    curves.series.push_back({"lower 95 % limit", "#c9a6da", false, low});
+    curves.series.push_back({"upper 95 % limit", "#c9a6da", false, high});
     page_.curves(curves);
   }
 

@@ -11,7 +11,6 @@
 #include "validate/fit/detail/at_bounds.hpp"
 #include "validate/fit/detail/early.hpp"
 #include "validate/fit/detail/event_cost.hpp"
-#include "validate/fit/detail/input_evidence.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/thresholds/thresholds.hpp"
@@ -156,8 +155,7 @@ class Search {
     o.max_num_iterations =
         iterations > 0 && iterations <= kFewSteps ? iterations + kRefusedSteps : iterations;
     o.function_tolerance = options_.enough;
-    o.linear_solver_type =
-        setting_.input == InputKind::none ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
+    o.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     o.logging_type = ceres::SILENT;
     o.num_threads = 1;  // hypotheses run side by side
     o.initial_trust_region_radius = 1e2;
@@ -177,14 +175,8 @@ class Search {
 
   std::vector<double> start_of(std::size_t e) const {
     const event::FitEvent& event = (*setting_.events)[e];
-    const std::size_t knots = setting_.knots[e].size();
-    if (options_.start.empty()) return std::vector<double>(switching_numbers(event) + kStates + knots, 0.0);
-    const EventState& from = options_.start[e];
-    std::vector<double> s = state_of(event, from);
-    s.resize(s.size() + knots);
-    if (setting_.input != InputKind::none)
-      std::ranges::copy_backward(from.input(setting_.input).value, s.end());
-    return s;
+    if (options_.start.empty()) return std::vector<double>(switching_numbers(event) + kStates, 0.0);
+    return state_of(event, options_.start[e]);
   }
   void add_event(std::size_t e) {
     const event::FitEvent& event = (*setting_.events)[e];
@@ -194,12 +186,7 @@ class Search {
     if (!z_.empty()) blocks.push_back(z_.data());
     blocks.push_back(states_[e].data());
     problem_->AddResidualBlock(cost, nullptr, blocks);
-    std::vector<double> spread = state_beliefs(event);
-    spread.resize(states_[e].size(), 0.0);
-    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {states_[e].data()});
-    if (const std::size_t first = switching_numbers(event) + kStates; first < states_[e].size())
-      problem_->AddResidualBlock(new Bends(states_[e].size(), first, options_.bend), nullptr,
-                                 {states_[e].data()});
+    problem_->AddResidualBlock(new Belief(state_beliefs(event), &discrepancy_), nullptr, {states_[e].data()});
     // an instant on a sample would change sides with it
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
@@ -271,12 +258,7 @@ class Search {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
     Eigen::MatrixXd with_belief = Eigen::MatrixXd::Zero(n, n);
-    std::vector<AtEnd> at_end;
-    for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e)
-      if (auto at = slopes_at_end(e)) {
-        add_curvature(e, *at, with_belief);
-        at_end.push_back(std::move(*at));
-      }
+    for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e) add_curvature(e, with_belief);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
       if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
@@ -289,7 +271,6 @@ class Search {
       covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
       fit.occam = known.vectorD().array().log().sum();
       for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
-      if (setting_.input != InputKind::none) fit.occam = input_occam(at_end, fit);
     }
     const Walls walls(setting_, &discrepancy_);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -313,64 +294,23 @@ class Search {
       fit.parameters.push_back(p);
     }
   }
-  /// An event where the fit ended: slopes of its residuals by z and by its state, and how precisely the
-  /// numbers of the state before the knots are believed.
-  struct AtEnd {
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_z, by_state;
-    Eigen::VectorXd residuals, precision, input;
-  };
-  [[nodiscard]] std::optional<AtEnd> slopes_at_end(std::size_t e) const {
-    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals()),
-               size = static_cast<Eigen::Index>(states_[e].size()),
-               knots = static_cast<Eigen::Index>(setting_.knots[e].size());
-    AtEnd at;
-    at.by_z.resize(rows, static_cast<Eigen::Index>(z_.size()));
-    at.by_state.resize(rows, size);
-    at.residuals.resize(rows);
-    const double* blocks[] = {z_.data(), states_[e].data()};
-    double* jacobians[] = {at.by_z.data(), at.by_state.data()};
-    costs_[e]->renew();
-    if (!costs_[e]->Evaluate(blocks, at.residuals.data(), jacobians)) return std::nullopt;
-    at.precision.resize(size - knots);
-    const std::vector<double> beliefs = state_beliefs((*setting_.events)[e]);
-    std::ranges::transform(beliefs, at.precision.begin(), [](double b) { return b > 0 ? 1 / (b * b) : 0.0; });
-    at.input = Eigen::Map<const Eigen::VectorXd>(states_[e].data(), size).tail(knots);
-    return at;
-  }
-  /// What makes chi2 and belief the evidence of a fit with an input.
-  [[nodiscard]] double input_occam(const std::vector<AtEnd>& events, const Fit& fit) const {
-    if (events.size() < costs_.size()) return std::nan("");
-    const auto n = static_cast<Eigen::Index>(z_.size());
-    Eigen::VectorXd precision(n);
-    double believed = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
-      precision[i] = spread > 0 ? 1 / (spread * spread) : 0.0;
-      believed += spread > 0 ? 2 * std::log(spread) : 0.0;
-    }
-    InputEvidence evidence(precision, Eigen::Map<const Eigen::VectorXd>(z_.data(), n));
-    for (const AtEnd& at : events) evidence.add(at.by_z, at.by_state, at.residuals, at.precision, at.input);
-    return evidence.cost(options_.bend) + believed - fit.chi2 - fit.belief;
-  }
-  void add_curvature(std::size_t e, const AtEnd& at, Eigen::MatrixXd& curvature) const {
-    Eigen::MatrixXd s = at.by_state.transpose() * at.by_state;
-    s.diagonal().head(at.precision.size()) += at.precision;
-    add_bends(e, s);
-    const Eigen::MatrixXd cross = at.by_state.transpose() * at.by_z;
-    curvature += at.by_z.transpose() * at.by_z - cross.transpose() * s.ldlt().solve(cross);
-  }
-
-  void add_bends(std::size_t e, Eigen::MatrixXd& s) const {
-    const std::size_t size = states_[e].size(), first = size - setting_.knots[e].size();
-    if (first == size) return;
-    const Bends bends(size, first, options_.bend);
+  /// Adds what one event knows of the parameters where the fit ended, its own state projected out.
+  void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
     using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Row j(size - first, size);
-    std::vector<double> unused(size - first);
-    const double* blocks[] = {states_[e].data()};
-    double* jacobians[] = {j.data()};
-    bends.Evaluate(blocks, unused.data(), jacobians);
-    s += j.transpose() * j;
+    const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals());
+    Row by_z(rows, static_cast<Eigen::Index>(z_.size())),
+        by_state(rows, static_cast<Eigen::Index>(states_[e].size()));
+    Eigen::VectorXd residuals(rows);
+    const double* blocks[] = {z_.data(), states_[e].data()};
+    double* jacobians[] = {by_z.data(), by_state.data()};
+    costs_[e]->renew();
+    if (!costs_[e]->Evaluate(blocks, residuals.data(), jacobians)) return;
+    Eigen::MatrixXd s = by_state.transpose() * by_state;
+    const std::vector<double> priors = state_beliefs((*setting_.events)[e]);
+    for (std::size_t k = 0; k < priors.size(); ++k)
+      if (priors[k] > 0) s.diagonal()[static_cast<Eigen::Index>(k)] += 1 / (priors[k] * priors[k]);
+    const Eigen::MatrixXd cross = by_state.transpose() * by_z;
+    curvature += by_z.transpose() * by_z - cross.transpose() * s.ldlt().solve(cross);
   }
 
   const Setting& setting_;
@@ -441,13 +381,9 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
 
 Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
-  Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance, options.input, {}};
+  Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance};
   setting.lenient = setting.linear_slopes = options.lenient;
-  setting.goes_on = !options.errors || options.input != InputKind::none;
-  setting.knots.resize(events.size());
-  if (options.input != InputKind::none)
-    for (std::size_t e = 0; e < events.size(); ++e)
-      setting.knots[e] = options.start[e].input(options.input).t;
+  setting.goes_on = !options.errors;
   for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
   sim::plant::Plant start = tested.plant;
   for (std::size_t i = 0; i < options.values.size(); ++i)

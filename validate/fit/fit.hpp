@@ -126,9 +126,7 @@ struct FitOptions {
   double enough = 1e-5;                ///< relative change of the cost at which the fit stops
   std::vector<EventState> start = {};  ///< of the events; empty: as prepared
   std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
-  InputKind input = InputKind::none;   ///< fitted too, on the knots of `start`'s inputs
   bool errors = true;                  ///< of the parameters too: one more look at all slopes
-  double bend = 0.01;                  ///< second difference that the input is believed to have [pu]
   /// It ends early where it is out of reach: where the goal would be missed even if every step that is left
   /// took off as large a share of the cost as the better one of the last two.
   Goal goal = {};

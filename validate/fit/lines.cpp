@@ -51,7 +51,7 @@ Line strongest_line(const Fit& fit, const event::WhitenedEvents& events) {
       for (std::size_t e = 0; e < events.size(); ++e)
         if (events[e].channels == channels)
           explains += taken_off(fit.events[e].residual[c], frequency * events[e].record.step()) -
-                      2 * thresholds::adequacy.knot;
+                      2 * thresholds::adequacy.number;
       if (explains > best.explains) best = {channels[c], frequency, explains};
     }
   return best;

@@ -40,9 +40,8 @@ ScoreTest::ScoreTest(const event::WhitenedEvents& events, const sim::plant::Plan
                      const Fit& fit, bool lenient)
     : events_(events), fit_(fit), lenient_(lenient) {
   require_noise_of(events, fit);
-  Setting setting{&tested.plant, &tested.conventions, &events, {}, kFitTolerance, InputKind::none, {}};
+  Setting setting{&tested.plant, &tested.conventions, &events, {}, kFitTolerance};
   setting.lenient = setting.linear_slopes = lenient;
-  setting.knots.resize(events.size());
   std::vector<double> at, belief;  // where the fit ended, and what was believed there
   for (const auto& p : fit.parameters) {
     setting.axes.push_back(make_axis(tested.plant, p.where));

@@ -23,8 +23,8 @@ constexpr int kLinearPoints = 2;
 constexpr std::size_t kSuitedDraws = 80;
 /// Optima of one hypothesis that are kept.
 constexpr std::size_t kOptima = 2;
-/// Evidence for an input that is free in time from which blocks are looked for that make it: strong, by the
-/// scale of Kass and Raftery (1995). Noise alone has 0 to 4.
+/// Evidence of an input that is free in time from which blocks are looked for that make it: strong, by the
+/// scale of Kass and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
 
 std::uint64_t stream_of(const std::string& name) {  // FNV-1a
@@ -73,34 +73,46 @@ class Identifying {
     std::vector<event::EventState> states;
     for (const auto& e : stage_.fit.events) states.push_back(e.state);
     for (const InputKind kind : {InputKind::torque, InputKind::field}) {
+      if (!(free_input(kind)->evidence > kStrongEvidence)) continue;
       const auto side = std::make_shared<const reduced::Reduction>(
           reduced::linear_about(stage_.fit.plant, stage_.under_test(), stage_.events, polish_.free(), states,
                                 Polish::only(kind), stage_.threads),
           stage_.events, stage_.conventions);
-      const reduced::ReducedPlant plant(*side, kind);
-      none_ = plant.costs(Eigen::VectorXd::Zero(side->knots()), Eigen::VectorXd::Zero(1))[0];
-      if (plant.free_evidence() > kStrongEvidence) (kind == InputKind::torque ? torque_ : field_) = side;
+      none_ = reduced::ReducedPlant(*side, kind)
+                  .costs(Eigen::VectorXd::Zero(side->knots()), Eigen::VectorXd::Zero(1))[0];
+      (kind == InputKind::torque ? torque_ : field_) = side;
     }
+  }
+  /// What is known of an input, or its inference beside the stage's fit.
+  [[nodiscard]] std::shared_ptr<const reduced::FreeInput> free_input(InputKind kind) const {
+    const reduced::FreeInput* known = kind == InputKind::torque ? stage_.torque : stage_.field;
+    if (known) return {std::shared_ptr<void>(), known};
+    return std::make_shared<const reduced::FreeInput>(reduced::free_input(
+        kind, stage_.under_test(), stage_.events, polish_.free(), stage_.fit, stage_.threads));
   }
   /// Inferences with torque, with field voltage, and with both: their evidence says whether one is enough.
   void infer() {
     constexpr std::array kInputs = {reduced::Inputs{true, false}, reduced::Inputs{false, true},
                                     reduced::Inputs{true, true}};
-    std::array<reduced::Inference, kInputs.size()> found;
+    std::array<std::shared_ptr<const reduced::Inference>, kInputs.size()> found;
     in_parallel(
         kInputs.size(),
         [&](std::size_t i) {
-          found[i] = reduced::infer(stage_.under_test(), stage_.events, polish_.free(), kInputs[i], 1);
+          const reduced::FreeInput* known = i == 0 ? stage_.torque : i == 1 ? stage_.field : nullptr;
+          found[i] = known && known->inference
+                         ? known->inference
+                         : std::make_shared<const reduced::Inference>(reduced::infer(
+                               stage_.under_test(), stage_.events, polish_.free(), kInputs[i], 1));
         },
         [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, stage_.threads);
-    if (found[2].criterion < std::min(found[0].criterion, found[1].criterion)) return reduce(found[2]);
+    if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
     // the better one alone; the other, too, where it comes near
-    const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i].chi2; };
+    const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
-      if (found[i].criterion < found[1 - i].criterion ||
+      if (found[i]->criterion < found[1 - i]->criterion ||
           takes_off(i) > takes_off(1 - i) - thresholds::evidence.within_reach ||
           takes_off(i) > thresholds::search.fair * takes_off(1 - i))
-        reduce(found[i]);
+        reduce(*found[i]);
   }
   void reduce(const reduced::Inference& found) {
     const auto reduction =
@@ -212,12 +224,15 @@ class Identifying {
     }
     fit(some);
   }
-  /// Fits those that were not yet fitted to the end.
+  /// Fits those that were not yet fitted to the end. A hypothesis of another kind ends the fits only of
+  /// blocks that identification, too, has behind it: a fit may be slow at first.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
-    const double goal = std::min(others_, least_fitted()) + thresholds::evidence.within_reach;
+    const double least = least_fitted();
     each(some, event::Phase::full_fits, [&](Identified& h) {
       const Reduced& side = side_of(h);
+      const double goal =
+          (h.cost < others_ ? least : std::min(others_, least)) + thresholds::evidence.within_reach;
       other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side, goal);
       h.polished = true;
       if (!h.best() || other_is_free(side)) return;  // polish() has the cost of what it gave up

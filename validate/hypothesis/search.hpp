@@ -9,6 +9,7 @@
 
 #include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
+#include "validate/reduced/free_input.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -27,6 +28,8 @@ struct Stage {
   int threads = 1;
   /// Whether a person has asked for an end: what was begun is kept as it is then. May be empty.
   std::function<bool()> stop = {};
+  /// Inputs that are free in time beside this structure; null: not known yet.
+  const reduced::FreeInput *torque = nullptr, *field = nullptr;
   [[nodiscard]] bool stopped() const { return stop && stop(); }
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// What of a plant the events are of.

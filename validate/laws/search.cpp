@@ -76,7 +76,7 @@ std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::B
 
 class Searcher {
  public:
-  Searcher(const Unexplained& c, const hypothesis::MissingInput& input, const event::Progress& report)
+  Searcher(const Unexplained& c, const reduced::FreeInput& input, const event::Progress& report)
       : case_(c), input_(input), report_(report) {}
 
   LawSearch run() {
@@ -168,7 +168,7 @@ class Searcher {
   }
 
   const Unexplained& case_;
-  const hypothesis::MissingInput& input_;
+  const reduced::FreeInput& input_;
   const event::Progress& report_;
 };
 
@@ -181,18 +181,15 @@ sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& ef
 }
 
 LawSearch search_laws(const Unexplained& case_, const event::Progress& report) {
-  const auto left = [](const hypothesis::MissingInput& m) {
-    return m.fit.events.empty() ? 1e300 : m.misfit();
-  };
-  const bool torque = left(case_.torque) < left(case_.field);
-  const hypothesis::MissingInput &first = torque ? case_.torque : case_.field,
+  const bool torque = case_.torque.misfit() < case_.field.misfit();
+  const reduced::FreeInput &first = torque ? case_.torque : case_.field,
                                  &second = torque ? case_.field : case_.torque;
-  const auto explains = [&](const hypothesis::MissingInput& m) {
-    return left(m) < std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.misfit());
+  const auto explains = [&](const reduced::FreeInput& m) {
+    return m.misfit() < std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.misfit());
   };
   if (!explains(first)) return {};
   LawSearch found = Searcher(case_, first, report).run();
-  if (found.found() || !explains(second) || left(second) > thresholds::laws.as_much * left(first))
+  if (found.found() || !explains(second) || second.misfit() > thresholds::laws.as_much * first.misfit())
     return found;
   LawSearch other = Searcher(case_, second, report).run();
   other.seconds += found.seconds;

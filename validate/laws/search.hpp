@@ -6,8 +6,8 @@
 
 #include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
-#include "validate/hypothesis/missing_input.hpp"
 #include "validate/laws/candidate.hpp"
+#include "validate/reduced/free_input.hpp"
 
 namespace swingbank::validate::laws {
 
@@ -37,7 +37,7 @@ struct Unexplained {
   hypothesis::Trial trial;
   const fit::Fit& base;
   const std::vector<hypothesis::HeldOut>& held_out_base;
-  const hypothesis::MissingInput &torque, &field;
+  const reduced::FreeInput &torque, &field;
   int threads = 1;
 };
 

@@ -20,6 +20,10 @@ constexpr double kDrawWidth = 1.2;    ///< of draws, in spreads
 /// A quarter of the values are drawn log-uniformly down to a hundredth of the standard value: a limit acts
 /// only if it is as low as its signal.
 constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
+/// After each optimisation so many rounds of draws about the optima found, in spreads at most and a tenth of
+/// that at least. They find what steps along a gradient do not: the time at which a limiter picks up.
+constexpr int kRoundsNearby = 3, kWidthsNearby = 8;
+constexpr double kWidestNearby = 0.5;
 constexpr double kShortestTime = 0.2;                         ///< sampling intervals
 constexpr double kStartSettled = 0.02;                        ///< a step that gains less ends a start
 constexpr double kGivenUp = 1e6;                              ///< damping
@@ -57,7 +61,24 @@ class Identifying {
   std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
     if (!without_.allFinite()) return {};
     begin(options, known);
-    for (int steps = options.steps;; steps *= 2) {
+    optimise(options.steps);
+    if (options.draws > 0)
+      for (int round = 0; round < kRoundsNearby && !starts_.empty(); ++round) {
+        add_nearby(round, options);
+        optimise(options.steps);
+      }
+    return optima();
+  }
+
+ private:
+  struct Start {
+    VectorXd z;
+    double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
+    bool done = false;
+  };
+  /// Every start takes so many steps; then the better half takes twice as many, and so on.
+  void optimise(int steps) {
+    for (;; steps *= 2) {
       for (int step = 0; step < steps; ++step) {
         interruption_point();
         if (!advance()) break;
@@ -66,10 +87,38 @@ class Identifying {
       if (starts_.size() <= kLastStarts) break;
       starts_.resize((starts_.size() + 1) / 2);
     }
-    return optima();
   }
-
- private:
+  /// Adds the best of the draws about the present optima, from narrow to wide.
+  void add_nearby(int round, const IdentifyOptions& options) {
+    std::vector<VectorXd> points;
+    for (int draw = 0; draw < options.draws; ++draw) {
+      VectorXd z = starts_[static_cast<std::size_t>(draw) % starts_.size()].z;
+      const double width =
+          kWidestNearby * std::pow(10.0, -static_cast<double>(draw % kWidthsNearby) / kWidthsNearby);
+      for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const auto stream =
+            static_cast<std::uint32_t>(2 * axes_.size() + static_cast<std::size_t>(round) * axes_.size() + i);
+        z[static_cast<Index>(i)] +=
+            width * axes_[i].spread() *
+            sim::normal_pair(trial_.stream, stream, static_cast<std::uint64_t>(draw))[0];
+      }
+      points.push_back(within(std::move(z)));
+    }
+    std::vector<Start> some = starts_at(points, series(points));
+    std::ranges::stable_sort(some, {}, &Start::cost);
+    some.resize(std::min(some.size(), static_cast<std::size_t>(options.kept)));
+    std::ranges::move(some, std::back_inserter(starts_));
+  }
+  /// Those of the points that can be simulated.
+  [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points,
+                                             const MatrixXd& made) const {
+    const VectorXd cost = costs(made, points, VectorXd::Zero(static_cast<Index>(points.size())));
+    std::vector<Start> all;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (std::isfinite(cost[static_cast<Index>(k)]))
+        all.push_back({points[k], 0, cost[static_cast<Index>(k)]});
+    return all;
+  }
   /// The trial whose other blocks are as they are at the inference.
   static Trial about(const Inference& inference, Trial trial) {
     for (const auto& f : inference.free)
@@ -78,12 +127,6 @@ class Identifying {
         parameter_value(trial.plant, *id) = parameter_value(inference.base, f.id);
     return trial;
   }
-  struct Start {
-    VectorXd z;
-    double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
-    bool done = false;
-  };
-
   [[nodiscard]] sim::plant::Plant plant_at(const VectorXd& z) const {
     sim::plant::Plant plant = trial_.plant;
     for (std::size_t i = 0; i < axes_.size(); ++i)
@@ -157,15 +200,11 @@ class Identifying {
       made = series(all);
     }
     if (!(made.array().abs() > 0).any()) return;  // the block has no effect
-    const VectorXd cost = costs(made, all, VectorXd::Zero(static_cast<Index>(all.size())));
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (std::isfinite(cost[static_cast<Index>(k)]))
-        starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
+    starts_ = starts_at(all, made);
     std::ranges::stable_sort(starts_, {}, &Start::cost);
     starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
-    for (std::size_t k = 0; k < given; ++k)  // given starts are optimised in any case
-      if (std::isfinite(cost[static_cast<Index>(k)]))
-        starts_.push_back({all[k], 0, cost[static_cast<Index>(k)]});
+    all.resize(given);  // given starts are optimised in any case
+    std::ranges::move(starts_at(all, made.leftCols(static_cast<Index>(given))), std::back_inserter(starts_));
   }
   /// Further draws where fewer than `enough` act. A limiter that has picked up before the event cannot be
   /// simulated, and one that picks up far above its signal does nothing. On the way from such a draw to the

@@ -2,18 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/in_parallel.hpp"
-#include "validate/fit/axis.hpp"
 #include "validate/fit/states.hpp"
 #include "validate/playin/can_run.hpp"
+#include "validate/reduced/detail/normal.hpp"
 
 namespace swingbank::validate::reduced {
 namespace {
 
 using Kind = playin::Direction::Kind;
+using detail::Normal, detail::Point;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
+/// Intensities of the inputs' random walk that are tried beside the prior's, at most; which are the same; and
+/// factors from one to the next, where residuals are not linear in the inputs and where they are.
+constexpr int kIntensities = 5;
+constexpr double kSameIntensity = 0.7;  // of the logarithm
+constexpr double kNearIntensity = 100, kAnyIntensity = 1e12;
 /// Knots are one sample apart for this long after a switching time; then their spacing grows.
 constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;  // [s], factor, [s]
 constexpr double kMostKnots = 100;                                          ///< of what lies far apart
@@ -43,11 +50,6 @@ Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
   return knots;
 }
 
-struct Point {
-  VectorXd z;
-  std::vector<VectorXd> states, torques, fields;  ///< per event
-};
-
 class Inferring {
  public:
   Inferring(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
@@ -70,19 +72,19 @@ class Inferring {
       const auto numbers = fit::state_of(events_[e], s);
       at_.states.emplace_back(Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size())));
       knots_.push_back(knots_of(events_[e], s));
-      at_.torques.push_back(VectorXd::Zero(static_cast<Index>(knots_.back().t.size())));
-      at_.fields.push_back(at_.torques.back());
+      at_.torques.push_back(at_knots(s.torque, knots_.back()));
+      at_.fields.push_back(at_knots(s.field, knots_.back()));
     }
   }
 
   Inference run(int steps) {
     std::vector<EventSlopes> slopes = linearise(at_);
-    double cost = prior_cost(at_);
+    double cost = prior_cost(at_) + walk_cost(knots_, at_, intensity_);
     for (const auto& e : slopes) cost += e.residual.squaredNorm();
     double damping = kFirstDamping;
     int taken = 0;
     while (taken < steps) {
-      const Normal normal = normal_of(slopes, at_);
+      const Normal normal = normal_of(slopes);
       bool moved = false;
       double gained = 0;
       for (int attempt = 0; attempt < kDampings && !moved; ++attempt) {
@@ -105,7 +107,8 @@ class Inferring {
     }
     Inference found;
     found.inputs = inputs_;
-    found.criterion = cost + occam(normal_of(slopes, at_));
+    found.criterion = cost + step_of(normal_of(slopes)).log_determinant - log_prior(intensity_);
+    found.intensity = intensity_;
     found.base = tested_.plant;
     for (std::size_t i = 0; i < axes_.size(); ++i)
       parameter_value(found.base, free_[i].id) = axes_[i].value(at_.z[static_cast<Index>(i)]);
@@ -123,20 +126,82 @@ class Inferring {
     return found;
   }
 
+  /// The intensity of the inputs' walk that is the most probable one, by the quadratic model about an
+  /// inference.
+  [[nodiscard]] double most_probable_intensity(const Inference& about) const {
+    constexpr double kLeastIntensity = 1e-10, kMostIntensity = 1e2, kIntensityFactor = 3.0;
+    Normal data = without_walks(about.events, axes_, at_, events_);
+    Point none = at_;  // where the walk costs nothing, so that no large numbers cancel
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      const Index states = at_.states[e].size(), inputs = data.own[e].rows() - states;
+      VectorXd input(inputs);
+      if (inputs_.torque) input.head(at_.torques[e].size()) = at_.torques[e];
+      if (inputs_.field) input.tail(at_.fields[e].size()) = at_.fields[e];
+      data.own_gradient[e] -= data.own[e].rightCols(inputs) * input;
+      data.gradient -= data.cross[e].bottomRows(inputs).transpose() * input;
+      none.torques[e].setZero();
+      none.fields[e].setZero();
+    }
+    double best = 1.0, least = std::numeric_limits<double>::infinity();
+    for (double intensity = kLeastIntensity; intensity < kMostIntensity; intensity *= kIntensityFactor) {
+      Normal normal = data;
+      add_walks(about.events, none, intensity, normal);
+      const detail::Step step = step_of(normal);
+      const double criterion = step.log_determinant - log_prior(intensity) - step.falls;
+      if (criterion < least) {
+        least = criterion;
+        best = intensity;
+      }
+    }
+    return best;
+  }
+  /// The inference with the most probable intensity, with standard deviations of the inputs. The intensity
+  /// moves by a factor of `farthest` at most from one inference to the next, as far as the quadratic model
+  /// holds.
+  Inference smoothed(const Inference& first, double farthest) {
+    Inference best = first;
+    for (int round = 0; round < kIntensities; ++round) {
+      const Point at = at_;
+      const double intensity = intensity_;
+      intensity_ = std::clamp(most_probable_intensity(best), intensity / farthest, intensity * farthest);
+      if (std::abs(std::log(intensity_ / intensity)) < kSameIntensity) break;
+      Inference next = run(kInferenceSteps);
+      if (!(next.criterion < best.criterion)) {
+        at_ = at;
+        intensity_ = intensity;
+        break;
+      }
+      best = std::move(next);
+    }
+    add_deviations(best);
+    return best;
+  }
+  /// Adds the standard deviations of the inputs.
+  void add_deviations(Inference& found) const {
+    const auto all = deviations(normal_of(found.events));
+    for (std::size_t e = 0; e < all.size(); ++e) {
+      EventSlopes& s = found.events[e];
+      s.torque_deviation = all[e].segment(s.state.cols(), s.torque.cols());
+      s.field_deviation = all[e].tail(s.field.cols());
+    }
+  }
+
  private:
   static constexpr double kFirstDamping = 1e-3;
   static constexpr int kDampings = 8;
   static constexpr double kWorthAStep = 1.0;  ///< of chi2
   static constexpr double kLongestLog = 0.5;  ///< step of a logarithm
 
-  /// Curvature and gradient: of the plant's numbers, of each event's own, and between the two.
-  struct Normal {
-    MatrixXd plant;
-    VectorXd gradient;
-    std::vector<MatrixXd> own, cross;
-    std::vector<VectorXd> own_gradient;
-  };
-
+  [[nodiscard]] Normal normal_of(const std::vector<EventSlopes>& slopes) const {
+    Normal normal = without_walks(slopes, axes_, at_, events_);
+    add_walks(slopes, at_, intensity_, normal);
+    return normal;
+  }
+  /// An input that an event's state has on the same knots; else zero.
+  [[nodiscard]] static VectorXd at_knots(const playin::PiecewiseLinear& input, const Knots& knots) {
+    if (input.t.size() != knots.t.size()) return VectorXd::Zero(static_cast<Index>(knots.t.size()));
+    return Eigen::Map<const VectorXd>(input.value.data(), static_cast<Index>(input.value.size()));
+  }
   [[nodiscard]] sim::plant::Plant plant_at(const VectorXd& z) const {
     sim::plant::Plant plant = simulated_;
     for (std::size_t i = 0; i < axes_.size(); ++i)
@@ -228,7 +293,7 @@ class Inferring {
           }
         },
         [](int) {}, threads_);
-    double cost = prior_cost(p);
+    double cost = prior_cost(p) + walk_cost(knots_, p, intensity_);
     for (const double part : parts) cost += std::isfinite(part) ? part : kInfinite;
     return cost;
   }
@@ -241,106 +306,32 @@ class Inferring {
       const auto priors = own_priors(events_[e]);
       for (std::size_t k = 0; k < priors.size(); ++k)
         if (priors[k] > 0) cost += std::pow(p.states[e][static_cast<Index>(k)] / priors[k], 2);
-      cost += walked(knots_[e], event::InputKind::torque, p.torques[e]) +
-              walked(knots_[e], event::InputKind::field, p.fields[e]);
     }
     return cost;
   }
-  static double walked(const Knots& knots, event::InputKind kind, const VectorXd& input) {
-    const VectorXd weight = walk_weights(knots, kind);
-    double cost = std::pow(weight[0] * input[0], 2);
-    for (Index k = 1; k < input.size(); ++k) cost += std::pow(weight[k] * (input[k] - input[k - 1]), 2);
-    return cost;
-  }
-  static void add_walk(const Knots& knots, event::InputKind kind, const VectorXd& input, Index first,
-                       MatrixXd& curvature, VectorXd& gradient) {
-    const VectorXd weight = walk_weights(knots, kind);
-    for (Index k = 0; k < input.size(); ++k) {
-      const double w = weight[k] * weight[k], before = k > 0 ? input[k - 1] : 0.0;
-      const Index at = first + k;
-      curvature(at, at) += w;
-      gradient[at] += w * (input[k] - before);
-      if (k == 0) continue;
-      curvature(at - 1, at - 1) += w;
-      curvature(at, at - 1) -= w;
-      curvature(at - 1, at) -= w;
-      gradient[at - 1] -= w * (input[k] - before);
-    }
-  }
-  [[nodiscard]] Normal normal_of(const std::vector<EventSlopes>& slopes, const Point& p) const {
-    const auto n = static_cast<Index>(axes_.size());
-    Normal normal{MatrixXd::Zero(n, n), VectorXd::Zero(n), {}, {}, {}};
-    for (Index i = 0; i < n; ++i)
-      if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
-        normal.plant(i, i) += 1 / (spread * spread);
-        normal.gradient[i] += p.z[i] / (spread * spread);
-      }
-    for (std::size_t e = 0; e < slopes.size(); ++e) {
-      const EventSlopes& s = slopes[e];
-      const Index states = s.state.cols(), torques = s.torque.cols(), own = states + torques + s.field.cols();
-      MatrixXd all(s.residual.size(), n + own);
-      all << s.plant, s.state, s.torque, s.field;
-      MatrixXd products = MatrixXd::Zero(n + own, n + own);
-      products.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
-      products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
-      const VectorXd gradient = all.transpose() * s.residual;
-      normal.plant += products.topLeftCorner(n, n);
-      normal.gradient += gradient.head(n);
-      MatrixXd inner = products.bottomRightCorner(own, own);
-      VectorXd inner_gradient = gradient.tail(own);
-      const auto priors = own_priors(events_[e]);
-      for (Index k = 0; k < states; ++k)
-        if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
-          inner(k, k) += 1 / (b * b);
-          inner_gradient[k] += p.states[e][k] / (b * b);
-        }
-      if (inputs_.torque)
-        add_walk(s.knots, event::InputKind::torque, p.torques[e], states, inner, inner_gradient);
-      if (inputs_.field)
-        add_walk(s.knots, event::InputKind::field, p.fields[e], states + torques, inner, inner_gradient);
-      normal.own.push_back(std::move(inner));
-      normal.cross.push_back(products.bottomLeftCorner(own, n));
-      normal.own_gradient.push_back(std::move(inner_gradient));
-    }
-    return normal;
-  }
-  /// Log determinant of the posterior precision of all free parameters relative to the prior's.
-  [[nodiscard]] double occam(const Normal& normal) const {
-    MatrixXd curvature = normal.plant;
+  /// Log determinant of the prior precision of all that is free.
+  [[nodiscard]] double log_prior(double intensity) const {
     double sum = 0;
-    for (const fit::Axis& axis : axes_) sum += axis.spread() > 0 ? 2 * std::log(axis.spread()) : 0.0;
+    for (const fit::Axis& axis : axes_) sum -= axis.spread() > 0 ? 2 * std::log(axis.spread()) : 0.0;
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      const Eigen::LDLT<MatrixXd> own(normal.own[e]);
-      sum += own.vectorD().array().log().sum();
-      curvature -= normal.cross[e].transpose() * own.solve(normal.cross[e]);
-      for (const double b : own_priors(events_[e])) sum += b > 0 ? 2 * std::log(b) : 0.0;
+      for (const double b : own_priors(events_[e])) sum -= b > 0 ? 2 * std::log(b) : 0.0;
       for (const event::InputKind kind : {event::InputKind::torque, event::InputKind::field})
         if (kind == event::InputKind::torque ? inputs_.torque : inputs_.field)
-          sum -= 2 * walk_weights(knots_[e], kind).array().log().sum();
+          sum += 2 * walk_weights(knots_[e], kind).array().log().sum() -
+                 static_cast<double>(knots_[e].t.size()) * std::log(intensity);
     }
-    return sum + curvature.ldlt().vectorD().array().log().sum();
+    return sum;
   }
   [[nodiscard]] Point stepped(const Normal& normal, double damping) const {
-    MatrixXd curvature = normal.plant;
-    VectorXd gradient = normal.gradient;
-    curvature.diagonal() *= 1 + damping;
-    std::vector<Eigen::LDLT<MatrixXd>> solvers;
-    for (std::size_t e = 0; e < events_.size(); ++e) {
-      MatrixXd own = normal.own[e];
-      own.diagonal() *= 1 + damping;
-      solvers.emplace_back(own);
-      curvature -= normal.cross[e].transpose() * solvers[e].solve(normal.cross[e]);
-      gradient -= normal.cross[e].transpose() * solvers[e].solve(normal.own_gradient[e]);
-    }
-    const VectorXd step = curvature.ldlt().solve(-gradient);
+    const detail::Step step = step_of(normal, damping);
     Point to = at_;
-    for (Index i = 0; i < step.size(); ++i) {
+    for (Index i = 0; i < step.z.size(); ++i) {
       const fit::Axis& axis = axes_[static_cast<std::size_t>(i)];
-      to.z[i] = std::clamp(at_.z[i] + std::clamp(step[i], -kLongestLog, kLongestLog),
+      to.z[i] = std::clamp(at_.z[i] + std::clamp(step.z[i], -kLongestLog, kLongestLog),
                            std::min(at_.z[i], axis.z(axis.low)), std::max(at_.z[i], axis.z(axis.high)));
     }
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      const VectorXd own = solvers[e].solve(-normal.own_gradient[e] - normal.cross[e] * step);
+      const VectorXd& own = step.own[e];
       const Index states = at_.states[e].size(), knots = at_.torques[e].size();
       to.states[e] += own.head(states);
       keep_in_range(events_[e], to.states[e]);
@@ -356,6 +347,7 @@ class Inferring {
   const std::vector<fit::FreeParameter>& free_;
   Inputs inputs_;
   int threads_;
+  double intensity_ = 1.0;  ///< of the inputs' walk, as a multiple of the prior's
   std::vector<fit::Axis> axes_;
   std::vector<Knots> knots_;
   sim::plant::Plant simulated_;
@@ -401,6 +393,18 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedE
   Inferring inferring(tested, events, free, inputs, threads);
   inferring.begin(tested.plant, {});
   return inferring.run(steps);
+}
+
+SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                             const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
+                             const fit::Fit* from) {
+  Inferring inferring(tested, events, free, inputs, threads);
+  std::vector<event::EventState> states;
+  for (std::size_t e = 0; from && e < events.size(); ++e) states.push_back(from->events[e].state);
+  inferring.begin(from ? from->plant : tested.plant, states);
+  SmoothInference found{inferring.run(from ? 0 : kInferenceSteps), {}};
+  found.smooth = inferring.smoothed(found.prior, from ? kAnyIntensity : kNearIntensity);
+  return found;
 }
 
 void add_changes(Inference& inference, const event::WhitenedEvents& events,

@@ -25,6 +25,8 @@ struct EventSlopes {
   Knots knots;
   Eigen::MatrixXd plant, state, torque, field;  ///< without columns: of an input that is not asked for
   Eigen::MatrixXd changes;                      ///< of add_changes
+  /// Posterior standard deviations of the inputs at the knots [pu]; of infer_smooth alone.
+  Eigen::VectorXd torque_deviation, field_deviation;
   Eigen::VectorXd residual;
   Eigen::VectorXd state_at;  ///< estimate of the state, in its units
 };
@@ -48,6 +50,7 @@ struct Inference {
   /// -2 log of the evidence by Laplace's approximation, up to a constant that all inferences of
   /// these events share.
   double criterion = 0;
+  double intensity = 1.0;  ///< of the inputs' random walk, as a multiple of the prior's
   int values = 0, steps = 0;
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
@@ -74,9 +77,22 @@ std::vector<double> own_priors(const event::FitEvent& event);
 /// Keeps the switching times of an event's state within their uncertainties.
 void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
 
-/// `steps`: Gauss-Newton steps at most. Throws InputError where the model as submitted cannot be run.
+inline constexpr int kInferenceSteps = 5;  ///< Gauss-Newton steps of an inference, at most
+/// Begins at the submitted values. Throws InputError where the model as submitted cannot be run.
 Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-                const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads, int steps = 5);
+                const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
+                int steps = kInferenceSteps);
+
+/// Two inferences, of which the second goes on from the first: with the prior intensity of the inputs' random
+/// walk, and with the most probable one, which is small where the records ask for no input.
+struct SmoothInference {
+  Inference prior, smooth;
+};
+/// `from`: a fit of the tested plant without inputs, whose residuals are nearly linear in them; the first
+/// inference is then its linear point. Null: both begin at the submitted values. Throws as infer().
+SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                             const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
+                             const fit::Fit* from);
 /// The same about `plant` as it stands, which is the tested plant or has another block in addition or in its
 /// place, in these states, with Jacobians by the inputs asked for, which are zero. Throws InputError where it
 /// cannot be run.

@@ -308,7 +308,6 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
     event.by_gain = gain_.number >= 0 ? VectorXd(left.col(gain_.number)) : VectorXd::Zero(left.rows());
     event.L = left.middleCols(n, K);
     event.r = left.rightCols(1);
-    event.weight = walk_weights(e.knots, kind);
     curvature += event.T.transpose() * event.T;
     events_.push_back(std::move(event));
     row += K;
@@ -361,67 +360,6 @@ ReducedPlant::Quadratic ReducedPlant::quadratic(const VectorXd& series, double g
   quadratic.curvature -= cross.transpose() * inverse_ * cross;
   quadratic.gradient -= cross.transpose() * (inverse_ * gradient);
   return quadratic;
-}
-
-double ReducedPlant::free_evidence() const {
-  // A A' = U s U', where A takes steps of the walk, in units of their prior, to residuals. In the coordinates
-  // U each is independent of the others, with the variance 1 + intensity s.
-  struct Rotated {
-    Eigen::ArrayXd s;
-    VectorXd r;
-    MatrixXd T;
-    double r_rest;  ///< what no walk reaches: squares, and products with the plant's columns
-    VectorXd g_rest;
-    MatrixXd T_rest;
-  };
-  const auto m = static_cast<Index>(free_.size());
-  const Index n = m + (gain_.number >= 0 ? 1 : 0);
-  std::vector<Rotated> all;
-  for (const Event& event : events_) {
-    MatrixXd A = event.L;
-    for (Index k = A.cols() - 1; k-- > 0;) A.col(k) += A.col(k + 1);
-    A.array().rowwise() /= event.weight.transpose().array();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(A.transpose() * A);
-    constexpr double kNoDirection = 1e-12;  // of the largest
-    const Eigen::ArrayXd s = eigen.eigenvalues().array().max(0.0);
-    const MatrixXd U =
-        A * eigen.eigenvectors() *
-        (s > kNoDirection * s.maxCoeff()).select(s.sqrt().inverse(), 0.0).matrix().asDiagonal();
-    MatrixXd T(event.r.size(), n);
-    T.leftCols(m) = event.T;
-    if (n > m) T.rightCols(1) = event.by_gain;
-    Rotated e{s, U.transpose() * event.r, U.transpose() * T, 0, {}, {}};
-    e.r_rest = event.r.squaredNorm() - e.r.squaredNorm();
-    e.g_rest = T.transpose() * event.r - e.T.transpose() * e.r;
-    e.T_rest = T.transpose() * T - e.T.transpose() * e.T;
-    all.push_back(std::move(e));
-  }
-  const auto criterion = [&](double intensity) {
-    MatrixXd curvature = MatrixXd::Zero(n, n);
-    VectorXd gradient = VectorXd::Zero(n);
-    curvature.topLeftCorner(m, m) = precision_;
-    gradient.head(m) = first_;
-    if (n > m) {
-      curvature(m, m) = gain_precision_;
-      gradient[m] = gain_precision_ * gain_offset_;
-    }
-    double cost = 0;
-    for (const Rotated& e : all) {
-      const Eigen::ArrayXd variance = 1 + intensity * e.s;
-      const MatrixXd T = e.T.array().colwise() / variance;
-      curvature += e.T_rest + e.T.transpose() * T;
-      gradient += e.g_rest + T.transpose() * e.r;
-      cost += e.r_rest + (e.r.array().square() / variance + variance.log()).sum();
-    }
-    const Eigen::LDLT<MatrixXd> solver(curvature);
-    return cost - gradient.dot(solver.solve(gradient)) + solver.vectorD().array().log().sum();
-  };
-  constexpr double kLeastIntensity = 1e-10, kMostIntensity = 1e2, kIntensityStep = 3.0;  // of the prior's
-  const double none = criterion(0);
-  double best = none;
-  for (double q = kLeastIntensity; q < kMostIntensity; q *= kIntensityStep)
-    best = std::min(best, criterion(q));
-  return none - best;
 }
 
 VectorXd ReducedPlant::plant_of(const VectorXd& series, double gain) const {

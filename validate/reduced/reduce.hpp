@@ -91,9 +91,6 @@ class ReducedPlant {
   };
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
                                     const Eigen::MatrixXd& slopes) const;
-  /// Evidence (difference of -2 log) for a time series that is free in time over none: a random walk like the
-  /// input's prior, with the intensity that is the most probable. That may be zero: it is never negative.
-  [[nodiscard]] double free_evidence() const;
   /// Changes of the plant parameters that minimise the cost of a time series; without those of add_changes.
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
@@ -101,8 +98,7 @@ class ReducedPlant {
  private:
   struct Event {
     Eigen::VectorXd r, by_gain;
-    Eigen::VectorXd weight;  ///< of the input's steps between knots, by its prior (walk_weights)
-    Eigen::MatrixXd T, L;    ///< by the eliminated parameters, by the time series
+    Eigen::MatrixXd T, L;  ///< by the eliminated parameters, by the time series
   };
   [[nodiscard]] double factor(double gain) const { return std::exp(gain_.exponent * gain); }
 

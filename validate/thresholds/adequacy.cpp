@@ -17,7 +17,7 @@ const CriterionRecord& criterion_record(Criterion criterion) {
       {"slow", "slow remainder of the residual, parameters refitted", "standard deviations", "below"},
       {"line", "what a steady oscillation of one frequency in all events explains beyond its price", "chi2",
        "up to"},
-      {"free_input", "what an input free in time explains beyond its knots", "chi2", "up to"},
+      {"free_input", "evidence of an input that is free in time", "chi2", "up to"},
       {"named_effect", "evidence of the effect that is named", "chi2", "below"},
   }};
   return records[static_cast<std::size_t>(criterion)];
@@ -35,9 +35,8 @@ Ruling judged_by_remainder(const Refitted& r, double least) {
   const Ruling misfit{Criterion::misfit, r.misfit <= least, r.misfit, least},
       slow{Criterion::slow, r.slow < adequacy.slow, r.slow, adequacy.slow},
       line{Criterion::line, r.line <= adequacy.line, r.line, adequacy.line},
-      torque{Criterion::free_input, r.torque <= adequacy.free_input, r.torque, adequacy.free_input, "torque"},
-      field{Criterion::free_input, r.field <= adequacy.free_input, r.field, adequacy.free_input,
-            "field voltage"};
+      torque{Criterion::free_input, r.torque <= evidence.accepted, r.torque, evidence.accepted, "torque"},
+      field{Criterion::free_input, r.field <= evidence.accepted, r.field, evidence.accepted, "field voltage"};
   for (const Ruling& one : {misfit, slow, line, torque, field})
     if (!one.adequate) return one;
   return misfit;

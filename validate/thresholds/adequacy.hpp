@@ -29,7 +29,7 @@ enum class Criterion {
   misfit,        ///< diagnose: chi2 per value over all events
   slow,          ///< diagnose: slow remainder of the residual
   line,          ///< diagnose: what a steady oscillation explains
-  free_input,    ///< diagnose: what a free torque or field voltage explains
+  free_input,    ///< diagnose: evidence of a torque or field voltage that is free in time
   named_effect,  ///< diagnose: evidence of the effect that it names
 };
 
@@ -76,7 +76,7 @@ struct Refitted {
   double misfit;         ///< chi2 per value over all events
   double slow;           ///< slow remainder [standard deviations]
   double line;           ///< what a steady oscillation explains, beyond its price [chi2]
-  double torque, field;  ///< what each explains, free in time, beyond the price of its knots [chi2]
+  double torque, field;  ///< evidence of each, free in time [chi2]
 };
 /// Adequate if all five hold (`least` is the limit of the misfit); the first that does not decides, and where
 /// all hold, the misfit is told.

@@ -92,11 +92,8 @@ struct Adequacy {
       "adequacy.line", 40, "chi2 beyond its price",
       "a steady oscillation in what is left has to earn what an effect has to; the strongest line of 75 "
       "cases with nothing hidden earned 18 at most (measured 2026-11-26)"};
-  Threshold knot{"adequacy.knot", 2, "chi2 per knot",
-                 "what a knot of an input that is free in time must earn (Akaike; decision 18)"};
-  Threshold free_input{"adequacy.free_input", 0, "chi2 beyond the knots' price",
-                       "above this a free torque or field voltage explains something: an input is missing "
-                       "(decision 18)"};
+  Threshold number{"adequacy.number", 2, "chi2 per number",
+                   "what each number of a steady oscillation must earn (Akaike 1974)"};
   Threshold one_in_thousand{
       "adequacy.one_in_thousand", 3.09, "standard deviations",
       "one-sided quantile of the normal distribution: noise alone exceeds an event's limit once "

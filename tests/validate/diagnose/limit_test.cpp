@@ -42,8 +42,7 @@ TEST(BetterStart, ALimitThatIsNeverMetIsTried) {
   fit_base(model, {}, {.lenient = true}, d);
   const auto free = fit::free_parameters(model.plant, thresholds::parameters.spread);
   const auto infer = [&](fit::InputKind kind) {
-    return hypothesis::infer_input(kind, model.under_test(), d.events, thresholds::parameters.spread,
-                                   fit::continued({}, d.base, free));
+    return reduced::free_input(kind, model.under_test(), d.events, free, d.base, 2);
   };
   d.torque = infer(fit::InputKind::torque);
   d.field = infer(fit::InputKind::field);

@@ -52,8 +52,12 @@ struct Example {
     refused.why_not = "evidence 3, below 25";
     refused.held_out.clear();
     d.ranked.push_back(refused);
-    d.field = {fit::InputKind::field, d.base};
-    for (auto& e : d.field.fit.events) e.state.field = {{0, 2, 3, 15}, {0, 0, 0.8, 0.1}};
+    d.field.kind = fit::InputKind::field;
+    d.field.fit = d.base;
+    for (auto& e : d.field.fit.events) {
+      e.state.field = {{0, 2, 3, 15}, {0, 0, 0.8, 0.1}};
+      d.field.deviation.emplace_back(Eigen::VectorXd::Constant(4, 0.05));
+    }
     d.verdict = Verdict::missing;
     d.side = hypothesis::Side::excitation;
     d.effects = {d.ranked.front().hypothesis.name};

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "tests/validate/fit/exciter_example.hpp"
-#include "validate/hypothesis/missing_input.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -48,15 +47,6 @@ TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
   HeldOut none = event("b", 1.0, 1.0);
   none.cost_after = std::numeric_limits<double>::infinity();
   EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("b when"));
-}
-TEST(FreeInput, PaysForPassingLessNoiseAsAnEffectDoes) {
-  const fit::ExciterExample example(0.2);
-  const fit::Fit without = example.fitted({"H"}, {.iterations = 0});
-  MissingInput input{fit::InputKind::field, without};
-  const double explains = input.explains(without), evidence = input.evidence(without);
-  input.fit.passes_less = 100;
-  EXPECT_DOUBLE_EQ(input.explains(without), explains - 100);
-  EXPECT_DOUBLE_EQ(input.evidence(without), evidence - 100);
 }
 TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
   fit::ExciterExample example(0.2);

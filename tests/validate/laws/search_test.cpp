@@ -147,7 +147,7 @@ struct Case {
   event::WhitenedEvents events;
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
-  hypothesis::MissingInput torque, field;
+  reduced::FreeInput torque, field;
   static constexpr double kSpread = thresholds::parameters.spread, kAdequate = thresholds::adequacy.misfit;
 
   template <class Change>
@@ -184,7 +184,8 @@ struct Case {
     base = fit::fit(model.under_test(), events, fit::free_parameters(model.plant, kSpread), {});
     const hypothesis::Trial trial{events, kSpread, kAdequate};
     held_out = hypothesis::hold_out(trial, model.under_test(), {}, base);
-    torque = hypothesis::infer_input(fit::InputKind::torque, model.under_test(), events, kSpread, {});
+    torque = reduced::free_input(fit::InputKind::torque, model.under_test(), events,
+                                 fit::free_parameters(model.plant, kSpread), base, 2);
   }
   LawSearch search(int threads = 2) {
     return search_laws({model, {events, kSpread, kAdequate}, base, held_out, torque, field, threads});

@@ -45,7 +45,7 @@ TEST(Adequacy, AnEventThatCannotBeComparedIsNotAdequate) {
 }
 
 TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
-  const Refitted good{.misfit = 1.12, .slow = 7.9, .line = 39, .torque = 0, .field = -40};
+  const Refitted good{.misfit = 1.12, .slow = 7.9, .line = 39, .torque = 0, .field = 39};
   const auto by = [](Refitted r) { return judged_by_remainder(r, adequacy.misfit); };
   EXPECT_TRUE(by(good).adequate);
   EXPECT_EQ(by(good).by, Criterion::misfit);
@@ -62,7 +62,7 @@ TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
   EXPECT_EQ(by(r).by, Criterion::line);
   EXPECT_FALSE(by(r).adequate);
   r = good;
-  r.field = 0.5;
+  r.field = 41;
   EXPECT_EQ(by(r).by, Criterion::free_input);
   EXPECT_EQ(by(r).where, "field voltage");
   EXPECT_FALSE(by(r).adequate);

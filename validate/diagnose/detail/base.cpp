@@ -92,7 +92,7 @@ std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, cons
     if (const fit::Fit f = from_extensions(stage, d.ranked);
         fit::gain(stage.fit, f) > thresholds::evidence.escape * leads)
       return from(f);
-  const double by_inputs = std::max(d.torque.explains(d.base), d.field.explains(d.base));
+  const double by_inputs = std::max(d.torque.evidence, d.field.evidence);
   if (by_inputs - leads < thresholds::evidence.accepted) return std::nullopt;
   if (const fit::Fit f = from_another_value(stage);
       fit::gain(stage.fit, f) - leads > thresholds::evidence.accepted)

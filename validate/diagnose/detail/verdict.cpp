@@ -41,9 +41,7 @@ void weigh(Diagnosis& d) {
     if (const hypothesis::Judgement& j = d.ranked[k];
         j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))
       all.push_back({hypothesis::full_name(j.hypothesis), j.gain - price(j.hypothesis), static_cast<int>(k)});
-  const auto worth = [&](const hypothesis::MissingInput& m) {
-    return std::min(m.explains(d.base), m.evidence(d.base) - thresholds::evidence.accepted);
-  };
+  const auto worth = [](const reduced::FreeInput& m) { return m.evidence - thresholds::evidence.accepted; };
   const double line = fit::strongest_line(d.base, d.events).explains - thresholds::adequacy.line;
   d.probabilities = hypothesis::posterior(std::move(all), std::max({worth(d.torque), worth(d.field), line}));
 }
@@ -231,7 +229,7 @@ std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
 std::string side_sentence(const Diagnosis& d) {
   const double t = d.torque.misfit(), f = d.field.misfit();
   const bool explains =
-      std::max(d.torque.explains(d.base), d.field.explains(d.base)) > thresholds::adequacy.free_input;
+      std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
   const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
   return fmt::format(
       "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
@@ -285,7 +283,7 @@ void settle(const laws::Unexplained& judged, const event::Progress& progress, Di
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
   refuse_all(d);
-  d.ruling = thresholds::judged_by_remainder(left_by(d, d.torque.explains(d.base), d.field.explains(d.base)),
+  d.ruling = thresholds::judged_by_remainder(left_by(d, d.torque.evidence, d.field.evidence),
                                              judged.trial.adequate);
   if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;

@@ -1,6 +1,6 @@
 #pragma once
-// What a fit minimises beside the residuals of its events: beliefs, orderings, and the bends of an added
-// input, as Ceres takes them; and the axes that it moves along.
+// What a fit minimises beside the residuals of its events, as Ceres takes it: priors and orderings; and the
+// axes that it moves along.
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -22,12 +22,10 @@ struct Setting {
   const event::WhitenedEvents* events;
   std::vector<Axis> axes;
   double tolerance;
-  InputKind input;
-  std::vector<std::vector<double>> knots;  ///< of the input, per event [s]
-  bool lenient = false;                    ///< of the search; see FitOptions
-  bool linear_slopes = false;              ///< see event::Playing
-  bool goes_on = false;                    ///< with slopes that foretold a step well, if lenient
-  bool can_exist = false;  ///< the start, beside `plant`; the search then stays among such plants
+  bool lenient = false;        ///< of the search; see FitOptions
+  bool linear_slopes = false;  ///< see event::Playing
+  bool goes_on = false;        ///< with slopes that foretold a step well, if lenient
+  bool can_exist = false;      ///< the start, beside `plant`; the search then stays among such plants
 };
 
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
@@ -36,36 +34,6 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
     parameter_value(plant, s.axes[i].where.id) = s.axes[i].value(z[i]);
   return plant;
 }
-
-/// Bends of an input that begins at `first` of the event's state, in units of `bend`; the first knot and the
-/// first slope count as bends from zero, so that nothing is inferred before it is needed.
-class Bends : public ceres::CostFunction {
- public:
-  Bends(std::size_t size, std::size_t first, double bend) : size_(size), first_(first), weight_(1 / bend) {
-    set_num_residuals(static_cast<int>(size - first));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(size));
-  }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const double* u = blocks[0] + first_;
-    const std::size_t n = size_ - first_;
-    double* j = jacobians ? jacobians[0] : nullptr;
-    if (j) std::fill(j, j + n * size_, 0.0);
-    for (std::size_t k = 0; k < n; ++k) {
-      const double one = k >= 1 ? u[k - 1] : 0.0, two = k >= 2 ? u[k - 2] : 0.0;
-      residuals[k] = weight_ * (u[k] - 2 * one + two);
-      if (!j) continue;
-      double* row = j + k * size_ + first_;
-      row[k] = weight_;
-      if (k >= 1) row[static_cast<std::ptrdiff_t>(k) - 1] = -2 * weight_;
-      if (k >= 2) row[static_cast<std::ptrdiff_t>(k) - 2] = weight_;
-    }
-    return true;
-  }
-
- private:
-  std::size_t size_, first_;
-  double weight_;
-};
 
 /// The belief in each parameter: one residual z/spread, in units of the misfit reached.
 class Belief : public ceres::CostFunction {

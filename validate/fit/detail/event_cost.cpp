@@ -40,10 +40,7 @@ event::RowMatrix triangle_of(const event::RowMatrix& e) {
 }
 
 EventCost::EventCost(const Setting& setting, std::size_t event)
-    : setting_(setting),
-      event_((*setting.events)[event]),
-      noise_(setting.events->noise(event)),
-      knots_(setting.knots[event]) {
+    : setting_(setting), event_((*setting.events)[event]), noise_(setting.events->noise(event)) {
   set_num_residuals(static_cast<int>(setting.axes.size() + state_size()) + 1);
   if (!setting.axes.empty())
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
@@ -156,7 +153,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
       const Axis& a = setting_.axes[i];
       along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
     }
-    add_state_directions(along);
+    std::ranges::move(state_directions(event_), std::back_inserter(along));
   }
   try {
     const playin::Response r = event::play({plant, *setting_.conventions}, event_, at(state), along,
@@ -177,25 +174,12 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
   }
 }
 
-EventState EventCost::at(const double* state) const {
-  EventState whole = event_state(event_, state);
-  if (setting_.input == InputKind::none) return whole;
-  const double* s = state + switching_numbers(event_) + kStates;
-  whole.input(setting_.input) = {knots_, {s, s + knots_.size()}};
-  return whole;
-}
+EventState EventCost::at(const double* state) const { return event_state(event_, state); }
 
 playin::Response EventCost::answer(const sim::plant::Plant& plant, const EventState& state,
                                    bool lenient) const {
   return event::play({plant, *setting_.conventions}, event_, state, {},
                      {.tolerance = setting_.tolerance, .lenient = lenient, .allowance = &allowance_});
-}
-
-void EventCost::add_state_directions(std::vector<playin::Direction>& along) const {
-  std::ranges::move(state_directions(event_), std::back_inserter(along));
-  const Kind kind = setting_.input == InputKind::torque ? Kind::torque : Kind::field;
-  for (std::size_t k = 0; k < knots_.size(); ++k)
-    along.push_back({.kind = kind, .index = static_cast<int>(k)});
 }
 
 }  // namespace swingbank::validate::fit::fitting

@@ -17,12 +17,12 @@ event::RowMatrix triangle_of(const event::RowMatrix& e);
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event);
-  [[nodiscard]] std::size_t state_size() const { return switching_numbers(event_) + kStates + knots_.size(); }
+  [[nodiscard]] std::size_t state_size() const { return switching_numbers(event_) + kStates; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   /// Whitened residuals of all values in the last column, and before it their slopes by z and by the state.
   /// Empty where the plant cannot be run.
   [[nodiscard]] event::RowMatrix slopes(const double* z, const double* state) const;
-  /// The event's state from the search's numbers, with the input where one is fitted.
+  /// The event's state from the search's numbers.
   [[nodiscard]] EventState at(const double* state) const;
   /// What the plant answers to the event.
   [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
@@ -36,7 +36,6 @@ class EventCost : public ceres::CostFunction {
  private:
   bool evaluate(double const* const* blocks, double* residuals, double** jacobians) const;
   [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const;
-  void add_state_directions(std::vector<playin::Direction>& along) const;
   /// Slopes of a plant that is linear about each step are per cents off, which stops a search where columns
   /// are nearly the same. How the residuals moved along a step, less what slopes foretell, is what these were
   /// off by along it; each column takes a share as large as its square (Broyden, Math. Comp. 19, 1965, p.
@@ -51,7 +50,6 @@ class EventCost : public ceres::CostFunction {
   const Setting& setting_;
   const event::FitEvent& event_;
   const event::EventNoise& noise_;
-  const std::vector<double>& knots_;
   mutable bool renew_ = false;
   mutable int points_ = std::numeric_limits<int>::max();
   mutable std::vector<double> allowance_;  ///< see event::Playing

@@ -32,7 +32,7 @@ playin::Response driven(const sim::plant::PlantUnderTest& tested, const event::F
 }  // namespace
 
 std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
-                                 const hypothesis::MissingInput& input, double level) {
+                                 const reduced::FreeInput& input, double level) {
   std::vector<LawTrace> all;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
