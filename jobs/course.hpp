@@ -35,10 +35,6 @@ inline std::string_view phase_words(Phase phase) {
       return "the fitted model";
     case Phase::sensitivities:
       return "what the records determine";
-    case Phase::effect_values:
-      return "values of the effect are screened";
-    case Phase::effect_starts:
-      return "the effect is fitted";
     case Phase::effect_left_out:
       return "the model without the effect";
     case Phase::effect_added:
@@ -118,8 +114,9 @@ inline const Course kCalibrateCourse = {
     {Phase::playing, 0.95, 1},
 };
 inline const Course kAddCourse = {
-    {Phase::model_as_it_is, 0, 0.04},    {Phase::effect_values, 0.04, 0.25},
-    {Phase::effect_starts, 0.25, 0.55},  {Phase::noise_again, 0.55, 0.57},
+    {Phase::model_as_it_is, 0, 0.04},    {Phase::missing_input, 0.04, 0.15},
+    {Phase::quick_fits, 0.15, 0.35},     {Phase::screening, 0.15, 0.35},
+    {Phase::full_fits, 0.35, 0.55},      {Phase::noise_again, 0.55, 0.57},
     {Phase::effect_left_out, 0.57, 0.8}, {Phase::effect_added, 0.8, 0.85},
     {Phase::sensitivities, 0.85, 0.95},  {Phase::playing, 0.95, 1},
 };

@@ -37,6 +37,10 @@ std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
 /// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
+/// The hypothesis with a further group of parameters free that its effect's default values leave at their
+/// null values, as a rate feedback KF = 0: one for each group ("EXST1 with KF") and, where a group may have
+/// either sign, for each sign. None where the starts are no draws.
+std::vector<Hypothesis> with_left_off(const Hypothesis& h);
 /// More draws of the hypothesis's first `own` free parameters than the starts it came with. Their longest
 /// time is about `within` [s] at most.
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
