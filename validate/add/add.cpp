@@ -143,9 +143,9 @@ class Adding {
   /// Frees the group of parameters that the effect's default values leave off and that has the most evidence
   /// over the effect without it. False: none earns its place as an effect has to.
   bool add_left_off() {
-    const std::vector<hypothesis::Hypothesis> groups = hypothesis::with_left_off(a_.hypothesis);
+    auto groups = hypothesis::with_left_off(a_.hypothesis, a_.with.plant);
     if (groups.empty()) return false;
-    const auto tried = judgements(groups);
+    const auto tried = judgements(std::move(groups));
     if (tried.empty() || !tried.front().fitted) return false;
     fit::Fit with = finished(tried.front());
     if (!(fit::gain(a_.with, with, fit::criterion) > thresholds::addition.strong)) return false;

@@ -22,6 +22,7 @@ namespace {
 using sim::Slot;
 
 constexpr std::size_t kDrawnStarts = 39;  ///< draws of an effect's parameters, as starts
+constexpr std::size_t kPartDraws = 32;    ///< draws of what a part of an effect frees
 constexpr std::size_t kRedraws = 20;      ///< tries for each draw until one is sound, at most
 constexpr double kShortestDraw = 3e-3;    ///< the shortest draw takes this share of the time allowed
 constexpr double kGroupSpread = 2.0;      ///< of ln(value) of parameters at their null values
@@ -284,6 +285,41 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
   all.push_back(std::move(h));
 }
 
+/// Whether a parameter of a block may be 0 in `without` and not in `with`, as the time constant of a rate
+/// feedback: its default value is then that of a part that is left off.
+bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
+                      sim::plant::ParameterId id) {
+  const auto may_be_zero = [&](const sim::plant::Plant& plant) {
+    sim::plant::Block block = sim::plant::block_at(plant, id.block);
+    block.p[static_cast<std::size_t>(id.index)] = 0;
+    return playin::can_run(block);
+  };
+  return may_be_zero(without) && !may_be_zero(with);
+}
+
+/// Values of what is free in `h`: those of `fitted`, and of the parameters `freed` log-uniform draws within
+/// two prior standard deviations.
+std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector<fit::FreeParameter>& freed,
+                                          const sim::plant::Plant& fitted) {
+  std::mt19937_64 random(3);  // the same draws every time: an addition can be repeated
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  std::vector<std::vector<double>> all;
+  for (std::size_t tries = 0; all.size() < kPartDraws && tries < kRedraws * kPartDraws; ++tries) {
+    sim::plant::Plant plant = h.plant;
+    for (const fit::FreeParameter& f : h.free)
+      if (std::ranges::find(freed, f.id, &fit::FreeParameter::id) == freed.end())
+        sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(fitted, f.id);
+    for (const fit::FreeParameter& f : freed) {
+      double& value = sim::plant::parameter_value(plant, f.id);
+      const auto range = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
+      value = std::clamp(value * std::exp(f.spread * uniform(random)), range.low, range.high);
+    }
+    if (playin::can_run(sim::plant::block_at(plant, h.free.front().id.block)))
+      all.push_back(fit::values_of(plant, h.free));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string_view side_name(Side side) {
@@ -326,7 +362,7 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
   return all;
 }
 
-std::vector<Hypothesis> with_left_off(const Hypothesis& h) {
+std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted) {
   std::vector<Hypothesis> all;
   if (!h.drawn || h.free.empty()) return all;
   const auto is_free = [&](const fit::FreeParameter& part) {
@@ -342,9 +378,15 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h) {
       Hypothesis with = h;
       with.name += fmt::format(" with {}{}", names, positive ? "" : " < 0");
       with.plant = started(group, *start);
-      std::vector<fit::FreeParameter> free = h.free;
+      std::vector<fit::FreeParameter> free = h.free, freed = group.free;
+      for (fit::FreeParameter& f : free)
+        if (acts_only_beside(h.plant, with.plant, f.id)) {
+          f.spread = kGroupSpread;
+          freed.push_back(f);
+        }
       free.insert(free.end(), group.free.begin(), group.free.end());
       free_by_draws(with, std::move(free));
+      with.further = draws_of(with, freed, fitted);
       all.push_back(std::move(with));
     }
   }

@@ -89,6 +89,7 @@ class WholeFits {
     const std::size_t own = h.free.size();
     bring(stage_, h);
     auto draws = h.starts;
+    draws.insert(draws.end(), h.further.begin(), h.further.end());
     if (h.drawn) {
       const auto& t = stage_.events.front().record.t;
       for (auto& draw : further_draws(h, own, kFurtherDraws, t.back() - t.front())) {

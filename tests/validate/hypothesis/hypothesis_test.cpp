@@ -71,7 +71,7 @@ TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   for (const Hypothesis& h : all_hypotheses(model.under_test(), model.library)) {
-    for (const Hypothesis& with : with_left_off(h)) {
+    for (const Hypothesis& with : with_left_off(h, h.plant)) {
       EXPECT_TRUE(h.drawn) << with.name;
       names[h.name].push_back(with.name);
       EXPECT_GT(with.free.size(), h.free.size()) << with.name;
@@ -79,7 +79,8 @@ TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
                                      &fit::FreeParameter::id, &fit::FreeParameter::id))
           << with.name;
       EXPECT_EQ(with.starts.size(), h.starts.size()) << with.name;
-      for (const auto& start : with.starts) EXPECT_TRUE(playin::can_run(started(with, start))) << with.name;
+      for (const auto* starts : {&with.starts, &with.further})
+        for (const auto& start : *starts) EXPECT_TRUE(playin::can_run(started(with, start))) << with.name;
     }
   }
   EXPECT_THAT(names["EXST1"], ElementsAre("EXST1 with KF"));
