@@ -122,6 +122,10 @@ class Adding {
   /// Where it is interrupted, `with` is the best until then. Returns whether the noise was measured again.
   bool run() {
     a_.with = with_effect();
+    hypothesis::Hypothesis none;
+    none.plant = stage_.plant;
+    none.conventions = stage_.conventions;
+    a_.without = from_other(none, a_.without, a_.with);
     bool measured = measure_noise();
     while (add_left_off()) measured |= measure_noise();
     return measured;
@@ -148,6 +152,8 @@ class Adding {
     const auto tried = judgements(std::move(groups));
     if (tried.empty() || !tried.front().fitted) return false;
     fit::Fit with = finished(tried.front());
+    a_.with = from_other(a_.hypothesis, a_.with, with);
+    with = from_other(tried.front().hypothesis, with, a_.with);
     if (!(fit::gain(a_.with, with, fit::criterion) > thresholds::addition.strong)) return false;
     a_.with = std::move(with);
     const std::string name = a_.hypothesis.name;
@@ -161,6 +167,16 @@ class Adding {
     until_interrupted([&] { tried = hypothesis::try_hypotheses(stage_, std::move(all), progress_); });
     if (interruption_asked()) end();
     return tried;
+  }
+  /// The better one of the fit `f` of `h` and a fit of `h` from where that of another structure ended, so
+  /// that a local optimum of either is no evidence.
+  [[nodiscard]] fit::Fit from_other(const hypothesis::Hypothesis& h, const fit::Fit& f,
+                                    const fit::Fit& other) const {
+    hypothesis::Judgement j;
+    j.hypothesis = h;
+    j.fit = f;
+    hypothesis::try_from(stage_, other, j);
+    return fit::better(j.fit, f) ? finished(j) : f;
   }
   /// The searches' fits have no errors, or those of lenient steps.
   [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const {
