@@ -35,10 +35,6 @@ inline std::string_view phase_words(Phase phase) {
       return "the fitted model";
     case Phase::sensitivities:
       return "what the records determine";
-    case Phase::effect_values:
-      return "values of the effect are screened";
-    case Phase::effect_starts:
-      return "the effect is fitted";
     case Phase::effect_left_out:
       return "the model without the effect";
     case Phase::effect_added:
@@ -117,11 +113,13 @@ inline const Course kCalibrateCourse = {
     {Phase::voltage_noise, 0.62, 0.8}, {Phase::fitted_model, 0.8, 0.82},   {Phase::sensitivities, 0.82, 0.95},
     {Phase::playing, 0.95, 1},
 };
+/// With the four events of the same (4 s).
 inline const Course kAddCourse = {
-    {Phase::model_as_it_is, 0, 0.04},    {Phase::effect_values, 0.04, 0.25},
-    {Phase::effect_starts, 0.25, 0.55},  {Phase::noise_again, 0.55, 0.57},
-    {Phase::effect_left_out, 0.57, 0.8}, {Phase::effect_added, 0.8, 0.85},
-    {Phase::sensitivities, 0.85, 0.95},  {Phase::playing, 0.95, 1},
+    {Phase::model_as_it_is, 0, 0.06},    {Phase::missing_input, 0.06, 0.23},
+    {Phase::quick_fits, 0.23, 0.26},     {Phase::screening, 0.23, 0.26},
+    {Phase::full_fits, 0.26, 0.32},      {Phase::noise_again, 0.32, 0.42},
+    {Phase::effect_left_out, 0.42, 0.5}, {Phase::effect_added, 0.5, 0.52},
+    {Phase::sensitivities, 0.52, 0.8},   {Phase::playing, 0.8, 1},
 };
 /// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
 inline const Course kFewestCourse = {

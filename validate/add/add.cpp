@@ -2,19 +2,21 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <mutex>
+#include <optional>
 
 #include "base/in_parallel.hpp"
 #include "base/nearest_word.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
-#include "validate/hypothesis/grow.hpp"
-#include "validate/hypothesis/judge.hpp"
+#include "validate/hypothesis/search.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
@@ -87,70 +89,10 @@ class Bench {
   event::WhitenedEvents all_, seen_;
 };
 
-double chi2_of(const sim::plant::PlantUnderTest& tested, const Bench& bench,
-               const std::vector<fit::EventState>& states) {
-  double sum = 0;
-  try {
-    for (std::size_t e = 0; e < states.size(); ++e)
-      sum += fit::event_slopes(tested, bench.seen().whitened(e), states[e], {}).residual.squaredNorm();
-  } catch (const InputError&) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return sum;
-}
-
 /// The fit from where `f` ended.
 fit::Fit go_on(const sim::plant::PlantUnderTest& tested, const Bench& bench,
                const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
   return fit::fit(tested, bench.seen(), free, fit::continued({}, f, free));
-}
-
-/// Throws the best of some fits that were interrupted, if any had begun.
-[[noreturn]] void throw_best(const std::vector<fit::Fit>& fits) {
-  const fit::Fit* best = nullptr;
-  for (const fit::Fit& f : fits)
-    if (!f.parameters.empty() && (best == nullptr || fit::penalised(f) < fit::penalised(*best))) best = &f;
-  if (best == nullptr) throw Interrupted{};
-  throw fit::InterruptedFit{{}, *best};
-}
-
-/// The fit with the effect: its starts screened, the best refined, the best of them finished.
-fit::Fit fit_with(const hypothesis::Hypothesis& h, const Bench& bench,
-                  const std::vector<fit::EventState>& states, const AddOptions& options) {
-  const auto free = hypothesis::free_of(h, options.calibrate.spread);
-  std::vector<std::pair<double, std::size_t>> order(h.starts.size());
-  in_parallel(
-      h.starts.size(),
-      [&](std::size_t k) {
-        order[k] = {chi2_of({hypothesis::started(h, h.starts[k]), h.conventions}, bench, states), k};
-      },
-      [&](int done) { bench.tell(event::Phase::effect_values, done, static_cast<int>(order.size())); });
-  // The start that leaves least may be one that hardly acts.
-  std::ranges::sort(order.begin() + 1, order.end());
-  const std::size_t tries =
-      std::min(order.size(), 1 + static_cast<std::size_t>(std::max(0, options.refined)));
-  std::vector<fit::Fit> fits(tries);
-  in_parallel(
-      tries,
-      [&](std::size_t k) {
-        fit::FitOptions o;
-        o.iterations = 10;
-        o.start = states;
-        o.values = fit::values_of(hypothesis::started(h, h.starts[order[k].second]), free);
-        try {
-          fits[k] = fit::fit(h.under_test(), bench.seen(), free, o);
-        } catch (const fit::InterruptedFit& ended) {
-          fits[k] = ended.reached;
-        }
-      },
-      [&](int done) { bench.tell(event::Phase::effect_starts, done, static_cast<int>(tries)); });
-  if (interruption_asked()) throw_best(fits);
-  fit::Fit best = *std::ranges::min_element(fits, fit::better);
-  if (!best.failed.empty())
-    throw InputError({"effect " + h.name + " cannot be fitted", "every start", best.failed,
-                      "check the model's parameters, or add another effect"});
-  const fit::Fit finished = go_on(h.under_test(), bench, free, best);
-  return fit::better(finished, best) ? finished : best;
 }
 
 fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
@@ -159,6 +101,114 @@ fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
   o.start = states;
   return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, spread), o);
 }
+
+/// The fits without the effect and with it.
+class Adding {
+ public:
+  Adding(const plant::PlantModel& model, Bench& bench, const AddOptions& options, Addition& a)
+      : bench_(bench),
+        progress_(options.calibrate.progress),
+        a_(a),
+        stage_{.events = bench.seen(),
+               .plant = model.plant,
+               .conventions = model.conventions,
+               .library = model.library,
+               .fit = a.without,
+               .spread = options.calibrate.spread,
+               .threads = omp_get_max_threads(),
+               .stop = interruption_asked,
+               .reached = [this](const fit::Fit& f) { keep(f); }} {}
+
+  /// Where it is interrupted, `with` is the best until then. Returns whether the noise was measured again.
+  bool run() {
+    a_.with = with_effect();
+    hypothesis::Hypothesis none;
+    none.plant = stage_.plant;
+    none.conventions = stage_.conventions;
+    a_.without = from_other(none, a_.without, a_.with);
+    bool measured = measure_noise();
+    while (add_left_off()) measured |= measure_noise();
+    return measured;
+  }
+
+ private:
+  [[nodiscard]] fit::Fit with_effect() {
+    hypothesis::Judgement j;
+    j.hypothesis = a_.hypothesis;
+    j.fitted = false;
+    if (auto tried = judgements({a_.hypothesis}); !tried.empty()) j = std::move(tried.front());
+    if (!j.fitted) until_interrupted([&] { hypothesis::fit_alone(stage_, j); });
+    if (interruption_asked()) end();
+    if (!j.fit.failed.empty())
+      throw InputError({"effect " + a_.hypothesis.name + " cannot be fitted", "every start", j.fit.failed,
+                        "check the model's parameters, or add another effect"});
+    return finished(j);
+  }
+  /// Frees the group of parameters that the effect's default values leave off and that has the most evidence
+  /// over the effect without it. False: none earns its place as an effect has to.
+  bool add_left_off() {
+    auto groups = hypothesis::with_left_off(a_.hypothesis, a_.with.plant);
+    if (groups.empty()) return false;
+    const auto tried = judgements(std::move(groups));
+    if (tried.empty() || !tried.front().fitted) return false;
+    fit::Fit with = finished(tried.front());
+    a_.with = from_other(a_.hypothesis, a_.with, with);
+    with = from_other(tried.front().hypothesis, with, a_.with);
+    if (!(fit::gain(a_.with, with, fit::criterion) > thresholds::addition.strong)) return false;
+    a_.with = std::move(with);
+    const std::string name = a_.hypothesis.name;
+    a_.hypothesis = tried.front().hypothesis;
+    a_.hypothesis.name = name;
+    return true;
+  }
+  /// The best first.
+  [[nodiscard]] std::vector<hypothesis::Judgement> judgements(std::vector<hypothesis::Hypothesis> all) {
+    std::vector<hypothesis::Judgement> tried;
+    until_interrupted([&] { tried = hypothesis::try_hypotheses(stage_, std::move(all), progress_); });
+    if (interruption_asked()) end();
+    return tried;
+  }
+  /// The better one of the fit `f` of `h` and a fit of `h` from where that of another structure ended, so
+  /// that a local optimum of either is no evidence.
+  [[nodiscard]] fit::Fit from_other(const hypothesis::Hypothesis& h, const fit::Fit& f,
+                                    const fit::Fit& other) const {
+    hypothesis::Judgement j;
+    j.hypothesis = h;
+    j.fit = f;
+    hypothesis::try_from(stage_, other, j);
+    return fit::better(j.fit, f) ? finished(j) : f;
+  }
+  /// The searches' fits have no errors, or those of lenient steps.
+  [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const {
+    fit::Fit f =
+        go_on(j.hypothesis.under_test(), bench_, hypothesis::free_of(j.hypothesis, stage_.spread), j.fit);
+    return f.failed.empty() ? f : j.fit;
+  }
+  /// Measures the noise anew through the fit with the effect, if that is close, and fits again.
+  bool measure_noise() {
+    const hypothesis::Hypothesis& h = a_.hypothesis;
+    if (!bench_.measure_noise(a_.with, h.conventions)) return false;
+    a_.without =
+        go_on(stage_.under_test(), bench_, fit::free_parameters(stage_.plant, stage_.spread), a_.without);
+    a_.with = go_on(h.under_test(), bench_, hypothesis::free_of(h, stage_.spread), a_.with);
+    return true;
+  }
+  void keep(const fit::Fit& f) {
+    const std::lock_guard guard(lock_);
+    if (!reached_ || fit::penalised(f) < fit::penalised(*reached_)) reached_ = f;
+  }
+  [[noreturn]] void end() {
+    if (a_.with.parameters.empty() && reached_) a_.with = *reached_;
+    throw Interrupted{};
+  }
+
+  Bench& bench_;
+  const event::Progress& progress_;
+  Addition& a_;
+  std::mutex lock_;
+  std::optional<fit::Fit> reached_;
+  const hypothesis::Stage stage_;
+};
 
 /// Of each event, what the uncertainty of the fitted parameters adds to it if it was not seen.
 std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const Bench& bench,
@@ -277,19 +327,8 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   a.without = fit_without(model, bench, states, options.calibrate.spread);
   if (!a.without.failed.empty())
     throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
-  try {
-    a.with = fit_with(hypothesis, bench, states, options);
-  } catch (const fit::InterruptedFit& ended) {
-    a.with = ended.reached;
-    throw;
-  }
-  if (bench.measure_noise(a.with, hypothesis.conventions)) {
-    const double spread = options.calibrate.spread;
+  if (Adding(model, bench, options, a).run())
     before = bench.each(model.under_test(), event::Phase::model_as_it_is);
-    a.without = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), a.without);
-    a.with = go_on(hypothesis.under_test(), bench, hypothesis::free_of(hypothesis, spread), a.with);
-  }
-  hypothesis::grow(bench.seen(), options.calibrate.spread, hypothesis, a.with);
   a.own = static_cast<int>(hypothesis.free.size());
   a.evidence = fit::gain(a.without, a.with, fit::criterion);
   const auto refitted = bench.each({a.without.plant, model.conventions}, event::Phase::effect_left_out);

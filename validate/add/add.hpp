@@ -7,9 +7,7 @@
 namespace swingbank::validate::add {
 
 struct AddOptions {
-  calibrate::CalibrateOptions calibrate =
-      {};           ///< spread, events held out, limits, progress; `draws` screens the effect
-  int refined = 3;  ///< starts of the effect that are refined, beside the standard one
+  calibrate::CalibrateOptions calibrate = {};  ///< spread, events held out, limits, progress
 };
 
 /// One event: chi2 per value of the model as it was, refitted without the effect, and with it.

@@ -14,15 +14,13 @@ enum class Phase {
   voltage_noise,    ///< the noise of the played-in voltage is corrected
   fitted_model,     ///< each event with the fitted model
   sensitivities,    ///< what the records determine
-  effect_values,    ///< values of the added effect are screened
-  effect_starts,    ///< the effect is fitted from the best of them
   effect_left_out,  ///< each event without the effect
   effect_added,     ///< each event with the effect
   // sparse parameter selection
   every_parameter,
   parameter_subsets,
   subsets_less_one,
-  // diagnose
+  // diagnose, and add in part
   base,
   missing_input,
   screening,

@@ -352,9 +352,6 @@ double gain(const EventFit& from, const EventFit& to) {
 }
 void require_same_noise(const EventFit& a, const EventFit& b) { require_same(a.noise, b.noise); }
 bool better(const Fit& a, const Fit& b) { return gain(b, a) > 0; }
-void require_noise_of(const event::WhitenedEvents& events, const Fit& fit) {
-  if (fit.failed.empty()) require_same(fit.noise, events.noise_model());
-}
 
 void compare(const event::WhitenedEvents& events, std::size_t which, const playin::Response& answer,
              EventFit& f) {

@@ -99,9 +99,6 @@ double gain(const EventFit& from, const EventFit& to);
 bool better(const Fit& a, const Fit& b);
 /// Throws std::logic_error where gain() would, for fits that are set beside each other.
 void require_same_noise(const EventFit& a, const EventFit& b);
-/// Throws std::logic_error where `fit` was not made with the noise of `events`, so that what an answer leaves
-/// of them cannot be held against it.
-void require_noise_of(const event::WhitenedEvents& events, const Fit& fit);
 
 constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration
 

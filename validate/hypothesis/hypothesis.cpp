@@ -22,8 +22,10 @@ namespace {
 using sim::Slot;
 
 constexpr std::size_t kDrawnStarts = 39;  ///< draws of an effect's parameters, as starts
+constexpr std::size_t kPartDraws = 32;    ///< draws of what a part of an effect frees
 constexpr std::size_t kRedraws = 20;      ///< tries for each draw until one is sound, at most
 constexpr double kShortestDraw = 3e-3;    ///< the shortest draw takes this share of the time allowed
+constexpr double kGroupSpread = 2.0;      ///< of ln(value) of parameters at their null values
 constexpr double kAddedSpread = 1.0;      ///< an added effect's parameters are believed within a factor e
 constexpr double kFactorSpread = 0.1;  ///< and its factors about 1, as a transformer's taps, within a tenth
 
@@ -129,6 +131,14 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   return free;
 }
 
+/// Frees these parameters of one block, which start at the plant's values and at draws about them.
+void free_by_draws(Hypothesis& h, std::vector<fit::FreeParameter> free) {
+  h.free = std::move(free);
+  h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
+  h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
+  h.drawn = true;
+}
+
 /// The effect in a slot that has room for it.
 Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect& effect) {
   Hypothesis h;
@@ -142,10 +152,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   if (effect.slot == Slot::measurement) {
     start_near_neutral(h, block);
   } else {
-    h.free = free_of_added(h.plant, block);
-    h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
-    h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
-    h.drawn = true;
+    free_by_draws(h, free_of_added(h.plant, block));
   }
   return h;
 }
@@ -185,61 +192,62 @@ bool is_band(const sim::Effect& effect, const std::vector<int>& group) {
          upper.low == 0.0 && upper.high > 0.0;
 }
 
-void add_neutral_groups(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
-  for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
-    const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
-    const sim::Effect& effect = *block.effect;
-    std::vector<std::vector<int>> groups;
-    for (std::size_t i = 0; i < block.p.size(); ++i) {
-      const auto& p = effect.parameters[i];
-      if (p.is_code() || block.p[i] != p.neutral) continue;
-      const bool joins =
-          !groups.empty() &&
-          stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
-          stem(p.name) != p.name;
-      if (joins)
-        groups.back().push_back(static_cast<int>(i));
-      else
-        groups.push_back({static_cast<int>(i)});
-    }
-    for (const auto& group : groups) {
-      Hypothesis h;
-      std::string names, meanings;
-      for (const int i : group) {
-        const auto& p = effect.parameters[static_cast<std::size_t>(i)];
-        names += (names.empty() ? "" : ",") + std::string(p.name);
-        meanings += (meanings.empty() ? "" : ", ") + std::string(p.meaning);
-      }
-      h.name = fmt::format("{}:{}", effect.name, names);
-      h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
-      h.side = side_of(effect.slot);
-      h.plant = tested.plant;
-      h.conventions = tested.conventions;
-      const bool band = is_band(effect, group);
-      for (const double share : band ? kBandStarts : kCurveStarts) {
-        std::vector<double> values;
-        sim::plant::Block moved = block;
-        for (std::size_t k = 0; k < group.size(); ++k) {
-          const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
-          const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
-          // a curve's later points lie above its earlier ones
-          const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
-          const double v = p.neutral + (band ? share * (p.high > p.neutral ? p.high : p.low) : curve);
-          values.push_back(v);
-          moved.p[static_cast<std::size_t>(group[k])] = v;
-        }
-        const bool inside = std::ranges::all_of(values, [&](double v) { return v != 0.0; });
-        if (!inside || !playin::can_run(moved)) continue;
-        if (h.starts.empty())
-          for (std::size_t k = 0; k < group.size(); ++k)
-            sim::plant::parameter_value(h.plant, {b, group[k]}) = values[k];
-        h.starts.push_back(values);
-      }
-      if (h.starts.empty()) continue;
-      for (const int i : group) h.free.push_back({{b, i}, 2.0});
-      all.push_back(std::move(h));
-    }
+/// Every group of parameters that a block has at their null values.
+std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested, int b) {
+  std::vector<Hypothesis> all;
+  const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
+  const sim::Effect& effect = *block.effect;
+  std::vector<std::vector<int>> groups;
+  for (std::size_t i = 0; i < block.p.size(); ++i) {
+    const auto& p = effect.parameters[i];
+    if (p.is_code() || block.p[i] != p.neutral) continue;
+    const bool joins =
+        !groups.empty() &&
+        stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
+        stem(p.name) != p.name;
+    if (joins)
+      groups.back().push_back(static_cast<int>(i));
+    else
+      groups.push_back({static_cast<int>(i)});
   }
+  for (const auto& group : groups) {
+    Hypothesis h;
+    std::string names, meanings;
+    for (const int i : group) {
+      const auto& p = effect.parameters[static_cast<std::size_t>(i)];
+      names += (names.empty() ? "" : ",") + std::string(p.name);
+      meanings += (meanings.empty() ? "" : ", ") + std::string(p.meaning);
+    }
+    h.name = fmt::format("{}:{}", effect.name, names);
+    h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
+    h.side = side_of(effect.slot);
+    h.plant = tested.plant;
+    h.conventions = tested.conventions;
+    const bool band = is_band(effect, group);
+    for (const double share : band ? kBandStarts : kCurveStarts) {
+      std::vector<double> values;
+      sim::plant::Block moved = block;
+      for (std::size_t k = 0; k < group.size(); ++k) {
+        const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
+        const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
+        // a curve's later points lie above its earlier ones
+        const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+        const double v = p.neutral + (band ? share * (p.high > p.neutral ? p.high : p.low) : curve);
+        values.push_back(v);
+        moved.p[static_cast<std::size_t>(group[k])] = v;
+      }
+      const bool inside = std::ranges::all_of(values, [&](double v) { return v != 0.0; });
+      if (!inside || !playin::can_run(moved)) continue;
+      if (h.starts.empty())
+        for (std::size_t k = 0; k < group.size(); ++k)
+          sim::plant::parameter_value(h.plant, {b, group[k]}) = values[k];
+      h.starts.push_back(values);
+    }
+    if (h.starts.empty()) continue;
+    for (const int i : group) h.free.push_back({{b, i}, kGroupSpread});
+    all.push_back(std::move(h));
+  }
+  return all;
 }
 
 /// Each switch of a converter's controls in its other position.
@@ -277,6 +285,41 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
   all.push_back(std::move(h));
 }
 
+/// Whether a parameter of a block may be 0 in `without` and not in `with`, as the time constant of a rate
+/// feedback: its default value is then that of a part that is left off.
+bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
+                      sim::plant::ParameterId id) {
+  const auto may_be_zero = [&](const sim::plant::Plant& plant) {
+    sim::plant::Block block = sim::plant::block_at(plant, id.block);
+    block.p[static_cast<std::size_t>(id.index)] = 0;
+    return playin::can_run(block);
+  };
+  return may_be_zero(without) && !may_be_zero(with);
+}
+
+/// Values of what is free in `h`: those of `fitted`, and of the parameters `freed` log-uniform draws within
+/// two prior standard deviations.
+std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector<fit::FreeParameter>& freed,
+                                          const sim::plant::Plant& fitted) {
+  std::mt19937_64 random(3);  // the same draws every time: an addition can be repeated
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  std::vector<std::vector<double>> all;
+  for (std::size_t tries = 0; all.size() < kPartDraws && tries < kRedraws * kPartDraws; ++tries) {
+    sim::plant::Plant plant = h.plant;
+    for (const fit::FreeParameter& f : h.free)
+      if (std::ranges::find(freed, f.id, &fit::FreeParameter::id) == freed.end())
+        sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(fitted, f.id);
+    for (const fit::FreeParameter& f : freed) {
+      double& value = sim::plant::parameter_value(plant, f.id);
+      const auto range = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
+      value = std::clamp(value * std::exp(f.spread * uniform(random)), range.low, range.high);
+    }
+    if (playin::can_run(sim::plant::block_at(plant, h.free.front().id.block)))
+      all.push_back(fit::values_of(plant, h.free));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string_view side_name(Side side) {
@@ -290,7 +333,8 @@ std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        record::Component component) {
   std::vector<Hypothesis> all;
   add_effects(tested, library, component, all);
-  add_neutral_groups(tested, all);
+  for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b)
+    std::ranges::move(neutral_groups(tested, b), std::back_inserter(all));
   if (playin::belongs_to(component, Slot::machine) && !tested.plant.machine.effect->converter)
     add_conventions(tested, all);
   if (component == record::Component::plant) add_switches(tested, all);
@@ -313,6 +357,37 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
       h.what += fmt::format(" in place of {}", there.name);
       h.replaces = true;
       all.push_back(std::move(h));
+    }
+  }
+  return all;
+}
+
+std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted) {
+  std::vector<Hypothesis> all;
+  if (!h.drawn || h.free.empty()) return all;
+  const auto is_free = [&](const fit::FreeParameter& part) {
+    return std::ranges::find(h.free, part.id, &fit::FreeParameter::id) != h.free.end();
+  };
+  for (const Hypothesis& group : neutral_groups(h.under_test(), h.free.front().id.block)) {
+    if (std::ranges::any_of(group.free, is_free)) continue;
+    const std::string names = group.name.substr(group.name.find(':') + 1);
+    for (const bool positive : {true, false}) {
+      const auto start = std::ranges::find_if(
+          group.starts, [&](const std::vector<double>& values) { return (values.back() > 0) == positive; });
+      if (start == group.starts.end()) continue;
+      Hypothesis with = h;
+      with.name += fmt::format(" with {}{}", names, positive ? "" : " < 0");
+      with.plant = started(group, *start);
+      std::vector<fit::FreeParameter> free = h.free, freed = group.free;
+      for (fit::FreeParameter& f : free)
+        if (acts_only_beside(h.plant, with.plant, f.id)) {
+          f.spread = kGroupSpread;
+          freed.push_back(f);
+        }
+      free.insert(free.end(), group.free.begin(), group.free.end());
+      free_by_draws(with, std::move(free));
+      with.further = draws_of(with, freed, fitted);
+      all.push_back(std::move(with));
     }
   }
   return all;

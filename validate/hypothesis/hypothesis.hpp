@@ -25,6 +25,8 @@ struct Hypothesis {
   std::vector<fit::FreeParameter> free;     ///< parameters that the hypothesis brings
   std::vector<std::vector<double>> starts;  ///< values of `free`, tried in turn
   bool drawn = false;                       ///< whether the starts after the first are draws about it
+  /// Further values of `free`, each of which is optimised where the effect is identified alone.
+  std::vector<std::vector<double>> further = {};
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
@@ -37,6 +39,12 @@ std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
 /// Every control of the plant that has its slot to itself, replaced by every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
+/// The hypothesis with a further group of parameters free that its effect's default values leave at their
+/// null values, as a rate feedback KF = 0: one for each group ("EXST1 with KF") and, where a group may have
+/// either sign, for each sign. What acts only beside the group (TF) has as wide a prior as the group.
+/// `fitted` is the plant of a fit of `h`: further starts have its values, and draws of what was freed. None
+/// where the starts of `h` are no draws.
+std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
 /// More draws of the hypothesis's first `own` free parameters than the starts it came with. Their longest
 /// time is about `within` [s] at most.
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,

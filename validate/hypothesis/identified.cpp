@@ -152,8 +152,10 @@ class Identifying {
     if (!side) return;
     std::vector<std::vector<double>> known;
     for (const reduced::Optimum& o : h.optima) known.push_back(o.values);
-    if (known.empty()) known = h.hypothesis.starts;
+    const bool first = known.empty();
+    if (first) known = h.hypothesis.starts;
     known.resize(std::min(known.size(), kOptima));
+    if (first) std::ranges::copy(h.hypothesis.further, std::back_inserter(known));
     if (const fit::Fit* best = h.best()) known.push_back(fit::values_of(best->plant, h.trial.free));
     h.optima = reduced::identify(*side, h.input(), h.trial, {}, known);
     std::erase_if(h.optima, [](const reduced::Optimum& o) { return o.series.isZero(); });

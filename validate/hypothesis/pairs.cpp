@@ -54,7 +54,8 @@ void bring(const Stage& stage, Hypothesis& h) {
   for (const fit::FreeParameter& f : stage.own) {
     h.free.push_back({sim::plant::same_parameter(h.plant, stage.plant, f.id).value(), f.spread});
     const double value = sim::plant::parameter_value(stage.fit.plant, f.id);
-    for (auto& start : h.starts) start.push_back(value);
+    for (auto* starts : {&h.starts, &h.further})
+      for (auto& start : *starts) start.push_back(value);
   }
 }
 

@@ -191,7 +191,7 @@ fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptio
   const auto free = free_of(brought, stage_.spread);
   options.start = states_of(point);
   options.values = fit::values_of(whole(h, point), free);
-  return fit::fit({h.trial.plant, brought.conventions}, stage_.events, free, options);
+  return fit_at(stage_, {h.trial.plant, brought.conventions}, free, options);
 }
 
 }  // namespace swingbank::validate::hypothesis

@@ -8,6 +8,7 @@
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
+#include "validate/fit/interrupted.hpp"
 #include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/posterior.hpp"
 
@@ -88,6 +89,7 @@ class WholeFits {
     const std::size_t own = h.free.size();
     bring(stage_, h);
     auto draws = h.starts;
+    draws.insert(draws.end(), h.further.begin(), h.further.end());
     if (h.drawn) {
       const auto& t = stage_.events.front().record.t;
       for (auto& draw : further_draws(h, own, kFurtherDraws, t.back() - t.front())) {
@@ -134,7 +136,7 @@ class WholeFits {
                                  const std::vector<fit::EventState>& states, fit::FitOptions options) const {
     options.values = values;
     options.start = states;
-    return fit::fit({c.prior, c.hypothesis.conventions}, stage_.events, c.free, options);
+    return fit_at(stage_, {c.prior, c.hypothesis.conventions}, c.free, options);
   }
   static void keep(Candidate& c, fit::Fit f) {
     if (f.failed.empty()) c.fits.push_back(std::move(f));
@@ -174,6 +176,21 @@ class WholeFits {
 
 }  // namespace
 
+fit::Fit fit_at(const Stage& stage, const sim::plant::PlantUnderTest& tested,
+                const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options) {
+  const auto report = [&](const fit::Fit& f) {
+    if (stage.reached && f.failed.empty()) stage.reached(f);
+  };
+  try {
+    fit::Fit found = fit::fit(tested, stage.events, free, options);
+    report(found);
+    return found;
+  } catch (const fit::InterruptedFit& ended) {
+    report(ended.reached);
+    throw;
+  }
+}
+
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
                                  const sim::Conventions& conventions, const event::WhitenedEvents& events,
                                  const std::vector<fit::EventState>& states) {
@@ -210,7 +227,7 @@ void fit_alone(const Stage& stage, Judgement& j) {
   const auto free = free_of(j.hypothesis, stage.spread);
   fit::FitOptions o{.lenient = true};
   for (const auto& e : stage.fit.events) o.start.push_back(e.state);
-  j.fit = fit::fit(j.hypothesis.under_test(), stage.events, free, o);
+  j.fit = fit_at(stage, j.hypothesis.under_test(), free, o);
   j.fitted = j.fit.failed.empty();
   if (j.fitted) j.gain = fit::gain(stage.fit, j.fit, fit::criterion);
 }

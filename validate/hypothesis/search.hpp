@@ -30,6 +30,9 @@ struct Stage {
   std::function<bool()> stop = {};
   /// Inputs that are free in time beside this structure; null: not known yet.
   const reduced::FreeInput *torque = nullptr, *field = nullptr;
+  /// Called with what a fit of a hypothesis has reached, an interrupted one included; from any thread. May be
+  /// empty.
+  std::function<void(const fit::Fit&)> reached = {};
   [[nodiscard]] bool stopped() const { return stop && stop(); }
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// What of a plant the events are of.
@@ -42,6 +45,10 @@ struct Stage {
 /// nothing. `gain` is over the stage's fit.
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const event::Progress& report = {});
+
+/// fit::fit of a hypothesis of this stage, which reports what was reached (Stage::reached).
+fit::Fit fit_at(const Stage& stage, const sim::plant::PlantUnderTest& tested,
+                const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options);
 
 /// chi2 of each plant with each event at its entry of `states`; infinite where a plant cannot be simulated.
 /// The plants differ in values only, and are simulated in lanes.

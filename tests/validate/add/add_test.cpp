@@ -56,9 +56,7 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
 
 TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
   const plant::PlantModel model = example(false);
-  AddOptions options = power_only();
-  options.refined = 1;
-  const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), options);
+  const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
   ASSERT_GT(a.own, 6);
   EXPECT_THAT(a.sentence, AllOf(HasSubstr(fmt::format("Its {} values stand among the parameters.", a.own)),
                                 testing::Not(HasSubstr("KA = "))));
@@ -86,6 +84,51 @@ TEST(Add, IntervalsHoldTheTruth) {
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));
   EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // pulled by the voltage's noise
+}
+
+/// The committed records, as a plant with EXST1 and this rate feedback [pu] in place of SEXS would have given
+/// them, with the same noise. TF is short, or a lead-lag does what the feedback does.
+std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, double KF) {
+  constexpr double kFast = 0.1;  // TF [s]
+  const plant::PlantModel sexs = example(true);
+  plant::PlantModel exst1 = example(false);
+  const sim::Effect* effect = sim::library::compiled().find("EXST1");
+  exst1.plant.controls.push_back({effect, effect->standard_parameters()});
+  exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("KF"))] = KF;
+  exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("TF"))] = kFast;
+  std::vector<record::Record> changed = records(model);
+  const auto events = event::prepare_events(model, changed, power_only().calibrate.events);
+  for (std::size_t e = 0; e < changed.size(); ++e) {
+    const playin::Response was = event::play(sexs.under_test(), events[e], {}),
+                           is = event::play(exst1.under_test(), events[e], {});
+    for (std::size_t k = 0; k < changed[e].t.size(); ++k) {
+      changed[e].P[k] += is.of(playin::Output::P)[k] - was.of(playin::Output::P)[k];
+      changed[e].Q[k] += is.of(playin::Output::Q)[k] - was.of(playin::Output::Q)[k];
+    }
+  }
+  return changed;
+}
+
+TEST(Add, FreesARateFeedbackThatTheDefaultValuesLeaveOff) {
+  constexpr double kKF = 0.05;
+  const plant::PlantModel model = example(false);
+  const Addition a =
+      add_effect(model, find_hypothesis(model, "EXST1"), with_rate_feedback(model, kKF), power_only());
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_TRUE(a.adequate) << a.sentence;
+  EXPECT_EQ(a.hypothesis.name, "EXST1");
+  const auto own = std::span(a.parameters).first(static_cast<std::size_t>(a.own));
+  const auto p = std::ranges::find(own, "KF", &fit::FittedParameter::name);
+  ASSERT_NE(p, own.end());
+  EXPECT_NEAR(p->value, kKF, 3 * p->error);
+}
+
+TEST(Add, FreesNothingThatTheRecordsDoNotAskFor) {
+  const plant::PlantModel model = example(false);
+  const auto exst1 = find_hypothesis(model, "EXST1");
+  const Addition a = add_effect(model, exst1, with_rate_feedback(model, 0.0), power_only());
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_EQ(a.own, static_cast<int>(exst1.free.size()));
 }
 
 TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {
@@ -124,7 +167,6 @@ TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
   model.plant.controls.clear();
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
-  options.refined = 1;
   const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), example.records, options);
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_TRUE(a.adequate) << a.sentence;

@@ -1,9 +1,12 @@
 // What is tried: every start of every hypothesis is a plant that can be.
 #include "validate/hypothesis/hypothesis.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
+#include <span>
 
 #include "sim/library/library.hpp"
 #include "sim/library/variants.hpp"
@@ -13,6 +16,8 @@
 
 namespace swingbank::validate::hypothesis {
 namespace {
+
+using ::testing::ElementsAre;
 
 std::vector<Hypothesis> hypotheses() {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;
@@ -60,6 +65,29 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
     EXPECT_EQ(further.size(), 20U) << h.name;
     for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
   }
+}
+/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters are no draws.
+TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
+  std::map<std::string, std::vector<std::string>> names;
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  for (const Hypothesis& h : all_hypotheses(model.under_test(), model.library)) {
+    for (const Hypothesis& with : with_left_off(h, h.plant)) {
+      EXPECT_TRUE(h.drawn) << with.name;
+      names[h.name].push_back(with.name);
+      EXPECT_GT(with.free.size(), h.free.size()) << with.name;
+      EXPECT_TRUE(std::ranges::equal(h.free, std::span(with.free).first(h.free.size()), {},
+                                     &fit::FreeParameter::id, &fit::FreeParameter::id))
+          << with.name;
+      EXPECT_EQ(with.starts.size(), h.starts.size()) << with.name;
+      for (const auto* starts : {&with.starts, &with.further})
+        for (const auto& start : *starts) EXPECT_TRUE(playin::can_run(started(with, start))) << with.name;
+    }
+  }
+  EXPECT_THAT(names["EXST1"], ElementsAre("EXST1 with KF"));
+  EXPECT_THAT(names["IEEEVC"], ElementsAre("IEEEVC with RC", "IEEEVC with RC < 0"));
+  EXPECT_FALSE(names.contains("SEXS"));
+  EXPECT_FALSE(names.contains("CTERROR"));
+  EXPECT_FALSE(names.contains("GENROU:S10,S12"));
 }
 TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS

@@ -32,6 +32,28 @@ TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
   EXPECT_EQ(tried.back().hypothesis.name, "PTERROR");
 }
 
+/// An ordinary fit that begins at KF = 0 does not find a fast rate feedback.
+TEST_F(WholeFit, FindsARateFeedbackThatDefaultValuesLeaveOff) {
+  constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback acts as a lead-lag does
+  const Hypothesis exst1 = named("EXST1");
+  Hypothesis truth = exst1;
+  parameter(truth.plant, "KF") = kKF;
+  parameter(truth.plant, "TF") = kTF;
+  record_answer_of(truth.under_test());
+  const auto alone = try_hypotheses(stage_, {exst1});
+  ASSERT_EQ(alone.size(), 1U);
+  const auto tried = try_hypotheses(stage_, with_left_off(exst1, alone.front().fit.plant));
+  ASSERT_EQ(tried.size(), 1U);
+  EXPECT_EQ(tried.front().hypothesis.name, "EXST1 with KF");
+  EXPECT_GT(tried.front().gain, alone.front().gain + 100);
+  for (const auto& [name, true_value] : {std::pair("KF", kKF), std::pair("TF", kTF)}) {
+    const auto& parameters = tried.front().fit.parameters;
+    const auto p = std::ranges::find(parameters, name, &fit::FittedParameter::name);
+    ASSERT_NE(p, parameters.end()) << name;
+    EXPECT_NEAR(p->value, true_value, 3 * p->error) << name;
+  }
+}
+
 class Exchange : public ::testing::Test {
  protected:
   [[nodiscard]] static Hypothesis named(const std::vector<Hypothesis>& all, const std::string& name) {

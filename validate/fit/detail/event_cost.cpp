@@ -138,11 +138,6 @@ void EventCost::take(event::RowMatrix e) const {
   renew_ = false;
 }
 
-event::RowMatrix EventCost::slopes(const double* z, const double* state) const {
-  last_ = {};
-  return values(z, state, true);
-}
-
 event::RowMatrix EventCost::values(const double* z, const double* state, bool slopes) const {
   const sim::plant::Plant plant = moved(setting_, z);
   if (!(setting_.can_exist ? playin::can_exist_beside(plant, *setting_.plant) : playin::can_run(plant)))

@@ -1,6 +1,5 @@
 #pragma once
-// What one event costs at a point of the fit, with slopes, as Ceres takes it. For fit.cpp and rao_score.cpp
-// only.
+// What one event costs at a point of the fit, with slopes, as Ceres takes it. For fit.cpp only.
 #include <limits>
 
 #include "validate/fit/detail/cost.hpp"
@@ -19,9 +18,6 @@ class EventCost : public ceres::CostFunction {
   EventCost(const Setting& setting, std::size_t event);
   [[nodiscard]] std::size_t state_size() const { return switching_numbers(event_) + kStates; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-  /// Whitened residuals of all values in the last column, and before it their slopes by z and by the state.
-  /// Empty where the plant cannot be run.
-  [[nodiscard]] event::RowMatrix slopes(const double* z, const double* state) const;
   /// The event's state from the search's numbers.
   [[nodiscard]] EventState at(const double* state) const;
   /// What the plant answers to the event.
@@ -35,6 +31,8 @@ class EventCost : public ceres::CostFunction {
 
  private:
   bool evaluate(double const* const* blocks, double* residuals, double** jacobians) const;
+  /// Whitened residuals of all values in the last column, and before it their sensitivities to z and to the
+  /// state. Empty where the plant cannot be simulated.
   [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const;
   /// Slopes of a plant that is linear about each step are per cents off, which stops a search where columns
   /// are nearly the same. How the residuals moved along a step, less what slopes foretell, is what these were
