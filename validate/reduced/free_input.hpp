@@ -25,7 +25,7 @@ struct FreeInput {
 };
 
 /// Infers the input. `without`: the fit of the tested plant without it. The inference begins there, or at the
-/// submitted values where `without` is bent out of shape because it fits badly.
+/// submitted values where `without` fits badly and its parameters are biased.
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
                      const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                      const fit::Fit& without, int threads);

@@ -24,9 +24,8 @@ std::vector<fs::path> event_files(const fs::path& folder) {
 /// Every evidence, so that what is made of them can be tried again without the records.
 nlohmann::json basis_of(const diagnose::Diagnosis& d) {
   const auto input = [&](const reduced::FreeInput& m) {
-    return nlohmann::json{{"evidence", m.evidence},
-                          {"chi2", fit::gain(d.base, m.fit, fit::data_cost)},
-                          {"misfit", m.misfit()}};
+    return nlohmann::json{
+        {"evidence", m.evidence}, {"chi2", fit::gain(d.base, m.fit, fit::data_cost)}, {"misfit", m.misfit()}};
   };
   nlohmann::json j = {{"values", d.base.values},
                       {"misfit", d.base.misfit()},
