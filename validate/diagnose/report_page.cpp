@@ -237,9 +237,9 @@ class DiagnosisPage {
 
   void parameters() {
     if (!with_after() && !d_.ruling.adequate) return;  // fitted values of a model that is rejected
-    page_.section("Parameters");
     const fit::Fit& last = with_after() ? *figures_.after : d_.base;
     if (last.parameters.empty()) return;  // an inferred input
+    page_.section("Parameters");
     report::Table table{
         "95 % intervals. The last column says how much of the interval "
         "the records decide; the rest is what was believed before.",

@@ -280,7 +280,6 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
     curvature(k, k) = spread > 0 ? 1 / (spread * spread) : 0.0;
     first_[k] = curvature(k, k) * at.offset[i];
   }
-  precision_ = curvature;
   Index row = 0;
   for (const Reduction::Event& e : reduction.events()) {
     const MatrixXd& R = e.triangle;

@@ -106,7 +106,6 @@ class ReducedPlant {
   std::vector<Eigen::Index> free_;  ///< eliminated parameters
   Eigen::Index numbers_;
   std::vector<Event> events_;
-  Eigen::MatrixXd precision_;  ///< of their prior
   Eigen::MatrixXd inverse_;    ///< of their Hessian
   Eigen::VectorXd first_;      ///< half the gradient of their prior
   double prior_cost_ = 0;      ///< of the present values

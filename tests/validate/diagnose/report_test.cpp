@@ -103,6 +103,18 @@ std::string cell_text(const nlohmann::json& cell) {
   return compare::times_noise(ratio) + (ratio > cell["normalised_bound"].get<double>() ? " *" : "");
 }
 
+/// An inferred input has a time series with limits, and no fitted parameters.
+TEST(DiagnosisReportTest, AnInferredInputHasLimitsAndNoTableOfParameters) {
+  Diagnosis d = example().d;
+  d.verdict = Verdict::unexplained;
+  for (hypothesis::Judgement& j : d.ranked) j.accepted = false;
+  d.field.fit.parameters.clear();
+  const std::string html = diagnosis_html(example().model, d, example().rows, {});
+  EXPECT_NE(html.find("upper 95 % limit"), std::string::npos);
+  EXPECT_EQ(html.find(">Parameters<"), std::string::npos);
+  EXPECT_NE(page().find(">Parameters<"), std::string::npos);
+}
+
 TEST(DiagnosisReportTest, ErrorMapsEqualTheJson) {
   const auto j = figures();
   ASSERT_EQ(j["events"].size(), 2u);
