@@ -40,9 +40,9 @@ struct Diagnosis {
   /// The fewest parameters that must change, if these alone leave nothing but noise: what is wrong then is
   /// they.
   std::optional<fit::Fewest> wrong;
-  double wrong_evidence = 0;  ///< of only these being wrong, over every parameter refitted [chi2]
+  double wrong_evidence = 0;         ///< of only these being wrong, over every parameter refitted [chi2]
   reduced::FreeInput torque, field;  ///< each beside the model alone
-  laws::LawSearch laws;  ///< laws that were searched, where no known effect explains the records
+  laws::LawSearch laws;              ///< laws that were searched, where no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< best first
   event::WhitenedEvents events;               ///< with the noise in which all fits are measured
   sim::Conventions conventions;               ///< of the model

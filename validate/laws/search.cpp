@@ -183,7 +183,7 @@ sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& ef
 LawSearch search_laws(const Unexplained& case_, const event::Progress& report) {
   const bool torque = case_.torque.misfit() < case_.field.misfit();
   const reduced::FreeInput &first = torque ? case_.torque : case_.field,
-                                 &second = torque ? case_.field : case_.torque;
+                           &second = torque ? case_.field : case_.torque;
   const auto explains = [&](const reduced::FreeInput& m) {
     return m.misfit() < std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.misfit());
   };

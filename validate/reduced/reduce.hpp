@@ -106,9 +106,9 @@ class ReducedPlant {
   std::vector<Eigen::Index> free_;  ///< eliminated parameters
   Eigen::Index numbers_;
   std::vector<Event> events_;
-  Eigen::MatrixXd inverse_;    ///< of their Hessian
-  Eigen::VectorXd first_;      ///< half the gradient of their prior
-  double prior_cost_ = 0;      ///< of the present values
+  Eigen::MatrixXd inverse_;  ///< of their Hessian
+  Eigen::VectorXd first_;    ///< half the gradient of their prior
+  double prior_cost_ = 0;    ///< of the present values
   double gain_precision_ = 0, gain_offset_ = 0;
 };
 

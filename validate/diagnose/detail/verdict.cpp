@@ -228,8 +228,7 @@ std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
 
 std::string side_sentence(const Diagnosis& d) {
   const double t = d.torque.misfit(), f = d.field.misfit();
-  const bool explains =
-      std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
+  const bool explains = std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
   const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
   return fmt::format(
       "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
@@ -283,8 +282,8 @@ void settle(const laws::Unexplained& judged, const event::Progress& progress, Di
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
   refuse_all(d);
-  d.ruling = thresholds::judged_by_remainder(left_by(d, d.torque.evidence, d.field.evidence),
-                                             judged.trial.adequate);
+  d.ruling =
+      thresholds::judged_by_remainder(left_by(d, d.torque.evidence, d.field.evidence), judged.trial.adequate);
   if (d.ruling.adequate) {
     d.verdict = Verdict::adequate;
     d.sentence = adequate_sentence(d);
