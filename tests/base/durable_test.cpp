@@ -94,7 +94,7 @@ TEST_P(Durable, ReplacesAWholeFileAndLeavesNoTemporary) {
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_P(Durable, WhereAFolderStandsNothingIsLeft) {
+TEST_P(Durable, LeavesNoTemporaryFileWhenTargetIsAFolder) {
   fs::create_directories(file / "inside");
   const std::string said = refusal([&] { GetParam().write(file); });
   EXPECT_THAT(said, HasSubstr("at " + file.string()));

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPieces = 500;
 constexpr int kThreads = 4;
 
-TEST(InParallel, WhatFollowsAPieceHappensOneAtATime) {
+TEST(InParallel, RunsContinuationsOneAtATime) {
   std::vector<double> made(kPieces);
   std::vector<int> counts;  // of whoever holds the turn: no lock
   std::multiset<std::size_t> pieces;

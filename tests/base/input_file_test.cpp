@@ -60,7 +60,7 @@ TEST_F(InputFile, PatternThatTheShellCouldNotReplace) {
   EXPECT_THAT(sentence("o*.toml"), AllOf(HasSubstr("none that matches"), HasSubstr("give another")));
 }
 
-TEST_F(InputFile, WhatIsThereIsNotCalledMissing) {
+TEST_F(InputFile, ReportsUnreadableFileAsExisting) {
   std::ofstream("empty.toml").flush();
   EXPECT_THAT(sentence("empty.toml"), HasSubstr("(it is empty)"));
   EXPECT_THAT(sentence("."), HasSubstr("(it is a folder)"));
@@ -78,7 +78,7 @@ TEST_F(InputFile, ReadsBytesAndRefusesTheRest) {
   for (const char* file : {"empty", "gone", "."}) EXPECT_THROW((void)read_input(file, "w", "r"), InputError);
 }
 
-TEST_F(InputFile, WhatMayHaveNoEndIsNotRead) {
+TEST_F(InputFile, RefusesDevicesAndPipes) {
   ASSERT_EQ(::mkfifo("pipe", 0600), 0);
   EXPECT_THAT(sentence("pipe"), HasSubstr("(it is a pipe or a device"));
   for (const char* file : {"pipe", "/dev/zero"}) EXPECT_THROW((void)read_input(file, "w", "r"), InputError);

@@ -11,7 +11,7 @@ TEST(Shown, TextOfEveryLanguageStays) {
     EXPECT_EQ(shown(text), text);
 }
 
-TEST(Shown, WhatATerminalActsOnIsEscaped) {
+TEST(Shown, EscapesControlCharacters) {
   using namespace std::string_view_literals;
   EXPECT_EQ(shown("a\x1b[2Jb\x7f\r"sv), "a\\x1b[2Jb\\x7f\\x0d");
   EXPECT_EQ(shown("\xc2\x9b"

@@ -27,7 +27,7 @@ TEST(ItemQueue, ResultsReachTheCallerWhole) {
     EXPECT_EQ(result, std::string(2000, static_cast<char>('a' + item % 26)));
 }
 
-TEST(ItemQueue, WhatTheWorkThrowsEndsIt) {
+TEST(ItemQueue, EndsOnAnExceptionOfAWorker) {
   SharedItems shared;
   shared.items = {0, 1, 2};
   int done = 0;

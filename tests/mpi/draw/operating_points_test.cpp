@@ -114,7 +114,7 @@ TEST(OperatingPoint, RangesAreTheConfigs) {
   EXPECT_NEAR(oversized / (10.0 * kBlocks), 0.12 * 0.5 / 0.9, 0.02);
 }
 
-TEST(OperatingPoint, WhatCannotBeUsedIsDrawnAgainAndCounted) {
+TEST(OperatingPoint, RedrawsAndCountsInfeasiblePoints) {
   DatasetConfig c = config();
   c.operating_point->loads_high = 3.0;
   const Study heavy = load_study(c);

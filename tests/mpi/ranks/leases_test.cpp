@@ -47,7 +47,7 @@ TEST(Leases, EndTogether) {
   EXPECT_EQ(last, 1u);
 }
 
-TEST(Leases, WhatWasNotMadeIsGivenAgainInItsOrder) {
+TEST(Leases, ReassignsUnfinishedItemsInOrder) {
   Leases leases(first_shards(3), 10.0, 1);
   const auto now = Leases::Clock::now();
   leases.give(1, false, now);

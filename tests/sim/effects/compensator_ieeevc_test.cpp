@@ -27,7 +27,7 @@ TEST(CompensatorIeeevc, PositiveReactanceIsDroop) {
   EXPECT_DOUBLE_EQ(ControlBench("IEEEVC", {{"XC", 0.05}}, at).out().Vc, 1.02);
 }
 
-TEST(CompensatorIeeevc, WhatIsOnAnotherBaseIsRefused) {
+TEST(CompensatorIeeevc, RefusesParametersOnAnotherBase) {
   EXPECT_EQ(ControlBench("IEEEVC", {{"RC", 3.0}, {"XC", -2.0}}).problems.list().size(), 2u);
 }
 

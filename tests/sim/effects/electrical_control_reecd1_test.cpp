@@ -142,7 +142,7 @@ TEST(Reecd1, ABatteryDrawsUpToKe) {
   EXPECT_NEAR(bench.out().Tm, -0.5 * 1.0, 1e-9);  // half of the points' least, Imax
 }
 
-TEST(Reecd1, WhatCannotRunIsRefused) {
+TEST(Reecd1, RefusesParametersThatCannotBeIntegrated) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] :
        {Change{"VCMPFLAG", 2.0}, {"Tr1", -1.0}, {"Tblk", -1.0}, {"Ke", 1.5}, {"Vblkh", -1.0}, {"Iq3", -0.1}})

@@ -83,7 +83,7 @@ TEST(ExciterDcTypes, Ieeet2FeedsTheRegulatorBackThroughTwoLags) {
   }
 }
 
-TEST(ExciterDcTypes, WhatCannotRunIsRefused) {
+TEST(ExciterDcTypes, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(ControlBench("IEEEX1", {{"VRMAX", 1.0}}).refused.find("Vr"), std::string::npos);
   EXPECT_FALSE(ControlBench("IEEEX1", {{"TB", -1.0}}).problems.empty());
   EXPECT_FALSE(ControlBench("IEEET2", {{"TA", 0.0}}).problems.empty());

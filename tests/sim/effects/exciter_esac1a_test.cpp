@@ -81,7 +81,7 @@ TEST(ExciterEsac1a, CeilingIsWhereTheFieldBalancesVrmaxAndReleaseIsImmediate) {
   EXPECT_GT(bench.state("Ve"), 1.0);  // (6.03 - 0.76) 0.3/0.8 pu less the delay of Va
 }
 
-TEST(ExciterEsac1a, WhatItCannotHoldIsNamed) {
+TEST(ExciterEsac1a, RefusesOperatingPointBeyondItsLimits) {
   auto reversed = ControlBench::rated();
   reversed.Efd = -0.1;
   EXPECT_NE(ControlBench("ESAC1A", {}, reversed).refused.find("Efd = -0.1000 pu"), std::string::npos);

@@ -88,7 +88,7 @@ TEST(ExciterEsst1a, ZerosAreBypasses) {
   EXPECT_NEAR(bench.out().Efd, 2.0 + 50.0 * 0.02, 1e-12);
 }
 
-TEST(ExciterEsst1a, WhatCannotRunIsRefused) {
+TEST(ExciterEsst1a, RefusesParametersThatCannotBeIntegrated) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] :
        {Change{"UEL", 0.0}, {"VOS", 3.0}, {"KA", 0.0}, {"TA", -1.0}, {"KLR", -1.0}})

@@ -84,7 +84,7 @@ TEST(ExciterEsst3a, ErrorAndSourceAreLimited) {
   EXPECT_NEAR(bench.out().Efd, 3.0 * 4.0 * 4.0 / (1.0 + 4.0 * 0.8 * 4.0), 1e-4);  // 60 s of TB = 5 s
 }
 
-TEST(ExciterEsst3a, WhatItCannotHoldIsNamed) {
+TEST(ExciterEsst3a, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("ESST3A", {{"VMMAX", 0.1}}).refused.find("Vmr"), std::string::npos);
   EXPECT_NE(ControlBench("ESST3A", {{"VIMAX", 0.001}}).refused.find("VIMAX"), std::string::npos);
   EXPECT_NE(ControlBench("ESST3A", {{"KC", 1.0}, {"KP", 1.0}}).refused.find("VB = 0.0"), std::string::npos);

@@ -94,7 +94,7 @@ TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
   EXPECT_LT(bench.out().Efd, 0.6 * source(bench.in));
 }
 
-TEST(ExciterEsst4b, WhatItCannotHoldIsNamed) {
+TEST(ExciterEsst4b, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("ESST4B", {{"VMMAX", 0.1}}).refused.find("Vmr = 0.2"), std::string::npos);
   EXPECT_NE(ControlBench("ESST4B", {{"VRMAX", 0.1}}).refused.find("Vr = 0.2"), std::string::npos);
   EXPECT_NE(ControlBench("ESST4B", {{"KC", 1.0}, {"KP", 1.0}}).refused.find("VB = 0.0"), std::string::npos);

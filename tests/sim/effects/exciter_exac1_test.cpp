@@ -43,7 +43,7 @@ TEST(ExciterExac1, CeilingAndRelease) {
   EXPECT_EQ(bench.out().Efd, 0.0);  // the rectifier does not reverse
 }
 
-TEST(ExciterExac1, WhatItCannotHoldIsNamed) {
+TEST(ExciterExac1, RefusesOperatingPointBeyondItsLimits) {
   auto reversed = ControlBench::rated();
   reversed.Efd = -0.1;
   EXPECT_NE(ControlBench("EXAC1", {}, reversed).refused.find("Efd = -0.1000 pu"), std::string::npos);

@@ -83,7 +83,7 @@ TEST(ExciterExdc2, ZerosAreFoundAsPsseFindsThem) {
   EXPECT_LT(self.largest_derivative(), 1e-11);  // rounding over TA, times KA
 }
 
-TEST(ExciterExdc2, WhatItCannotHoldIsNamed) {
+TEST(ExciterExdc2, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("EXDC2", {{"VRMAX", 1.0}}).refused.find("Vr = 2.0"), std::string::npos);
   EXPECT_EQ(ControlBench("EXDC2", {{"VRMAX", 0.0}, {"KE", 0.0}, {"SE1", 0.0}, {"SE2", 0.0}, {"TE", 0.0}})
                 .problems.list()

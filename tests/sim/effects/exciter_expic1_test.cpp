@@ -82,7 +82,7 @@ TEST(ExciterExpic1, NothingWindsUp) {
   EXPECT_NEAR(bench.out().Efd, -0.87, 1e-6);  // EFDMIN
 }
 
-TEST(ExciterExpic1, WhatCannotRunIsRefused) {
+TEST(ExciterExpic1, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(ControlBench("EXPIC1", {{"EFDMAX", 1.9}}).refused.find("E0 = 2.0"), std::string::npos);
   EXPECT_NE(ControlBench("EXPIC1", {{"VRMAX", 0.1}}).refused.find("Vr = 0.3"), std::string::npos);
   EXPECT_NE(ControlBench("EXPIC1", {{"VR1", 0.1}}).refused.find("PI"), std::string::npos);

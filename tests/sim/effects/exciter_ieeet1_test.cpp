@@ -54,7 +54,7 @@ TEST(ExciterIeeet1, ZerosAreFoundAsPsseFindsThem) {
   EXPECT_DOUBLE_EQ(both.state("Vr"), 0.25);
 }
 
-TEST(ExciterIeeet1, WhatItCannotHoldIsNamed) {
+TEST(ExciterIeeet1, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("IEEET1", {{"VRMAX", 1.0}}).refused.find("Vr"), std::string::npos);
   EXPECT_EQ(ControlBench("IEEET1", {{"VRMAX", 0.0}, {"KE", 0.0}, {"SE1", 0.0}, {"SE2", 0.0}, {"TE", 0.0}})
                 .problems.list()

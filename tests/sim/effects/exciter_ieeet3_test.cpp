@@ -52,7 +52,7 @@ TEST(ExciterIeeet3, TheSourceFollowsVoltageAndCurrentAndEnds) {
   EXPECT_NEAR(bench.out().Efd, 0.0, 1e-6);
 }
 
-TEST(ExciterIeeet3, WhatCannotRunIsRefused) {
+TEST(ExciterIeeet3, RefusesParametersThatCannotBeIntegrated) {
   Signals<double> at = ControlBench::rated();
   at.Ifd = 3.0;
   EXPECT_NE(ControlBench("IEEET3", {}, at).refused.find("leaves nothing"), std::string::npos);

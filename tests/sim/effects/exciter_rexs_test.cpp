@@ -182,7 +182,7 @@ TEST(ExciterRexs, TheFieldsRegulatorStopsIntegratingAtItsLimit) {
   EXPECT_LT(bench.out().Efd, 2.0);
 }
 
-TEST(ExciterRexs, WhatItCannotHoldIsNamed) {
+TEST(ExciterRexs, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("REXS", {{"VFMAX", 1.0}}).refused.find("Vfield = 6.0"), std::string::npos);
   EXPECT_NE(ControlBench("REXS", {{"VRMAX", 1.0}}).refused.find("Vr = 6.0"), std::string::npos);
   EXPECT_NE(ControlBench("REXS", {{"KVP", 10.0}}).refused.find("an error of 0.6"), std::string::npos);

@@ -44,7 +44,7 @@ TEST(ExciterScrx, NegativeFieldCurrentFlowsThroughTheCrowbarOrTheBridge) {
   EXPECT_NE(ControlBench("SCRX", {{"rcrfd", 5.0}}, at).refused.find("negative"), std::string::npos);
 }
 
-TEST(ExciterScrx, WhatCannotRunIsRefused) {
+TEST(ExciterScrx, RefusesParametersThatCannotBeIntegrated) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] :
        {Change{"K", 0.0}, {"TE", -1.0}, {"CSWITCH", 2.0}, {"rcrfd", -1.0}, {"EMIN", 9.0}})

@@ -63,7 +63,7 @@ TEST(ExciterSt5b, NothingWindsUp) {
   EXPECT_LT(bench.out().Efd, 0.0);
 }
 
-TEST(ExciterSt5b, WhatItCannotHoldIsNamed) {
+TEST(ExciterSt5b, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(ControlBench("ST5B", {{"VRMAX", 1.9}}).refused.find("VRMAX"), std::string::npos);
   EXPECT_EQ(ControlBench("ST5B", {{"KR", 0.0}, {"T1", -1.0}, {"KC", -1.0}, {"VRMAX", 0.5}, {"VRMIN", 0.5}})
                 .problems.list()

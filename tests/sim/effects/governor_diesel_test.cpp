@@ -80,7 +80,7 @@ TEST(GovernorDiesel, ThrottleDoesNotWindUp) {
   EXPECT_LT(bench.state("throttle"), 0.9);
 }
 
-TEST(GovernorDiesel, WhatCannotRunIsRefused) {
+TEST(GovernorDiesel, RefusesParametersThatCannotBeIntegrated) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] : {Change{"K", 0.0}, {"TD", -1.0}, {"T1", 0.0}, {"TMIN", 2.0}})
     EXPECT_FALSE(ControlBench("DEGOV", {{name, value}}).problems.empty()) << name;

@@ -59,7 +59,7 @@ TEST(GovernorGast, StandsAtItsTemperatureLimitWhateverThePowerFlowRounds) {
   EXPECT_LT(bench.largest_derivative(), 1e-14);
 }
 
-TEST(GovernorGast, WhatCannotRunIsRefused) {
+TEST(GovernorGast, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(ControlBench("GAST", {{"AT", 0.7}}).refused.find("AT = 0.7 pu"), std::string::npos);
   EXPECT_EQ(ControlBench("GAST", {{"VMAX", 0.7}}).refused, "fuel outside its limits");
   using Change = std::pair<const char*, double>;

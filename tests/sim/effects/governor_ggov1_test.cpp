@@ -148,7 +148,7 @@ TEST(GovernorGgov1, PowerControllerReturnsTheLoadToItsSetPoint) {
   EXPECT_NEAR(bench.state("mw"), 0.001, 1e-5);
 }
 
-TEST(GovernorGgov1, WhatCannotRunIsRefused) {
+TEST(GovernorGgov1, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(bench_with({{"Ldref", 0.7}, {"Dm", 0.0}}).refused.find("Ldref = 0.7 pu"), std::string::npos);
   EXPECT_NE(bench_with({{"Vmax", 0.7}}).refused.find("above Vmax = 0.7 pu"), std::string::npos);
   EXPECT_NE(

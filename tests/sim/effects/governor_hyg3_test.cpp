@@ -121,7 +121,7 @@ TEST(GovernorHyg3, GateKeepsItsVelocitiesAndLimits) {
   }
 }
 
-TEST(GovernorHyg3, WhatIsNotModelledIsRefused) {
+TEST(GovernorHyg3, RefusesUnmodelledOptions) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] : {Change{"FLAG", 2.0},
                                     {"TF", 0.0},

@@ -58,7 +58,7 @@ TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05, 1e-12);  // the filter sees what is beyond the edge
 }
 
-TEST(GovernorHygov, WhatCannotRunIsRefused) {
+TEST(GovernorHygov, RefusesParametersThatCannotBeIntegrated) {
   Signals<double> idle = ControlBench::rated();
   idle.Tm = 0.0;
   EXPECT_NE(ControlBench("HYGOV", {{"qNL", 0.0}}, idle).refused, "");

@@ -57,7 +57,7 @@ TEST(GovernorIeeeg1, ValveKeepsItsSpeedsAndComesOffItsEndAtOnce) {
   EXPECT_NEAR(bench.state("valve"), std::max(0.0, before - 0.3), 1e-12);
 }
 
-TEST(GovernorIeeeg1, WhatCannotRunIsRefused) {
+TEST(GovernorIeeeg1, RefusesParametersThatCannotBeIntegrated) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] :
        {Change{"T3", 0.0}, {"UC", 0.1}, {"K2", 0.2}, {"JBUS", 7.0}, {"PMIN", 2.0}, {"db", -0.1}})

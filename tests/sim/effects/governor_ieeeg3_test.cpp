@@ -101,7 +101,7 @@ TEST(GovernorIeeeg3, GateKeepsItsVelocitiesAndLimits) {
   }
 }
 
-TEST(GovernorIeeeg3, WhatCannotRunIsRefused) {
+TEST(GovernorIeeeg3, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(ControlBench("IEEEG3", ieeeg3_with({{"PMAX", 0.6}})).refused.find("gate"), std::string::npos);
   EXPECT_EQ(
       ControlBench("IEEEG3", {{"TG", 0.0}, {"UC", 0.1}, {"A11", 0.0}, {"TP", -1.0}}).problems.list().size(),

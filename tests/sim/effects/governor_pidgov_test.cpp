@@ -78,7 +78,7 @@ TEST(GovernorPidgov, GateKeepsItsVelocitiesAndLimits) {
   EXPECT_EQ(up.state("gate"), 0.9);
 }
 
-TEST(GovernorPidgov, WhatCannotRunIsRefused) {
+TEST(GovernorPidgov, RefusesParametersThatCannotBeIntegrated) {
   EXPECT_NE(ControlBench("PIDGOV", pidgov_with({{"GMAX", 0.6}})).refused.find("gate"), std::string::npos);
   EXPECT_EQ(ControlBench("PIDGOV",
                          {{"FLAG", 2.0}, {"TA", 0.0}, {"VELMIN", 0.1}, {"KI", 0.0}, {"KP", 0.0}, {"G1", 0.9}})

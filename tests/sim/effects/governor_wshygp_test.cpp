@@ -98,7 +98,7 @@ TEST(GovernorWshygp, BacklashHoldsThePowerUntilTheGateHasTurnedThroughIt) {
   EXPECT_NEAR(bench.state("position"), there, 1e-6);  // the play is not through
 }
 
-TEST(GovernorWshygp, WhatIsNotModelledIsRefused) {
+TEST(GovernorWshygp, RefusesUnmodelledOptions) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] : {Change{"err", 0.001},
                                     {"TF", 0.0},

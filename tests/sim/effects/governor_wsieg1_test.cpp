@@ -64,7 +64,7 @@ TEST(GovernorWsieg1, BlockedDirectionsAreThoseOfTheCode) {
     }
 }
 
-TEST(GovernorWsieg1, WhatIsNotModelledIsRefused) {
+TEST(GovernorWsieg1, RefusesUnmodelledOptions) {
   using Change = std::pair<const char*, double>;
   for (const auto& [name, value] :
        {Change{"err", 0.001}, {"IBLOCK", 4.0}, {"db2", -0.1}, {"K4", 0.3}, {"T3", 0.0}})

@@ -104,7 +104,7 @@ TEST(LimiterMaxex1, AddsToOtherLimiters) {
   EXPECT_LT(bench.out().Vlimiter, -0.2);
 }
 
-TEST(LimiterMaxex1, WhatItCannotDoIsNamed) {
+TEST(LimiterMaxex1, RefusesUnsupportedParameters) {
   auto hot = ControlBench::rated();
   hot.Efd = 3.0;
   EXPECT_NE(ControlBench("MAXEX1", kMaxex1Values, hot).refused.find("Efd = 3.0000 pu"), std::string::npos);

@@ -58,7 +58,7 @@ TEST(LimiterMaxex2, AddsToOtherLimiters) {
   EXPECT_LT(bench.out().Vlimiter, -0.2);
 }
 
-TEST(LimiterMaxex2, WhatItCannotDoIsNamed) {
+TEST(LimiterMaxex2, RefusesUnsupportedParameters) {
   auto hot = ControlBench::rated();
   hot.Ifd = 3.0;
   EXPECT_NE(ControlBench("MAXEX2", kMaxex2Values, hot).refused.find("Ifd = 3.0000 pu"), std::string::npos);

@@ -90,7 +90,7 @@ TEST(LimiterOel1, TakesTheFieldVoltageAndKeepsStillAsAnAlarm) {
   }
 }
 
-TEST(LimiterOel1, WhatItCannotDoIsNamed) {
+TEST(LimiterOel1, RefusesUnsupportedParameters) {
   auto hot = ControlBench::rated();
   hot.Ifd = 3.0;
   EXPECT_NE(ControlBench("OEL1", values({}), hot).refused.find("Ifd = 3.0000 pu"), std::string::npos);

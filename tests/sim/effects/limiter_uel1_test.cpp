@@ -81,7 +81,7 @@ TEST(LimiterUel1, AddsToOtherLimiters) {
   EXPECT_GT(bench.out().Vlimiter, -0.2);
 }
 
-TEST(LimiterUel1, WhatItCannotDoIsNamed) {
+TEST(LimiterUel1, RefusesUnsupportedParameters) {
   auto weak = ControlBench::rated();
   deliver(weak, 1.0, {0.8, -0.7});
   EXPECT_NE(ControlBench("UEL1", {}, weak).refused.find("Q = -0.7000 pu"), std::string::npos);

@@ -107,7 +107,7 @@ TEST(LimiterUel2, WindsUpToItsLimitAndReturnsFromThere) {
 
 TEST(LimiterUel2, AVoltageNearNothingDoesNotBreakIt) { EXPECT_TRUE(std::isfinite(added({}, 0.0, 0.0, 0.0))); }
 
-TEST(LimiterUel2, WhatItCannotDoIsNamed) {
+TEST(LimiterUel2, RefusesUnsupportedParameters) {
   auto weak = ControlBench::rated();
   weak.Q = -0.7;
   EXPECT_NE(ControlBench("UEL2", {}, weak).refused.find("Q = -0.7000 pu"), std::string::npos);

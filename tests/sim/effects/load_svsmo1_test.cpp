@@ -229,7 +229,7 @@ TEST(Svsmo1, AnOperatingPointBeyondItsLimitsIsRefused) {
   EXPECT_THAT(refused({{"OV1", 1.01}}), HasSubstr("its protection acts at V = 1.0200 pu"));
 }
 
-TEST(Svsmo1, WhatTheEquationsLeaveOutIsSaid) {
+TEST(Svsmo1, ReportsNeglectedParameters) {
   const auto says = [](const Changes& changes) {
     const plant::Consumer load = Bench::consumer(with({{"UV2", 0.0}}, changes), 0.1);
     return load.block.effect->remark(load.block.p.data());

@@ -113,7 +113,7 @@ TEST(StabiliserIeeest, VoltageOutsideItsBandCutsTheOutput) {
   EXPECT_NE(off.out().Vs, 0.0);
 }
 
-TEST(StabiliserIeeest, WhatItCannotDoIsRefusedByName) {
+TEST(StabiliserIeeest, RefusesUnsupportedParametersByName) {
   EXPECT_EQ(ControlBench("IEEEST", {{"ICS", 9.0}, {"IB", 7.0}}).problems.list().size(), 2u);
   EXPECT_EQ(ControlBench("IEEEST", with({{"A6", 0.1}, {"A1", 0.1}})).problems.list().size(), 1u);
 }

@@ -135,7 +135,7 @@ TEST(StabiliserPss2, LimitsOfInputsAndOutputHoldAndRelease) {
   EXPECT_EQ(bench.out().Vs, -0.05);  // released at once: the step down of 0.01 pu washes past zero
 }
 
-TEST(StabiliserPss2, WhatItCannotDoIsNamed) {
+TEST(StabiliserPss2, RefusesUnsupportedParameters) {
   EXPECT_EQ(ControlBench("PSS2A",
                          {{"IC1", 2.0}, {"IC2", 5.0}, {"REMBUS2", 7.0}, {"M", 5.0}, {"N", 2.0}, {"Tw1", 0.0}})
                 .problems.list()

@@ -37,7 +37,7 @@ TEST(StabiliserStab1, ZeroTimeConstantsAreBypassed) {
   EXPECT_DOUBLE_EQ(bench.out().Vs, 0.008);
 }
 
-TEST(StabiliserStab1, WhatItCannotDoIsRefused) {
+TEST(StabiliserStab1, RefusesUnsupportedParameters) {
   EXPECT_EQ(ControlBench("STAB1", {{"TW", 0.0}, {"T4", -1.0}, {"HLIM", -0.1}}).problems.list().size(), 3u);
 }
 

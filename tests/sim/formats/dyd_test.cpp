@@ -56,7 +56,7 @@ TEST(Dyd, ATurbinesRatingBecomesTheMachinesBase) {
   EXPECT_THAT(s.notes.at(2), HasSubstr("450 MW"));
 }
 
-TEST(Dyd, WhatTheCounterpartHasNotMustBeSwitchedOff) {
+TEST(Dyd, RefusesActiveParametersWithoutCounterpart) {
   std::string text = kNamed;
   text.replace(text.find("\"xcomp\" 0.0"), 11, "\"xcomp\" -0.06");
   EXPECT_THAT(faults(parse_dyd_survey(text, "d.dyd")), HasSubstr("xcomp = -0.06 of genrou at d.dyd:1"));

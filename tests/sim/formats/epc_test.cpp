@@ -223,7 +223,7 @@ TEST(Epc, ConvertersDrawWhatTheVoltagesSay) {
   EXPECT_LT(std::abs(n.loads[0].power - Complex(2.5, 0.3)), 1e-9);
 }
 
-TEST(Epc, WhatIsNotReadIsNamedAndCounted) {
+TEST(Epc, NamesAndCountsIgnoredSections) {
   EpcCase c;
   c.others +=
       "motor data  [ 2]  id\n 103 \"M\" 1.0 : 1 2 3\n 103 \"N\" 1.0 : 1 2 3\ngcd data  [ 0]\n"
@@ -269,7 +269,7 @@ TEST(Epc, ACountThatIsAnotherIsTold) {
       HasSubstr("1 records in the load section at case.epc:" + std::to_string(line_of(text, "load data"))));
 }
 
-TEST(Epc, WhatTheFileLacksIsOneSentence) {
+TEST(Epc, ReportsMissingSectionsInOneSentence) {
   const EpcCase whole;
   EpcCase c;
   c.end.clear();

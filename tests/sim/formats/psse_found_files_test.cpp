@@ -66,7 +66,7 @@ TEST_P(OldVersion, IsReadAsTheSameGrid) {
 }
 INSTANTIATE_TEST_SUITE_P(Versions, OldVersion, ::testing::Values(23, 24, 25, 26, 27, 28, 29, 30));
 
-TEST(FoundFiles, WhatTheHeaderLacksIsAskedForByOption) {
+TEST(FoundFiles, AsksForMissingHeaderValuesByOption) {
   RawCase c;
   std::string text = c.text();
   text.replace(0, text.find('\n'), "0, 100.0 / RAWD VER 33 EXPORT");
@@ -214,7 +214,7 @@ TEST(FoundFiles, ValuesThatCannotStandAreReplacedAndSaid) {
     EXPECT_THAT(places(n, what), ::testing::SizeIs(1)) << what;
 }
 
-TEST(FoundFiles, WholeNumbersMayHaveAPointAndNamesAnApostrophe) {
+TEST(FoundFiles, AcceptsIntegersWithPointAndNamesWithApostrophe) {
   RawCase c;
   c.buses.replace(0, 12, "101.0,'O'BRIEN / 1',");
   c.buses.erase(c.buses.find(" / 1',") + 6, 1);
@@ -239,7 +239,7 @@ TEST(FoundFiles, DevicesAreLeftOutOrTakenFromVoltagesThatAreNoSolutionIfAsked) {
   EXPECT_THAT(places(n, "left out, as asked"), ::testing::SizeIs(1));
 }
 
-TEST(FoundFiles, WhatAppearsASecondTimeIsLeftOutIfAsked) {
+TEST(FoundFiles, DropsRepeatedRecordsOnRequest) {
   RawCase c;
   c.buses += "103,'SOUTH',138.0,1,1,1,1,0.5,-8.7\n";
   c.loads += "103,'1',1,1,1,10.0,3.0\n";
@@ -303,7 +303,7 @@ TEST(FoundFiles, ARawxIsReadAsTheSameGrid) {
   EXPECT_EQ(b.loads[0].id, "1");
   EXPECT_EQ(b.generators[1].q, 0.0);
 }
-TEST(FoundFiles, WhatIsWrongInARawxIsNamedByTableAndRow) {
+TEST(FoundFiles, NamesTableAndRowOfRawxErrors) {
   std::string text = kRawx;
   text.replace(text.find("102, \"1\", 100.0"), 3, "109");
   EXPECT_THAT(sentences_of([&] { parse_raw(text, "case.rawx"); }),

@@ -112,7 +112,7 @@ TEST(PsseRaw, OmittedFieldsTakeTheDocumentedDefaults) {
   EXPECT_TRUE(n.branches[0].in_service);
 }
 
-TEST(PsseRaw, WhatIsOutOfServiceIsLeftOutOrMarked) {
+TEST(PsseRaw, OmitsOrMarksEquipmentOutOfService) {
   RawCase c;
   c.buses += "104,'GONE',138.0,4,1,1,1,1.0,0.0\n";
   c.loads += "103,'2',0,1,1,1,1,0,0,0,0,1\n104,'1',1,1,1,1,1,0,0,0,0,1\n";

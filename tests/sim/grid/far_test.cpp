@@ -102,7 +102,7 @@ TEST(FarControl, AnOpenBranchCarriesNothing) {
   EXPECT_GT(P[run.samples - 1], 1.05);
 }
 
-TEST(FarControl, WhatTheNetworkHasNotIsSaid) {
+TEST(FarControl, ReportsUnknownBusesAndBranches) {
   Control control;
   control.codes = "999 102 101 '1'";
   const Grid grid = load_from(behind_a_branch(), plants(control));

@@ -145,7 +145,7 @@ TEST(Grid, DyrReadsBackToTheLastBit) {
                 std::bit_cast<std::uint64_t>(grid.plants[k].machine.p[i]));
 }
 
-TEST(Grid, WhatBelongsIntoTheRawIsNotLostInSilence) {
+TEST(Grid, ReportsParametersThatBelongInTheRaw) {
   Grid grid = load({}, plain_dyr());
   grid.plants[0].machine.p[static_cast<std::size_t>(grid.plants[0].machine.effect->parameter_index("Xdp"))] =
       0.35;

@@ -72,7 +72,7 @@ TEST(LoadRecords, ReadBackToTheLastBit) {
   }
 }
 
-TEST(LoadRecords, WhatADyrCannotHoldIsNotLostInSilence) {
+TEST(LoadRecords, ReportsLoadsThatADyrCannotHold) {
   Grid grid = load_from({}, kPlants + "103 " + kMotor);
   const auto set = [&](const char* name, double value) {
     grid.loads[0].block.p[static_cast<std::size_t>(grid.loads[0].block.effect->parameter_index(name))] =

@@ -54,7 +54,7 @@ int rank(const InternalMatrix& of) {
   return found->rank;
 }
 
-TEST(LowRank, WhatAnEventChangesIsAFewProducts) {
+TEST(LowRank, UpdatesAnEventByLowRankProducts) {
   EXPECT_EQ(rank(matrix({})), 0);
   EXPECT_EQ(rank(matrix({.faults = {{4, {}}}})), 1);
   EXPECT_EQ(rank(matrix({.faults = {{4, {0.01, 0.1}}}})), 1);

@@ -87,7 +87,7 @@ std::string refusal(const std::string& text, Signals<double> s = test::ControlBe
   law.get<double>().prepare(p.data(), Conventions::psse(), c.data());
   return law.get<double>().control.steady(law.law.get(), p.data(), c.data(), s, x.data());
 }
-TEST(LawOperatingPoint, WhatCannotBeHeldIsRefusedWithASentence) {
+TEST(LawOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
   EXPECT_EQ(refusal(law_of("Efd", "replace", "value = \"3.5\"")),
             "it gives Efd = 3.5 pu where the machine needs 2 pu (a reference = \"solve\" would meet it)");
   EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"0.1 * V\"")),

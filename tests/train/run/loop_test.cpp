@@ -234,7 +234,7 @@ TEST(Training, AShareOfTheRowsTrainsAndTheSameOnesAreJudged) {
   EXPECT_EQ(part["test_rows"], whole["test_rows"]);
 }
 
-TEST(Training, WhatOtherSoftwareMadeIsToldApart) {
+TEST(Training, DistinguishesResultsOfOtherVersions) {
   const World world("maker");
   RunRequest r = request(world, "cnn", 1);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);

@@ -35,7 +35,7 @@ TEST(BlasKernels, HalfOfTheWidthIsNotEnough) {
   EXPECT_EQ(restart_with(kAvx2, "Sandybridge"), "HASWELL");
 }
 
-TEST(BlasKernels, WhatTheLibraryChoseWellStays) {
+TEST(BlasKernels, KeepsAGoodChoiceOfTheLibrary) {
   for (const char* core : {"SkylakeX", "Cooperlake", "SapphireRapids"})
     EXPECT_EQ(restart_with(kAvx512, core), "");
   for (const char* core : {"Haswell", "Zen"}) EXPECT_EQ(restart_with(kAvx2, core), "");
@@ -62,7 +62,7 @@ TEST(BlasKernels, TheProgramStartsAgainOnceOnly) {
   EXPECT_EQ(choose_blas_kernels(kAvx512, {"SkylakeX", "SKYLAKEX", "Prescott"}).warning, "");
 }
 
-TEST(BlasKernels, WhatTheProcessorCannotRunIsRefused) {
+TEST(BlasKernels, RefusesUnsupportedInstructionSets) {
   EXPECT_THROW(choose_blas_kernels(kAvx2, {"SkylakeX", "SKYLAKEX", ""}), InputError);
   EXPECT_THROW(choose_blas_kernels(kSse, {"Sandybridge", "SANDYBRIDGE", ""}), InputError);
   EXPECT_THROW(choose_blas_kernels(kAvx512, {"Piledriver", "PILEDRIVER", ""}), InputError);

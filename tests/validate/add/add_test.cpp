@@ -131,14 +131,14 @@ TEST(Add, FreesNothingThatTheRecordsDoNotAskFor) {
   EXPECT_EQ(a.own, static_cast<int>(exst1.free.size()));
 }
 
-TEST(Add, WhatIsNotThereDoesNotEarnItsPlace) {
+TEST(Add, RejectsAnAbsentEffect) {
   const plant::PlantModel model = example(true);
   const Addition a = add_effect(model, find_hypothesis(model, "GENROU:Ra"), records(model), power_only());
   EXPECT_FALSE(a.earns) << a.evidence;
   EXPECT_TRUE(a.adequate);
 }
 
-TEST(Add, WhatIsThereIsMissedWhereItIsTakenOut) {
+TEST(Add, NamesAnEffectThatWasRemoved) {
   const plant::PlantModel model = example(true);
   const Removal r = try_without(model, 0, records(model), power_only());
   EXPECT_EQ(r.effect, "SEXS");

@@ -96,7 +96,7 @@ TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
   EXPECT_FALSE(judge(wrong).adequate);
 }
 // Steps of 1 % of the machine without noise to blur them: a slow swing is rounded slowly.
-TEST(CompareTest, WhatARoundingHidesIsNoMisfit) {
+TEST(CompareTest, AllowsForQuantisation) {
   WithoutNoise coarse;
   const double step = 0.01 * coarse.model.plant.mva / 100;
   for (auto* power : {&coarse.record.P, &coarse.record.Q})
@@ -134,7 +134,7 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
 }
 // What the noise of P and Q in the fault and instants known to half a sample leave in V afterwards is no
 // misfit.
-TEST(CompareTest, WherePowerDrivesAFaultLeavesMoreDoubt) {
+TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
   plant::PlantModel model = example_model();
   model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
   const auto events = [&] {
@@ -280,7 +280,7 @@ TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
 /// A time constant of a hundredth of a sample takes more steps than a fit grants, and play-in has them.
-TEST(CompareTest, WhereTheFitCannotRunThePlayInStands) {
+TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
   RightModel right;
   right.model.plant.controls.push_back(
       {sim::library::compiled().find("TGOV1"), {0.5, 1e-4, 2.0, -1.0, 1.0, 10.0, 0.0, 0.0}});

@@ -133,7 +133,7 @@ TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
   EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("--component exciter")));
 }
 
-TEST(CompareComponentTest, WhatIsLeftOutIsSaidAndComesBack) {
+TEST(CompareComponentTest, ReportsAndRestoresOmittedBlocks) {
   plant::PlantModel model;
   model.plant.machine = test::standard_block("GENROU");
   for (const auto* name : {"TGOV1", "SEXS"})

@@ -124,7 +124,7 @@ TEST(Fitness, AMeanErrorCountsByItsSize) {
   EXPECT_THAT(f.sentence, HasSubstr("ME of P in the post-fault window"));
 }
 
-TEST(Fitness, WhatTheLimitsLeaveOutIsNotJudged) {
+TEST(Fitness, IgnoresChannelsWithoutLimits) {
   auto by = plain_limits();
   const auto e =
       event_off_by([](double t) { return (t > 1.0 && t < 1.025) || (t > 1.5 && t < 1.565) ? 1.0 : 0.0; });
@@ -157,7 +157,7 @@ TEST(Fitness, WithoutASwitchingNoWindowIsOfAFault) {
   EXPECT_THAT(both, testing::Not(HasSubstr("rest of record")));
 }
 
-TEST(Fitness, WhatIsNoNumberDoesNotFit) {
+TEST(Fitness, RejectsNaN) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const auto e = event_off_by([&](double t) { return t == 2.0 ? bad : 0.0; });

@@ -161,7 +161,7 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   EXPECT_EQ(j["missing_field_voltage"]["events"][0]["value_pu"][2], 0.8);
   EXPECT_TRUE(j["missing_torque"].is_null());
 }
-TEST(DiagnosisReportTest, WhatIsAddedLowersTheError) {
+TEST(DiagnosisReportTest, ErrorFallsWithTheAddedEffect) {
   const auto j = figures();  // an exciter, even fitted in haste, is nearer to the truth than none
   EXPECT_LT(j["after"]["normalised_rms"], j["before"]["normalised_rms"]);
 }
@@ -180,7 +180,7 @@ TEST(DiagnosisReportTest, AnAdequateModelNeedsNothingAdded) {
   EXPECT_FALSE(j["events"][0]["channels"][0].contains("map_after"));
   EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict good"));
 }
-TEST(DiagnosisReportTest, WhatNothingExplainsIsShownAsInput) {
+TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
   Diagnosis d = example().d;
   d.verdict = Verdict::unexplained;
   d.ranked.front().accepted = false;
@@ -242,7 +242,7 @@ TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
   EXPECT_EQ(told["found"], "LAW1");
   EXPECT_EQ(told["fitted"][1]["why_not"], "it worsens <ev3>");
 }
-TEST(DiagnosisReportTest, WhereNoLawHoldsThePageSaysSo) {
+TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   Diagnosis d = with_laws();
   d.laws.findings.erase(d.laws.findings.begin());
   const std::string html = diagnosis_html(example().model, d, {});

@@ -127,7 +127,7 @@ record::Record behind(double half, double on, double length, double V, double fe
 }
 /// One fault that looks sharp does not outweigh another that was plainly smeared, if their samples are more
 /// probable behind a window.
-TEST(FindSwitchings, WhereRecordsDisagreeTheirSamplesDecide) {
+TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
   const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
   ASSERT_EQ(jumps_of({looks_sharp}, playin::kJumpThreshold), Jumps::sharp);

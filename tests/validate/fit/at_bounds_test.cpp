@@ -36,7 +36,7 @@ struct Bounded {
   }
 };
 
-TEST(AtBounds, WhatIsDrawnBeyondABoundIsHeldThere) {
+TEST(AtBounds, ClampsDrawsToTheBounds) {
   Bounded valley(1, 0, 1.0, {});
   ASSERT_GT(valley.solve(), 1.0) << "the bound was meant to stop the search";
   ASSERT_TRUE(valley.bounds.hold());
@@ -44,7 +44,7 @@ TEST(AtBounds, WhatIsDrawnBeyondABoundIsHeldThere) {
   EXPECT_NEAR(valley.at[1], 3, 1e-6);
   EXPECT_FALSE(valley.bounds.hold()) << "the same is held";
 }
-TEST(AtBounds, WhatNeverMovesStays) {
+TEST(AtBounds, KeepsFixedParameters) {
   Bounded valley(0.5, 1, 1.0, {0});
   valley.solve();
   EXPECT_EQ(valley.at[0], 0.5);

@@ -70,7 +70,7 @@ TEST(Lines, NoiseHoldsNone) {
     EXPECT_LT(strongest_line(c.fit, c.events).explains, thresholds::adequacy.line / 2) << seed;
   }
 }
-TEST(Lines, WhatIsTooShortForTwoPeriodsIsNotLookedAt) {
+TEST(Lines, IgnoresLinesWithFewerThanTwoPeriods) {
   Residuals c = with_wave(0.2, 0.37, 1);
   std::vector<event::FitEvent> events(c.events.begin(), c.events.end());
   std::vector<event::EventNoise> noise(5, c.events.noise(0));

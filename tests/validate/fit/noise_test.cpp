@@ -159,13 +159,13 @@ TEST(VoltageNoise, AfterAFifthOfASecondTheCalmPartsTellIt) {
   EXPECT_LT(found.doubt[1], 0.05);  // six lines alone tell it to 0.6
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
-TEST(VoltageNoise, WhatAMeanAndASlopeTakeOfAShortStretchIsCounted) {
+TEST(VoltageNoise, CorrectsForMeanAndTrendOfShortSegments) {
   const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no second that could be calm
   const VoltageNoise found = voltage_noise(c.fit, c.events);
   EXPECT_LT(found.doubt[1], 0.04);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be gone
 }
-TEST(VoltageNoise, WhatThePlantAnswersIsNoNoise) {
+TEST(VoltageNoise, ExcludesThePlantsResponse) {
   const Case c = moving(0, true);
   EXPECT_LT(voltage_noise(c.fit, c.events).share, 0.05);
 }

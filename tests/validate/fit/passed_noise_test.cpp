@@ -43,11 +43,11 @@ TEST_F(PassedNoiseTest, AWholeSamplePassesAsMuch) {
 TEST_F(PassedNoiseTest, ALargerReactancePassesLess) {
   EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * passed_.own());
 }
-TEST_F(PassedNoiseTest, WhatCannotBeRunCountsAsPassingAsMuch) {
+TEST_F(PassedNoiseTest, AssumesFullNoiseTransferWhenSimulationFails) {
   EXPECT_EQ(less_with(with_reactance(std::nan(""))), 0.0);
 }
 
-TEST_F(PassedNoiseTest, WhatPassingLessTakesOffIsCountedBackInEveryCost) {
+TEST_F(PassedNoiseTest, AddsLowerNoiseTransferBackToEveryCost) {
   Fit f = example_.fitted({"H"}, {.iterations = 0});
   f.plant = with_reactance(1.1);
   const double evidence = criterion(f), data = data_cost(f), searched = penalised(f);
@@ -57,7 +57,7 @@ TEST_F(PassedNoiseTest, WhatPassingLessTakesOffIsCountedBackInEveryCost) {
   EXPECT_DOUBLE_EQ(data_cost(f), data + f.passes_less);
   EXPECT_EQ(penalised(f), searched) << "a search minimises what is there";
 }
-TEST_F(PassedNoiseTest, WhatPassesMoreIsNotCredited) {
+TEST_F(PassedNoiseTest, GivesNoCreditForHigherNoiseTransfer) {
   Fit f = example_.fitted({"H"}, {.iterations = 0});
   f.plant = with_reactance(0.9);
   count_passed(&passed_, example_.model.conventions, f);

@@ -131,7 +131,7 @@ records = ["no-record.csv", "none*.csv"]
   EXPECT_FALSE(fs::exists(folder / "out/.a.part"));
 }
 
-TEST_F(FleetFiles, WhatNoFleetHasWrittenIsNotReplaced) {
+TEST_F(FleetFiles, KeepsForeignFiles) {
   const Fleet fleet =
       load_fleet(write("fleet.toml", "[plant.a]\nmodel = \"m.toml\"\nrecords = [\"e.csv\"]\n"));
   fs::create_directories(folder / "out/a");

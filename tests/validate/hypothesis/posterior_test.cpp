@@ -42,7 +42,7 @@ TEST(Posterior, AFreeInputThatExplainsMoreIsNoneOfThese) {
   EXPECT_EQ(all.front().name, kNoneOfThese);
   EXPECT_GT(all.front().probability, 0.99);
 }
-TEST(Posterior, WhereNothingWorksTheModelIsRight) {
+TEST(Posterior, FallsBackToNothingMissing) {
   const auto all = posterior({{kNothingMissing, 0}, {"A", -60, 0}, {"B", -85, 1}}, -250);
   EXPECT_EQ(all.front().name, kNothingMissing);
   EXPECT_GT(all.front().probability, 0.99);

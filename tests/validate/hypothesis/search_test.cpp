@@ -119,7 +119,7 @@ TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
       EXPECT_EQ(start[static_cast<std::size_t>(at - j.hypothesis.free.begin())], 0.07);
   }
 }
-TEST_F(Exchange, WhatHoldsAloneIsARivalTooAndStartsAsItWasFound) {
+TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   Judgement holds = alone("CTERROR", 0.01), does_not = alone("PTERROR", 0.01);
   holds.accepted = true;
@@ -148,7 +148,7 @@ class Crossing : public Exchange {
     return j;
   }
 };
-TEST_F(Crossing, WhatTwoEffectsTakeOffAddsUp) {
+TEST_F(Crossing, AddsReductionsOfTwoEffects) {
   std::vector<Judgement> pairs = {pair("GGOV1", "IEEET1", 100), pair("EXAC1", "GGOV1", 80),
                                   pair("EXAC1", "IEEEG1", 75), pair("EXAC1", "HYGOV", 60)};
   const auto best = best_cross(pairs);

@@ -54,13 +54,13 @@ TEST_F(CanRun, EveryInstrumentIsAsked) {
   value(plant.measurements.back(), "gain") = -2;  // nothing of the current is left
   refuse();
 }
-TEST_F(CanRun, WhatNoMachineHasMayRun) {
+TEST_F(CanRun, AcceptsUnusualMachines) {
   const sim::plant::Plant given = plant;
   value(plant.machine, "Xqp") = 1.01 * value(plant.machine, "Xq");  // X'q above Xq
   EXPECT_TRUE(can_run(plant));
   EXPECT_FALSE(can_exist_beside(plant, given));
 }
-TEST_F(CanRun, WhatIsGivenMayStayAndNothingElseMayCome) {
+TEST_F(CanRun, AllowsOnlyTheGivenUnusualValues) {
   sim::plant::Plant given = plant;
   value(plant.machine, "Xl") = 1.1 * value(plant.machine, "Xdpp");
   EXPECT_FALSE(can_exist_beside(plant, given));

@@ -67,7 +67,7 @@ TEST_F(DrivenTogether, AnswersAsEachByItself) {
     }
   }
 }
-TEST_F(DrivenTogether, WhereNoneCanStandThereIsNoAnswer) {
+TEST_F(DrivenTogether, ReturnsNothingForInfeasibleOperatingPoints) {
   auto all = plants(3);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
   std::vector<Drive> runs;

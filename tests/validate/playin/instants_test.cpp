@@ -16,7 +16,7 @@ TEST(Leaves, OneSampleAloneIsNoise) {
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.3, .in_a_row = 1}), 2U);
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.3, .from = 3, .in_a_row = 1}), 4U);
 }
-TEST(Leaves, WhatStaysGivesTheLength) {
+TEST(Leaves, ReturnsTheLengthWithoutADeparture) {
   const std::vector<double> signal = {1, 1, 1.25, 1.25};
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.25}), 4U);  // as far off as the reach is not further
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.2, .from = 3}), 4U);  // one sample is left

@@ -109,7 +109,7 @@ TEST_F(LinearSlopesTest, WithFastFeedbackAndNoise) {
   parameter("EXST1", "TF") = 0.1;
   EXPECT_LT(worst(all()), 0.06);
 }
-TEST_F(LinearSlopesTest, WhereTimesAreFarBelowASample) {
+TEST_F(LinearSlopesTest, AgreesForTimeConstantsFarBelowASample) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
   parameter("SEXS", "TE") = 2e-4;
   EXPECT_LT(worst(all()), 0.03);

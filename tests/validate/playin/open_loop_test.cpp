@@ -42,7 +42,7 @@ TEST(OpenLoop, AnswersAsThePlantDid) {
 }
 
 /// A plant that cannot stand at the start leaves its column empty, and the others as they were.
-TEST(OpenLoop, WhatCannotStandLeavesTheOthersAlone) {
+TEST(OpenLoop, IsolatesInfeasibleMembersOfABatch) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
   const auto seen = event::seen_along(example.model.under_test(), e, {});

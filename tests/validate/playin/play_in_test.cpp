@@ -211,7 +211,7 @@ record::Record before_an_event(double (*angle)(double t)) {
   return r;
 }
 
-TEST(PlayInTest, WhereTheGridSlowsDownThePlantStartsOnTheCourse) {
+TEST(PlayInTest, StartsOnTheTrajectoryOfADriftingGrid) {
   const record::Record r = before_an_event([](double t) { return 0.3 + 0.02 * t - 0.004 * t * t; });
   const OperatingPoint start = pre_event_point(r, {{10.0, 0.0}}, 1.0);
   EXPECT_NEAR(start.drift, 0.02, 1e-5);

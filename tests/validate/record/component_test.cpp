@@ -70,7 +70,7 @@ TEST(ComponentRecordTest, FieldQuantitiesHaveBasesOfTheirOwn) {
       1e-12);
 }
 
-TEST(ComponentRecordTest, WhatIsNotAskedForNeedsNoBase) {
+TEST(ComponentRecordTest, NeedsNoBaseForUnusedColumns) {
   const ReadOptions options{.component = Component::exciter, .needed = {{"V"}, {"Efd"}}};
   const Record r = parse_record(table("V_pu,Efd_pu,Ifd_A", "1,2,900"), "x.csv", {}, options);
   EXPECT_TRUE(r.Ifd.empty());

@@ -52,7 +52,7 @@ TEST(ColumnMapTest, GoesBeforeWhatTheNamesSay) {
                           [](int k) { return fmt::format("{:.7f},1.02,10,0.7,0.1,0.4", k / 60.0); });
   expect_values(parse_record(text, "r.csv", kTestBase, {.columns = {{"P", "net_P_pu"}}}));
 }
-TEST(ColumnMapTest, WhatItNamesMustBeThere) {
+TEST(ColumnMapTest, RefusesMissingColumns) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,10,0.4,0.1", k / 60.0); });
   EXPECT_THAT(field_faults(text, {.columns = {{"V", "U12"}}}),
@@ -397,7 +397,7 @@ TEST(StampTest, UtcIsKept) {
 
 // ---- files that are no CSV
 
-TEST(FormatTest, WhatIsNotReadIsNamed) {
+TEST(FormatTest, NamesIgnoredColumns) {
   const auto of = [](const std::string& bytes, const std::string& name) {
     return test::messages([&] { parse_record(bytes, name, kTestBase); });
   };

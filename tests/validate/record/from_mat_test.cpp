@@ -149,7 +149,7 @@ TEST_P(RecordMatTest, SignalsWithTimesOfTheirOwnShareThem) {
   EXPECT_THAT(complaints(), ElementsAre(AllOf(HasSubstr("different times"), HasSubstr("synchronize"))));
 }
 
-TEST_P(RecordMatTest, WhatWasSeenIsListed) {
+TEST_P(RecordMatTest, ListsVariablesOfTheFile) {
   write({vector_of("bus7", column_of(1)), text_variable("comment", "line trip")});
   EXPECT_THAT(complaints(), ElementsAre(AllOf(HasSubstr("no time vector"), HasSubstr("bus7 (90x1)"),
                                               HasSubstr("comment (1x9)"))));

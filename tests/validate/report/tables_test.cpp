@@ -128,7 +128,7 @@ TEST_F(TablesTest, PutsEachCellBesideThesisAndBaseline) {
   EXPECT_THAT(score_table(blocks[0]).caption,
               AllOf(HasSubstr("seed 1"), HasSubstr("6000 rows"), HasSubstr("quick")));
 }
-TEST_F(TablesTest, WhatTheThesisHasNotStandsBesideItsBest) {
+TEST_F(TablesTest, ShowsMethodsBeyondTheThesisBesideItsBest) {
   auto gru = result("IV", "closed-form", 0, 0.001);
   gru["epochs"] = 0;
   write("a", gru);

@@ -10,7 +10,7 @@ Forecast forecast(double first, bool right, bool listed = true) {
   return {"P, Q only", {first, 1 - first}, {static_cast<char>(right), static_cast<char>(!right)}, listed};
 }
 
-TEST(Reliability, WhatIsTrueEightTimesInTenIsRightAtEighty) {
+TEST(Reliability, CountsEightOfTenAsEightyPerCent) {
   std::vector<Forecast> all;
   for (int k = 0; k < 10; ++k) all.push_back(forecast(0.8, k < 8));
   const Reliability r = reliability(all);
