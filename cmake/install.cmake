@@ -1,4 +1,5 @@
-# cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion.
+# cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion, and
+# the library (export.cmake).
 # Nothing is built. What is made from the programs' --help comes first, so that nothing is installed where that fails.
 get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS)
 set(made ${PROJECT_BINARY_DIR}/from_help)
@@ -28,3 +29,4 @@ foreach(readme ${readmes})
 endforeach()
 # The chart library is part of programs and reports; its licence asks for this notice.
 install(FILES ${DYGRAPHS_COPYRIGHT} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME dygraphs.copyright)
+swingbank_install_package()

@@ -1,14 +1,15 @@
 # A room is a folder with one purpose. It becomes a target `swingbank_<path with _ for />`, its namespace is its path,
 # its tests lie in tests/<path>.
-#   swingbank_room(validate/fit [KIND hot|cold|train] [USES room...] [INSIDE room...] [LINK target...] [SOURCES file...])
+#   swingbank_room(validate/fit [INTERNAL] [KIND hot|cold|train] [USES room...] [INSIDE room...] [LINK target...] [SOURCES file...])
 # USES: rooms whose headers this room's public headers include. INSIDE: rooms that only its sources include.
 # KIND: `hot` (default) is optimised as far as the compiler goes; `cold` is not worth it (readers, reports, commands);
 # `train` reads LibTorch's headers.
+# INTERNAL: not part of the installed library (find_package(swingbank)), which has every other module with its public headers.
 # What is in <room>/detail/ is private: nobody else can include it. Each room has two include roots in the build folder,
 # made of links: `public` holds its public headers, `own` the whole room. A target sees its own room and the public
 # headers of the rooms it names, so any other include does not compile.
 function(swingbank_room path)
-  cmake_parse_arguments(A "" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
+  cmake_parse_arguments(A "INTERNAL" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
   string(REPLACE / _ name ${path})
   set(room swingbank_${name})
   set(folder ${PROJECT_SOURCE_DIR}/${path})
@@ -34,14 +35,17 @@ function(swingbank_room path)
   if(sources)
     add_library(${room} STATIC ${sources})
     target_include_directories(${room} BEFORE PRIVATE ${roots}/own)
-    target_include_directories(${room} PUBLIC ${roots}/public)
+    target_include_directories(${room} PUBLIC $<BUILD_INTERFACE:${roots}/public>)
     target_link_libraries(${room} PUBLIC swingbank_options ${A_USES} ${A_LINK} PRIVATE swingbank_${A_KIND} ${A_INSIDE})
     swingbank_precompile(${room} ${A_KIND})
   else()
     add_library(${room} INTERFACE)
-    target_include_directories(${room} INTERFACE ${roots}/public)
+    target_include_directories(${room} INTERFACE $<BUILD_INTERFACE:${roots}/public>)
     target_link_libraries(${room} INTERFACE swingbank_options ${A_USES} ${A_LINK})
   endif()
   set_property(GLOBAL APPEND PROPERTY SWINGBANK_ROOMS ${room})
+  if(NOT A_INTERNAL)
+    swingbank_export(${room} ${path} ${headers})
+  endif()
   set_property(TARGET ${room} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
 endfunction()

@@ -1,36 +1,41 @@
 # Compiler flags, and how a command is declared.
+# swingbank_options holds what programs that link the installed library need too, because Eigen's alignment and inline
+# functions depend on it. swingbank_build holds the rest.
 add_library(swingbank_options INTERFACE)
-target_compile_options(swingbank_options INTERFACE -Wall -Wextra -Wshadow
-  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> # lets ccache work beside precompiled headers
-  -fno-math-errno -fno-trapping-math)
+add_library(swingbank_build INTERFACE)
+target_link_libraries(swingbank_options INTERFACE $<BUILD_INTERFACE:swingbank_build>)
+target_compile_features(swingbank_options INTERFACE cxx_std_20)
+target_compile_options(swingbank_options INTERFACE -fno-math-errno -fno-trapping-math)
+target_compile_options(swingbank_build INTERFACE -Wall -Wextra -Wshadow
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # lets ccache work beside precompiled headers
 # Events, hypotheses and ranks share the cores; Eigen's own threads would spin beside them.
 target_compile_definitions(swingbank_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # GCC 12 warns falsely of its own headers once they are precompiled: avx512fintrin.h wherever Eigen multiplies matrices
 # (GCC bug 105593), std::string wherever two are joined (bug 105329). clang (tests/fuzz, clang-tidy) looks there too.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(swingbank_options INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds
+  target_compile_options(swingbank_build INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds
     -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
 endif()
 if(SWINGBANK_ARCH)
   target_compile_options(swingbank_options INTERFACE -march=${SWINGBANK_ARCH})
 endif()
 if(SWINGBANK_COUNT_FLOPS)
-  target_compile_definitions(swingbank_options INTERFACE SWINGBANK_COUNT_FLOPS)
+  target_compile_definitions(swingbank_build INTERFACE SWINGBANK_COUNT_FLOPS)
 endif()
 if(SWINGBANK_WERROR)
-  target_compile_options(swingbank_options INTERFACE -Werror)
+  target_compile_options(swingbank_build INTERFACE -Werror)
 endif()
 # LLVM's linker where it is there: the same programs in a fifth of the time. It knows nothing of GCC's link-time optimisation.
 find_program(LLD ld.lld)
 if(LLD AND NOT SWINGBANK_ODR)
-  target_link_options(swingbank_options INTERFACE -fuse-ld=lld)
+  target_link_options(swingbank_build INTERFACE -fuse-ld=lld)
 endif()
 if(SWINGBANK_SANITIZE)
   target_compile_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(swingbank_options INTERFACE -fsanitize=${SWINGBANK_SANITIZE})
 endif()
 if(SWINGBANK_FUZZ)
-  target_compile_options(swingbank_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined -Wno-psabi)
+  target_compile_options(swingbank_build INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined -Wno-psabi)
 endif()
 
 # Three kinds of sources: `hot` is simulation and fitting; `cold` reads, writes and talks; `train` is LibTorch's. Cold is

@@ -1,0 +1,6 @@
+# find_package(swingbank): see export.cmake for the targets that it defines.
+if(NOT CMAKE_C_COMPILER_LOADED)
+  enable_language(C) # for the searches of MPI and HDF5
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/swingbankTargets.cmake)

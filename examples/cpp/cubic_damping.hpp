@@ -1,0 +1,30 @@
+#pragma once
+// CUBEDAMP: damping by the cube of the speed, an effect that Swingbank does not have.
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim {
+
+struct CubicDamping {  // Tm = Tm - K w^3 (w: speed deviation)
+  static constexpr std::string_view name = "CUBEDAMP", title = "cubic damping", source = "example",
+                                    description = "Tm = Tm - K w^3";
+  static constexpr Slot slot = Slot::shaft;
+  static constexpr Source standards_from = literature::own("example"), bounds_from = standards_from;
+  static constexpr Parameter parameters[] = {{"K", "K", "pu", 1e4, 0, 1e7, 0, "torque at w = 1"}};
+  enum { coefficients = 1 };
+  static void check(const double*, const std::string&, Problems&) {}
+  static std::string_view unphysical(const double*) { return {}; }
+  template <class T>
+  static void prepare(const T* p, const Conventions&, T* c) {
+    c[0] = p[0];
+  }
+  template <class T>
+  static void evaluate(const T* c, const T*, Signals<T>& s, T*) {
+    s.Tm -= c[0] * s.speed * s.speed * s.speed;
+  }
+  template <class T>
+  static std::string steady(const T*, T*, Signals<T>&, T*) {
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim
