@@ -1,6 +1,7 @@
 #include "train/posterior/coverage.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -87,8 +88,8 @@ double Ranks::chi_square() const {
 }
 
 double Ranks::by_chance() const {
-  constexpr double k = kRankBins - 1, spread = 2.0 / (9.0 * k);
-  return normal_cdf(-(std::cbrt(chi_square() / k) - (1.0 - spread)) / std::sqrt(spread));
+  const boost::math::chi_squared distribution(kRankBins - 1);
+  return boost::math::cdf(boost::math::complement(distribution, chi_square()));
 }
 
 double Ranks::largest_distance() const {

@@ -19,7 +19,7 @@ struct Ranks {
   [[nodiscard]] std::size_t rows() const;
   /// Of the counts about equal ones; kRankBins - 1 degrees of freedom.
   [[nodiscard]] double chi_square() const;
-  /// Probability of a chi-square as large or larger by chance (Wilson and Hilferty 1931).
+  /// Probability of a chi-square as large or larger by chance.
   [[nodiscard]] double by_chance() const;
   /// Largest distance of the summed counts from the diagonal, as a share of the rows.
   [[nodiscard]] double largest_distance() const;

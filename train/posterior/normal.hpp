@@ -1,6 +1,5 @@
 #pragma once
 // The standard normal distribution and its inverse.
-#include <algorithm>
 #include <cmath>
 
 namespace swingbank::train::posterior {
@@ -12,18 +11,7 @@ inline double normal_density(double z) {
 
 inline double normal_cdf(double z) { return 0.5 * std::erfc(-z * std::sqrt(0.5)); }
 
-/// Of p in (0, 1); beyond 1e-12 of the ends it stays there. Newton's method in the logarithm of the tail.
-inline double normal_quantile(double p) {
-  constexpr double kTail = 1e-12;
-  const double tail = std::clamp(std::min(p, 1.0 - p), kTail, 0.5);
-  double z = -std::sqrt(-2.0 * std::log(2.0 * tail));  // below the root for every tail
-  for (int i = 0; i < 30; ++i) {
-    const double found = normal_cdf(z);
-    const double step = std::log(found / tail) * found / normal_density(z);
-    z -= step;
-    if (std::abs(step) < 1e-13) break;
-  }
-  return p < 0.5 ? z : -z;
-}
+/// Inverse of normal_cdf; p is clamped to [1e-12, 1 - 1e-12].
+double normal_quantile(double p);
 
 }  // namespace swingbank::train::posterior

@@ -5,6 +5,7 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 
@@ -162,15 +163,9 @@ std::string command_of(const FleetPlant& plant, const std::vector<std::string>& 
 }  // namespace
 
 double chance_of(double fall, int added, int hypotheses) {
-  double chance = 0;
-  if (added <= 0) {
-    chance = std::exp(-std::max(fall, 0.0) / 2);
-  } else {
-    const double x = std::max(fall, 0.0);
-    chance = added % 2 == 1 ? std::erfc(std::sqrt(x / 2)) : std::exp(-x / 2);
-    for (double k = added % 2 == 1 ? 1 : 2; k < added; k += 2)
-      chance += std::exp(k / 2 * std::log(x / 2) - x / 2 - std::lgamma(k / 2 + 1));
-  }
+  using boost::math::chi_squared;
+  const double x = std::max(fall, 0.0);
+  const double chance = added <= 0 ? std::exp(-x / 2) : cdf(complement(chi_squared(added), x));
   return std::min(1.0, chance * hypotheses);
 }
 

@@ -35,6 +35,7 @@ class Swingbank(CMakePackage):
     depends_on("mpi")
     depends_on("hdf5@1.10:1.14 +mpi")
     depends_on("eigen@3.4:3")
+    depends_on("boost@1.74: +math")
     depends_on("ceres-solver@2.1:")
     depends_on("sundials@6.4:6 +klu +ida +cvodes")
     depends_on("suite-sparse")

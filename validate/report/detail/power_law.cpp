@@ -1,26 +1,9 @@
 #include "validate/report/detail/power_law.hpp"
 
-#include <array>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <cstddef>
-
-#include "base/constants.hpp"
 
 namespace swingbank::validate::report {
-namespace {
-
-/// A variable of Student's distribution stays within so much of 0, on both sides, with a probability of 95 %.
-double student95(std::size_t freedom) {
-  static constexpr std::array<double, 10> kQuantiles = {12.706, 4.303, 3.182, 2.776, 2.571,
-                                                        2.447,  2.365, 2.306, 2.262, 2.228};
-  if (freedom <= kQuantiles.size()) return kQuantiles.at(freedom - 1);
-  const double z = constants::normal95, v = static_cast<double>(freedom);
-  return z +
-         (z * z * z + z) / (4 * v);  // Cornish and Fisher's first term: 2.195 for 11, where 2.201 is right
-}
-
-}  // namespace
-
 PowerLaw::PowerLaw(const std::vector<std::pair<double, double>>& points) {
   n_ = static_cast<double>(points.size());
   for (const auto& [x, y] : points) x_ += std::log(x) / n_, y_ += std::log(y) / n_;
@@ -32,7 +15,8 @@ PowerLaw::PowerLaw(const std::vector<std::pair<double, double>>& points) {
   slope_ = xy / xx_;
   double left = 0;
   for (const auto& [x, y] : points) left += std::pow(std::log(y) - std::log(at(x)), 2);
-  reach_ = student95(points.size() - 2) * std::sqrt(left / (n_ - 2));
+  const boost::math::students_t student(n_ - 2);
+  reach_ = boost::math::quantile(student, 0.975) * std::sqrt(left / (n_ - 2));
 }
 
 Interval PowerLaw::exponent_interval() const {
