@@ -12,7 +12,8 @@ inline double normal_density(double z) {
 
 inline double normal_cdf(double z) { return 0.5 * std::erfc(-z * std::sqrt(0.5)); }
 
-/// Of p in (0, 1); beyond 1e-12 of the ends it stays there. Newton's method in the logarithm of the tail.
+/// Returns the quantile of p in (0, 1), clamped to [1e-12, 1 - 1e-12]. Newton's method on the logarithm of
+/// the tail.
 inline double normal_quantile(double p) {
   constexpr double kTail = 1e-12;
   const double tail = std::clamp(std::min(p, 1.0 - p), kTail, 0.5);
