@@ -1,6 +1,6 @@
 #pragma once
-// Interface of an effect (a dynamic model component), one header in sim/effects each. The header declares a
-// `struct Model` with
+// Interface of an effect: a dynamic model component, defined by one header in sim/effects. The header
+// declares a `struct Model` with
 //   name, title, source, slot     identity, source of the equations, place in the plant
 //   description                   block diagram and equations as text; printed by `swingbank effects NAME`
 //   parameters[], states[]        one record each; the only declaration of a parameter

@@ -1,6 +1,6 @@
 #pragma once
 // A trained network with everything that an estimate needs: input and its normalisation, weights, and errors
-// on its validation rows. One sealed file beside the result's JSON.
+// on its test rows. One sealed file beside the result's JSON.
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -19,7 +19,7 @@ namespace swingbank::train::run {
 struct EstimatedParameter {
   std::string name, unit, effect;  ///< "SEXS.K", "pu", "SEXS"
   double low = 0.0, high = 0.0;    ///< sampling box; equal: constant, not learnt
-  double bias = 0.0;               ///< mean of estimate minus truth on validation rows [unit]
+  double bias = 0.0;               ///< mean of estimate minus truth on test rows [unit]
   double spread = 0.0;             ///< root mean square of estimate minus truth [unit]
 };
 
@@ -64,8 +64,7 @@ struct NetworkParts {
 
 /// Returns "V-cnn-quick-seed1-gen30.network" beside the result.
 std::filesystem::path network_file(const std::filesystem::path& result);
-/// Evaluates the network on its validation rows and writes it. Throws InputError if the file cannot be
-/// written.
+/// Evaluates the network on its test rows and writes it. Throws InputError if the file cannot be written.
 void save_network(const std::filesystem::path& file, const NetworkParts& parts, networks::Network& network);
 
 class SavedNetwork {

@@ -1,5 +1,5 @@
 #pragma once
-// Unreduced differential-algebraic system of one segment, F(t, y, y') = 0 with
+// Unreduced differential-algebraic system of one segment. It is F(t, y, y') = 0 with
 //   y = [ states of plant 0, plant 1, ..., load 0, ... | Vr, Vi of bus 0, bus 1, ... ]
 //   states:  x' - f(t, x, V) = 0
 //   buses:   Y V - sum of the units' currents = 0 [pu on base_mva];  V = 0 at bolted faults and at buses
