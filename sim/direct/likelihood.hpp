@@ -39,7 +39,7 @@ bool has_likelihood(const Effect& machine);
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
 /// Returns the best estimate from several starts: the candidates, the prior's mean, then random draws, until
-/// the reduced chi-square confirms one.
+/// two starts agree in cost.
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
