@@ -1,5 +1,6 @@
 #pragma once
-// The quantities a run records for each plant. One list: simulator, shards, trainer and reports read it.
+// Quantities that a simulation records for each plant. The simulator, the shards, the training and the
+// reports share this one list.
 #include <array>
 #include <string_view>
 
@@ -10,7 +11,7 @@ struct ChannelRecord {
   Channel channel;
   std::string_view name, unit, meaning;
 };
-/// Per unit on the machine's own base.
+/// Channels in per unit on the machine's own base.
 inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::delta, "delta", "rad", "rotor angle in the synchronous frame"},
     {Channel::speed, "speed", "pu", "speed deviation"},
@@ -23,7 +24,7 @@ inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::Tm, "Tm", "pu", "mechanical torque, or power where the convention says so"},
 }};
 inline constexpr int kChannelCount = static_cast<int>(kChannels.size());
-/// nullptr if there is none of that name.
+/// Returns the record of the channel with this name, nullptr if there is none.
 constexpr const ChannelRecord* find_channel(std::string_view name) {
   for (const auto& c : kChannels)
     if (c.name == name) return &c;

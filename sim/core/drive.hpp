@@ -1,22 +1,22 @@
 #pragma once
-// What is imposed at given times: the shapes the disturbance drives are made of. Their instants must be named
-// by instants(); up to the first one a drive adds exactly nothing, because effects never see a later time
-// (kBeforeSwitching).
+// Time functions of disturbances: step, pulse and ramp. Each effect must declare their start and end in
+// instants(). Before the first of these switching times the functions return exactly 0, because an effect is
+// never evaluated at a later time (`kBeforeSwitching`).
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {
 
-/// `value` from t = start on, 0 before.
+/// Step: `value` from t = start on, 0 before.
 template <class T>
 inline T from(const T& t, const T& start, const T& value) {
   return select(t < start, T(0.0), value);
 }
-/// `value` from t = start on until just before t = end.
+/// Pulse: `value` for start <= t < end, else 0.
 template <class T>
 inline T between(const T& t, const T& start, const T& end, const T& value) {
   return select(t < end, from(t, start, value), T(0.0));
 }
-/// From 0 at t = start in a straight line to 1 at t = start + duration; duration 0: a step.
+/// Ramp from 0 at t = start to 1 at t = start + duration; duration 0 gives a step.
 template <class T>
 inline T ramp(const T& t, const T& start, const T& duration) {
   const auto sloped = duration > T(0.0);

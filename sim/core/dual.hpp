@@ -1,5 +1,6 @@
 #pragma once
-// Dual<T, N>: a value and its derivatives along N directions (forward mode). T is double or a Pack.
+// Dual<T, N>: a value and its derivatives with respect to N parameters (forward-mode automatic
+// differentiation). T is double or a Pack.
 #include <array>
 #include <cmath>
 
@@ -12,7 +13,7 @@ struct Dual {
   T a{};
   std::array<T, N> d{};
   Dual() = default;
-  Dual(double x) : a(x) { d.fill(T(0.0)); }  // NOLINT(google-explicit-constructor): a constant
+  Dual(double x) : a(x) { d.fill(T(0.0)); }  // a constant
 
   friend Dual operator+(const Dual& x, const Dual& y) {
     Dual r;
@@ -45,7 +46,7 @@ struct Dual {
   friend auto operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }
 };
 
-/// f(x) and f'(x) known: the dual of f.
+/// Returns the dual of f(x) from f(x) and `slope` = f'(x) by the chain rule.
 template <class T, int N>
 inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& slope) {
   Dual<T, N> r;

@@ -1,25 +1,26 @@
 #pragma once
-// The effect contract: what one header in sim/effects says of its effect. It declares a `struct Model` with
-//   name, title, source, slot     what it is, where its equations come from, where it sits
-//   description                   block diagram and equations as text; `swingbank effects NAME` prints it
-//   parameters[], states[]        one record each; nowhere else is a parameter declared
-//   standards_from, bounds_from   where the numbers of those records come from that do not say it themselves
+// Interface of an effect: a dynamic model component, defined by one header in sim/effects. The header
+// declares a `struct Model` with
+//   name, title, source, slot     identity, source of the equations, place in the plant
+//   description                   block diagram and equations as text; printed by `swingbank effects NAME`
+//   parameters[], states[]        one record each; the only declaration of a parameter
+//   standards_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
-//   check(), unphysical()         singular values (refused always), orderings (refused in physical draws)
-//   prepare<T>()                  parameters -> coefficients, so that no division stays in the loop
-//   the equations of its kind     MachineOps, ControlOps, TransformerOps or LoadOps below
+//   check(), unphysical()         singular values (always refused), orderings (refused in physical draws)
+//   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
+//   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
-//   converter                     of a source, optional: true where it is a controlled current
-//   at_shunt                      of a load, optional: layout of its .dyr records, of switched shunts
-//   publish<T>()                  of a control, optional: signals that are states, before the evaluation
+//   converter                     of a source, optional: true for a controlled current source
+//   at_shunt                      of a load, optional: layout of its .dyr records of switched shunts
+//   publish<T>()                  of a control, optional: outputs that are states, written before evaluation
 //   afterwards<T>()               of a control, optional: derivatives that need the field voltage
-//   guards, guard<T>()            of a control, optional: what passes zero where its derivatives jump
-//   remark()                      optional: what its values ask for and the equations leave out
-//   elsewhere                     of a plant control, optional: parameters that say where it measures
-//   instants()                    optional: when its equations jump in time
-//   closed_form()                 of a machine, optional: its parameters from a record, without a search
-//   measure(), memory()           of a measurement: what it makes of the phasors, and how far it reaches
-// CMake finds the header and writes the registry; nothing is edited. T runs over `Scalars`.
+//   guards, guard<T>()            of a control, optional: functions with zeros where its derivatives jump
+//   remark()                      optional: warning about values that ask for unmodelled behaviour
+//   elsewhere                     of a plant control, optional: parameters that name its measuring point
+//   instants()                    optional: switching times of its equations
+//   closed_form()                 of a machine, optional: parameters from a record, without a search
+//   measure(), memory()           of a measurement: its operation on phasors, and its reach in time
+// CMake finds the header and generates the registry. T runs over `Scalars`.
 #include <algorithm>
 #include <array>
 #include <complex>
@@ -38,24 +39,23 @@
 
 namespace swingbank::sim {
 
-/// Where an effect sits in a plant; from `compensator` to `shaft` also the order in which the controls are
-/// evaluated.
+/// Place of an effect in a plant. From `compensator` to `shaft` also the evaluation order of the controls.
 enum class Slot {
-  machine,             ///< the source itself: a synchronous machine, or a converter (Effect::converter)
-  transformer,         ///< between the machine's terminal and the grid
-  compensator,         ///< makes Vc, the voltage the exciter regulates
-  setpoint,            ///< moves dVref, dPref, dGref
-  governor,            ///< makes Tm
-  shaft,               ///< changes Tm after the governor: what acts on the shaft whatever the governor does
-  stabiliser,          ///< makes Vs; after the governor, for accelerating power needs Tm
-  limiter,             ///< adds to Vlimiter
-  exciter,             ///< makes Efd
-  plant_control,       ///< of a converter, as those that follow: makes Pext, Qext
-  torque_control,      ///< makes Pext and wref from the turbine's speed
-  pitch_control,       ///< makes pitch
-  aerodynamics,        ///< makes Paero
-  drive_train,         ///< makes wt, wg
-  electrical_control,  ///< makes the current commands, which are Tm and Efd
+  machine,         ///< the source: a synchronous machine or a converter (Effect::converter)
+  transformer,     ///< between the machine's terminal and the grid
+  compensator,     ///< outputs Vc, the voltage that the exciter regulates
+  setpoint,        ///< outputs dVref, dPref, dGref
+  governor,        ///< outputs Tm
+  shaft,           ///< changes Tm after the governor: torques on the shaft that do not depend on the governor
+  stabiliser,      ///< outputs Vs; after the governor, because accelerating power needs Tm
+  limiter,         ///< adds to Vlimiter
+  exciter,         ///< outputs Efd
+  plant_control,   ///< converters only, as the following ones: outputs Pext, Qext
+  torque_control,  ///< outputs Pext and wref from the turbine's speed
+  pitch_control,   ///< outputs pitch
+  aerodynamics,    ///< outputs Paero
+  drive_train,     ///< outputs wt, wg
+  electrical_control,  ///< outputs the current commands in Tm and Efd
   load,                ///< a consumer at a bus
   measurement,         ///< between the grid and the record
 };
@@ -67,27 +67,27 @@ inline constexpr std::array kSlots = {Slot::machine,       Slot::transformer,   
                                       Slot::load,          Slot::measurement};
 std::string_view slot_name(Slot slot);
 constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::electrical_control; }
-/// Whether a control in this slot is one of a converter; a set-point is moved of either kind of source.
+/// Whether a control in this slot belongs to a converter. Set-points exist for both kinds of source.
 constexpr bool is_of_converter(Slot slot) {
   return slot >= Slot::plant_control && slot <= Slot::electrical_control;
 }
-/// Whether several effects may stand in the slot of one plant: those that add up.
+/// Whether a plant may have several effects in this slot: those whose outputs add.
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
 
 constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
-/// In a parameter's record before its bounds' source: its standard value has the effect's source.
+/// Placeholder in a parameter's record, before the bounds' source: the default has the effect's source.
 constexpr Source kAsEffect = {};
 
-/// One parameter of an effect. `low` and `high` bound what is usual (sim/plant/usual.hpp); what no equation
-/// takes is refused by check(). A dataset's sampling box must lie within them. `neutral` is the value at
-/// which the influence vanishes, beyond what is usual too (NaN: there is none). The unit "code" marks a
-/// choice among whole numbers: never sampled, never fitted. The two sources are the effect's own,
-/// standards_from and bounds_from, where a record gives none.
+/// One parameter of an effect. `low` and `high` bound the usual range (sim/plant/usual.hpp); check() refuses
+/// values that no equation can take. A dataset's sampling box must lie within the range. `neutral` is the
+/// null value, at which the effect's influence vanishes; it may lie outside the usual range (NaN: none). The
+/// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
+/// standards_from and bounds_from.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
-  std::string_view symbol;  ///< as engineers write it: "X'd"
+  std::string_view symbol;  ///< usual notation: "X'd"
   std::string_view unit;    ///< "pu", "s"
   double standard, low, high, neutral;
   std::string_view meaning;
@@ -95,55 +95,54 @@ struct Parameter {
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
-/// Indices of the parameters by which a plant's control names what it measures elsewhere in the grid (0 in
-/// them: at the plant); -1: it has none.
+/// Indices of the parameters with which a plant control selects a remote measuring point. Parameter value 0:
+/// at the plant. Index -1: the effect has no such parameter.
 struct Elsewhere {
-  int bus = -1;                          ///< number of the bus whose voltage it regulates
-  int from = -1, to = -1, circuit = -1;  ///< the branch whose flow counts, measured at its first bus
+  int bus = -1;                          ///< number of the regulated bus
+  int from = -1, to = -1, circuit = -1;  ///< branch whose flow is measured, at its first bus
 };
 
 struct State {
   std::string_view name, unit, meaning;
-  /// Of this state's error in step control: a speed error counts through the angle it causes.
+  /// Weight of the state's error in step control: a speed error counts through the angle it causes.
   double weight = 1.0;
-  /// Coefficients that hold the limits of a non-windup state, -1: none. Whoever integrates stops the state
-  /// there: its derivative is zero while it would lead further out.
+  /// Indices of the coefficients with the non-windup limits, -1: none. The integrator clamps the state there:
+  /// its derivative is zero while it points out of the limits.
   int low = -1, high = -1;
-  /// Coefficients without which the state stands still: where they are zero its derivative is, whatever the
-  /// signals, once it stands where steady() puts it. -1: none; a state that names none always counts as
-  /// moving.
+  /// Coefficients that multiply the derivative: while both are zero, a state initialised by steady() does not
+  /// move, whatever the signals. -1: none; a state that names none is always integrated.
   struct Movers {
     int first = -1, second = -1;
   };
   Movers moved_by = {};
-  /// Coefficient that multiplies the weight where it is above 1, -1: none.
+  /// Index of a coefficient that multiplies `weight` where it is above 1, -1: none.
   int weighed_by = -1;
-  /// Its derivative bends where `low` and `high` do not tell: every step is judged as one with a kink.
+  /// The derivative has kinks that `low` and `high` do not show: every step is checked as one with a kink.
   bool bends = false;
 };
 
-/// What simulators do differently, chosen by the origin of the data (decision 07), and what an effect
-/// knows of its surroundings.
+/// Conventions that differ between simulators (decision 07), and the system data that an effect needs.
 struct Conventions {
-  bool speed_voltage = true;     ///< the flux linkages' voltage is scaled by speed: E'' = (1 + w) psi''
-  bool mechanical_power = true;  ///< the governor sets power, so torque is (Pm - D w)/(1 + w); else torque
+  bool speed_voltage = true;     ///< flux linkages' voltage scales with speed: E'' = (1 + w) psi''
+  bool mechanical_power = true;  ///< governor sets power, torque is (Pm - D w)/(1 + w); else torque
   double frequency = 60.0;       ///< system frequency [Hz]
-  double mva = 100.0;            ///< base of the machine at hand [MVA]; set by operating_point
+  double mva = 100.0;            ///< base of the machine [MVA], set by operating_point
   static constexpr Conventions psse(double hz = 60.0) { return {false, true, hz}; }
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 
-/// What a plant's control sees elsewhere: voltage of the bus that it regulates [pu], current [pu] and power
-/// [pu] of the branch whose flow counts, positive out of the plant. Where its parameters name neither bus nor
-/// branch, those of the plant's grid side, which is where a record of it was taken.
+/// Remote measurement of a plant control: voltage of the regulated bus [pu], current [pu] and power [pu] of
+/// the selected branch, positive out of the plant. Without a bus or branch in the parameters, those of the
+/// plant's grid side, which is where a record of the plant was taken.
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
 };
 
-/// Everything the blocks of one plant exchange; per unit on the machine's own base, network frame for r, i.
-/// Of a converter Tm is the command of active current and Efd that of reactive current, positive while it
-/// delivers Q [pu]: so what holds, adds to, infers and records Tm and Efd does the same for the commands.
+/// Signals exchanged by the blocks of one plant, per unit on the machine's own base; r, i in the network
+/// frame. For a converter, Tm is the active current command and Efd the reactive current command, positive
+/// while it delivers Q [pu]. Code that holds, estimates or records Tm and Efd therefore serves both kinds of
+/// source.
 template <class T>
 struct Signals {
   T Vr{}, Vi{}, V{};   ///< voltage at the machine's terminal and its magnitude [pu]
@@ -152,69 +151,71 @@ struct Signals {
   T speed{};           ///< speed deviation [pu]
   T Te{}, Tm{};        ///< electrical and mechanical torque (or power, see Conventions) [pu]
   T Ifd{}, Efd{};      ///< field current and voltage, 1 pu on the air-gap line [pu]
-  T Vc{};              ///< voltage the exciter regulates: V unless a compensator changes it [pu]
+  T Vc{};              ///< regulated voltage: V unless a compensator changes it [pu]
   T Vs{};              ///< stabiliser output [pu]
-  T Vlimiter{};        ///< limiters' sum into the voltage error [pu]
-  T dVref{}, dPref{};  ///< moves of the exciter's and the governor's reference [pu]
-  T dGref{};           ///< move of the governor's reference in its own unit: speed where a droop follows it,
-                       ///< else power [pu]
-  T t{};               ///< time [s]; at an instant named by instants() that of the running side
-  T Vpr{}, Vpi{}, Vp{};  ///< voltage at the grid's side of the step-up transformer; Vpr, Vpi of a load: at
-                         ///< the bus that it regulates (Consumer::regulated), else its own [pu]
-  // of a converter's controls alone
-  T Pext{}, Qext{};    ///< references of P and of Q (or of V, as the control's flags say), less their values
-                       ///< at the operating point [pu]
-  T Pneed{}, Qneed{};  ///< what these references must be at the operating point; made by steady() [pu]
-  T wt{}, wg{},
-      wref{};  ///< speed of turbine and generator of a wind turbine, and what it should be, less 1 [pu]
-  T pitch{}, Paero{};  ///< of the blades, less its value at the operating point (in steady(): that value)
-                       ///< [degrees]; power of the wind at the shaft [pu]
-  T Pord{};            ///< power that the electrical control orders [pu]
-  Far<T> far{};        ///< for the plant's control, which reads it if its parameters name a bus or a branch
+  T Vlimiter{};        ///< sum of the limiters' inputs to the voltage error [pu]
+  T dVref{}, dPref{};  ///< changes of the exciter's and the governor's reference [pu]
+  /// Change of the governor's reference in its own unit [pu]: speed where a droop follows it, else power.
+  T dGref{};
+  T t{};  ///< time [s]; at a switching time (instants()) its value on the side being integrated
+  /// Voltage at the grid's side of the step-up transformer [pu]. Of a load, Vpr and Vpi are the voltage of
+  /// the bus that it regulates (Consumer::regulated), else of its own bus.
+  T Vpr{}, Vpi{}, Vp{};
+  // Signals of converter controls only:
+  /// References of P and of Q (or V, by the control's flags), relative to the operating point [pu].
+  T Pext{}, Qext{};
+  T Pneed{}, Qneed{};    ///< values of these references at the operating point, computed by steady() [pu]
+  T wt{}, wg{}, wref{};  ///< speed of turbine and generator and its reference, minus 1 [pu]
+  /// Blade pitch relative to the operating point (in steady(): absolute) [degrees]; aerodynamic power [pu].
+  T pitch{}, Paero{};
+  T Pord{};      ///< power order of the electrical control [pu]
+  Far<T> far{};  ///< remote measurement, read if the plant control names a bus or a branch
 };
 
-/// Equations of a machine (state 0 is the rotor angle, state 1 the speed deviation): voltage `e` behind the
-/// constant impedance r + jx, both on the machine's base. x: states; c: coefficients; m: scratch shared by
-/// the three calls of one evaluation.
+/// Equations of a machine: voltage `e` behind the constant impedance r + jx, both on the machine's base.
+/// State 0 is the rotor angle, state 1 the speed deviation. x: states; c: coefficients; m: scratch memory
+/// shared by the three calls of one evaluation.
 template <class T>
 struct MachineOps {
   void (*source_impedance)(const T* p, T& r, T& x) = nullptr;
   void (*emf)(const T* c, const T* x, T* m, T& er, T& ei) = nullptr;
   void (*electrical)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;  ///< Ir, Ii -> speed, Te, Ifd
   void (*derivative)(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) = nullptr;
-  /// Given Vr, Vi, Ir, Ii: fills the states, s.Efd and s.Tm, and coefficients fixed by the operating point.
+  /// From Vr, Vi, Ir, Ii: computes the states, s.Efd, s.Tm and the coefficients that depend on the operating
+  /// point. Returns the reason of a failure, empty on success.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
-  /// Only where no constant impedance does (saliency, saturated reactances): Vr, Vi -> Ir, Ii, after emf.
-  /// source_impedance is then the one to start from.
+  /// Optional, for machines without a constant impedance (saliency, saturated reactances): Vr, Vi -> Ir, Ii,
+  /// after emf. source_impedance then gives the start value.
   void (*current)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;
 };
 
-/// Equations of a control: reads and writes signals, gives the derivative of its states. `law` is the
-/// effect's own data where it was read from a file.
+/// Equations of a control: reads and writes signals, computes the derivatives of its states. `law` is the
+/// data of a user-defined model, else nullptr.
 template <class T>
 struct ControlOps {
   void (*evaluate)(const void* law, const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
-  /// Given all signals at the operating point: fills states and references (kept in c). Returns why it
-  /// cannot, empty if it can.
+  /// From all signals at the operating point: computes states and references (kept in c). Returns the reason
+  /// of a failure, empty on success.
   std::string (*steady)(const void* law, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
-  /// Optional: writes signals that are states before any control is evaluated, for those that stand earlier.
+  /// Optional: writes outputs that are states before any control is evaluated, for controls earlier in the
+  /// order.
   void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
-  /// Optional: Effect::guards smooth functions of states and signals. Where one passes zero, a derivative of
-  /// the effect jumps.
+  /// Optional: computes Effect::guards smooth functions of states and signals. A derivative of the effect
+  /// jumps where one of them passes zero.
   void (*guard)(const T* c, const T* x, const Signals<T>& s, T* g) = nullptr;
-  /// Optional: after all controls were evaluated, derivatives that need what those behind it make, as the
-  /// field voltage; those that evaluate() has written stand in dx.
+  /// Optional: completes derivatives after all controls are evaluated, from outputs of later controls such as
+  /// the field voltage. dx holds the values written by evaluate().
   void (*afterwards)(const T* c, const T* x, const Signals<T>& s, T* dx) = nullptr;
 };
 
-/// A step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
+/// Step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
 template <class T>
 struct TransformerOps {
   void (*impedance)(const T* p, T& r, T& x, T& ratio) = nullptr;
 };
 
-/// A consumer. Its current into the bus (negative while it consumes) follows from the bus voltage and its
-/// states; per unit on Consumer::mva. `steady` gets Vr, Vi, Vpr, Vpi, Ir, Ii.
+/// A load. Its current into the bus (negative while it consumes) is a function of the bus voltage and its
+/// states, per unit on Consumer::mva. `steady` receives Vr, Vi, Vpr, Vpi, Ir, Ii.
 template <class T>
 struct LoadOps {
   void (*current)(const T* c, const T* x, Signals<T>& s) = nullptr;  ///< Vr, Vi -> Ir, Ii
@@ -222,8 +223,8 @@ struct LoadOps {
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
 };
 
-/// Phasors as an instrument delivers them: uniform samples of voltage [pu], of current out of the plant [pu],
-/// and the frequency deviation [pu] it reports. NaN marks a sample that is missing.
+/// Output of an instrument: uniform samples of voltage [pu], current out of the plant [pu] and reported
+/// frequency deviation [pu]. NaN marks a missing sample.
 struct Phasors {
   double rate = 60.0, frequency = 60.0;  ///< samples per second; system frequency [Hz]
   std::vector<std::complex<double>> V, I;
@@ -248,20 +249,20 @@ struct OpsFor<std::tuple<T...>> {
 
 struct Recording;
 
-/// Records of a .dyr that belong to switched shunts, where these are not "bus, 'MODEL', id, parameters". One
-/// name is for the first switched shunt of a bus and has the regulated bus in the id's place, the other is
-/// for one by its id, and the regulated bus stands behind it. Behind the first columns stand, for each of
-/// several shunts beside it, whether it is switched and its id.
+/// Layout of .dyr records of switched shunts that differ from "bus, 'MODEL', id, parameters". A record named
+/// `of_first` is for the first switched shunt of a bus and has the regulated bus in the id's place. A record
+/// named `by_id` has the id, followed by the regulated bus. After the first columns follow, for each of
+/// `beside` further shunts, whether it is switched and its id.
 struct ShuntRecord {
   std::string_view of_first, by_id;
-  int regulated;        ///< parameter with the number of the regulated bus: its first column
-  std::size_t columns;  ///< before the shunts beside it
-  std::size_t beside;   ///< of these
-  static constexpr std::size_t of_each = 2;  ///< fields
+  int regulated;                             ///< parameter with the regulated bus's number, the first column
+  std::size_t columns;                       ///< before the further shunts
+  std::size_t beside;                        ///< number of further shunts
+  static constexpr std::size_t of_each = 2;  ///< fields of each further shunt
   [[nodiscard]] constexpr std::size_t passed_over() const { return beside * of_each; }
 };
 
-/// One registered effect, its types erased.
+/// One registered effect, with its types erased.
 struct Effect {
   std::string_view name, title, source, description, dyr_name;
   Slot slot;
@@ -271,25 +272,25 @@ struct Effect {
   int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;
   int guards = 0;
-  bool converter = false;  ///< of a source: a controlled current, no synchronous machine
-  /// Of a load whose records in a .dyr belong to switched shunts: how they are laid out.
+  bool converter = false;  ///< of a source: controlled current, no synchronous machine
+  /// Layout of the .dyr records of a load that belong to switched shunts, else nullptr.
   const ShuntRecord* at_shunt = nullptr;
   Elsewhere elsewhere = {};
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
-  std::string_view (*unphysical)(const double* p);  ///< empty, or the ordering that is violated
-  /// What these values ask for and the equations leave out, as a sentence for a warning; nullptr: nothing.
+  std::string_view (*unphysical)(const double* p);  ///< empty, or the violated ordering
+  /// Returns a warning about values that ask for unmodelled behaviour, empty if there are none; nullptr: no
+  /// such check.
   std::string (*remark)(const double* p) = nullptr;
-  /// When the equations jump in time [s]; nullptr: never.
+  /// Returns the times at which the equations jump [s]; nullptr: never.
   std::vector<double> (*instants)(const void* law, const double* p);
-  /// What the instrument makes of the true phasors; `seed` drives what is random. Only measurements.
+  /// Applies the instrument to the true phasors; `seed` drives its random numbers. Only for measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
-  /// How far in time an output sample of measure() reaches to either side [s]; nullptr: no further than
-  /// itself.
+  /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
   double (*memory)(const double* p);
   OpsFor<Scalars>::type ops;
-  std::shared_ptr<const void> law = nullptr;  ///< data of an effect read from a file
-  /// Values of all parameters by linear least squares from a record that is free of noise, best first; those
-  /// that a record does not show are taken from `known`. nullptr: nobody has found how.
+  std::shared_ptr<const void> law = nullptr;  ///< data of a user-defined model
+  /// Returns estimates of all parameters by linear least squares from a record without noise, best first.
+  /// Parameters that the record does not determine are taken from `known`. nullptr: no such method is known.
   std::vector<std::vector<double>> (*closed_form)(const Recording& record, const double* known) = nullptr;
 
   template <class T>
@@ -300,10 +301,10 @@ struct Effect {
   [[nodiscard]] std::vector<double> standard_parameters() const;
 };
 
-/// What an effect is called by its place: its slot's name, "converter" for a source that is one.
+/// Returns the name of the effect's slot; "converter" for a source that is one.
 std::string_view kind_name(const Effect& effect);
-/// Why a control has no place beside a source ("a governor is part of a synchronous machine, ..."), empty if
-/// it has.
+/// Returns why a control cannot belong to a source ("governor is part of a synchronous machine, ..."), empty
+/// if it can.
 std::string misfit(const Effect& source, const Effect& control);
 
 // ---- used by the generated registry only -------------------------------------------------------------
@@ -337,7 +338,7 @@ std::tuple<Ops<T>...> make_all_ops(std::tuple<T...>*) {
   return {make_ops<M, T>()...};
 }
 
-/// The records of M, each with the sources of its values.
+/// Returns the parameter records of M with the sources of their values filled in.
 template <class M>
 constexpr auto sourced_parameters() {
   std::array<Parameter, std::size(M::parameters)> all{};

@@ -1,14 +1,14 @@
 #pragma once
-// Effects' equations in single precision: what a step needs of them, and no more. Operating points and
-// coefficients are found in double.
+// Single-precision equations of effects, only those that an integration step needs. Operating points and
+// coefficients are computed in double.
 #include "sim/core/effect.hpp"
 #include "sim/core/float_pack.hpp"
 
 namespace swingbank::sim {
 
-/// Whether the effect's equations are there in single precision: a compiled effect's are, a law file's not.
+/// Whether single-precision equations exist: true for compiled effects, false for user-defined models.
 bool has_float_ops(const Effect& effect);
-/// Only where has_float_ops(). Generated, as the registry is.
+/// Returns the single-precision equations. Requires has_float_ops(). Generated, as the registry is.
 template <>
 const Ops<FloatPack>& Effect::get<FloatPack>() const;
 

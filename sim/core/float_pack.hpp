@@ -1,14 +1,14 @@
 #pragma once
-// FloatPack: sixteen independent scenarios in single precision. Twice the lanes of a pack of doubles of the
-// same size; who sums up in it carries what a float does not hold along.
+// FloatPack: sixteen independent scenarios in single precision, twice the lanes of a Pack of the same size.
+// Sums need a compensation term for the digits that a float cannot hold.
 #include "sim/core/pack.hpp"
 
 namespace swingbank::sim {
 
 using FloatPack = Packed<float, 16>;
 
-/// Sine and cosine together, for |a| < 1e4 rad. Reduction by multiples of pi/2 in three parts; minimax
-/// coefficients as in Moshier's Cephes library (sinf.c).
+/// Computes sine and cosine together, for |a| < 1e4 rad. Reduction by multiples of pi/2 in three parts;
+/// minimax coefficients from Moshier's Cephes library (sinf.c).
 inline void sincos(FloatPack a, FloatPack& s, FloatPack& c) {
   using P = FloatPack;
   const P k = round_nearest(a * P(0.63661977236758134308));
@@ -21,8 +21,8 @@ inline void sincos(FloatPack a, FloatPack& s, FloatPack& c) {
   turn(k, ps, pc, s, c);
 }
 
-/// Four-quadrant arctangent; 0 where both arguments are 0. Reduction and polynomial as in Moshier's Cephes
-/// library (atanf.c).
+/// Four-quadrant arctangent [rad]; 0 where both arguments are 0. Reduction and polynomial from Moshier's
+/// Cephes library (atanf.c).
 inline FloatPack atan2(FloatPack y, FloatPack x) {
   using P = FloatPack;
   const P a = absolute(y), b = absolute(x);

@@ -1,9 +1,9 @@
 #pragma once
-// Frequency as an instrument at the terminal sees it: the filtered derivative of the voltage angle.
+// Frequency as measured at the terminal: the filtered derivative of the voltage angle.
 //   f(s) = s theta(s) / (2 pi f0 (1 + s Tw)(1 + s Tf))          [pu deviation]
-// By partial fractions it is the difference of two first-order lags of theta, over 2 pi f0 (Tf - Tw). Each
-// lag is integrated exactly for an angle that runs linearly from sample to sample. It starts settled, so f(0)
-// = 0. Where the caller holds theta (V = 0) the filter runs on.
+// By partial fractions this is the difference of two first-order lags of theta, divided by 2 pi f0 (Tf - Tw).
+// Each lag is integrated exactly for an angle that is linear between samples. The filter starts in steady
+// state, so f(0) = 0. While the caller holds theta (V = 0), the filter keeps running.
 #include <cmath>
 #include <cstddef>
 
@@ -16,20 +16,21 @@ struct FrequencyFilter {
   double filter = 0.02;  ///< Tf [s]
 };
 
-/// The filter sample by sample, on angles less the first one.
+/// The filter, sample by sample. Angles are relative to the first one.
 class FrequencyLags {
  public:
   FrequencyLags(double rate, double f0, const FrequencyFilter& constants)
       : washout_(constants.washout, 1.0 / rate),
         filter_(constants.filter, 1.0 / rate),
         scale_(1.0 / (constants::turn * f0 * (constants.filter - constants.washout))) {}
-  /// Frequency deviation [pu] where the angle goes on to u [rad].
+  /// Returns the frequency deviation [pu] at the next sample, whose angle is `u` [rad].
   double frequency(double u) {
     const double f = scale_ * (washout_.step(last_, u) - filter_.step(last_, u));
     last_ = u;
     return f;
   }
-  /// The angle [rad] that makes the frequency deviation f [pu]: the exact inverse, which is stable.
+  /// Returns the angle [rad] at the next sample, whose frequency deviation is `f` [pu]: the exact, stable
+  /// inverse.
   double angle(double f) {
     const double held = washout_.keep * washout_.x - filter_.keep * filter_.x;
     const double u =
@@ -53,8 +54,8 @@ class FrequencyLags {
   double scale_, last_ = 0.0;
 };
 
-/// theta: `samples` angles [rad] at `rate` [1/s], wrapped to +-pi or not; out: frequency deviation [pu of
-/// f0].
+/// Computes the frequency deviation [pu of f0] of `samples` angles `theta` [rad] at `rate` [1/s] into `out`.
+/// The angles may be wrapped to +-pi.
 inline void terminal_frequency(const double* theta, std::size_t samples, double rate, double f0,
                                const FrequencyFilter& constants, double* out) {
   FrequencyLags lags(rate, f0, constants);
@@ -62,13 +63,14 @@ inline void terminal_frequency(const double* theta, std::size_t samples, double 
   if (samples > 0) out[0] = 0.0;
   for (std::size_t k = 1; k < samples; ++k) {
     const double jump = theta[k] - theta[k - 1];
-    turned -= constants::turn *
-              std::round(jump / constants::turn);  // an angle does not leap by half a turn between samples
+    // Unwraps: the angle changes by less than half a turn per sample.
+    turned -= constants::turn * std::round(jump / constants::turn);
     out[k] = lags.frequency(theta[k] - theta[0] + turned);
   }
 }
 
-/// The angle [rad], less the first one, of a terminal's frequency deviation as terminal_frequency() gives it.
+/// Computes the angle [rad], relative to the first one, from a frequency deviation as terminal_frequency()
+/// returns it.
 inline void terminal_angle(const double* frequency, std::size_t samples, double rate, double f0,
                            const FrequencyFilter& constants, double* theta) {
   FrequencyLags lags(rate, f0, constants);

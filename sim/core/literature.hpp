@@ -1,6 +1,6 @@
 #pragma once
-// Where the numbers of the effects come from: the works they were read in, and the two kinds of reason that
-// stand in a work's place. A number's source is written as a call, cim("ExcSEXS") or own("twice the rating").
+// Sources of the effects' numbers: the cited works, and two reasons without a work (`derived`, `own`). A
+// number's source is written as a call, cim("ExcSEXS") or own("twice the rating").
 #include <string>
 #include <string_view>
 
@@ -8,7 +8,7 @@ namespace swingbank::sim {
 
 struct Work;
 
-/// A work and the place in it; for the two kinds of reason the place is the reason.
+/// A work and the place in it. For `derived`, `own` and `law` the place is the reason as text.
 struct Source {
   const Work* work = nullptr;
   std::string_view place;
@@ -21,7 +21,7 @@ struct Work {
   [[nodiscard]] constexpr bool published() const { return !title.empty(); }
 };
 
-/// "CIM: ExcSEXS"; the place alone where the work has no name.
+/// Returns the source as text, "CIM: ExcSEXS"; the place alone where the work has no id.
 inline std::string as_text(const Source& source) {
   const std::string place(source.place);
   return source.work->id.empty() ? place : std::string(source.work->id) + ": " + place;
@@ -29,11 +29,11 @@ inline std::string as_text(const Source& source) {
 
 namespace literature {
 
-/// It follows from the equations, from what is modelled of them or from what the number is.
+/// The number follows from the equations, from the scope of the model or from the definition of the quantity.
 inline constexpr Work derived{"derived", "", "", "", ""};
-/// Swingbank chose it, for the reason given.
+/// Swingbank's own choice, for the reason given.
 inline constexpr Work own{"own choice", "", "", "", ""};
-/// What a law file says of its numbers.
+/// The source that a user-defined model gives for its numbers.
 inline constexpr Work law{"", "", "", "", ""};
 
 inline constexpr Work kundur{"Kundur", "P. Kundur", "1994", "Power System Stability and Control",

@@ -1,7 +1,7 @@
 #pragma once
-// Random numbers of the measurement chain: pure functions of seed, stream and sample, so that a sample's
-// noise does not depend on how long the record is or who asks first. Philox4x32-10, J. Salmon et al.,
-// "Parallel random numbers: as easy as 1, 2, 3", SC'11.
+// Random numbers of the measurement chain, as pure functions of seed, stream and sample. A sample's noise
+// therefore depends neither on the length of the record nor on the order of the calls. Philox4x32-10 (J.
+// Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC'11).
 #include <Random123/philox.h>
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace swingbank::sim {
 
-/// Two independent numbers in (0, 1], 53 bits.
+/// Returns two independent uniform numbers in (0, 1], 53 bits.
 inline std::array<double, 2> uniform_pair(std::uint64_t seed, std::uint32_t stream, std::uint64_t sample) {
   const auto r = r123::Philox4x32()(
       {{static_cast<std::uint32_t>(sample), static_cast<std::uint32_t>(sample >> 32), stream, 0}},
@@ -23,14 +23,14 @@ inline std::array<double, 2> uniform_pair(std::uint64_t seed, std::uint32_t stre
   return {number(r[0], r[1]), number(r[2], r[3])};
 }
 
-/// Two independent numbers of the standard normal distribution (Box-Muller).
+/// Returns two independent standard normal numbers (Box-Muller).
 inline std::array<double, 2> normal_pair(std::uint64_t seed, std::uint32_t stream, std::uint64_t sample) {
   const auto u = uniform_pair(seed, stream, sample);
   const double radius = std::sqrt(-2.0 * std::log(u[0])), angle = constants::turn * u[1];
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// A seed for part `part` of what `seed` is for.
+/// Returns the derived seed of part number `part`.
 inline std::uint64_t seed_of(std::uint64_t seed, std::uint64_t part) {
   const auto r =
       r123::Philox4x32()({{static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(part >> 32), 0, 1}},

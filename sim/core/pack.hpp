@@ -1,7 +1,7 @@
 #pragma once
-// Packed<S, N>: N independent scenarios in one value. As many as fill a vector register are one vector of the
-// compiler's extension; more are two halves, each by itself. So every width is fast on every processor: GCC
-// lowers a vector wider than the registers through memory.
+// Packed<S, N>: N independent scenarios in one value (a SIMD batch). Up to a register's size it is one vector
+// of the compiler's vector extension; above that it is two halves. GCC lowers vectors wider than a register
+// through memory; the halves keep every width fast on every processor.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,14 +15,14 @@
 namespace swingbank::sim {
 
 #ifdef SWINGBANK_COUNT_FLOPS
-/// Additions, multiplications, divisions and roots of all packs, each lane one: for tests/bench.
+/// Count of additions, multiplications, divisions and roots of all packs, each lane one. For tests/bench.
 inline thread_local std::uint64_t pack_operations = 0;
 inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
 #else
 inline void count_operations(int) {}
 #endif
 
-/// Bytes of a vector register of the target.
+/// Size of the target's vector register [bytes].
 #if defined(__AVX512F__)
 inline constexpr std::size_t kRegisterBytes = 64;
 #elif defined(__AVX__)
@@ -69,7 +69,7 @@ struct Packed {
     low.store(to);
     high.store(to + N / 2);
   }
-  /// Lane l is set where bit l is.
+  /// Returns the mask in which lane l is set where bit l of `bits` is.
   static Mask mask(unsigned bits) { return {Half::mask(bits), Half::mask(bits >> (N / 2))}; }
 
   friend Packed operator+(Packed a, Packed b) { return {a.low + b.low, a.high + b.high}; }
@@ -86,7 +86,7 @@ struct Packed {
   friend bool any_positive(Packed a) { return any_positive(a.low) || any_positive(a.high); }
 };
 
-/// One register, or less.
+/// One register or less.
 template <class S, int N>
 requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   using Vector = typename VectorOf<S, sizeof(S) * N>::Type;
@@ -101,7 +101,7 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   Packed(double a) : v(static_cast<S>(a) - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
   S operator[](int lane) const { return v[lane]; }
   void set(int lane, double a) { v[lane] = static_cast<S>(a); }
-  // Through a vector, since GCC copies the bytes of a vector by way of integer registers.
+  // Loads and stores through a vector type: GCC copies a vector's bytes by way of integer registers.
   static Packed load(const S* from) { return Vector(*reinterpret_cast<const InMemory*>(from)); }
   void store(S* to) const { *reinterpret_cast<InMemory*>(to) = v; }
   static Mask mask(unsigned bits) {
@@ -172,7 +172,8 @@ inline Packed<S, N> sqrt(Packed<S, N> a) {
   }
 }
 
-/// Lane by lane through the C library: the same bits as for a scalar. For the few effects that need them.
+/// Computed lane by lane through the C library: bitwise equal to the scalar result. Only few effects need
+/// them.
 template <class S, int N>
 inline Packed<S, N> exp(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::exp(a[i]));
@@ -184,8 +185,8 @@ inline Packed<S, N> log(Packed<S, N> a) {
   return a;
 }
 
-/// The nearest whole number (to even). Adding 1.5 times two to the number of fraction bits leaves no room for
-/// a fraction; |a| must stay below 2^51 (double) or 2^22 (float).
+/// Rounds to the nearest integer (ties to even). Adding 1.5 * 2^52 (double) or 1.5 * 2^23 (float) leaves no
+/// room for a fraction. |a| must stay below 2^51 (double) or 2^22 (float).
 template <class S, int N>
 inline Packed<S, N> round_nearest(Packed<S, N> a) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -197,7 +198,7 @@ inline Packed<S, N> round_nearest(Packed<S, N> a) {
   }
 }
 
-/// The quadrant of k multiples of pi/2 applied to the sine and cosine of the remainder: s and c of the whole.
+/// Rotates sine and cosine of the remainder by k quarter turns: `s`, `c` of the whole angle.
 template <class S, int N>
 inline void turn(Packed<S, N> k, Packed<S, N> sine, Packed<S, N> cosine, Packed<S, N>& s, Packed<S, N>& c) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -215,7 +216,7 @@ inline void turn(Packed<S, N> k, Packed<S, N> sine, Packed<S, N> cosine, Packed<
     c = P((typename P::Vector)((Mask)cc.v ^ csign));
   }
 }
-/// |a|.
+/// Returns |a|.
 template <class S, int N>
 inline Packed<S, N> absolute(Packed<S, N> a) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -226,7 +227,7 @@ inline Packed<S, N> absolute(Packed<S, N> a) {
     return Packed<S, N>((typename Packed<S, N>::Vector)((Mask)a.v & ~sign));
   }
 }
-/// |a| with the sign of b.
+/// Returns |a| with the sign of b.
 template <class S, int N>
 inline Packed<S, N> with_sign(Packed<S, N> a, Packed<S, N> b) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -238,8 +239,8 @@ inline Packed<S, N> with_sign(Packed<S, N> a, Packed<S, N> b) {
   }
 }
 
-/// Sine and cosine together, at most 2 ulp for |a| < 1e5 rad. Reduction by multiples of pi/2 in three
-/// parts; minimax coefficients as in Moshier's Cephes library (sin.c).
+/// Computes sine and cosine together, at most 2 ulp for |a| < 1e5 rad. Reduction by multiples of pi/2 in
+/// three parts; minimax coefficients from Moshier's Cephes library (sin.c).
 template <int N>
 inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   using P = Pack<N>;
@@ -272,8 +273,8 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   turn(k, ps, pc, s, c);
 }
 
-/// Four-quadrant arctangent, at most 2 ulp; 0 where both arguments are 0. Reduction and rational
-/// approximation as in Moshier's Cephes library (atan.c).
+/// Four-quadrant arctangent [rad], at most 2 ulp; 0 where both arguments are 0. Reduction and rational
+/// approximation from Moshier's Cephes library (atan.c).
 template <int N>
 inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   using P = Pack<N>;

@@ -1,6 +1,7 @@
 #pragma once
 // Windows of the reference filters of phasor measurement units, classes P and M (IEEE Std C37.118.1-2011,
-// Annex C; 2018, Annex D). Instruments average with them, and whoever takes the average back must know them.
+// Annex C; 2018, Annex D). Shared by the instrument models, which average with them, and by the code that
+// inverts them.
 #include <cmath>
 #include <span>
 
@@ -8,15 +9,16 @@
 
 namespace swingbank::sim::pmu_window {
 
-/// Class P: a triangle, so many cycles to either side.
+/// Half width of the triangular window of class P [cycles].
 inline constexpr double kHalfOfP = 1.0;
-/// w(t) = 1 - |t| / half, |t| < half.
+/// w(t) = 1 - |t| / half for |t| < half. t, half [s].
 inline double class_p(double t, double half) { return 1.0 - std::fabs(t) / half; }
 
-/// Reference filters of class M: reports per second, cut-off reference Ffr [Hz], order at 16 samples a cycle.
+/// Reference filter of class M: reporting rate [1/s], cut-off frequency Ffr [Hz], order at 16 samples a
+/// cycle.
 struct MClass {
   double reports, Ffr, order;
-  /// Half of the window's length [s].
+  /// Returns half of the window's length [s]; `hz`: system frequency [Hz].
   [[nodiscard]] constexpr double half(double hz) const { return order / (32.0 * hz); }
 };
 inline constexpr MClass kAt50Hz[] = {{10, 1.779, 806}, {25, 4.355, 338}, {50, 7.75, 142}, {100, 14.1, 66}};
@@ -32,7 +34,8 @@ inline const MClass* find(double hz, double reports) {
     if (row.reports == reports) return &row;
   return nullptr;
 }
-/// w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / half)), |t| < half, x = 4 pi Ffr t.
+/// w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / half)) for |t| < half, with x = 4 pi Ffr t. t, half [s]; Ffr
+/// [Hz].
 inline double class_m(double t, double half, double Ffr) {
   const double x = 4.0 * constants::pi * Ffr * t,
                sinc = std::fabs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;

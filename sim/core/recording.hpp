@@ -1,5 +1,5 @@
 #pragma once
-// What a recorder at a machine's terminal shows: uniform samples, per unit on the machine's base.
+// Record of a machine's terminal quantities: uniform samples, per unit on the machine's base.
 #include <vector>
 
 #include "sim/core/effect.hpp"
@@ -7,13 +7,13 @@
 
 namespace swingbank::sim {
 
-/// The first samples are steady: the event begins later. The angle is continuous (unwrapped).
+/// The first samples are in steady state; the event begins later. The angle is continuous (unwrapped).
 struct Recording {
   double step = 0.0;                          ///< [s]
-  Conventions conventions;                    ///< of whatever made the record
-  std::vector<double> V, theta, P, Q, speed;  ///< [pu], theta [rad]; P and Q out of the machine
-  MeasurementNoise noise = {};                ///< of its samples, as far as it is known
-  double event = 0.0;                         ///< when the event begins [s]; 0: the record does not say
+  Conventions conventions;                    ///< of the record's source
+  std::vector<double> V, theta, P, Q, speed;  ///< [pu], theta [rad]; P, Q out of the machine
+  MeasurementNoise noise = {};                ///< of the samples, as far as it is known
+  double event = 0.0;                         ///< start of the event [s]; 0: unknown
   std::vector<double> Ifd;                    ///< [pu, 1 on the air-gap line]; empty: not recorded
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Uniform samples as a function of time, for what an instrument does to them.
+// Interpolation of uniform samples, as input of the instrument models.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,9 +9,9 @@
 
 namespace swingbank::sim {
 
-/// A curve through uniform samples: a cubic (Catmull-Rom) where they are smooth, a straight line across a
-/// jump, whose sides do not bend each other. Before the first and after the last sample it stands still.
-/// T: double or complex.
+/// Interpolating curve: a Catmull-Rom cubic where the samples are smooth, a straight line across a step. The
+/// sides of a step do not influence each other. Outside the samples the curve is constant. T: double or
+/// complex.
 template <class T>
 class SampledCurve {
  public:
@@ -25,7 +25,7 @@ class SampledCurve {
     }
   }
 
-  /// Value at a position counted in samples.
+  /// Returns the value at a position [samples].
   [[nodiscard]] T operator()(double position) const {
     const double place = std::clamp(position, 0.0, static_cast<double>(size() - 1));
     const auto k = std::min(static_cast<std::ptrdiff_t>(place), size() - 2);
@@ -38,7 +38,8 @@ class SampledCurve {
   }
 
  private:
-  /// Whether the samples jump between k and k + 1: by far more than on either side of it.
+  /// Whether there is a step between samples k and k + 1: a change `kFarMore` times larger than both
+  /// neighbours.
   [[nodiscard]] bool jump(std::ptrdiff_t k) const {
     constexpr double kFarMore = 8.0;
     const double rise = std::norm(at(k + 1) - at(k));

@@ -1,14 +1,14 @@
 #pragma once
-// Saturation of a synchronous machine as PSS/E gives it: by its factors Se at 1.0 and 1.2 pu flux, S1.0 = 0
-// for none. The field needs psi Se(psi) more current than the air-gap line says.
+// Saturation of a synchronous machine in PSS/E's form: the factors Se at 1.0 and 1.2 pu flux; S1.0 = 0 means
+// no saturation. The field current exceeds that of the air-gap line by psi Se(psi) [pu].
 #include <string_view>
 
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {
 
-/// A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2; needs 1.2 S1.2 > S1.0, else there is no
-/// quadratic (PSS/E GENROU, GENSAL).
+/// Computes A and B of Se = B (psi - A)^2/psi through S1.0 and S1.2 (PSS/E GENROU, GENSAL). Requires 1.2 S1.2
+/// > S1.0; otherwise no such quadratic exists.
 template <class T>
 inline void quadratic_saturation(const T& s10, const T& s12, T& a, T& b) {
   using std::sqrt;
@@ -19,7 +19,8 @@ inline void quadratic_saturation(const T& s10, const T& s12, T& a, T& b) {
   b = select(on, s10 / square(T(1.0) - a), T(0.0));
 }
 
-/// Se = S1.0 psi^x through both factors, x = ln(S1.2/S1.0)/ln 1.2 (PSS/E GENROE, GENSAE); needs S1.2 > 0.
+/// Returns x of Se = S1.0 psi^x through both factors, x = ln(S1.2/S1.0)/ln 1.2 (PSS/E GENROE, GENSAE).
+/// Requires S1.2 > 0.
 template <class T>
 inline T saturation_exponent(const T& s10, const T& s12) {
   using std::log;
@@ -27,7 +28,7 @@ inline T saturation_exponent(const T& s10, const T& s12) {
   const T ratio = select(on, s12, T(1.0)) / select(on, s10, T(1.0));
   return log(ratio) * T(1.0 / 0.18232155679395462);  // ln 1.2
 }
-/// Se(psi) from psi^2; S1.0 = 0 gives 0.
+/// Returns Se(psi) from psi^2 [pu^2]; S1.0 = 0 gives 0.
 template <class T>
 inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_squared) {
   using std::exp;
@@ -35,7 +36,8 @@ inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_s
   return s10 * exp(exponent * T(0.5) * log(flux_squared + T(1e-24)));
 }
 
-/// Either law as a choice of a machine: two coefficients a, b; Se of psi^2; which factors it passes through.
+/// Quadratic saturation as a template policy of a machine: coefficients `a`, `b`, Se as a function of psi^2,
+/// and the test of the two factors. ExponentialSaturation has the same members.
 struct QuadraticSaturation {
   static constexpr std::string_view impossible = "no quadratic passes through both",
                                     remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";

@@ -1,6 +1,6 @@
 #pragma once
-// The list of scalars every equation is compiled for, and the few functions equations may use on them:
-// + - * / < > <=, select, sqrt, exp, log, sincos, atan2 (steady only), square, positive_part, clamp.
+// Scalar types of the equations, and the functions that equations may apply to them: + - * / < > <=, select,
+// sqrt, exp, log, sincos, atan2 (steady only), square, positive_part, clamp.
 #include <cmath>
 #include <tuple>
 
@@ -9,16 +9,16 @@
 
 namespace swingbank::sim {
 
-/// Sensitivities carried by one dual.
+/// Number of sensitivities carried by one dual.
 constexpr int kDirections = 8;
 using D8 = Dual<double, kDirections>;
 using P4 = Pack<4>;
 using P8 = Pack<8>;
-/// Scenarios with sensitivities that ride together: more than a register holds would leave the first cache.
+/// Scenarios in one batch with sensitivities. More than one register's worth would not fit the L1 cache.
 constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
 using DualPack = Dual<Pack<kDualLanes>, kDirections>;
 
-/// Every scalar an effect is instantiated for. The one place to extend.
+/// Every scalar type that an effect is instantiated for. New types are added only here.
 using Scalars = std::tuple<double, P4, P8, D8, DualPack>;
 
 inline void sincos(double a, double& s, double& c) {
@@ -71,7 +71,8 @@ inline T clamp(const T& a, const T& low, const T& high) {
   return select(a < low, low, select(high < a, high, a));
 }
 
-/// The plain value of any scalar (lane 0 of a pack): for messages and branches in double code only.
+/// Returns the plain value of any scalar (lane 0 of a pack). Only for messages and for branches in double
+/// code.
 inline double value_of(double a) { return a; }
 template <class S, int N>
 inline double value_of(const Packed<S, N>& a) {
@@ -82,7 +83,8 @@ inline double value_of(const Dual<T, N>& a) {
   return value_of(a.a);
 }
 
-/// Whether any lane is above zero: to leave out what no lane needs, as long as lanes without it add nothing.
+/// Whether any lane is above zero. Used to skip terms that no lane needs; lanes without the term must add
+/// zero.
 inline bool any_positive(double a) { return a > 0.0; }
 template <class T, int N>
 inline bool any_positive(const Dual<T, N>& a) {

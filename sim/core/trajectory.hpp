@@ -1,5 +1,5 @@
 #pragma once
-// What a run returns, whichever integrator made it.
+// Result of a simulation, common to all integrators.
 #include <cstddef>
 #include <new>
 #include <string_view>
@@ -15,7 +15,7 @@ constexpr std::string_view outcome_name(Outcome o) {
   return names[static_cast<int>(o)];
 }
 
-/// Memory on cache line boundaries, so that a pack of samples is one whole line.
+/// Allocator on cache-line boundaries, so that a pack of samples is one whole line.
 template <class T>
 struct CacheAligned {
   using value_type = T;
@@ -29,30 +29,31 @@ struct CacheAligned {
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };
 
-/// Samples at t = k/rate, k = 0..samples-1. At a switching instant the sample is the value just before it,
-/// unless asked otherwise.
+/// Samples at t = k/rate, k = 0..samples-1. At a switching time the sample is the value just before it,
+/// unless the options request the value after it.
 struct Trajectory {
   double rate = 0.0;  ///< [1/s]
   int samples = 0;
-  int stride = 0;           ///< distance between rows of `values`: at least `samples`
-  std::vector<int> plants;  ///< which plants, by index in the grid
+  int stride = 0;           ///< distance between rows of `values`, at least `samples`
+  std::vector<int> plants;  ///< indices of the recorded plants in the grid
   std::vector<Channel> channels;
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
-  int directions = 0;                                ///< sensitivities carried along
-  std::vector<double, CacheAligned<double>> slopes;  ///< like values, once per direction: see slope()
+  int directions = 0;                                ///< number of sensitivity parameters
+  /// Sensitivities, as `values`, one block per parameter: see slope().
+  std::vector<double, CacheAligned<double>> slopes;
   Outcome outcome = Outcome::stable;
-  double stopped_at = 0.0;      ///< [s]: t_end, or when synchronism was lost
-  double largest_spread = 0.0;  ///< how far two rotor angles moved apart since the start [rad]
+  double stopped_at = 0.0;      ///< [s]: t_end, or the time at which synchronism was lost
+  double largest_spread = 0.0;  ///< largest change of a rotor angle difference since the start [rad]
 
   [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
-  /// Makes room for every row; with `whole_lines` each row starts on a cache line.
+  /// Allocates every row. With `whole_lines` each row starts on a cache line.
   void allocate(bool whole_lines) {
     constexpr int kDoublesPerLine = 8;
     stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
     slopes.resize(values.size() * static_cast<std::size_t>(directions));
   }
-  /// Derivative of at(plant, channel) along a direction.
+  /// Returns the sensitivity of at(plant, channel) to the parameter number `direction`.
   [[nodiscard]] double* slope(int direction, int plant, int channel) {
     return slopes.data() + static_cast<std::ptrdiff_t>(direction * rows() +
                                                        plant * static_cast<int>(channels.size()) + channel) *
@@ -71,7 +72,7 @@ struct Trajectory {
   [[nodiscard]] const double* at(int plant, int channel) const {
     return row(plant * static_cast<int>(channels.size()) + channel);
   }
-  /// [plant][channel][sample] without gaps.
+  /// Returns the values as [plant][channel][sample] without gaps.
   [[nodiscard]] std::vector<double> packed() const {
     std::vector<double> all;
     all.reserve(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(samples));

@@ -1,6 +1,6 @@
 #pragma once
-// Moving averages of uniform samples over a window given in seconds, so that the answer does not depend on
-// the rate of the samples.
+// Moving averages of uniform samples over a window in seconds, so that the result is independent of the
+// sampling rate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,23 +11,24 @@
 
 namespace swingbank::sim {
 
-/// Cubic convolution: what a sample adds to the curve at a distance of u samples. It reproduces parabolas (R.
-/// G. Keys, "Cubic convolution interpolation for digital image processing", IEEE Trans. ASSP 29, 1981).
+/// Cubic convolution kernel: weight of a sample at a distance of `u` samples. It reproduces parabolas (R. G.
+/// Keys, "Cubic convolution interpolation for digital image processing", IEEE Trans. ASSP 29, 1981).
 inline double cubic_convolution(double u) {
   const double a = std::fabs(u);
   if (a <= 1.0) return (1.5 * a - 2.5) * a * a + 1.0;
   return a < 2.0 ? ((-0.5 * a + 2.5) * a - 4.0) * a + 2.0 : 0.0;
 }
 
-/// Weights of the samples k = 0, 1, ... on either side in the average with an even window w(t), |t| < half
-/// [s], over the curve through samples `step` [s] apart. Weight 0 plus twice the others is 1. half = 0: {1}.
+/// Returns the weights of the samples k = 0, 1, ... on either side for the average with an even window w(t),
+/// |t| < half [s]. The curve through the samples is a cubic convolution; `step` [s]. Weight 0 plus twice the
+/// others is 1. half = 0: {1}.
 template <class Window>
 std::vector<double> window_weights(const Window& w, double half, double step) {
   constexpr std::array<double, 4> place = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                            0.9602898564975363};  // Gauss-Legendre, 8 points
   constexpr std::array<double, 4> weight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                             0.1012285362903763};
-  const double reach = half / step;  // in samples, as all below
+  const double reach = half / step;  // in samples, as everything below
   const auto integral = [&](double a, double b, double k) {
     double sum = 0.0;
     const double middle = 0.5 * (a + b), radius = 0.5 * (b - a);
@@ -52,7 +53,7 @@ std::vector<double> window_weights(const Window& w, double half, double step) {
   return weights;
 }
 
-/// The averages; before the first and after the last sample the curve stands still. T: double or complex.
+/// Returns the moving averages. Outside the samples the curve is constant. T: double or complex.
 template <class T>
 std::vector<T> averaged(const std::vector<T>& y, const std::vector<double>& weights) {
   const auto last = static_cast<std::ptrdiff_t>(y.size()) - 1;
@@ -71,7 +72,7 @@ std::vector<T> averaged(const std::vector<T>& y, const std::vector<double>& weig
   return out;
 }
 
-/// Angles [rad] continuous from sample to sample; NaN stays NaN.
+/// Returns angles [rad] that are continuous from sample to sample; NaN stays NaN.
 template <class Complex>
 std::vector<double> continuous_angles(const std::vector<Complex>& phasors) {
   std::vector<double> angles;
@@ -85,7 +86,7 @@ std::vector<double> continuous_angles(const std::vector<Complex>& phasors) {
   return angles;
 }
 
-/// Frequency deviation [pu] of angles [rad]: central difference, one-sided at the ends.
+/// Returns the frequency deviation [pu] of angles [rad]: central difference, one-sided at the ends.
 inline std::vector<double> frequency_deviation(const std::vector<double>& angles, double rate,
                                                double frequency) {
   std::vector<double> df(angles.size(), 0.0);

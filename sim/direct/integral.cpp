@@ -11,7 +11,7 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
   if (n < 4) return sum;
   const double part = step / 24;
-  // Each interval's share of the cubic through the four samples about it (Gregory).
+  // Integral of each interval by the cubic through the four neighbouring samples (Gregory).
   for (Eigen::Index k = 0; k + 1 < n; ++k) {
     double area = 0;
     if (k == 0)
@@ -26,8 +26,8 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
 }
 
 double leap_limit(const Recording& record) {
-  constexpr double kLeastLeap = 0.01, kShare = 0.2;  // [pu]; of the largest step
-  constexpr double kDeviations = 6;                  // of the difference of two noisy samples
+  constexpr double kLeastLeap = 0.01, kShare = 0.2;  // [pu]; share of the largest change
+  constexpr double kDeviations = 6;  // standard deviations of the difference of two noisy samples
   const auto& V = record.V;
   double largest = kLeastLeap;
   for (std::size_t k = 1; k < V.size(); ++k) largest = std::max(largest, std::abs(V[k] - V[k - 1]));

@@ -1,23 +1,24 @@
 #pragma once
-// Running integrals of sampled signals, and where a record is smooth.
+// Running integrals of sampled signals, and steps of a record's voltage.
 #include <Eigen/Core>
 
 #include "sim/core/recording.hpp"
 
 namespace swingbank::sim::direct {
 
-/// Integral from the first sample to each; exact for a cubic through four neighbours, so that the error is of
-/// order step^4. Zero where there are fewer than four samples.
+/// Returns the integral from the first sample to each sample. Exact for a cubic through four neighbours, so
+/// that the error is of order step^4. Zero for fewer than four samples.
 Eigen::VectorXd integral(const Eigen::VectorXd& f, double step);
 
-/// A smooth stretch of fewer samples says too little.
+/// Least number of samples of a smooth segment. Shorter segments contain too little information.
 constexpr std::size_t kShortestStretch = 40;
-/// A leap of the voltage is a step between two samples of more than this [pu]: a fifth of the record's
-/// largest step and of 0.01 pu, and more than the record's noise makes.
+/// Returns the change of the voltage between two samples above which it is a step [pu]: a fifth of the
+/// record's largest change or of 0.01 pu, whichever is larger, and at least 6 standard deviations of the
+/// noise.
 double leap_limit(const Recording& record);
-/// First sample behind the last leap; 0 if nothing leaps.
+/// Returns the first sample after the last voltage step; 0 if there is none.
 std::size_t behind_last_leap(const Recording& record);
-/// How many samples lie before the first leap; all if nothing leaps.
+/// Returns the number of samples before the first voltage step; all if there is none.
 std::size_t before_first_leap(const Recording& record);
 
 }  // namespace swingbank::sim::direct

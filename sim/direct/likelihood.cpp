@@ -19,7 +19,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The unknowns: free parameters in units of their prior's deviation, then the operating point.
+/// Cost function of the posterior. Unknowns: free parameters in units of their prior's standard deviation,
+/// then the operating point.
 class Posterior : public ceres::CostFunction {
  public:
   Posterior(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
@@ -45,7 +46,7 @@ class Posterior : public ceres::CostFunction {
       p[static_cast<std::size_t>(free_[k].index)] = z[static_cast<Index>(k)] * free_[k].deviation;
     return p;
   }
-  /// Weights and slopes about z from here on.
+  /// Recomputes filter gains and sensitivities at z.
   void linearise(const VectorXd& z) {
     const auto n = static_cast<Index>(free_.size());
     now_ = filter(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
@@ -71,7 +72,8 @@ class Posterior : public ceres::CostFunction {
   }
 
  private:
-  /// Innovations, then the prior's residuals, with slopes along kDirections unknowns from `first` on.
+  /// Returns the innovations, then the prior's residuals, with sensitivities to kDirections unknowns from
+  /// `first` on.
   template <class T>
   [[nodiscard]] std::vector<T> of(const double* z, Index first) const {
     const auto at = [&](Index k, double scale) {
@@ -91,7 +93,7 @@ class Posterior : public ceres::CostFunction {
     const auto n = static_cast<Index>(free_.size());
     innovations<T>(machine_, now_.likely, now_.gains, p, {at(n, 1), at(n + 1, 1), at(n + 2, 1), at(n + 3, 1)},
                    out.data());
-    // Without its noise the record shows no innovation about z; what the filter found new is added to that.
+    // The record without noise has zero innovations at z; the filter's innovations are added.
     const auto outputs = static_cast<std::size_t>(record_.outputs);
     std::size_t i = own - record_.samples() * outputs;
     for (const auto& white : now_.white)
@@ -106,10 +108,10 @@ class Posterior : public ceres::CostFunction {
   Filtered now_;
 };
 
-/// The search within one linearisation. Returns the cost before it.
+/// Performs the search within one linearisation. Returns the cost before it.
 double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter> free,
                const LikelihoodOptions& options, MostProbable& found) {
-  constexpr double kLikelihoodSettled = 1e-6;  // of the cost, a sum of squares of thousands
+  constexpr double kLikelihoodSettled = 1e-6;  // relative change of the cost, a sum of thousands of squares
   ceres::Problem::Options borrowed;
   borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(borrowed);
@@ -127,8 +129,9 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter>
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const FreeParameter> free, const LikelihoodOptions& options) {
-  constexpr double kSameAnswer = 0.02;             // of the cost between two linearisations
-  constexpr double kLost = 1.15, kCreeps = 0.005;  // chi-square and share of the cost: in a corner of the box
+  constexpr double kSameAnswer = 0.02;  // change of the cost between two linearisations
+  // Reduced chi-square and relative change of the cost of a search caught in a corner of the box.
+  constexpr double kLost = 1.15, kCreeps = 0.005;
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();
   MostProbable found{posterior.parameters(z), 0, std::numeric_limits<double>::infinity(), 0};
@@ -177,8 +180,9 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options) {
   constexpr std::uint32_t kStartsDrawn = 12;
-  // Chi-square cannot tell a wrong answer: of thousands of samples it scatters by a hundred, and a wrong one
-  // may cost ten more than the right one. So two starts have to agree.
+  // The reduced chi-square cannot reveal a wrong local optimum. For thousands of samples the sum scatters by
+  // a hundred, and a wrong optimum may cost only ten more than the right one. Therefore two starts must
+  // agree.
   constexpr double kSameAnswer = 1;
   constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
@@ -204,7 +208,7 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
                                 const std::vector<double>& truth, std::span<const FreeParameter> free,
                                 const LikelihoodOptions& options) {
   const NoisyRecord noisy = noisy_record(record, options.longest);
-  if (noisy.samples() < kShortestStretch) {  // the prior alone
+  if (noisy.samples() < kShortestStretch) {  // prior only
     std::vector<double> variances;
     for (const auto& f : free) variances.push_back(f.deviation * f.deviation);
     return variances;

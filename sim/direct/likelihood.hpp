@@ -1,7 +1,8 @@
 #pragma once
-// A machine's parameters from a record with noise of known level: the most probable ones, and how close
-// anybody can come. Terminal voltage and angle are played in; P, Q, speed and field current are compared with
-// the whole machine, from the steady state before the event to the record's end (detail/innovations).
+// Maximum a posteriori estimates of a machine's parameters from a record with known noise level, and their
+// Cramer-Rao bound. Terminal voltage and angle are played in. P, Q, speed and field current are compared with
+// the complete machine model, from the steady state before the event to the end of the record
+// (detail/innovations).
 #include <span>
 #include <vector>
 
@@ -9,41 +10,43 @@
 
 namespace swingbank::sim::direct {
 
-/// What is known of a parameter beforehand: its bounds, and mean and standard deviation of a Gaussian prior.
+/// Prior of a parameter: bounds, and mean and standard deviation of a normal distribution.
 struct FreeParameter {
-  int index = 0;  ///< among the effect's parameters
+  int index = 0;  ///< index in the effect's parameters
   double low = 0, high = 0, mean = 0, deviation = 0;
 };
-/// The prior has mean and variance of the uniform distribution between the bounds.
+/// Returns a prior with mean and variance of the uniform distribution between the bounds.
 FreeParameter uniform_parameter(int index, double low, double high);
 
 struct MostProbable {
-  std::vector<double> p;  ///< of every parameter of the effect
-  double chi_square = 0;  ///< of the innovations, per degree of freedom: about 1 where the model is right
-  double cost = 0;        ///< sum of squares of innovations and prior
+  std::vector<double> p;  ///< all parameters of the effect
+  double chi_square = 0;  ///< reduced chi-square of the innovations; about 1 for a correct model
+  double cost = 0;        ///< sum of squares of whitened innovations and prior
   int iterations = 0;
 };
 struct LikelihoodOptions {
-  int rounds = 20;        ///< of linearisations
-  int iterations = 8;     ///< of each round
-  double longest = 13.0;  ///< stretch behind the event [s]
+  int rounds = 20;        ///< number of linearisations
+  int iterations = 8;     ///< in each round
+  double longest = 13.0;  ///< length of the segment after the event [s]
 };
 
-/// Whether the machine has no more states than this room's duals hold, and lies behind a constant impedance.
+/// Whether the machine's states fit into a dual of this module and its voltage is behind a constant
+/// impedance.
 bool has_likelihood(const Effect& machine);
 
-/// From one start. The record says its noise and should say when the event begins. A stretch of less than
-/// kShortestStretch samples behind it says nothing: the start comes back.
+/// Returns the estimate from one start. The record must state its noise and should state the event's start. A
+/// segment of fewer than kShortestStretch samples after the event returns the start.
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
-/// The best from several: the candidates, the prior's mean, then draws, until chi-square says that one is
-/// right.
+/// Returns the best estimate from several starts: the candidates, the prior's mean, then random draws, until
+/// two starts agree in cost.
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
 
-/// Bayesian Cramer-Rao bound at the true parameters: variances of the free ones. The record has no noise yet
-/// and says which it is going to have. Operating point and what `free` names are unknown.
+/// Returns the variances of the free parameters by the Bayesian Cramer-Rao bound at the true parameters. The
+/// record is free of noise and states the level that it will have. The operating point and the parameters of
+/// `free` are unknown.
 std::vector<double> error_bound(const Effect& machine, const Recording& record,
                                 const std::vector<double>& truth, std::span<const FreeParameter> free,
                                 const LikelihoodOptions& options = {});

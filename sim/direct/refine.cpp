@@ -19,9 +19,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t kAngleAndSpeed = 2;  ///< states that are measured: the first two of every machine
+constexpr std::size_t kAngleAndSpeed = 2;  ///< number of measured states: the first two of every machine
 
-/// A machine driven by voltage, angle and speed as recorded.
+/// A machine with voltage, angle and speed played in from the record.
 class Driven {
  public:
   Driven(const Effect& machine, const Recording& record, double longest)
@@ -34,7 +34,8 @@ class Driven {
   [[nodiscard]] std::size_t fluxes() const { return machine_.states.size() - kAngleAndSpeed; }
   [[nodiscard]] Index outputs() const { return static_cast<Index>(steps_ * compared()); }
 
-  /// Residuals over the stretch. `offset`: of the angle against the steady state's; `flux`: at its start.
+  /// Returns the residuals over the segment. `offset`: angle relative to the steady state's; `flux`: at the
+  /// start.
   template <class T>
   std::vector<T> residuals(const std::vector<T>& p, const T& offset, const std::vector<T>& flux) const {
     Machine<T> m = machine(p);
@@ -48,8 +49,8 @@ class Driven {
     }
     return out;
   }
-  /// The fluxes that the steady state has by the stretch's start. The fault's edges fall between samples, so
-  /// this is a start for the fit and no more.
+  /// Returns the fluxes at the segment's start, integrated from the steady state. The fault's edges lie
+  /// between samples, so that this is only a start value for the fit.
   std::vector<double> fluxes_at_start(const std::vector<double>& p) const {
     Machine<double> m = machine(p);
     const double angle = m.x[0];
@@ -67,8 +68,8 @@ class Driven {
             T(whole_.V[0]), T(whole_.current0.real()), T(whole_.current0.imag())};
   }
   [[nodiscard]] std::size_t compared() const { return whole_.Ifd.size() > 0 ? 3 : 2; }
-  /// The machine at a sample, with angle and speed as measured and these fluxes. `angle`: of the rotor at
-  /// the first sample.
+  /// Evaluates the machine at a sample, with measured angle and speed and the given fluxes. `angle`: rotor
+  /// angle at the first sample.
   template <class T>
   void evaluate(Machine<T>& m, std::size_t at, const T& angle, const std::vector<T>& flux) const {
     const auto i = static_cast<Index>(at);
@@ -82,7 +83,7 @@ class Driven {
                std::vector<T>& out) const {
     const auto i = static_cast<Index>(at);
     evaluate(m, at, angle, flux);
-    // current in the terminal's frame: `turning` has taken the rotor's movement off
+    // Current in the terminal's frame; `turning` returns it on axes that rotate with the rotor.
     const std::complex<double> current = whole_.current[i] * std::polar(1.0, whole_.relative[i]);
     out.push_back((m.s.Ir - T(current.real())) * m.xm);
     out.push_back((m.s.Ii - T(current.imag())) * m.xm);
@@ -94,7 +95,7 @@ class Driven {
     m.derive();
     return {m.dx.begin() + kAngleAndSpeed, m.dx.end()};
   }
-  /// One step over samples first, middle, last.
+  /// Performs one integration step over the samples first, middle, last.
   template <class T>
   void step(Machine<T>& m, const std::array<std::size_t, 3>& at, double h, const T& angle,
             std::vector<T>& x) const {
@@ -109,7 +110,8 @@ class Driven {
   Turning whole_;
 };
 
-/// Residuals and their slopes for Ceres. The unknowns: free parameters, offset, fluxes; each times its scale.
+/// Residuals and their derivatives for Ceres. Unknowns: free parameters, offset, fluxes; each divided by its
+/// scale.
 class Residuals : public ceres::CostFunction {
  public:
   Residuals(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
@@ -163,8 +165,8 @@ class Residuals : public ceres::CostFunction {
   VectorXd scale_;
 };
 
-/// Misfit that a right answer leaves: what the integration leaves of a record in single precision, or the
-/// noise of P before the event.
+/// Returns the root mean square of the residuals for the true parameters: the integration error of a
+/// single-precision record, or the noise of P before the event.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
   const std::size_t n = std::max<std::size_t>(2, before_first_leap(record));
@@ -174,7 +176,7 @@ double exact(const Recording& record) {
   return std::max(kIntegration, kOfNoise * std::sqrt(square));
 }
 
-/// A start about `p`: each free parameter half way to a value drawn from its bounds.
+/// Returns a start near `p`: each free parameter is halfway to a random value within its bounds.
 std::vector<double> drawn_about(std::vector<double> p, std::uint32_t draw, std::span<const int> free,
                                 std::span<const double> low, std::span<const double> high) {
   constexpr std::uint64_t kSeed = 1;
@@ -231,7 +233,7 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   double* jacobians[] = {slopes.data()};
   if (!residuals.Evaluate(blocks, values.data(), jacobians))
     return {start, std::numeric_limits<double>::infinity()};
-  std::vector<int> idle;  // like inertia and damping
+  std::vector<int> idle;  // for example inertia and damping
   for (Index k = 0; k < n; ++k)
     if (slopes.col(k).squaredNorm() == 0) idle.push_back(static_cast<int>(k));
 

@@ -1,7 +1,7 @@
 #pragma once
-// Levenberg-Marquardt on a machine's own equations, from an estimate to the record's exact parameters. The
-// voltage is played in and the rotor angle and speed are taken as measured, so that what is left to fit are
-// the fluxes: they forget their start and do not swing.
+// Levenberg-Marquardt fit of a machine's equations to a record without noise. The voltage is played in; rotor
+// angle and speed are taken as measured. Only the flux states remain to be fitted, which decay from their
+// initial values and do not oscillate.
 #include <span>
 #include <string>
 #include <vector>
@@ -11,27 +11,26 @@
 namespace swingbank::sim::direct {
 
 struct Refined {
-  std::vector<double> p;  ///< of every parameter of the effect
-  double misfit = 0;      ///< root mean square of the compared values [pu]
+  std::vector<double> p;  ///< all parameters of the effect
+  double misfit = 0;      ///< root mean square of the residuals [pu]
   int iterations = 0;
-  std::vector<int> idle = {};  ///< places in `free` of those that do not act on the fluxes; they stay
+  std::vector<int> idle = {};  ///< positions in `free` without influence on the fluxes; kept
 };
 struct RefineOptions {
-  int iterations = 25;   ///< steps that were refused count too
-  double longest = 6.0;  ///< of the stretch [s]
+  int iterations = 25;   ///< including rejected steps
+  double longest = 6.0;  ///< length of the segment [s]
 };
 
-/// `machine`: an effect of the machine slot whose voltage lies behind a constant impedance. `free`: indices
-/// of the parameters to fit, kept between `low` and `high`; the others stay as in `start`. `angle`: of the
-/// rotor against the terminal at the first sample [rad]; it is free as well, as are the states at the
-/// stretch's start. H and D do not act here. What is compared: the voltage behind the impedance, and the
-/// field current where recorded. Compared at every second sample.
+/// Fits the parameters `free` (indices) within `low` and `high`; the others keep their value in `start`.
+/// `machine`: an effect of the machine slot with its voltage behind a constant impedance. The rotor angle at
+/// the first sample and the states at the segment's start are fitted as well. H and D have no influence here.
+/// Compared at every second sample: the voltage behind the impedance, and the field current if recorded.
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
                std::span<const int> free, std::span<const double> low, std::span<const double> high,
                const RefineOptions& options = {});
 
-/// Refines the candidates in turn and returns the best, as soon as one is as close as the record's own noise
-/// before the event lets it be. Where none is, further starts are drawn about the best.
+/// Refines the candidates in turn. Returns the first whose residual is as small as the record's noise before
+/// the event allows. If there is none, refines further random starts around the best and returns the best.
 Refined refine_best(const Effect& machine, const Recording& record,
                     std::span<const std::vector<double>> candidates, std::span<const int> free,
                     std::span<const double> low, std::span<const double> high,

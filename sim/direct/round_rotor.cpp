@@ -16,11 +16,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongest = 6.0;  ///< of the stretch [s]: later the machine has little left to say
-constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< points of the three grids
-constexpr double kSaliency = 2.4;  ///< largest (Xq - X'')/(1 + ks Se) that is looked at [pu]
+constexpr double kLongest = 6.0;  ///< segment length [s]; later samples contain little information
+constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< number of points of the three grids
+constexpr double kSaliency = 2.4;  ///< largest (Xq - X'')/(1 + ks Se) in the search [pu]
 
-/// Solves columns x = target for scaled columns, and what is left as a root mean square.
+/// Least-squares solution of columns x = target with scaled columns; `left`: root mean square residual.
 struct Solved {
   VectorXd x;
   double left = 0;
@@ -32,10 +32,10 @@ Solved solve(const MatrixXd& columns, const VectorXd& target, double samples) {
   return {x.cwiseQuotient(size.transpose()), (target - scaled * x).norm() / std::sqrt(samples)};
 }
 
-/// The field circuit and the d axis' damper, linear once the angle is given:
+/// Field circuit and d-axis damper, linear for a given angle:
 ///   int psi_d = -T''do (psi_d - psi_d0) + T''do gd1/T'do J + int J/T'do - (X'd - X'') int i_d + E'q0 t,
-/// J the integral of Efd - Ifd. Every column is a sum of two that do not depend on the angle, times its
-/// cosine and sine, so their triangle is found once.
+/// with J the integral of Efd - Ifd. Every column is the sum of two angle-independent columns times the
+/// cosine and sine of the angle, so that their triangular factor is computed once.
 class DirectAxis {
  public:
   explicit DirectAxis(const Turning& t) : samples_(static_cast<double>(t.V.size())) {
@@ -53,7 +53,7 @@ class DirectAxis {
     base.col(8) = VectorXd::LinSpaced(base.rows(), 0.0, t.step * static_cast<double>(base.rows() - 1));
     triangle_ = base.householderQr().matrixQR().topRows(kColumns).triangularView<Eigen::Upper>();
   }
-  /// T''do, T''do gd1/T'do, 1/T'do, X'd - X'', E'q at the stretch's start.
+  /// Returns T''do, T''do gd1/T'do, 1/T'do, X'd - X'', and E'q at the segment's start.
   [[nodiscard]] Solved at(double angle) const {
     const double c = std::cos(angle), s = std::sin(angle);
     MatrixXd columns(kColumns, 5);
@@ -87,8 +87,8 @@ struct Axes {
 
 double se(double a, double b, double psi) { return b * std::pow(std::max(psi - a, 0.0), 2) / psi; }
 
-/// Xd and the saturation: what the field current has beyond E'q is (Xd - X'd)(i_d - kd td) + psi_d Se, linear
-/// in Xd - X'd and B once A is given.
+/// Xd and saturation. The field current above E'q is (Xd - X'd)(i_d - kd td) + psi_d Se, linear in Xd - X'd
+/// and B for a given A.
 struct Field {
   double dXd = 0, A = 0, B = 0, left = 0;
 };
@@ -110,12 +110,12 @@ Field field(const VectorXd& beyond, const VectorXd& armature, const Axes& axes) 
     return f;
   };
   constexpr double kLowestKnee = -1.2,
-                   kHighestKnee = 1.0;  // A of S1.2/S1.0 from 1 to where nothing saturates
+                   kHighestKnee = 1.0;  // A for S1.2/S1.0 from 1 up to no saturation
   const auto found = minima([&](double A) { return at(A).left; }, kLowestKnee, kHighestKnee, kKnees);
   return at(found.front().at);
 }
 
-/// X'q, T'qo and T''qo out of the three coefficients that the q axis' equation holds.
+/// X'q, T'qo and T''qo from the three coefficients of the q-axis equation.
 struct Dampers {
   double Xqp = 0, Tqop = 0, Tqopp = 0;
 };
@@ -129,7 +129,7 @@ Dampers dampers(double A1, double A2, double B1, double Xq, double Xl, double Xd
     if (d) *d = {Xqp, T, Tpp};
     return std::abs(small * T + Tpp * g * (dXq - m * small) - B1) + 1e-2 * std::max(-inside, 0.0);
   };
-  constexpr double kOffEnds = 0.01;  // of both ends [pu]
+  constexpr double kOffEnds = 0.01;  // from both ends [pu]
   const auto found = minima([&](double x) { return at(x, nullptr); }, Xdpp + kOffEnds,
                             std::max(Xq - kOffEnds, Xdpp + 2 * kOffEnds), kReactances);
   Dampers d;
@@ -141,10 +141,10 @@ struct QuadratureAxis {
   double Xq = 0, ks = 0, left = 0;
   Dampers dampers;
 };
-/// Both dampers of the q axis, twice integrated:
-///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q - ks iint sigma - r ks int
-///   sigma
-///   + straight line,   sigma = psi_q Se,   ks = (Xq - Xl)/(Xd - Xl), which three passes settle.
+/// Both q-axis dampers, twice integrated:
+///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q
+///                - ks iint sigma - r ks int sigma + straight line
+/// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl), which converges in three iterations.
 QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, const RoundRotor& r) {
   const Index n = axes.psi_q.size();
   VectorXd bent(n);
@@ -158,7 +158,7 @@ QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, con
   columns.array().rowwise() /= size.array();
   const auto qr = columns.colPivHouseholderQr();
   QuadratureAxis q;
-  q.Xq = 1.4;  // between the usual ones
+  q.Xq = 1.4;  // middle of the usual range
   VectorXd x;
   for (int pass = 0; pass < 4; ++pass) {
     q.ks = (q.Xq - r.Xl) / (r.Xd - r.Xl);
@@ -173,7 +173,7 @@ QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, con
 
 double least(double value, double floor) { return std::isfinite(value) ? std::max(value, floor) : floor; }
 
-/// Everything else once the angle is given.
+/// Estimates all other parameters for a given angle.
 RoundRotor chain(const Turning& t, const DirectAxis& d, const Minimum& angle, const RoundRotor& known) {
   RoundRotor r = known;
   r.angle = angle.at;
@@ -197,7 +197,7 @@ RoundRotor chain(const Turning& t, const DirectAxis& d, const Minimum& angle, co
   r.Xqp = q.dampers.Xqp;
   r.Tqop = q.dampers.Tqop;
   r.Tqopp = q.dampers.Tqopp;
-  // The steady state gives the angle once more.
+  // The steady state gives a second estimate of the angle.
   const double k = (r.Xq - r.Xdpp) / (1 + q.ks * se(f.A, f.B, std::abs(t.flux0)));
   const double steady = std::arg(t.flux0 + std::complex<double>(0, k) * t.current0);
   r.misfit = std::log(angle.value + 1e-7) + std::log(f.left + 1e-5) + std::log(q.left + 1e-6) +

@@ -13,7 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Row k: what the parabola through `length` neighbours makes of them at the k-th.
+/// Returns the smoothing matrix: row k is the value at sample k of the parabola fitted to `length`
+/// neighbours.
 MatrixXd parabola(Index length) {
   const Index terms = std::min<Index>(3, length);
   MatrixXd powers(length, terms);
@@ -51,7 +52,7 @@ Recording smoothed(Recording record) {
     if (x->empty()) continue;
     Eigen::Map<VectorXd> all(x->data(), static_cast<Index>(x->size()));
     const auto before = static_cast<Index>(edges[0]);
-    // The last of them may be a sample at the very instant of the event, which shows either side.
+    // The last sample may be at the event's time and show either side.
     if (before > 1) all.head(before).setConstant(all.head(before - 1).mean());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k)
       if (edges[k + 1] > edges[k])

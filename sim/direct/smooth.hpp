@@ -1,11 +1,11 @@
 #pragma once
-// A noisy record made smooth, for methods that take signals as exact.
+// Smoothing of a noisy record, for methods that assume exact signals.
 #include "sim/core/recording.hpp"
 
 namespace swingbank::sim::direct {
 
-/// Every signal by local parabolas over 0.2 s, not across a leap of the voltage, and by its mean before the
-/// event.
+/// Returns the record with every signal smoothed by local parabolas over 0.2 s, not across a voltage step.
+/// Before the event each signal is its mean.
 Recording smoothed(Recording record);
 
 }  // namespace swingbank::sim::direct

@@ -22,7 +22,7 @@ Swing swing_of(const Recording& record, double Ra, Divided divided) {
     electrical /= 1 + slip;
   Eigen::VectorXd torque = integral((t.P0 * driving - electrical).matrix(), t.step);
   torque.array() -= torque.mean();
-  // Means go from all, so that no single sample is trusted.
+  // Means over all samples are subtracted, so that no single sample serves as reference.
   Eigen::MatrixX2d columns(slip.size(), 2);
   columns.col(0) = t.speed;
   columns.col(1) = integral((slip * driving).matrix(), t.step);

@@ -1,19 +1,21 @@
 #pragma once
-// Inertia and damping from the swing equation in integrated form, which is linear in both.
+// Inertia and damping from the integrated swing equation, which is linear in both.
 #include "sim/core/recording.hpp"
 
 namespace swingbank::sim::direct {
 
 struct Swing {
   double H = 0, D = 0;  ///< [s], [pu]
-  double residual = 0;  ///< root mean square of what is left, as a share of the integrated torque's
+  double residual = 0;  ///< root mean square of the residual, relative to the integrated torque's
 };
-/// What a machine divides by speed where the convention is power: Pm - D w, or the electrical power as well.
+/// Powers that the power convention divides by speed: Pm - D w only, or the electrical power as well.
 enum class Divided { driving, all };
 
-/// 2H (w - w0) + D int w/(1 + w) = int (Pm/(1 + w) - Te), w the speed deviation, without 1 + w where the
-/// convention is torque. Everything behind the last leap of the voltage counts; a constant is free. Ra: what
-/// heats the armature is no torque's [pu]. Zeros where that leaves fewer than kShortestStretch samples.
+/// Estimates H and D by least squares from
+/// \f[ 2H (\omega - \omega_0) + D \int \frac{\omega}{1+\omega} = \int (\frac{P_m}{1+\omega} - T_e) \f]
+/// with the speed deviation omega; the factor 1 + omega is absent in the torque convention. Uses the segment
+/// after the last voltage step, with a free constant. `Ra`: armature resistance [pu]; its loss does not
+/// produce torque. Returns zeros if the segment has fewer than kShortestStretch samples.
 Swing swing_of(const Recording& record, double Ra, Divided divided);
 
 }  // namespace swingbank::sim::direct

@@ -13,7 +13,7 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<Complex>>;
 
-/// A branch without its series impedance leaves its charging and shunts.
+/// A tie in TiesIn::equations contributes only its charging and line shunts.
 void add_branch(const Branch& b, TiesIn ties, Entries& entries) {
   if (ties == TiesIn::equations && is_tie(b)) {
     const Complex half(0.0, 0.5 * b.b);
@@ -44,7 +44,7 @@ Eigen::SparseMatrix<Complex> matrix(const Network& network, const Entries& entri
   return y;
 }
 
-/// Throws if nothing sets the voltages of a network, or of a part of it where nothing is tripped.
+/// Throws if the network has no voltage source, or an island has none although nothing is tripped.
 void check_supplied(const Network& network, const Topology& topology, const std::vector<int>& dead) {
   if (dead.empty()) return;
   const bool tripped = !topology.open.empty() || !topology.tripped.empty();
@@ -109,7 +109,7 @@ Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const Po
   for (std::size_t i = 0; i < network.buses.size(); ++i)
     if (network.buses[i].type == BusType::isolated)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
-  for (const int bus : dead) entries.emplace_back(bus, bus, 1.0);  // V = 0, whatever stands there
+  for (const int bus : dead) entries.emplace_back(bus, bus, 1.0);  // V = 0 at dead buses
   return matrix(network, entries);
 }
 
@@ -128,7 +128,7 @@ ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topol
   const auto grounded = grounded_buses(network, topology);
   const auto n = static_cast<int>(network.buses.size());
   std::vector<int> keep(static_cast<std::size_t>(n), -1),
-      rest(static_cast<std::size_t>(n), -1);  // new positions
+      rest(static_cast<std::size_t>(n), -1);  // positions in the reduced system
   for (std::size_t k = 0; k < kept.size(); ++k) keep[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
   ReducedNetwork reduced;
   for (const int bus : grounded)

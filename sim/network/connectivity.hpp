@@ -1,5 +1,5 @@
 #pragma once
-// Which buses hang together.
+// Islands of the network.
 #include <string>
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace swingbank::sim::network {
 
-/// Number of the island each bus lies in, counted from 0 in order of buses; -1 for an isolated bus (type 4).
-/// `open`: branch indices taken out besides those out of service, sorted.
+/// Returns the island number of each bus, counted from 0 in order of buses; -1 for an isolated bus (type 4).
+/// `open`: sorted indices of open branches, besides those out of service.
 std::vector<int> islands(const Network& network, const std::vector<int>& open = {});
-/// "bus 7" or "buses 7, 8, 9" for messages.
+/// Returns "bus 7" or "buses 7, 8, 9" for messages.
 std::string bus_list(const Network& network, const std::vector<int>& buses);
 
 }  // namespace swingbank::sim::network

@@ -50,7 +50,7 @@ void settle_stars(Network& n, const std::set<int>& stars) {
     Complex others{}, own{};
     for (decltype(y)::InnerIterator e(y, star); e; ++e) {
       const Bus& other = at(n, static_cast<int>(e.row()));
-      // The row of a star is wanted, its column is at hand; phase shifts turn the one into the other.
+      // The star's column is accessible, its row is needed; they differ by the phase shifts.
       const Complex value = y.coeff(star, static_cast<int>(e.row()));
       (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
     }
@@ -66,8 +66,8 @@ std::string unit_text(const Network& n, const Generator& g) {
   return "'" + g.id + "' at bus " + std::to_string(at(n, g.bus).number);
 }
 
-/// Buses that ties join count as one: every one of them gets the sum of all. The voltages of a file have five
-/// digits, too few for the current of a tie.
+/// Sums the imbalances of buses that are joined by ties and assigns the sum to each of them. A file's
+/// voltages have five digits, too few for the current of a tie.
 std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, std::vector<int>& pool) {
   pool.resize(left.size());
   std::iota(pool.begin(), pool.end(), 0);
@@ -87,7 +87,7 @@ std::vector<Complex> pooled(const Network& n, const std::vector<Complex>& left, 
   return all;
 }
 
-constexpr double kSameImbalance = 1e-6;  // [pu] two imbalances that differ by less tell nothing
+constexpr double kSameImbalance = 1e-6;  // [pu] smaller differences of two imbalances are not significant
 
 bool is_of(const Duplicate& d, Duplicate::Kind, const Network& n, const Branch& b) {
   if (d.kind != Duplicate::Kind::branch || b.circuit != d.id) return false;
@@ -101,7 +101,7 @@ template <class Equipment>
 bool is_of(const Duplicate& d, Duplicate::Kind kind, const Network& n, const Equipment& e) {
   return d.kind == kind && e.id == d.id && at(n, e.bus).number == d.buses[0];
 }
-/// Removes the equipment of which `of` holds.
+/// Removes the equipment for which `of` is true.
 template <class Of>
 void erase_equipment(Network& n, const Of& of) {
   using Kind = Duplicate::Kind;
@@ -114,17 +114,17 @@ void erase_equipment(Network& n, const Of& of) {
     if (of(Kind::branch, b)) b.in_service = false;
 }
 
-/// The balance of power at the file's voltages, as a linear function of which duplicates are kept: P and Q at
-/// load buses, P at buses of generators. Buses of devices are not judged; those that ties join count as one.
+/// Power balance at the file's voltages as a linear function of the kept duplicates: P and Q at load buses, P
+/// at generator buses. Buses of devices do not count; buses joined by ties count as one.
 struct FileBalance {
-  Eigen::MatrixXd drawn;   ///< a column for each duplicate: what it draws [pu]
-  Eigen::VectorXd others;  ///< what everything else leaves [pu]
+  Eigen::MatrixXd drawn;   ///< a column for each duplicate: its power [pu]
+  Eigen::VectorXd others;  ///< imbalance without the duplicates [pu]
 
   FileBalance(const Network& n, const std::vector<Duplicate>& duplicates,
               const std::vector<Device>& devices) {
     std::vector<int> pool;
     const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
-    std::vector<BusType> kind(left.size(), BusType::load);  // by pool: the most that holds it
+    std::vector<BusType> kind(left.size(), BusType::load);  // by pool: its most controlled bus type
     for (std::size_t i = 0; i < left.size(); ++i) {
       BusType& most = kind[static_cast<std::size_t>(pool[i])];
       most = std::max(most, n.buses[i].type);
@@ -163,7 +163,8 @@ struct FileBalance {
       others[i] = row[drawn.cols()] - drawn.row(i).sum();
     }
   }
-  /// The imbalance [pu] where duplicate k draws power, with and without it; `kept`: 1 for each that is kept.
+  /// Returns the imbalance [pu] at the buses of duplicate k, with and without it. `kept`: 1 for each kept
+  /// duplicate.
   [[nodiscard]] std::pair<double, double> with_and_without(Eigen::Index k, Eigen::VectorXd kept) const {
     const auto size = [&](double of_it) {
       kept[k] = of_it;
@@ -173,7 +174,8 @@ struct FileBalance {
     };
     return {size(1.0), size(0.0)};
   }
-  /// 1 for each duplicate that the file's voltages show: least squares, rounded, then one by one.
+  /// Returns 1 for each duplicate that the file's voltages confirm: least squares, rounded, then one at a
+  /// time.
   [[nodiscard]] Eigen::VectorXd shown() const {
     Eigen::VectorXd kept = Eigen::VectorXd::Ones(drawn.cols());
     if (drawn.rows() > 0) kept = drawn.completeOrthogonalDecomposition().solve(-others);
@@ -201,7 +203,7 @@ std::string mva(const Network& n, double value) {
   return text;
 }
 
-/// Generators of load buses: as the file's own voltages say.
+/// Decides on generators at load buses by the file's voltages.
 void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>& where) {
   const auto stands = [&](const Generator& g) { return g.in_service && at(n, g.bus).type == BusType::load; };
   if (std::ranges::none_of(n.generators, stands)) return;
@@ -222,7 +224,7 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
   }
 }
 
-/// A generator whose bus to hold is out of service holds its own.
+/// A generator whose regulated bus is out of service regulates its own bus.
 void hold_own(Network& n, Generator& g, const std::string& place) {
   if (g.regulated < 0 || at(n, g.regulated).type != BusType::isolated) return;
   n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
@@ -272,7 +274,7 @@ void settle_generators(Network& n, const std::function<std::string(std::size_t)>
   for (std::size_t i = 0; i < n.generators.size(); ++i) {
     Generator& g = n.generators[i];
     if (!g.in_service || at(n, g.bus).type == BusType::load) {
-      g.regulated = -1;  // it holds no voltage
+      g.regulated = -1;  // it does not regulate a voltage
       continue;
     }
     const std::string place = unit_text(n, g) + " (" + where(i) + ")";
@@ -327,7 +329,7 @@ void settle_islands(Network& n) {
 
 namespace {
 
-/// The largest imbalance [pu] at a bus of load type where no device stands, and the bus.
+/// Returns the largest imbalance [pu] at a load bus without devices, and the bus.
 std::pair<double, int> worst_elsewhere(const Network& n, const std::vector<Complex>& left,
                                        const std::vector<int>& pool, const std::map<int, int>& devices) {
   std::pair<double, int> worst{0.0, -1};
@@ -343,7 +345,7 @@ std::string megawatts(double p, const Network& n) {
   return text;
 }
 
-/// What the devices at each bus are scheduled to draw together [pu]; NaN: not known.
+/// Returns the scheduled consumption of the devices at each bus [pu]; NaN: unknown.
 std::map<int, double> schedules(const std::vector<Device>& devices) {
   std::map<int, double> at_bus;
   for (const Device& d : devices)
@@ -380,10 +382,10 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
   }
   std::vector<int> pool;
   const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
-  std::map<int, int> sharing;  // pools and how many buses of devices are in each
+  std::map<int, int> sharing;  // number of device buses in each pool
   for (const auto& [b, names] : at_bus) ++sharing[pool[static_cast<std::size_t>(b)]];
   const std::map<int, double> schedule = schedules(devices);
-  constexpr double most = 0.05;  // [pu] a solved case rounded to five digits leaves a tenth of it
+  constexpr double most = 0.05;  // [pu], ten times the rounding error of a solved case with five digits
   const auto [worst, bus] = worst_elsewhere(n, left, pool, sharing);
   const bool finite = std::ranges::all_of(
       left, [](const Complex& c) { return std::isfinite(c.real()) && std::isfinite(c.imag()); });
@@ -405,7 +407,7 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
     n.loads.push_back({b, id, draws, {}, {}, of.area, of.zone, of.owner, LoadKind::device});
     n.remark("equipment without a model here draws what the file's voltages say, as a constant P and Q",
              names + " at bus " + std::to_string(of.number) + ": " + power_text(draws, n.base_mva));
-    constexpr double far = 0.1;  // of the schedule, beside what the file's rounding leaves
+    constexpr double far = 0.1;  // of the schedule, in addition to the file's rounding
     if (const double scheduled = schedule.at(b);
         sharing[pool[i]] == 1 && std::abs(draws.real() - scheduled) > most + far * std::abs(scheduled))
       n.remark(

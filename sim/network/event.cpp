@@ -124,7 +124,7 @@ std::vector<Interval> generator_intervals(const Event& event, const Network& net
   return list;
 }
 
-/// Generators that have lost a part of their units until t, and what is left of them.
+/// Returns the generators that have lost a part of their units until t, and their connected shares.
 std::vector<std::pair<int, double>> partly_tripped_at(const Event& event, double t,
                                                       const std::vector<int>& tripped) {
   std::map<int, double> left;
@@ -134,7 +134,7 @@ std::vector<std::pair<int, double>> partly_tripped_at(const Event& event, double
   return {left.begin(), left.end()};
 }
 void check_parts(const Event& event, const Network& network, Problems& problems) {
-  constexpr double least = 1e-6;  // below it nothing is left but rounding
+  constexpr double least = 1e-6;  // below it only rounding errors remain
   for (const auto& [generator, left] : partly_tripped_at(event, kForGood, {}))
     if (left < least && generator >= 0 && generator < static_cast<int>(network.generators.size()))
       problems.add("partial trips that leave " + std::to_string(left) + " of the units",
@@ -170,7 +170,7 @@ void check_setpoints(const Event& event, const Network& network, Problems& probl
   }
 }
 
-/// References in force at time t, one entry per generator that has moved.
+/// Returns the reference changes in force at time t, one entry per affected generator.
 std::vector<Setpoint> setpoints_at(const Event& event, double t) {
   std::vector<Setpoint> list;
   for (const SetpointStep& step : event.setpoint_steps) {

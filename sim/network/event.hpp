@@ -1,6 +1,6 @@
 #pragma once
-// What happens to the grid during a run - faults, switching, trips, steps - and the piecewise constant
-// topology that follows from it.
+// Disturbances of a simulation (faults, switching, trips, steps) and the piecewise constant topology that
+// results.
 #include <optional>
 #include <vector>
 
@@ -8,27 +8,27 @@
 
 namespace swingbank::sim::network {
 
-/// Three-phase fault at a bus from t_on to t_off [s] through impedance z [pu on base_mva]; z = 0 is bolted (V
-/// = 0).
+/// Three-phase fault at a bus from t_on to t_off [s] through the impedance z [pu on base_mva]; z = 0 is
+/// bolted (V = 0).
 struct BusFault {
   int bus;  ///< index
   double t_on, t_off;
   Complex z{};
 };
-/// A branch opened at t_open [s] and, if given, closed again at t_close.
+/// A branch that opens at t_open [s] and, if t_close is given, closes again at t_close.
 struct LineTrip {
   int branch;  ///< index
   double t_open;
   std::optional<double> t_close;
 };
-/// A generator disconnected for good, or a part of it: the plant then stands for units of which some are
-/// lost, and the others go on as they were.
+/// Permanent disconnection of a generator or of a part of it. The plant then represents several units, some
+/// of which are lost; the others continue unchanged.
 struct GeneratorTrip {
   int generator;      ///< index into Network::generators
   double time;        ///< [s]
-  double part = 1.0;  ///< of its units, > 0; 1: all
+  double part = 1.0;  ///< share of its units, > 0; 1: all
 };
-/// Consumption added at a bus (taken away if negative), as the constant admittance that draws `power` at the
+/// Consumption added at a bus (removed if negative): the constant admittance that draws `power` at the
 /// voltage before the event.
 struct LoadStep {
   int bus;        ///< index
@@ -36,7 +36,7 @@ struct LoadStep {
   double t_on;    ///< [s]
   std::optional<double> t_off;
 };
-/// A step of a control's reference, added to those before it.
+/// Step of a control's reference, added to earlier steps.
 struct SetpointStep {
   int generator;        ///< index into Network::generators
   double time;          ///< [s]
@@ -50,19 +50,19 @@ struct Event {
   std::vector<SetpointStep> setpoint_steps = {};
 };
 
-/// The network between two switching instants.
+/// State of the network between two switching times.
 struct Topology {
   std::vector<std::pair<int, Complex>> faults = {};      ///< bus index, impedance; sorted by bus
   std::vector<int> open = {};                            ///< branch indices, sorted
   std::vector<int> tripped = {};                         ///< generator indices, sorted
   std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
-  /// Generators of which a part is lost, and the part still connected; sorted, none of `tripped`.
+  /// Generators that have lost a part, with the part still connected; sorted, disjoint from `tripped`.
   std::vector<std::pair<int, double>> partly_tripped = {};
   friend bool operator==(const Topology&, const Topology&) = default;
-  /// Part of a generator's units that is connected: 0 to 1.
+  /// Returns the connected share of a generator's units, 0 to 1.
   [[nodiscard]] double connected(int generator) const;
 };
-/// Reference moves of one generator in force during a segment [pu].
+/// Change of one generator's references during a segment [pu].
 struct Setpoint {
   int generator;
   double dVref, dPref;
@@ -73,9 +73,9 @@ struct Segment {
   Topology topology;
   std::vector<Setpoint> setpoints = {};
 };
-/// Segments in order of time; switchings at the same instant make one segment. `instants`: further times at
-/// which a segment begins (effects that jump). Throws InputError if an event ends before it starts, starts
-/// before 0, names what the network has not, or faults a bus twice at once.
+/// Returns the segments in order of time; simultaneous switchings form one segment. `instants`: further
+/// switching times, those of effects [s]. Throws InputError if an event ends before it starts, starts before
+/// 0, names missing equipment, or faults a bus twice at the same time.
 std::vector<Segment> segments(const Event& event, const Network& network,
                               const std::vector<double>& instants = {});
 

@@ -10,7 +10,7 @@
 namespace swingbank::sim::network {
 namespace {
 
-/// What is in force during the fault, without the fault.
+/// Returns the topology during the fault, without the fault.
 Topology around(const Event& event, const Network& network, Problems& problems) {
   const BusFault& fault = event.faults.front();
   Topology topology;

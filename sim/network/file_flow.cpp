@@ -1,4 +1,4 @@
-// The voltages of a file as the solution, and what they leave over.
+// The file's voltages as power-flow solution, and their imbalances.
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ std::vector<Complex> voltages_of_file(const Network& network) {
   return v;
 }
 
-/// As imbalance_of_file, at other voltages.
+/// As imbalance_of_file(), at other voltages.
 std::vector<Complex> imbalance_at(const Network& network, const std::vector<Complex>& voltage, TiesIn ties) {
   const Eigen::Map<const Eigen::VectorXcd> v(voltage.data(), static_cast<Eigen::Index>(voltage.size()));
   const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network, {}, ties) * v).conjugate());
@@ -44,9 +44,9 @@ std::vector<Complex> imbalance_of_file(const Network& network) {
 
 namespace {
 
-/// Voltages, and the power mismatch at every bus. The voltages of a file have too few digits for the current
-/// of a tie. Of the buses that ties join, one keeps the file's voltage: one with a generator if there is any.
-/// The voltages of the others follow from it, and the ties carry their mismatch to it.
+/// Voltages and the power mismatch of every bus. A file's voltages have too few digits for the current of a
+/// tie. Of the buses joined by ties one keeps the file's voltage, preferably one with a generator. The other
+/// voltages follow from it, and the ties carry their mismatch to it.
 struct FileSolution {
   std::vector<Complex> voltage, left;
 };
@@ -58,14 +58,14 @@ FileSolution solution_of_file(const Network& network) {
   for (std::size_t k = 0; k < all.size(); ++k)
     for (const int end : {all[k].from, all[k].to}) at_bus[as_index(end)].push_back(k);
   struct Step {
-    int bus, other;  ///< seen from `bus`, which is nearer to the first
+    int bus, other;  ///< `bus` is nearer to the first bus
     std::size_t tie;
   };
   std::vector<Step> tree;
   std::vector<char> known(network.buses.size(), 0);
   std::vector<std::size_t> firsts(network.buses.size());
   std::iota(firsts.begin(), firsts.end(), 0);
-  // a generator balances what comes to it
+  // A generator balances the mismatch that arrives at its bus.
   std::stable_partition(firsts.begin(), firsts.end(), [&](std::size_t bus) {
     return std::ranges::any_of(network.generators,
                                [&](const Generator& g) { return g.in_service && as_index(g.bus) == bus; });

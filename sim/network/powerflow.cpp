@@ -20,7 +20,7 @@
 namespace swingbank::sim::network {
 namespace {
 
-/// Loads of each bus by their dependence on voltage.
+/// Loads of each bus by voltage dependence.
 struct Demand {
   std::vector<Complex> power, current, admittance;
 };
@@ -36,7 +36,7 @@ Demand demand_of(const Network& n) {
   return d;
 }
 
-/// Throws for a slack bus without generator, and for buses that no path joins to a slack bus.
+/// Throws for a slack bus without a generator, and for buses without a path to a slack bus.
 void check_slack(const Network& n, const std::vector<double>& supply) {
   Problems problems;
   std::vector<int> slacks, idle;
@@ -67,9 +67,9 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
                       "close a branch, or make isolated buses type 4"});
 }
 
-/// Newton's method on angles, magnitudes and the currents of ties. With a tie's current as an unknown its
-/// equation is linear in the voltages: a start whose voltages differ across the tie does no harm, while as a
-/// sum of powers it is the square of that difference over a small impedance.
+/// Newton's method on angles, magnitudes and currents of ties. With a tie's current as an unknown, its
+/// equation is linear in the voltages, so that start voltages that differ across the tie are harmless. As a
+/// sum of powers, its mismatch would be the square of that difference divided by a small impedance.
 class Newton {
  public:
   Newton(const Network& n, const Demand& demand)
@@ -79,7 +79,7 @@ class Newton {
         ties_(ties(n)),
         tie_current_(ties_.size()) {}
 
-  /// Takes on the roles of the buses; the voltages stay.
+  /// Sets the roles of the buses; the voltages are kept.
   void arrange(const Roles& roles) {
     roles_ = &roles;
     const int count = static_cast<int>(n_.buses.size());
@@ -95,7 +95,7 @@ class Newton {
     }
     bus_unknowns_ = unknowns_;
     unknowns_ += 2 * static_cast<int>(ties_.size());
-    // Which equations see the reactive power of a bus, with which factor.
+    // Equations that depend on the reactive power of each bus, with their factors.
     for (int i = 0; i < count; ++i) {
       const Role& role = roles[as_index(i)];
       if (role.kind == Role::load) reactive_[as_index(i)].push_back({magnitude_[as_index(i)], 1.0});
@@ -109,8 +109,7 @@ class Newton {
         v_[i] = std::polar(roles[as_index(i)].held, std::arg(v_[i]));
   }
 
-  /// Iterates from the present voltages; true if every mismatch is within tolerance (or rounding, see
-  /// `floor`).
+  /// Iterates from the present voltages. Returns true if every mismatch is within tolerance or rounding.
   bool iterate(double tolerance, int limit, int& iterations, double longest_step = kAnyStep) {
     for (int k = 0; k <= limit; ++k, ++iterations) {
       if (!evaluate()) return false;
@@ -120,7 +119,7 @@ class Newton {
     return false;
   }
   static constexpr double kAnyStep = 1e9;  ///< [rad, pu]
-  /// From the file's voltages, or flat: 1 pu, at the angles that the phase shifts alone would make.
+  /// Sets start voltages: the file's, or flat (1 pu, with the angles of the phase shifts).
   void start(bool flat) {
     std::ranges::fill(tie_current_, Complex{});
     v_.resize(static_cast<Eigen::Index>(n_.buses.size()));
@@ -136,7 +135,7 @@ class Newton {
   }
   void add_susceptance(int bus, double more) { y_.coeffRef(bus, bus) += Complex(0.0, more); }
   [[nodiscard]] const Eigen::VectorXcd& voltage() const { return v_; }
-  /// Power the generators of a bus must deliver [pu].
+  /// Returns the power of the generators at a bus [pu].
   [[nodiscard]] Complex delivered(int i) const { return v_[i] * std::conj(i_[i]) + load(i); }
   [[nodiscard]] double mismatch() const { return worst_; }
   [[nodiscard]] int worst_bus() const { return worst_bus_; }
@@ -146,14 +145,16 @@ class Newton {
     int row;
     double factor;
   };
-  /// A balance at a fraction of the voltage is no operating point: a bus without load has one at V = 0.
+  /// A solution at a fraction of the nominal voltage is no operating point: a bus without load has one at V =
+  /// 0.
   [[nodiscard]] bool collapsed() const {
     constexpr double least = 0.2;  // [pu]
     for (Eigen::Index i = 0; i < v_.size(); ++i)
       if (role(static_cast<int>(i)).kind != Role::out && std::abs(v_[i]) < least) return true;
     return false;
   }
-  /// Angle of every bus without any flow: that of its slack bus and the phase shifts on the way [rad].
+  /// Returns the angle of every bus without power flow: that of its slack bus plus the phase shifts in
+  /// between [rad].
   [[nodiscard]] std::vector<double> angles_of_shifts() const {
     std::vector<std::vector<std::pair<int, double>>> next(n_.buses.size());
     for (const Branch& b : n_.branches)
@@ -178,9 +179,9 @@ class Newton {
         }
     return angle;
   }
-  /// Row and column of the real part of a tie's current.
+  /// Returns row and column of the real part of a tie's current.
   [[nodiscard]] int tie_row(std::size_t k) const { return bus_unknowns_ + 2 * static_cast<int>(k); }
-  /// What a tie's voltages and current leave of its equation [pu]; zero where that is rounding.
+  /// Returns the residual of a tie's equation [pu]; zero below rounding.
   [[nodiscard]] Complex tie_mismatch(std::size_t k) const {
     const Tie& tie = ties_[k];
     const Complex from = v_[tie.from] / tie.ratio;
@@ -193,7 +194,7 @@ class Newton {
     const double vm = std::abs(v_[i]);
     return in_.power[as_index(i)] + vm * (in_.current[as_index(i)] + vm * in_.admittance[as_index(i)]);
   }
-  /// Mismatches at the present voltages; false if they are not finite any more.
+  /// Computes the mismatches at the present voltages. Returns false if they are not finite.
   bool evaluate() {
     i_ = y_ * v_;
     f_ = Eigen::VectorXd::Zero(unknowns_);
@@ -237,7 +238,7 @@ class Newton {
     worst_bus_ = bus;
     return true;
   }
-  /// A mismatch below a few units in the last place of the powers that meet at the bus is rounding.
+  /// Mismatches below a few units in the last place of the powers at the bus count as rounding.
   [[nodiscard]] bool converged(double tolerance) const {
     Eigen::VectorXd meeting = Eigen::VectorXd::Zero(v_.size());
     for (int j = 0; j < y_.outerSize(); ++j)
@@ -258,7 +259,7 @@ class Newton {
     }
     return true;
   }
-  /// One Newton step with dS/d(angle) and dS/d|V|.
+  /// Performs one Newton step with dS/d(angle) and dS/d|V|.
   bool step(double longest) {
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int i, int column, Complex d) {
@@ -337,16 +338,16 @@ class Newton {
   int worst_bus_ = -1;
 };
 
-/// Newton's method with the present roles: from where it stands, else from the file, else flat.
+/// Solves with the present roles: from the present voltages, else the file's, else a flat start.
 void solve(Newton& newton, const Network& network, const PowerFlowOptions& options, bool limited,
            int& iterations) {
   if (limited && newton.iterate(options.tolerance, options.limit, iterations)) return;
   newton.start(false);
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
-  newton.start(true);  // a poor start in the file is no reason to give up
+  newton.start(true);  // in case the file's voltages are a poor start
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
   constexpr double short_step = 0.1;  // [rad, pu]
-  constexpr int more = 5;             // times as many of them
+  constexpr int more = 5;             // factor of the iteration limit
   for (const bool flat : {false, true}) {
     newton.start(flat);
     if (newton.iterate(options.tolerance, more * options.limit, iterations, short_step)) return;
@@ -369,9 +370,9 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
                         ", or start from the file's voltages as they stand (--start file)"});
 }
 
-/// Power of a bus among its generators, without limits: as in the file where the solution is the file's, for
-/// PSS/E shares by what a plant's units had before (its records of eight units at a bus: Q as P), else by
-/// MVA.
+/// Shares the power of a bus among its generators, without limits. If the solution is that of the file, the
+/// shares are the file's: PSS/E shares by the previous values of a plant's units (its records of eight units
+/// at a bus: Q as P). Otherwise by MVA.
 void share_freely(const Network& n, const std::vector<std::size_t>& units, double mva, Complex power,
                   std::vector<Complex>& generation) {
   Complex rest = power;
@@ -384,7 +385,7 @@ void share_freely(const Network& n, const std::vector<std::size_t>& units, doubl
   }
 }
 
-/// The same, but each within its own reactive limits where the bus is.
+/// As share_freely(), but within each generator's reactive limits if the bus is within them.
 void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions& options,
                std::vector<Complex>& generation) {
   std::vector<std::size_t> units;
@@ -404,7 +405,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
     return g.q_min <= g.q_max ? std::clamp(generation[k].imag(), g.q_min, g.q_max) : generation[k].imag();
   };
   std::vector<std::size_t> open = units;
-  while (true) {  // what one cannot take goes to those with room; at most as many rounds as units
+  while (true) {  // excess goes to units with reserve; at most as many rounds as units
     double rest = power.imag(), room = 0.0;
     std::vector<std::size_t> free;
     for (const std::size_t k : units) {
@@ -419,7 +420,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
       }
     }
     if (free.size() == open.size() || free.empty()) {
-      if (free.empty())  // beyond the sum of the limits: a type-1 bus, or limits that are crossed
+      if (free.empty())  // beyond the sum of limits: type-1 bus, or q_min above q_max
         for (const std::size_t k : units) generation[k] += Complex(0.0, rest * n.generators[k].mva / mva);
       return;
     }

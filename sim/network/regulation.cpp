@@ -1,4 +1,4 @@
-// Which bus holds which voltage, and what becomes of it at a reactive limit.
+// Voltage regulation by generators, and reactive limits.
 #include "sim/network/detail/regulation.hpp"
 
 #include <algorithm>
@@ -76,8 +76,8 @@ void Regulation::assign() {
 
 bool Regulation::limit(const std::function<double(int)>& reactive,
                        const std::function<double(int)>& voltage) {
-  constexpr double beyond = 1e-9;  // [pu] rounding is no reason to move
-  constexpr int most = 3;          // a bus that comes back again and again stays at its limit
+  constexpr double beyond = 1e-9;  // [pu], ignores rounding
+  constexpr int most = 3;          // returns from a limit; afterwards the bus stays at its limit
   bool moved = false;
   for (Source& s : sources_) {
     if (!s.bounded) continue;

@@ -1,4 +1,4 @@
-// Steps of switched shunts between solutions of the power flow.
+// Steps of switched shunts between power-flow solutions.
 #include "sim/network/detail/shunt_steps.hpp"
 
 #include <algorithm>
@@ -6,12 +6,12 @@
 namespace swingbank::sim::network {
 namespace {
 
-constexpr double kSameStep = 1e-9;  ///< [pu] steps are sums that were rounded
+constexpr double kSameStep = 1e-9;  ///< [pu], steps are rounded sums
 
-/// -1: too much susceptance, +1: too little, 0: within the band.
+/// Returns -1 for too much susceptance, +1 for too little, 0 within the band.
 int way_to_band(const SwitchedShunt& s, double v) { return v > s.most ? -1 : v < s.least ? 1 : 0; }
 
-/// The next step in a direction; the present one where there is none.
+/// Returns the next step in a direction, or the present one at the end.
 double next_step(const SwitchedShunt& s, double now, int direction) {
   if (direction > 0) {
     const auto found = std::ranges::upper_bound(s.steps, now + kSameStep);
@@ -35,7 +35,7 @@ bool ShuntSteps::step(const std::function<double(int)>& voltage,
     Bank& bank = banks_[i];
     const int way = way_to_band(s, voltage(s.regulated));
     if (way == 0) continue;
-    if (bank.last == -way) continue;  // its band is narrower than a step
+    if (bank.last == -way) continue;  // the band is narrower than a step
     const double to = next_step(s, bank.now, way);
     if (to == bank.now) continue;
     change(s.bus, to - bank.now);

@@ -1,5 +1,6 @@
 #pragma once
-// Branches of next to no impedance: bus ties, jumpers, regulators and star legs that are entered as zero.
+// Ties: branches of nearly zero impedance, such as bus ties, jumpers, regulators and star legs entered as
+// zero.
 #include <string>
 #include <vector>
 
@@ -7,15 +8,15 @@
 
 namespace swingbank::sim::network {
 
-/// Least impedance |R + jX| of a branch [pu on base_mva]. One that is not above it carries its current at a
-/// voltage drop that no file and no record resolves (1e-5 pu at 10 pu), and gets j kLeastImpedance.
+/// Least impedance |R + jX| of a branch [pu on base_mva]. The voltage drop of a branch at or below it (1e-5
+/// pu at 10 pu current) is below the resolution of files and records. Such a branch gets j kLeastImpedance.
 constexpr double kLeastImpedance = 1e-6;
-/// Up to this impedance [pu on base_mva] a branch is a tie: its current is computed from the difference of
-/// its voltages, or is an unknown of its own. A sum with its admittance would lose the digits of the other
-/// branches at the bus: the voltages that follow from it are wrong by 1e-16 / |R + jX| pu. As PSS/E's THRSHZ.
+/// Largest impedance of a tie [pu on base_mva]; compare PSS/E's THRSHZ. A tie's current is computed from its
+/// voltage difference or is an unknown of its own. A sum with its admittance would lose the digits of the
+/// bus's other branches: the resulting voltages would be wrong by 1e-16 / |R + jX| pu.
 constexpr double kTieImpedance = 1e-4;
 
-/// Makes an impedance up to kLeastImpedance j kLeastImpedance, with a remark. `place`: where the branch is in
+/// Replaces an impedance up to kLeastImpedance by j kLeastImpedance, with a remark. `place`: of the branch in
 /// its file.
 void raise_impedance(Network& network, double& r, double& x, const std::string& place);
 
@@ -24,7 +25,7 @@ struct Tie {
   int from, to;  ///< bus indices
   Complex ratio, z;
 };
-/// The ties of a topology.
+/// Returns the ties of a topology.
 std::vector<Tie> ties(const Network& network, const Topology& topology = {});
 [[nodiscard]] bool is_tie(const Branch& branch);
 

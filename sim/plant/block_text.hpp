@@ -1,5 +1,5 @@
 #pragma once
-// Effects as a person writes them on a command line: "EFFECT[:PARAM=VALUE,...]".
+// Effects as text on a command line: "EFFECT[:PARAM=VALUE,...]".
 #include <optional>
 #include <string>
 
@@ -8,19 +8,20 @@
 
 namespace swingbank::sim::plant {
 
-/// Sets parameters from "PARAM=VALUE,..."; what is wrong becomes a problem that names `where`.
+/// Sets parameters from "PARAM=VALUE,...". Errors are added to `problems` with the place `where`.
 void set_parameters(Block& block, const std::string& text, const std::string& where, Problems& problems);
 
-/// An effect for a plant ("all": for every plant).
+/// An effect to add to one plant ("all": to every plant).
 struct Attachment {
   std::string plant;
-  Block block;  ///< effect == nullptr: the text was at fault
+  Block block;  ///< effect == nullptr: the text was invalid
 };
-/// Reads "PLANT:EFFECT[:PARAM=VALUE,...]" with the effects of `library`. Parameters not named keep the
-/// effect's standard value. Unknown names and what the effect's check() refuses become problems.
+/// Reads "PLANT:EFFECT[:PARAM=VALUE,...]" with the effects of `library`. Parameters that are not named keep
+/// their defaults. Unknown names and values that check() refuses are added to `problems`.
 Attachment read_attachment(const std::string& text, const library::EffectLibrary& library,
                            const std::string& where, Problems& problems);
-/// Puts a block into its slot of a plant, after what stands there already. Why it cannot, or nothing.
+/// Adds a block to its slot of a plant, after the blocks already there. Returns a problem if that is not
+/// possible.
 std::optional<Problem> place(Plant& plant, Block block, const std::string& where);
 
 }  // namespace swingbank::sim::plant

@@ -1,9 +1,9 @@
 #pragma once
-// One plant's equations, whatever effects it is made of, in the order every integrator evaluates them:
-//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot -> what follows
-//   from those behind -> machine.derivative -> non-windup limits
-// States of a plant lie back to back, machine first; coefficients likewise, with the plant's own (Joint)
-// after the machine's.
+// Equations of one plant, for any combination of effects, in the evaluation order common to all integrators:
+//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot -> afterwards
+//   -> machine.derivative -> non-windup limits
+// The states of a plant are contiguous, machine first. So are the coefficients; the plant's own (Joint)
+// follow those of the machine.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -18,8 +18,8 @@
 
 namespace swingbank::sim::plant {
 
-/// What a plant knows besides its effects' coefficients: impedance [pu on the machine's base] of the machine
-/// alone (rm, xm), and with the step-up transformer as the grid sees it (r, x); the transformer's ratio.
+/// The plant's own coefficients: impedance of the machine alone (rm, xm), impedance seen from the grid with
+/// the step-up transformer (r, x) [pu on the machine's base], and the transformer's ratio.
 enum Joint { joint_rm, joint_xm, joint_ratio, joint_r, joint_x, kJoint };
 
 template <class T>
@@ -49,34 +49,34 @@ class PlantEquations {
   [[nodiscard]] int states() const { return states_; }
   [[nodiscard]] int coefficients() const { return coefficients_; }
   [[nodiscard]] int scratch() const { return scratch_; }
-  /// Whether anything but the machine must be evaluated.
+  /// Whether the plant consists of a machine with constant impedance only.
   [[nodiscard]] bool machine_alone() const { return controls_.empty() && !has_transformer_ && !nonlinear(); }
-  /// Whether the current is no linear function of emf and voltage: see current().
+  /// Whether the current is a nonlinear function of emf and voltage: see current().
   [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
   [[nodiscard]] bool limited() const { return !limits_.empty(); }
-  /// How many functions tell by their sign on which side of a jump of its equations the plant is.
+  /// Number of guard functions. Their signs give the side of each jump of the equations.
   [[nodiscard]] int guards() const { return guards_; }
 
-  /// Voltage er + j ei as the grid sees it behind r + jx [pu, network frame]. m: scratch() values, kept for
-  /// derivative().
+  /// Computes the voltage er + j ei seen from the grid behind r + jx [pu, network frame]. m: scratch()
+  /// values, kept for derivative().
   void emf(const T* c, const T* x, T* m, T& er, T& ei) const {
     machine_.emf(c, x, m, er, ei);
     if (!has_transformer_) return;
     er = er * c[joint_ + joint_ratio];
     ei = ei * c[joint_ + joint_ratio];
   }
-  /// Where nonlinear(): Vr, Vi at the terminal -> Ir, Ii, after emf().
+  /// Computes Ir, Ii from Vr, Vi at the terminal, after emf(). Requires nonlinear().
   void current(const T* c, const T* x, T* m, Signals<T>& s) const { machine_.current(c, x, m, s); }
   [[nodiscard]] const T* impedance(const T* c) const { return c + joint_ + joint_r; }
-  /// Of the machine alone.
+  /// Returns the impedance of the machine alone.
   [[nodiscard]] const T* machine_impedance(const T* c) const { return c + joint_ + joint_rm; }
-  /// Of the step-up transformer; none: nullptr.
+  /// Returns the ratio of the step-up transformer, nullptr if there is none.
   [[nodiscard]] const T* ratio(const T* c) const {
     return has_transformer_ ? c + joint_ + joint_ratio : nullptr;
   }
 
-  /// Vr, Vi at the terminal and Vpr, Vpi at the grid's side, with er + j ei from emf() and the current Ir, Ii
-  /// into the grid, which becomes that of the machine.
+  /// Computes Vr, Vi at the terminal and Vpr, Vpi at the grid's side from er + j ei of emf() and the current
+  /// Ir, Ii into the grid. Ir, Ii become the machine's current.
   void voltages(const T* c, const T& er, const T& ei, Signals<T>& s) const {
     const T* j = c + joint_;
     if (!has_transformer_) {
@@ -90,7 +90,7 @@ class PlantEquations {
     look_far(s, s.Vpr, s.Vpi, s.Ir, s.Ii);
     through_transformer(c, s);
   }
-  /// The same from the voltage Vpr, Vpi at the grid's side: of no use behind V = 0.
+  /// As voltages(), from the voltage Vpr, Vpi at the grid's side. Not usable at V = 0.
   void through_transformer(const T* c, Signals<T>& s) const {
     const T* j = c + joint_;
     const T n = j[joint_ratio], in = T(1.0) / n;
@@ -102,7 +102,7 @@ class PlantEquations {
     s.Vi = s.Vpi * in + rt * s.Ii + xt * s.Ir;
   }
 
-  /// Voltage and current at the grid's side from Vr, Vi and Ir, Ii of the machine.
+  /// Returns voltage and current at the grid's side from Vr, Vi and Ir, Ii of the machine.
   [[nodiscard]] std::pair<std::complex<T>, std::complex<T>> to_grid(const T* c, const Signals<T>& s) const {
     const std::complex<T> v(s.Vr, s.Vi), i(s.Ir, s.Ii);
     if (!has_transformer_) return {v, i};
@@ -112,7 +112,8 @@ class PlantEquations {
     return {n * (v - zt * i), i / n};
   }
 
-  /// What a plant's control sees where it names no other place: voltage and current at the grid's side.
+  /// Sets the remote measurement of the plant control from voltage and current at the grid's side, through
+  /// the two-port `Plant::beyond` if there is one.
   void look_far(Signals<T>& s, const T& vr, const T& vi, const T& ir, const T& ii) const {
     if (!looks_far_) return;
     Far<T>& f = s.far;
@@ -126,22 +127,22 @@ class PlantEquations {
     f.Q = f.Vi * f.Ir - f.Vr * f.Ii;
   }
 
-  /// Currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf(). Returns
-  /// the current into the grid in ir, ii.
+  /// Computes currents and terminal voltage from the voltage Vpr, Vpi in s at the grid's side, after emf().
+  /// Returns the current into the grid in ir, ii.
   void from_grid(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
     currents(c, x, m, er, ei, s, ir, ii);
     look_far(s, s.Vpr, s.Vpi, ir, ii);
   }
 
-  /// After voltages() or from_grid(). In s.Efd and s.Tm stand the values held where no exciter or governor
-  /// sets them, in s.dVref, s.dPref and s.t what the event brings. Fills every other signal, and dx with
-  /// states() derivatives [1/s].
+  /// Computes every other signal and the states() derivatives `dx` [1/s], after voltages() or from_grid(). On
+  /// entry s.Efd and s.Tm hold the constant values for a plant without exciter or governor; s.dVref, s.dPref
+  /// and s.t hold the event's values.
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     signals(c, x, m, s, dx);
     machine_.derivative(c, x, m, s, dx);
     hold_at_limits(c, x, dx);
   }
-  /// The same with torque and field voltage added to what the controls give.
+  /// As derivative(), with torque and field voltage added to the controls' outputs.
   void derivative_with(const T* c, const T* x, T* m, const T& torque, const T& field, Signals<T>& s,
                        T* dx) const {
     signals(c, x, m, s, dx);
@@ -150,12 +151,12 @@ class PlantEquations {
     machine_.derivative(c, x, m, s, dx);
     hold_at_limits(c, x, dx);
   }
-  /// The same where machine_alone(): only Ir and Ii are needed.
+  /// As derivative(), where machine_alone(): only Ir and Ii are needed.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     machine_.electrical(c, x, m, s);
     machine_.derivative(c, x, m, s, dx);
   }
-  /// Every signal; dx gets the controls' derivatives.
+  /// Computes every signal; dx receives the controls' derivatives.
   void signals(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     terminal(s);
     machine_.electrical(c, x, m, s);
@@ -167,12 +168,12 @@ class PlantEquations {
     for (const Control& k : controls_)
       if (k.ops.afterwards) k.ops.afterwards(c + k.coefficient, x + k.state, s, dx + k.state);
   }
-  /// These functions, by the signals that derivative() made of the states.
+  /// Computes the guard functions from the signals of derivative().
   void guard(const T* c, const T* x, const Signals<T>& s, T* g) const {
     for (const Control& k : controls_)
       if (k.ops.guard) k.ops.guard(c + k.coefficient, x + k.state, s, g + k.guard);
   }
-  /// Takes states back to the limits they have crossed within a step; adds to `moved` how far.
+  /// Clamps states to limits that they crossed within a step; adds the distance to `moved`.
   void clamp_states(const T* c, T* x, T& moved) const {
     for (const Limit& l : limits_) {
       const T before = x[l.state];
@@ -181,7 +182,7 @@ class PlantEquations {
       moved = moved + positive_part(x[l.state] - before) + positive_part(before - x[l.state]);
     }
   }
-  /// Power into the grid: behind a transformer that of its far side.
+  /// Computes the power into the grid, behind a transformer that of its grid side.
   void grid_power(const T* c, const Signals<T>& s, T& P, T& Q) const {
     P = s.P;
     Q = s.Q;
@@ -190,7 +191,7 @@ class PlantEquations {
     P = (s.Vpr * s.Ir + s.Vpi * s.Ii) * in;
     Q = (s.Vpi * s.Ir - s.Vpr * s.Ii) * in;
   }
-  /// Voltage at the grid's side.
+  /// Returns the voltage at the grid's side.
   void grid_voltage(const Signals<T>& s, T& vr, T& vi) const {
     vr = has_transformer_ ? s.Vpr : s.Vr;
     vi = has_transformer_ ? s.Vpi : s.Vi;
@@ -204,12 +205,12 @@ class PlantEquations {
   struct Control {
     ControlOps<T> ops;
     const void* law;
-    int state, coefficient, guard;  ///< its first ones
+    int state, coefficient, guard;  ///< indices of its first ones
   };
   struct Limit {
     int state, low, high;
   };
-  /// Real and imaginary part of p (xr + j xi) + q (yr + j yi).
+  /// Returns real and imaginary part of p (xr + j xi) + q (yr + j yi).
   static std::tuple<T, T> sum_of(std::complex<double> p, const T& xr, const T& xi, std::complex<double> q,
                                  const T& yr, const T& yi) {
     const T pr(p.real()), pi(p.imag()), qr(q.real()), qi(q.imag());
@@ -230,7 +231,7 @@ class PlantEquations {
       if (l.high >= 0) d = select(x[l.state] < c[l.high], d, T(0.0) - positive_part(T(0.0) - d));
     }
   }
-  /// from_grid() but for what is measured elsewhere.
+  /// from_grid() without the remote measurement.
   void currents(const T* c, const T* x, T* m, const T& er, const T& ei, Signals<T>& s, T& ir, T& ii) const {
     if (nonlinear() && !has_transformer_) {
       s.Vr = s.Vpr;
@@ -253,13 +254,13 @@ class PlantEquations {
     s.Vr = s.Vpr;
     s.Vi = s.Vpi;
   }
-  /// The terminal voltage at which the machine's own current is the one the transformer carries: Newton's
-  /// method from the Vr, Vi in s, slopes by differences, whose error only slows it. No current where it is
-  /// not found, as of the machine alone.
+  /// Solves for the terminal voltage at which the machine's current equals the transformer's current.
+  /// Newton's method from the Vr, Vi in s; derivatives by differences, whose error only slows convergence.
+  /// Sets the current to NaN on failure, as for the machine alone.
   void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
     constexpr int kLimit = 20;
     constexpr int kMoreForDuals =
-        std::is_same_v<T, double> ? 0 : 2;  // slopes of duals come after their values
+        std::is_same_v<T, double> ? 0 : 2;  // a dual's derivatives converge after its value
     constexpr double kNudge = 1e-6, kNearRoot = 1e-9, kLongestMove = 0.3;  // [pu]
     const T* j = c + joint_;
     const T in = T(1.0) / j[joint_ratio];
@@ -294,12 +295,12 @@ class PlantEquations {
     ir = s.Ir * in;
     ii = s.Ii * in;
   }
-  /// P, Q and V from terminal voltage and current.
+  /// Computes P, Q and V from terminal voltage and current, and resets the controls' sums.
   static void terminal(Signals<T>& s) {
     using std::sqrt;
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
-    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // a dual needs a slope at V = 0
+    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // keeps a dual's derivative finite at V = 0
     s.Vc = s.V;
     s.Vs = T(0.0);
     s.Vlimiter = s.dGref = T(0.0);

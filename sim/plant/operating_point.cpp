@@ -1,4 +1,4 @@
-// Back-initialisation of one plant, controls included, from its terminal voltage and generation.
+// Back-initialisation of one plant with its controls, from terminal voltage and generation.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace swingbank::sim::plant {
 namespace {
 
-/// A block, its parameters, and where its coefficients and states begin.
+/// A block, its parameters, and the positions of its coefficients and states.
 template <class T>
 struct Place {
   const Effect* effect;
@@ -66,7 +66,7 @@ class Initialiser {
   T* states(const Place<T>& p) { return o_.x.data() + p.x; }
   [[nodiscard]] std::string where() const { return "generator " + plant_.name; }
 
-  /// Impedances of machine and step-up transformer, as Joint says.
+  /// Sets the plant's own coefficients (Joint): impedances of machine and step-up transformer.
   void join() {
     T* j = o_.c.data() + plant_.machine.effect->coefficients;
     ops(places_.front()).machine.source_impedance(places_.front().p, j[joint_rm], j[joint_xm]);
@@ -83,9 +83,9 @@ class Initialiser {
   std::string steady(const Place<T>& p) {
     return ops(p).control.steady(p.effect->law.get(), p.p, coefficients(p), o_.s, states(p));
   }
-  /// From the current backwards: the electrical control says what the plant's control must ask for. The speed
-  /// that a torque control asks for reaches the drive train, which stands before it in that order, in the
-  /// second round.
+  /// Initialises converter controls backwards from the current: the electrical control determines the
+  /// references of the plant control. A second round passes the torque control's speed reference to the drive
+  /// train, which is earlier in the order.
   void converter_controls() {
     o_.s.Pneed = o_.s.P;
     o_.s.Qneed = o_.s.Q;
@@ -129,7 +129,7 @@ class Initialiser {
                     p.effect->name, value_of(s.P), value_of(s.Q), value_of(s.V)),
         where(), why, "change the model's parameters or the dispatch");
   }
-  /// The voltage behind the impedance must drive exactly the current the power flow asks for.
+  /// Checks that the voltage behind the impedance drives exactly the power flow's current.
   void emf() {
     T er, ei;
     const T* j = o_.c.data() + plant_.machine.effect->coefficients;
@@ -170,13 +170,13 @@ class Initialiser {
         if (state.high >= 0) outside(state.high, "upper", x > limit(state.high) + kTolerance);
       }
   }
-  /// Efd and Tm are whatever the controls give; where a slot is empty they are held.
+  /// Checks that the controls' Efd and Tm equal the machine's, and that every derivative is zero.
   void standing() {
     std::vector<T> dx(o_.x.size(), T(0.0));
     Signals<T> s = o_.s;
     s.Efd = o_.Efd;
     s.Tm = o_.Tm;
-    s.t = T(-1.0);  // before anything that begins at a time
+    s.t = T(-1.0);  // before any time-dependent action
     equations_.derivative(o_.c.data(), o_.x.data(), scratch_.data(), s, dx.data());
     const auto off = [&](const char* signal, const T& is, const T& should) {
       if (!(std::abs(value_of(is) - value_of(should)) < kTolerance))
@@ -195,7 +195,7 @@ class Initialiser {
                         "check the model's parameters");
   }
 
-  static constexpr double kTolerance = 1e-9;  // derivatives of order 1 cancel to rounding, 1e-14 or so
+  static constexpr double kTolerance = 1e-9;  // derivatives of order 1 cancel up to rounding, about 1e-14
   const Plant& plant_;
   PlantEquations<T> equations_;
   std::vector<Place<T>> places_;

@@ -8,8 +8,7 @@
 namespace swingbank::sim::plant {
 namespace {
 
-/// Chains of names; those that an effect does not have are left out. A machine without X''q has X''d in its
-/// place.
+/// Chains of names; names that an effect lacks are skipped. A machine without X''q uses X''d.
 constexpr std::array<std::array<std::string_view, 4>, 5> kChains = {{{"Xd", "Xdp", "Xdpp", "Xl"},
                                                                      {"Xq", "Xqp", "Xqpp", "Xl"},
                                                                      {"Tdop", "Tdopp", "", ""},
@@ -22,7 +21,8 @@ int index_of(const Effect& effect, std::string_view name) {
   return own < 0 && name == "Xqpp" ? effect.parameter_index("Xdpp") : own;
 }
 
-/// X'q of a machine whose T'qo is 0, as of one with salient poles: it has no transient circuit there.
+/// Whether the machine has no X'q: with T'qo = 0, as for salient poles, it has no transient circuit in the q
+/// axis.
 bool is_absent(const Block& block, std::string_view name) {
   const int time = block.effect->parameter_index("Tqop");
   return name == "Xqp" && time >= 0 && block.p[static_cast<std::size_t>(time)] == 0;
@@ -50,7 +50,7 @@ std::vector<Ordering> orderings(const Block& block) {
 std::vector<Ordering> violated(const Block& block) {
   std::vector<Ordering> list;
   for (const auto& o : orderings(block)) {
-    const auto same = [&](const Ordering& other) {  // X''d stands for X''q too
+    const auto same = [&](const Ordering& other) {  // X''d may replace X''q
       return other.greater == o.greater && other.smaller == o.smaller;
     };
     if (!(block.p[static_cast<std::size_t>(o.greater)] > block.p[static_cast<std::size_t>(o.smaller)]) &&

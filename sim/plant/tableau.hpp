@@ -1,7 +1,7 @@
 #pragma once
-// Dormand-Prince 5(4) with its continuous extension of order 4.
-// Source: J. R. Dormand, P. J. Prince, J. Comp. Appl. Math. 6 (1980) 19-26; dense output: E. Hairer, S. P.
-// Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.6 and its code dopri5.
+// Dormand-Prince 5(4) with its continuous extension of order 4. Source: J. R. Dormand, P. J. Prince, J. Comp.
+// Appl. Math. 6 (1980) 19-26; dense output: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+// Differential Equations I (1993), II.6 and its code dopri5.
 #include <bit>
 #include <cstdint>
 
@@ -16,7 +16,7 @@ constexpr double a[7][6] = {{},
                             {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                             {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
 constexpr double c[7] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
-/// Fifth order minus fourth order weights.
+/// Fifth-order minus fourth-order weights.
 constexpr double error[7] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
                              -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 constexpr double dense[7] = {-12715105075.0 / 11282082432.0,  0.0,
@@ -25,16 +25,16 @@ constexpr double dense[7] = {-12715105075.0 / 11282082432.0,  0.0,
                              69997945.0 / 29380423.0};
 
 /// Two third divided differences of the stages' derivatives, at c = 0, 0.3, 0.8, 1 and at 0.3, 0.8, 8/9, 1.
-/// `error` all but misses a kink in the middle of a step: where the slope of the derivative jumps by J at
-/// 0.3 < theta < 0.8 it gives at most 0.0011 J h^2 (none at 0.42), the step's own error is up to 0.02 J h^2.
-/// One of these two, times h, gives at least 0.6 J h^2 for 0.2 < theta < 0.9.
+/// They detect a kink inside a step, which `error` nearly misses. A jump J of the derivative's slope at 0.3 <
+/// theta < 0.8 gives at most 0.0011 J h^2 in `error` (none at 0.42), while the step's true error is up to
+/// 0.02 J h^2. One of the two differences, times h, is at least 0.6 J h^2 for 0.2 < theta < 0.9.
 constexpr double c5 = 8.0 / 9;
 constexpr double kink[2][7] = {
     {-1.0 / (0.3 * 0.8), 0.0, 1.0 / (0.3 * 0.5 * 0.7), -1.0 / (0.8 * 0.5 * 0.2), 0.0, 0.0, 1.0 / (0.7 * 0.2)},
     {0.0, 0.0, -1.0 / (0.5 * (c5 - 0.3) * 0.7), 1.0 / (0.5 * (c5 - 0.8) * 0.2),
      -1.0 / ((c5 - 0.3) * (c5 - 0.8) * (1.0 - c5)), 0.0, 1.0 / (0.7 * 0.2 * (1.0 - c5))}};
 
-/// x^p for the step controller only: relative error below 6 %, the same bits on every machine.
+/// Returns x^p for the step controller only: relative error below 6 %, bitwise equal on every machine.
 inline float rough_power(float x, float p) {
   const float log2 = static_cast<float>(std::bit_cast<std::int32_t>(x)) * 1.1920929e-7F - 126.94269504F;
   return std::bit_cast<float>(static_cast<std::int32_t>((log2 * p + 126.94269504F) * 8388608.0F));

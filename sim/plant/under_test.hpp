@@ -1,10 +1,10 @@
 #pragma once
-// A plant and the conventions that its equations are read with: what is played, fitted and judged as one.
+// A plant with the conventions of its equations, as input of playback, fit and judgement.
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::plant {
 
-/// Both belong to the caller, who keeps them for as long as they are looked at.
+/// Non-owning references; the caller keeps both objects alive.
 struct PlantUnderTest {
   const Plant& plant;
   const Conventions& conventions;

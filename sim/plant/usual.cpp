@@ -12,7 +12,7 @@ std::string with_unit(std::string number, std::string_view unit) {
   if (unit != "-" && unit != "code" && !unit.empty()) number += " " + std::string(unit);
   return number;
 }
-/// 99, 999, -9999, ...: what people write for "no limit", "no such block".
+/// Whether a value means "none": 99, 999, -9999, ... are common codes for "no limit" or "no such block".
 bool stands_for_none(double value) {
   double nines = 99.0;
   for (int digits = 2; digits < 8; ++digits, nines = 10 * nines + 9)

@@ -13,9 +13,9 @@
 namespace swingbank::sim::reference {
 namespace {
 
-constexpr double kSameInstant = 1e-9;  ///< a sample this close to a switching instant belongs to it [s]
+constexpr double kSameInstant = 1e-9;  ///< largest distance of a sample from its switching time [s]
 
-constexpr double kNoAngle = 1e-9;  ///< beside a bolted fault, where rounding gives some: no angle [pu]
+constexpr double kNoAngle = 1e-9;  ///< voltage without a defined angle, for rounding near a bolted fault [pu]
 
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
@@ -26,7 +26,7 @@ struct FreeVector {
 template <class Handle, class Free>
 using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
 
-/// Writes samples into the trajectory and watches the rotor angles.
+/// Writes samples into the trajectory and checks the loss-of-synchronism criteria.
 class Recorder {
  public:
   Recorder(const grid::Grid& grid, const ReferencePlants& plants, const ReferenceOptions& options,
@@ -51,8 +51,8 @@ class Recorder {
     run.bus_theta.assign(run.buses.size() * run.samples, 0.0);
     for (std::size_t b = 0; b < angle_.size(); ++b) angle_[b] = std::arg(grid.flow.voltage[b]);
   }
-  /// Records sample k from y (whose voltages are zero at the system's bolted buses). False: the run ends
-  /// here.
+  /// Records sample k from y, in which the system's bolted buses have zero voltage. Returns false at the end
+  /// of the run.
   bool record(int k, const ReferenceSystem& system, const double* y) {
     const double* v = y + plants_.states();
     for (std::size_t b = 0; b < angle_.size(); ++b)
@@ -71,7 +71,7 @@ class Recorder {
       return finish(k, Outcome::not_finite);
     return true;
   }
-  /// Ends the run at sample k: what comes later repeats the value of sample k. Returns false.
+  /// Ends the run at sample k; later samples repeat its value. Returns false.
   bool finish(int k, Outcome outcome) {
     run_.outcome = outcome;
     run_.stopped_at = k / options_.rate;
@@ -88,7 +88,7 @@ class Recorder {
   }
 
  private:
-  /// The angle plus the multiple of 2 pi that brings it closest to the last one.
+  /// Returns the angle plus the multiple of 2 pi that is closest to the last one.
   static double nearest(double angle, double last) {
     return angle + constants::turn * std::nearbyint((last - angle) / constants::turn);
   }
@@ -134,7 +134,7 @@ class Recorder {
       }
     }
   }
-  /// The units of an island that lie furthest apart in a quantity.
+  /// Extreme units of an island in a quantity.
   struct Ends {
     double low = 1e300, high = -1e300;
     std::size_t lowest = 0, highest = 0;
@@ -187,11 +187,11 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
   }
 }
 
-/// Where IDA stops at t: crosses the instant at which the voltages jump because those that the converters
-/// followed have ended; true with y at the new time t, false where they do not jump.
+/// Handles the points where IDA fails because the converters' voltage solution ends and the voltages jump.
+/// Returns true with y after the jump at the new time t, false if there is no jump.
 bool jumps(const ReferenceSystem& system, double& t, double* y, const double* yp) {
   constexpr double kOtherVoltage = 1e-3;     // [pu]
-  constexpr double kLongestCrossing = 1e-4;  // [s]: the states move on by their slopes meanwhile
+  constexpr double kLongestCrossing = 1e-4;  // [s], the states advance by their derivatives meanwhile
   const auto is_converter = [](const ReferenceSystem::Unit& u) {
     return u.plant && u.plant->machine.effect->converter;
   };
@@ -231,7 +231,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
   SeenEntries seen;
 
   int k = 0;
-  // The left limit at t = 0 is the operating point itself, even if the event starts there.
+  // The left limit at t = 0 is the operating point, even if the event starts there.
   if (!options.after_switching ||
       (parts.front().topology == network::Topology{} && parts.front().setpoints.empty())) {
     if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
@@ -261,7 +261,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
       solver = solver_from(at);
       return at >= to || solver->advance(to);
     };
-    // A sample at the end of the segment is this segment's left limit, or the next one's first value.
+    // A sample at the end of the segment is this segment's left limit or the next one's first value.
     const double until = last || !options.after_switching ? end + kSameInstant : end - kSameInstant;
     while (k < run.samples && time() < until) {
       if (!advance(std::min(time(), end))) {

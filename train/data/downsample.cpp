@@ -33,9 +33,9 @@ void InputSelection::apply(const float* record, std::size_t record_samples, floa
 
 namespace {
 
-/// The reactance behind which E is formed: the one that the box holds or samples, in its middle.
+/// Returns the reactance between terminal and E: X''d or X'd in the middle of its box.
 double shown_reactance(const mpi::store::DatasetHeader& d) {
-  constexpr double kTypical = 0.3;  // of X'd and X''d; E is an input, and any value near the true one serves
+  constexpr double kTypical = 0.3;  // of X'd and X''d; E is only an input, an approximate value suffices
   for (const char* name : {"Xdpp", "Xdp"}) {
     const auto at = std::ranges::find(d.parameter_names, name) - d.parameter_names.begin();
     const auto i = static_cast<std::size_t>(at);
@@ -44,14 +44,14 @@ double shown_reactance(const mpi::store::DatasetHeader& d) {
   return kTypical;
 }
 
-/// The dataset's fault begins at one instant, before which its records are steady.
+/// Requires a single fault time in the dataset, before which its records are steady.
 Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
   const auto event = mpi::store::config_numbers(d, "fault.start");
   if (event.size() != 1)
     throw InputError({"no instant of the fault", "form",
                       "the dataset's config has no line fault.start, and what is steady lies before it",
                       "choose another form, or generate the dataset anew"});
-  std::vector<std::string> names = d.channel_names;  // those that are not asked for stay unseen
+  std::vector<std::string> names = d.channel_names;  // channels that are not requested are ignored
   for (auto& name : names)
     if (std::ranges::find(recipe.channels, name) == recipe.channels.end()) name.clear();
   PhysicsWindow window{d.rate, recipe.start_s, recipe.end_s, event.front(), shown_reactance(d)};

@@ -1,6 +1,6 @@
 #pragma once
-// From a record's series to what the network reads: PCA of each second where asked for and normalisation, or
-// the whitening of the form "physics". Fitted on training rows only.
+// Features: a network's input computed from a record's series. Either normalisation, after optional PCA of
+// each second, or the whitening of the form "physics". Fitted on training rows only.
 #include <optional>
 #include <span>
 
@@ -14,20 +14,20 @@ namespace swingbank::train::data {
 struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
   std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
-  std::size_t levels = 0, kept = 0, noisy = 0;         ///< of a whitening; kept 0: none
-  std::size_t seconds_as_steps = 0;                    ///< 1: a second's components are one step
-  std::size_t regressed = 0;                           ///< of a whitening: its regressions
+  std::size_t levels = 0, kept = 0, noisy = 0;         ///< of a whitening; kept 0: no whitening
+  std::size_t seconds_as_steps = 0;                    ///< 1: the components of a second are one step
+  std::size_t regressed = 0;                           ///< of a whitening: number of regression coefficients
 };
 
 class Features {
  public:
-  /// pca_components = 0: no PCA. Series are normalised per channel, components per channel and component.
-  /// Throws InputError if a channel is constant over the training rows. The form "physics" is whitened, with
-  /// so many components a channel.
+  /// Fits the features on `rows`. pca_components = 0: no PCA. Series are normalised per channel, components
+  /// per channel and component. The form "physics" is whitened, with pca_components components a channel.
+  /// Throws InputError if a channel is constant over the rows.
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
 
-  /// A whitened row is one channel. Where seconds are steps, each component of a channel is one.
+  /// A whitened row is one channel. With seconds as steps, each component of a channel is a channel.
   [[nodiscard]] std::size_t channels() const {
     return seconds_as_steps_ ? channels_ * groups_per_channel_ : channels_;
   }
@@ -36,19 +36,19 @@ class Features {
   }
   [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
   [[nodiscard]] const Scale& scale() const { return scale_; }
-  /// What was fitted, for a file: sizes, then arrays in the order of `restore`.
+  /// Return the fitted state for a file: sizes, then arrays in the order of `restore`.
   [[nodiscard]] FeatureSizes sizes() const;
   [[nodiscard]] std::vector<std::vector<float>> arrays() const;
-  /// The opposite. Throws Unusable if that does not fit together.
+  /// Restores features from a file. Throws Unusable if sizes and arrays do not match.
   static Features restore(const FeatureSizes& sizes, std::span<const std::vector<float>> arrays);
-  /// Arrays that `restore` takes for these sizes.
+  /// Returns the number of arrays that `restore` takes for these sizes.
   static std::size_t array_count(const FeatureSizes& sizes);
-  /// series: count rows as the stream gives them; out: count x channels() x length().
+  /// Computes features. series: `count` rows from the stream; out: count x channels() x length().
   void apply(const float* series, std::size_t count, float* out) const;
 
  private:
   static Features of(Whitening whitening);
-  /// Of one row, a channel behind the other.
+  /// Computes the normalised series of one row, channel after channel.
   void scaled(const float* series, float* row) const;
   [[nodiscard]] std::size_t group(std::size_t channel, std::size_t i) const {
     return channel * groups_per_channel_ + i % groups_per_channel_;

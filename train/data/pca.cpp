@@ -10,7 +10,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// First and second moments of the seconds of one channel, in double.
+/// First and second moments of one channel's seconds, in double precision.
 struct SecondMoments {
   Eigen::VectorXd sum;
   Eigen::MatrixXd square;
@@ -74,7 +74,7 @@ Pca Pca::fit(const ShardStream& stream, std::span<const std::uint64_t> rows, std
     const Eigen::VectorXd mean = m.sum / m.count;
     const Eigen::MatrixXd covariance = m.square / m.count - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    // Eigenvalues ascend, so the leading components are the last columns.
+    // Eigenvalues are in ascending order, so the leading components are the last columns.
     const auto k = static_cast<Eigen::Index>(components);
     pca.basis_.push_back(solver.eigenvectors().rightCols(k).rowwise().reverse().cast<float>());
     pca.mean_.push_back(mean.cast<float>());

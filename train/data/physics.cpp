@@ -8,7 +8,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Signals of one row at the record's rate, made and averaged one at a time.
+/// One signal of a row at the record's rate, computed and averaged.
 class Signal {
  public:
   explicit Signal(std::size_t samples) : values_(samples) {}
@@ -17,7 +17,7 @@ class Signal {
     for (std::size_t k = 0; k < values_.size(); ++k) values_[k] = of(k);
     return *this;
   }
-  /// Takes off the mean of the first `steady` samples and returns it.
+  /// Subtracts the mean of the first `steady` samples and returns it.
   double level(std::size_t steady) {
     double sum = 0.0;
     for (std::size_t k = 0; k < steady; ++k) sum += values_[k];
@@ -25,7 +25,7 @@ class Signal {
     for (double& v : values_) v -= mean;
     return mean;
   }
-  /// Becomes its integral by the trapezoidal rule.
+  /// Replaces the signal by its integral (trapezoidal rule).
   void integrate(double step) {
     double sum = 0.0, before = values_.front();
     for (double& v : values_) {
@@ -70,8 +70,8 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
       problems.add(std::string("no channel ") + name, "channels", "currents follow from P, Q and V",
                    "record it, or choose another form");
   problems.raise();
-  constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;  // end of the two finer spans, behind the event [s]
-  constexpr double kMiddleRate = 30, kCoarseRate = 15;    // cells [1/s]
+  constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;  // ends of the two finer spans after the event [s]
+  constexpr double kMiddleRate = 30, kCoarseRate = 15;    // bins [1/s]
   const auto sample = [&](double t) { return static_cast<std::size_t>(std::lround(t * window.rate)); };
   const std::size_t end = sample(window.end_s);
   for (std::size_t at = sample(window.start_s); at < end;) {

@@ -1,45 +1,48 @@
 #pragma once
-// What a machine's equations are written in, formed from the recorded channels: currents, the voltage behind
-// the subtransient reactance, and the integrals that carry the swing and the field's flux. A network that
-// reads these need not learn to divide and to integrate.
+// Physical input signals, computed from the recorded channels: currents, the voltage behind the subtransient
+// reactance, and the integrals in the swing and field flux equations. They spare a network from learning
+// division and integration.
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace swingbank::train::data {
 
-inline constexpr double kLeastVoltage = 1e-3;      ///< at a bolted fault the terminal may have none [pu]
-inline constexpr double kNoisyLeastVoltage = 0.1;  ///< below it a current would be noise over noise [pu]
+inline constexpr double kLeastVoltage = 1e-3;      ///< for bolted faults with zero terminal voltage [pu]
+inline constexpr double kNoisyLeastVoltage = 0.1;  ///< below it a current is noise divided by noise [pu]
 
-/// Where the machine's event lies in the record and what part of it is shown.
+/// Time of the event in the record, and the window of the input.
 struct PhysicsWindow {
   double rate = 0.0;                     ///< of the record [1/s]
   double start_s = 0.0, end_s = 0.0;     ///< window [s]
-  double event_s = 0.0;                  ///< instant before which the record is steady [s]
-  double reactance = 0.0;                ///< X''d or X'd: what E lies behind [pu on the machine's base]
-  double least_voltage = kLeastVoltage;  ///< that P and Q are divided by to get currents [pu]
+  double event_s = 0.0;                  ///< event time; the record is steady before [s]
+  double reactance = 0.0;                ///< X''d or X'd, between terminal and E [pu on the machine's base]
+  double least_voltage = kLeastVoltage;  ///< least divisor of P and Q when currents are computed [pu]
 };
 
-/// Channels in this order: P/V, Q/V, V, E, angle of E against the terminal, integral of P; with a speed:
-/// speed and its integral; with a field current: it and its integral; with speed and frequency: frequency and
-/// the integral of their difference. All less their mean before the event. The samples are means over cells:
-/// single samples until 1 s behind the event, 1/30 s until 5 s, 1/15 s from there on.
+/// Channels in this order: P/V, Q/V, V, E, angle of E relative to the terminal, integral of P; with a speed
+/// channel: speed and its integral; with a field current: field current and its integral; with speed and
+/// frequency: frequency and the integral of their difference. All are relative to their mean before the
+/// event. Samples are means over bins: single samples until 1 s after the event, 1/30 s until 5 s, then 1/15
+/// s.
 class Physics {
  public:
   Physics() = default;
-  /// `names`: of the record's channels; P, Q and V must be among them (InputError).
+  /// `names`: channels of the record. Throws InputError unless P, Q and V are among them.
   Physics(const std::vector<std::string>& names, const PhysicsWindow& window);
 
   [[nodiscard]] const PhysicsWindow& window() const { return window_; }
   [[nodiscard]] std::size_t channels() const;
   [[nodiscard]] std::size_t cells() const { return cells_.size(); }
-  /// Steady values that follow the series: P, Q, V, E, its angle, and the field current where recorded.
+  /// Returns the number of steady values after the series: P, Q, V, E, its angle, and the field current if
+  /// recorded.
   [[nodiscard]] std::size_t levels() const { return field_ >= 0 ? 6 : 5; }
-  /// Samples of a record that are looked at, from its first.
+  /// Returns the number of samples of a record that are used, from its first.
   [[nodiscard]] std::size_t samples() const { return cells_.back().first + cells_.back().count; }
-  /// Samples that each cell is the mean of.
+  /// Returns the number of samples in each bin.
   [[nodiscard]] std::vector<float> cell_samples() const;
-  /// record: one row, its channels `stride` apart; out: channels() x cells(), then levels().
+  /// Computes the input of one row, whose channels are `stride` apart. out: channels() x cells(), then
+  /// levels().
   void apply(const float* record, std::size_t stride, float* out) const;
 
  private:

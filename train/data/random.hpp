@@ -1,19 +1,19 @@
 #pragma once
-// Shuffles that give the same order with every standard library.
+// Random keys and shuffles that are identical with every standard library.
 #include <cstdint>
 #include <random>
 #include <vector>
 
 namespace swingbank::train::data {
 
-/// SplitMix64's finaliser (Steele, Lea and Flood 2014): a bijection that mixes all bits.
+/// Finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that mixes all bits.
 constexpr std::uint64_t mix(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-/// What a stream of random numbers is for, so that no two share a key.
+/// Purpose of a random stream, so that no two streams share a key.
 enum class Purpose : std::uint64_t {
   weights = 1,
   dropout,
@@ -28,7 +28,7 @@ constexpr std::uint64_t key(std::uint64_t seed, Purpose purpose, std::uint64_t a
   return mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ a) ^ b);
 }
 
-/// Fisher-Yates. std::shuffle is not used: its order is up to the library.
+/// Fisher-Yates shuffle. std::shuffle is not used: its order depends on the library.
 template <class T>
 void shuffle(T* values, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -4,8 +4,8 @@
 
 namespace swingbank::train::data {
 namespace {
-constexpr double kApart = 1e-12;  ///< of a signal's square: a millionth of its size
-constexpr double kStill = 1e-24;  ///< square of a signal that does not move [pu^2]
+constexpr double kApart = 1e-12;  ///< ridge, relative to a signal's square: 1e-6 of its size
+constexpr double kStill = 1e-24;  ///< ridge for a constant signal [pu^2]
 }  // namespace
 
 void regress(const float* series, std::size_t signals, std::span<const float> weights, float* out) {

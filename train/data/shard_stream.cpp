@@ -127,7 +127,7 @@ void ShardStream::append(mpi::store::Dataset more) {
 
 void ShardStream::load(const mpi::store::ShardInfo& shard, bool fits) {
   mpi::store::RowBlock block;
-  if (options_.trust)  // what nobody has compared
+  if (options_.trust)  // unchecked read
     block = mpi::store::read_shard_apart(
         shard, {.records = fits, .parameters = true, .angle_valid = false, .draws = false});
   else

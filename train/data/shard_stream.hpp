@@ -1,6 +1,6 @@
 #pragma once
-// Rows of a dataset for training. Labels of all rows are always in memory; the series are kept there too when
-// they fit, and are read block by block ahead of use otherwise. What comes out is the same either way.
+// Access to a dataset's rows for training. Labels of all rows are always in memory. The series are kept in
+// memory if they fit; otherwise they are read in blocks ahead of use. The result is the same.
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -16,7 +16,7 @@ namespace swingbank::train::data {
 
 struct Labels {
   std::size_t rows = 0, parameters = 0;
-  std::size_t judged = 0;      ///< rows of the dataset itself; those behind them only train
+  std::size_t judged = 0;      ///< rows of the dataset itself; later rows are for training only
   std::vector<double> values;  ///< rows x parameters, raw units
   std::vector<std::uint64_t> sample_id;
   std::vector<std::int32_t> generator;  ///< bus number
@@ -24,51 +24,50 @@ struct Labels {
 
 struct StreamOptions {
   std::uint64_t memory_limit = std::uint64_t{8} << 30;  ///< [bytes]
-  unsigned readers = 1;  ///< threads that read ahead; the bytes do not depend on it
-  bool trust = false;    ///< do not compare the shards' hashes with the journal
+  unsigned readers = 1;  ///< read-ahead threads; the result does not depend on their number
+  bool trust = false;    ///< skip the comparison of shard hashes with the journal
   NoiseRecipe noise = {};
 };
 
-inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< no epoch reaches it
+inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< larger than any epoch number
 
 class ShardStream {
  public:
-  /// Reads every shard once, a shard at a time, compares it with journal and header (read_checked), and keeps
-  /// the labels, and the series if they fit. Trusting, it reads only what it keeps and checks only shapes and
-  /// config. Throws InputError naming each shard at fault, and shard and row of a value that is not finite.
-  /// `more`: a dataset whose rows follow and only train; it must hold the same channels, samples and
-  /// parameters.
+  /// Reads every shard once, compares it with journal and header (read_checked), and keeps the labels, and
+  /// the series if they fit. With `trust` it reads only what it keeps and checks only shapes and config.
+  /// Throws InputError with each invalid shard, and with shard and row of a value that is not finite. `more`:
+  /// a dataset with further rows for training only; channels, samples and parameters must be equal.
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
-  /// Rows that are on no disk: takes the shards of the dataset that `header` describes from `next`, one after
-  /// the other, keeps labels and series, and forgets the shard. The stream is that of the same dataset read
-  /// from the disk. Throws InputError where the series do not fit into the memory limit.
+  /// Takes the shards of the dataset described by `header` from `next`, without a disk. Keeps labels and
+  /// series and discards the shards. The stream equals that of the same dataset read from disk. Throws
+  /// InputError if the series exceed the memory limit.
   ShardStream(const mpi::store::DatasetHeader& header, const std::function<mpi::store::ShardData()>& next,
               const InputRecipe& recipe, const StreamOptions& options = {});
 
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
-  /// Whether there are no records to go back to.
+  /// Whether the stream has no records on disk.
   [[nodiscard]] bool from_memory() const { return from_memory_; }
-  /// The rows that only train, numbered on from the dataset's.
+  /// Returns the dataset with rows for training only. Its row numbers follow those of the first dataset.
   [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
   [[nodiscard]] std::size_t channels() const { return selection_.outputs(); }
   [[nodiscard]] std::size_t samples() const { return selection_.samples; }
   [[nodiscard]] const NoiseRecipe& noise() const { return options_.noise; }
-  /// The noise that rows are judged with.
+  /// Returns the noise of test rows.
   [[nodiscard]] Noise judged() const { return {noise().level}; }
-  /// The noise of an epoch of training: that of judging, unless rows draw their levels.
+  /// Returns the noise of training rows in an epoch: that of test rows, unless rows draw their levels.
   [[nodiscard]] Noise training(std::uint64_t epoch) const {
     return noise().training ? Noise{{}, epoch} : judged();
   }
-  /// The noise of rows that decide when to stop: the same in every epoch.
+  /// Returns the noise of validation rows: the same in every epoch.
   [[nodiscard]] Noise validation() const { return training(kValidationDraw); }
-  /// Whether the series are there as they are read; records whose noise changes are not.
+  /// Whether the series are kept in memory. Records whose noise varies are not kept as series.
   [[nodiscard]] bool in_memory() const { return !series_.empty(); }
-  /// rows: row numbers of the dataset, in any order; out: rows x values of the selection. Another noise than
-  /// that of judging needs a recipe with levels of training.
+  /// Reads rows. rows: row numbers of the dataset, in any order; out: rows x values of the selection. Noise
+  /// other than that of test rows requires NoiseRecipe::training.
   void read(std::span<const std::uint64_t> rows, float* out, const Noise& noise) const;
   void read(std::span<const std::uint64_t> rows, float* out) const { read(rows, out, judged()); }
 
@@ -77,14 +76,14 @@ class ShardStream {
   void load(const mpi::store::ShardInfo& shard, bool fits);
   void take(const mpi::store::ShardData& shard);
   void require_rows() const;
-  /// Values kept of a row in memory.
+  /// Returns the number of values kept per row in memory.
   [[nodiscard]] std::size_t kept() const;
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
-  /// The series of a record, which is the dataset's row `row`, with its noise.
+  /// Computes the series of a record, the dataset's row `row`, with its noise.
   void series_of(const float* record, const mpi::store::ShardInfo& shard, std::uint64_t row,
                  const Noise& noise, float* out) const;
-  /// Reads one run of rows of a shard and copies those asked for.
+  /// Reads one contiguous run of rows of a shard and copies the wanted ones.
   struct Wanted {
     std::uint64_t row;
     std::size_t slot;
@@ -95,20 +94,20 @@ class ShardStream {
 
   mpi::store::Dataset dataset_;
   std::optional<mpi::store::Dataset> more_;
-  std::vector<mpi::store::ShardInfo> shards_;  ///< of both, rows counted on
+  std::vector<mpi::store::ShardInfo> shards_;  ///< of both datasets, with consecutive row numbers
   std::size_t rows_ = 0;
   bool from_memory_ = false;
   InputSelection selection_;
   StreamOptions options_;
   RecordNoise noise_;
   Labels labels_;
-  std::vector<float> series_;   ///< as they are read; or
-  std::vector<float> records_;  ///< as they are stored, where their noise changes; or neither
+  std::vector<float> series_;   ///< series as they are read, or
+  std::vector<float> records_;  ///< records as stored, if their noise varies; or neither
 };
 
-/// Order in which an epoch visits `rows` (ascending): blocks of 256 neighbours are shuffled, then the rows
-/// within each window of 64 blocks. Depends on rows, seed and epoch only; sets below 16,384 rows are shuffled
-/// fully.
+/// Returns the order in which an epoch visits `rows` (ascending). Blocks of 256 neighbouring rows are
+/// shuffled, then the rows within each window of 64 blocks. The order depends on rows, seed and epoch only.
+/// Sets below 16,384 rows are shuffled completely.
 std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
                                        std::uint64_t epoch);
 
@@ -117,13 +116,13 @@ struct Batch {
   std::vector<float> series;  ///< rows x channels x samples
 };
 
-/// Batches of one epoch, read ahead by one chunk where the series are not in memory.
+/// Batches of one epoch, read ahead by one chunk if the series are not in memory.
 class BatchReader {
  public:
-  /// Starts at batch `first` of the order; reads with the noise of judging unless told another.
+  /// Starts at batch `first` of the order. `noise`: default is that of test rows.
   BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
               std::size_t first = 0, const std::optional<Noise>& noise = {});
-  /// False at the end.
+  /// Reads the next batch. Returns false at the end.
   bool next(Batch& out);
   [[nodiscard]] std::size_t batches() const { return (order_.size() + batch_ - 1) / batch_; }
 

@@ -17,7 +17,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Sets of rows that grow together.
+/// Union-find of rows.
 class Groups {
  public:
   explicit Groups(std::size_t rows) : above_(rows) {
@@ -37,7 +37,7 @@ class Groups {
   std::vector<std::size_t> above_;
 };
 
-/// Rows that share a databank point or an event, groups in order of first appearance.
+/// Returns groups of rows that share a databank sample or an event, in order of first appearance.
 std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
                                                   const std::vector<std::uint64_t>& rows) {
   std::map<std::vector<double>, std::size_t> point;
@@ -48,14 +48,14 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
     groups.join(i, point.try_emplace(std::vector<double>(first, first + labels.parameters), i).first->second);
     groups.join(i, event.try_emplace(labels.sample_id[rows[i]], i).first->second);
   }
-  std::map<std::size_t, std::vector<std::uint64_t>> found;  // by their first row
+  std::map<std::size_t, std::vector<std::uint64_t>> found;  // by first row
   for (std::size_t i = 0; i < rows.size(); ++i) found[groups.first_of(i)].push_back(rows[i]);
   std::vector<std::vector<std::uint64_t>> points;
   for (auto& [first, members] : found) points.push_back(std::move(members));
   return points;
 }
 
-/// Appends the rows that only train, and those of generators set aside to the rows that calibrate.
+/// Appends the rows for training only; those of generators set aside go to the recalibration rows.
 void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
     if (left_out.contains(labels.generator[row])) continue;

@@ -13,15 +13,15 @@ namespace swingbank::train::data {
 namespace {
 
 using Eigen::Index;
-constexpr std::size_t kRowsToFit = 8000;  ///< fifteen times the directions that are fitted
+constexpr std::size_t kRowsToFit = 8000;  ///< fifteen times the number of fitted components
 constexpr std::size_t kRowsOfWidths = 5000;
-constexpr float kMiddleInDeviations = 2.56f;  ///< what lies between a normal distribution's tenth parts
-constexpr float kStillRow = 1e-6f;            ///< size of a row that does not move [pu]
-constexpr double kRank = 1e-9;  ///< share of the largest variance below which a direction is rounding
+constexpr float kMiddleInDeviations = 2.56f;  ///< distance of a normal distribution's 10 % and 90 % quantiles
+constexpr float kStillRow = 1e-6f;            ///< size of a constant row [pu]
+constexpr double kRank = 1e-9;                ///< relative variance below which a component is rounding
 constexpr std::size_t kRowsOfNoise = 5000;
-constexpr double kSmallLevel = 1e-4;  ///< at which noise is measured: what it does is proportional to it
-constexpr float kWidestCoefficient = 4.0f;  ///< in widths: beyond, one says no more than that it is far off
-constexpr float kLongestNoise = 3.0f;  ///< of a row, in medians: at a fault nearby noise is divided by little
+constexpr double kSmallLevel = 1e-4;  ///< level at which noise is measured; its effect is proportional to it
+constexpr float kWidestCoefficient = 4.0f;  ///< in widths; clipped beyond
+constexpr float kLongestNoise = 3.0f;  ///< of a row, in medians: a small voltage near a fault amplifies noise
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -179,14 +179,15 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
     const std::size_t values = sizes_.channels * sizes_.samples + sizes_.levels + 1;
     for (Index i = 0; i < row.rows(); ++i) {
       const float told = series[static_cast<std::size_t>(i + 1) * values - 1];
-      // what a signal of variance 1 is on average, seen through noise of this deviation (Wiener)
+      // Wiener filter: expected value of a signal of variance 1 observed with noise of this standard
+      // deviation.
       const auto level = static_cast<float>(level_of_input(told)) / std::exp(parts(i, parts.cols() - 1));
       row.row(i).head(kept).array() /= 1.0f + (level * noise_.array()).square();
       row(i, kept + behind) = told;
     }
   }
   const auto bounded = static_cast<Index>(length() - sizes_.regressed);
-  // what is far outside the training rows shall not run away
+  // limits values far outside the range of the training rows
   row.leftCols(bounded) = row.leftCols(bounded).unaryExpr([](float v) { return std::asinh(v); });
   if (sizes_.regressed == 0) return;
   const auto values =

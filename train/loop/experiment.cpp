@@ -13,7 +13,7 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
-const Range kNoiseLevels = {0.0, 0.1};  // at more, a phasor is no measurement
+const Range kNoiseLevels = {0.0, 0.1};  // above it a phasor is no measurement
 constexpr double kLeastShare = 1e-3;    // of the training rows
 
 std::vector<std::string> network_names() {
@@ -23,7 +23,7 @@ std::vector<std::string> network_names() {
   return names;
 }
 
-/// Reads keys of one table; where `common` is given, its values stand for keys that the table leaves out.
+/// Reads the keys of one table. Values of `common`, if given, replace missing keys.
 class Keys {
  public:
   Keys(Config& c, std::string at, bool complete) : c_(c), at_(std::move(at)), complete_(complete) {}
@@ -69,7 +69,7 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.whole("set_aside", 0, t.set_aside);
 }
 
-/// A network trained at many levels is told them, which only the form "physics" can.
+/// A network trained at many noise levels needs the level as an input, which only the form "physics" has.
 void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
   if (const std::string name = at + ".training_noise"; c.has(name)) {
     const auto range = c.require<std::vector<double>>(name, {1e-6, kNoiseLevels.high});
@@ -109,8 +109,8 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
               "choose form = \"physics\", or leave regressions out");
 }
 
-/// What is copied from a network that corrects nothing: estimates to correct are made once, of records with
-/// one noise, and nothing is believed of them.
+/// Removes settings that a network that corrects estimates cannot have: the estimates are computed once, from
+/// records with one noise level, and there is no posterior.
 void train_as_judged(TrainingRecipe& t) {
   t.noise_levels.reset();
   t.posterior_epochs = t.set_aside = 0;
@@ -130,7 +130,7 @@ void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
     j.shares = c.require<std::vector<double>>(at + ".shares", {kLeastShare, 1.0 - kLeastShare});
 }
 
-/// A table named after a network changes what stands in it for that network only.
+/// A table with the name of a network overrides settings for that network only.
 Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
   Preset p;
@@ -266,7 +266,7 @@ std::vector<Task> Experiment::tasks(const std::string& preset_name) const {
   for (const auto& network : preset(preset_name).networks) {
     const Judging& judged = judging(preset_name, network);
     for (const double noise : judged.noise) {
-      if (network == "floor" && noise == 0.0) continue;  // records without noise have no floor
+      if (network == "floor" && noise == 0.0) continue;  // no floor without noise
       for (const auto& fold : left_out) all.push_back({network, noise, fold});
     }
     for (const double share : judged.shares)

@@ -1,5 +1,5 @@
 #pragma once
-// An experiment: one table of results, of the thesis or not, as configs/experiments/*.toml states it.
+// Experiment: one table of results, as defined in configs/experiments/*.toml.
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -13,41 +13,40 @@
 
 namespace swingbank::train::loop {
 
-/// How the weights are found.
+/// Training settings of a network.
 struct TrainingRecipe {
   std::size_t epochs = 0, batch = 0;
   double learning_rate = 0.0;  ///< of Adam
-  std::string
-      schedule;  ///< "constant", or "cosine": falls to a hundredth over the epochs, after a short warm-up
-  std::size_t patience = 0;       ///< epochs without a better validation error before stopping
-  double validation_share = 0.0;  ///< of the training generators' databank points (leave-one-generator-out)
-  /// A parameter's squared error, in units of its variance, counts as its variance to this power: 0 counts
-  /// all parameters alike, 1 as the tables do (raw units).
+  std::string schedule;        ///< "constant", or "cosine": short warm-up, then down to 1 % over the epochs
+  std::size_t patience = 0;    ///< epochs without improvement before stopping
+  double validation_share = 0.0;  ///< of the training generators' databank samples (leave-one-out)
+  /// Exponent of the loss weights: a parameter's squared error in units of its variance is weighted by
+  /// variance^power. 0: equal weights; 1: raw units, as in the tables.
   double loss_power = 0.0;
-  double weight_decay = 0.0;   ///< of matrices, per step and learning rate (Loshchilov and Hutter 2019)
-  double clip = 0.0;           ///< longest gradient; 0: any
-  double average = 0.0;        ///< share that the averaged weights keep a step; 0: the last weights count
-  bool training_rows = false;  ///< the rows of the training dataset train too
+  double weight_decay = 0.0;   ///< decoupled, of matrices (Loshchilov and Hutter 2019)
+  double clip = 0.0;           ///< largest gradient norm; 0: no clipping
+  double average = 0.0;        ///< averaged weights' decay factor per step; 0: no averaging
+  bool training_rows = false;  ///< train on the rows of the training dataset too
   std::string kind = {};       ///< file of train/networks; usually the name it has in the experiment
-  std::string corrects = {};   ///< method of train/direct whose estimates it reads and corrects; empty: none
-  /// Every row draws a level in every epoch; the network is told it and serves all levels. None: rows train
-  /// with the noise that they are judged with.
+  std::string corrects = {};   ///< method of train/direct whose estimates it corrects; empty: none
+  /// Present: every row draws a noise level in every epoch, and the level is an input, so that the network
+  /// serves all levels. Absent: rows train with the noise of the test rows.
   std::optional<data::NoiseLevels> noise_levels = {};
-  std::size_t posterior_epochs = 0;  ///< of the head that says what is to be believed; 0: there is none
-  std::size_t set_aside = 0;         ///< generators whose rows calibrate beliefs and do not train
+  std::size_t posterior_epochs = 0;  ///< of the posterior head; 0: no posterior
+  std::size_t set_aside = 0;         ///< number of generators whose rows recalibrate and do not train
 };
 
-/// What a network reads.
+/// Input of a network.
 struct NetworkInput {
   data::InputRecipe recipe;
-  std::size_t pca_components = 0;  ///< per second and channel, per channel of the form "physics"; 0: none
+  std::size_t pca_components = 0;  ///< per second and channel, or per channel of form "physics"; 0: none
 };
 
-/// On what a network is judged, and trained as far as noise goes.
+/// Evaluation of a network.
 struct Judging {
-  std::vector<double> noise;        ///< levels of measurement noise (sim/core/measurement_noise.hpp); 0: none
-  std::size_t test_rows = 0;        ///< about so many, evenly spread; 0: all
-  std::vector<double> shares = {};  ///< of the training rows: a run more each, of the first level and fold
+  std::vector<double> noise;        ///< levels (sim/core/measurement_noise.hpp); 0: no noise
+  std::size_t test_rows = 0;        ///< approximate number, evenly spaced; 0: all
+  std::vector<double> shares = {};  ///< of the training rows: one more run each, at the first level and fold
 };
 
 struct Preset {
@@ -60,16 +59,16 @@ struct Preset {
   std::map<std::string, Judging> judging;          ///< by network
 };
 
-/// A run of the preset: one result file.
+/// One run of a preset: one result file.
 struct Task {
   std::string network;
   double noise = 0.0;
-  std::string fold;    ///< bus number of the generator left out; "none": the experiment splits its rows
-  double share = 1.0;  ///< of the training rows that train
+  std::string fold;    ///< bus number of the left-out generator; "none": the experiment splits its rows
+  double share = 1.0;  ///< of the training rows
 };
 
-/// What Experiment::print knows. "training_rows": the networks that train on them; "tasks": network, noise
-/// level and fold of each run, and its share of the training rows where that is not all.
+/// Keys of Experiment::print. "training_rows": networks that train on the training dataset; "tasks": network,
+/// noise level and fold of each run, and its share of the training rows if below 1.
 inline constexpr std::array<const char*, 8> kPrintable = {
     "table", "dataset", "draws", "training_dataset", "training_draws", "training_rows", "networks", "tasks"};
 
@@ -77,26 +76,26 @@ struct Experiment {
   std::filesystem::path file;
   std::string table;  ///< "IV", "V" or "VI" of the thesis; else the file's own name, which results then bear
   std::string title;
-  std::filesystem::path dataset;           ///< its config
+  std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
-  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank point, or
-  bool across = false;              ///< the dataset is judged whole and the training dataset alone trains
-  std::vector<std::int32_t> folds;  ///< generators (bus numbers) to leave out, empty for a split
+  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank sample, or
+  bool across = false;                     ///< test on the whole dataset, train on the training dataset
+  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out; empty for a split
   std::map<std::string, Preset> presets;
 
-  /// Throws InputError that lists what there is.
+  /// Throw InputError that lists the available names.
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const Judging& judging(const std::string& preset, const std::string& network) const;
-  /// In the order in which they are to be run.
+  /// Returns the runs in execution order.
   [[nodiscard]] std::vector<Task> tasks(const std::string& preset) const;
-  /// One word or list for scripts, one a line; "none" where there is nothing. Throws InputError for another
-  /// key than kPrintable's.
+  /// Returns words for scripts, one a line; "none" if there are none. Throws InputError for a key outside
+  /// kPrintable.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 
-/// Throws InputError with every problem of the file.
+/// Reads an experiment. Throws InputError with every problem of the file.
 Experiment read_experiment(const std::filesystem::path& file);
 
 }  // namespace swingbank::train::loop

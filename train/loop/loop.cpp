@@ -23,11 +23,11 @@ using at::Tensor;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// Of all threads of this process [core-s].
+/// Returns the processor time of all threads of this process [core-s].
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-/// Features of the rows, and behind them the guesses where there are some; then a row is one channel.
+/// Returns the features of the rows; with guesses these are appended, and a row is then one channel.
 Tensor inputs_of(const data::Batch& batch, const data::Features& features, std::span<const float> guesses,
                  std::size_t all_rows) {
   const auto rows = static_cast<std::int64_t>(batch.rows.size());
@@ -44,12 +44,12 @@ Tensor inputs_of(const data::Batch& batch, const data::Features& features, std::
   return at::cat({x.reshape({rows, 1, -1}), g}, 2);
 }
 
-/// Where a run stands: what a checkpoint holds beside the arrays.
+/// Position of a run, as stored in a checkpoint beside the arrays.
 struct Position {
-  std::size_t epoch = 0, batch = 0;  ///< next to do, from 0
+  std::size_t epoch = 0, batch = 0;  ///< next one, from 0
   std::size_t best_epoch = 0, stale = 0;
   double best = std::numeric_limits<double>::infinity();
-  double loss_sum = 0.0;  ///< of this epoch so far, times rows
+  double loss_sum = 0.0;  ///< of this epoch so far, weighted by rows
   double rows = 0.0, seconds = 0.0, processor_seconds = 0.0;
 };
 
@@ -88,7 +88,7 @@ class Loop {
   }
 
  private:
-  /// False if the run was asked to stop; it is saved then.
+  /// Trains one epoch. Returns false if the run was asked to stop, after saving it.
   bool epoch() {
     data::BatchReader reader(data_.stream, data::epoch_order(data_.train, settings_.seed, at_.epoch),
                              settings_.recipe.batch, at_.batch,
@@ -143,7 +143,7 @@ class Loop {
     return ((out - targets).square() * loss_weights_).mean();
   }
 
-  /// "560 samples/s": beside it what the products of a step alone would allow, where that is known.
+  /// Returns "560 samples/s", with the limit set by the step's matrix products if known.
   [[nodiscard]] std::string rate(double samples_per_s) const {
     if (operations_per_row_ == 0.0) return fmt::format("{:.0f} samples/s", samples_per_s);
     const double most = settings_.gflops * 1e9 / operations_per_row_;
@@ -151,14 +151,14 @@ class Loop {
                        samples_per_s, 100.0 * samples_per_s / most, most);
   }
 
-  /// The mean starts short, so that the first weights are soon forgotten.
+  /// Updates the averaged weights. The average starts short, so that the initial weights lose influence soon.
   void average_in(double step) {
     if (average_.empty()) return;
     const double keep = std::min(settings_.recipe.average, (1.0 + step) / (10.0 + step));
     at::NoGradGuard no_gradients;
     for (std::size_t i = 0; i < weights_.size(); ++i) average_[i].lerp_(weights_[i], 1.0 - keep);
   }
-  /// The weights change places with their mean.
+  /// Exchanges the weights and their average.
   void swap_average() {
     at::NoGradGuard no_gradients;
     for (std::size_t i = 0; i < average_.size(); ++i) {
@@ -168,14 +168,14 @@ class Loop {
     }
   }
 
-  /// Validation error of the epoch; keeps the weights if it is the least so far. `samples_per_s`: of its
-  /// training.
+  /// Computes the epoch's validation error and keeps the weights if it is the least so far. `samples_per_s`:
+  /// training rate of the epoch.
   void judge(double samples_per_s) {
     swap_average();
     judge_weights(samples_per_s);
     swap_average();
   }
-  /// The data's own loss on the validation rows.
+  /// Returns LoopData::loss on the validation rows.
   double own_loss() {
     at::NoGradGuard no_gradients;
     data::BatchReader reader(data_.stream, {data_.validation.begin(), data_.validation.end()}, 512, 0,
@@ -279,12 +279,12 @@ class Loop {
   const LoopData& data_;
   const LoopSettings& settings_;
   TrainingProgress& progress_;
-  std::vector<Tensor> weights_, best_, average_;  // the last empty unless weights are averaged
+  std::vector<Tensor> weights_, best_, average_;  // average_: empty unless weights are averaged
   Adam adam_;
   Tensor loss_weights_;
   std::int64_t outputs_ = 0;
   std::size_t batches_ = 0;
-  double operations_per_row_ = 0.0;  // of the products of a training step; 0: not counted
+  double operations_per_row_ = 0.0;  // matrix products of a training step; 0: not counted
   Position at_;
   Clock::time_point begin_ = Clock::now(), last_save_ = Clock::now();
   double processor_begin_ = processor_time();

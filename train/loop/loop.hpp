@@ -1,7 +1,7 @@
 #pragma once
-// Epochs of Adam with early stop on the validation rows; the weights of the best epoch are kept. Bit-exact
-// when resumed: every random number is keyed by seed, epoch and batch, so that no generator state needs
-// saving.
+// Training loop: Adam with early stopping on the validation rows; the weights of the best epoch are kept. A
+// resumed run is bitwise equal: every random number is keyed by seed, epoch and batch, so that no generator
+// state is saved.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -26,48 +26,47 @@ struct LoopData {
   const data::ShardStream& stream;
   const data::Features& features;
   std::span<const std::uint64_t> train, validation;  ///< row numbers, ascending
-  std::span<const float> targets;                    ///< all rows of the dataset x outputs, scaled
-  std::span<const float> guesses = {};  ///< all rows x outputs, scaled: read behind each row's features
-  std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: all alike
-  /// Of outputs and scaled targets, instead of the mean squared error; a number.
+  std::span<const float> targets;                    ///< scaled targets, all rows of the dataset x outputs
+  std::span<const float> guesses = {};  ///< all rows x outputs, scaled; appended to each row's features
+  std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: equal
+  /// Scalar loss of outputs and scaled targets; empty: weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
 };
 
 struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint;       ///< empty: none is written
-  const nlohmann::json* run = nullptr;    ///< identity of the run; a checkpoint of another one is refused
-  double checkpoint_every_s = 30.0;       ///< in an epoch
-  double checkpoint_after_epoch_s = 2.0;  ///< at the end of an epoch, where the last one is that old
-  std::uint64_t first_draw = 0;           ///< of the noise of training rows; each epoch has the next one
-  double gflops = 0.0;                    ///< what the processor makes of products [GFLOP/s]; 0: not known
-  std::function<bool()> stop;             ///< asked before each batch; empty: stop_asked()
+  std::filesystem::path checkpoint;       ///< empty: no checkpoints
+  const nlohmann::json* run = nullptr;    ///< identity of the run; other checkpoints are refused
+  double checkpoint_every_s = 30.0;       ///< within an epoch
+  double checkpoint_after_epoch_s = 2.0;  ///< at an epoch's end, if the last one is older
+  std::uint64_t first_draw = 0;           ///< draw of the first epoch's noise; each epoch has the next one
+  double gflops = 0.0;                    ///< rate of matrix products [GFLOP/s]; 0: unknown
+  std::function<bool()> stop;             ///< polled before each batch; empty: stop_asked()
 };
 
 struct LoopReport {
   bool finished = false;  ///< false: stopped on request, after a checkpoint
   std::size_t epochs = 0, best_epoch = 0;
-  double seconds = 0.0;  ///< wall clock, those before a resume included [s]
-  double validation =
-      0.0;  ///< loss of the best epoch on the validation rows: squared error in scaled units, weighted
-  double processor_seconds = 0.0;  ///< of all threads, those before a resume included [core-s]
+  double seconds = 0.0;     ///< wall clock, including time before a resume [s]
+  double validation = 0.0;  ///< validation loss of the best epoch: weighted squared error, scaled units
+  double processor_seconds = 0.0;  ///< of all threads, including before a resume [core-s]
 };
 
-/// Trains; the network ends with the weights of its best epoch. Throws InputError if the loss stops being a
-/// number.
+/// Trains the network; it ends with the weights of its best epoch. Throws InputError if the loss is not
+/// finite.
 LoopReport train_network(networks::Network& network, const LoopData& data, const LoopSettings& settings,
                          TrainingProgress& progress);
 
-/// Network's outputs for `rows`, rows x outputs, scaled units. `guesses`: as in LoopData; `noise`: that of
-/// judging unless given.
+/// Returns the network's outputs for `rows`, rows x outputs [scaled units]. `guesses`: as in LoopData;
+/// `noise`: default is that of test rows.
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
                            const data::Features& features, std::span<const std::uint64_t> rows,
                            std::span<const float> guesses = {}, const std::optional<data::Noise>& noise = {});
 
-/// Rate of Adam at a step (from 0) of all steps.
+/// Returns Adam's learning rate at a step (from 0) of `steps` steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);
-/// Seeds the generator that weights and dropout draw from.
+/// Seeds the generator of weights and dropout.
 void seed_torch(std::uint64_t key);
 
 }  // namespace swingbank::train::loop

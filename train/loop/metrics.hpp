@@ -1,5 +1,5 @@
 #pragma once
-// How good a network is, in raw units and beside what a constant guess scores.
+// Scores of a network in raw units, and of the constant prediction as baseline.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,18 +11,18 @@ namespace swingbank::train::loop {
 struct ParameterScore {
   std::string name, unit;
   double mse = 0.0;                                      ///< [unit^2]
-  double baseline_mse = 0.0;                             ///< of predicting the training mean
-  double variance = 0.0;                                 ///< of the parameter over the test rows
+  double baseline_mse = 0.0;                             ///< of predicting the training mean [unit^2]
+  double variance = 0.0;                                 ///< of the parameter over the test rows [unit^2]
   double box_variance = 0.0;                             ///< of the uniform sampling box, (high - low)^2 / 12
-  [[nodiscard]] std::optional<double> relative() const;  ///< mse / variance; none for a constant
+  [[nodiscard]] std::optional<double> relative() const;  ///< mse / variance; none if variance is 0
 };
 
 struct Score {
   std::vector<ParameterScore> parameters;
   double mse = 0.0, baseline_mse = 0.0;                          ///< mean over all parameters
-  double mse_varied_only = 0.0, baseline_mse_varied_only = 0.0;  ///< over those whose box has a width
+  double mse_varied_only = 0.0, baseline_mse_varied_only = 0.0;  ///< over the parameters that vary in the box
   double ratio = 0.0;                                            ///< mse / baseline_mse
-  std::optional<double> H_ratio;  ///< the same for H alone; none if there is no H
+  std::optional<double> H_ratio;                                 ///< for H alone; none if there is no H
 };
 
 struct ScoreInput {

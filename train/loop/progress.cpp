@@ -12,7 +12,7 @@ TrainingProgress::TrainingProgress(std::string title, std::uint64_t total, bool 
 
 void TrainingProgress::update(std::uint64_t done, const std::string& note) {
   const auto now = Clock::now();
-  if (!started_) {  // the rate counts what this process did, not what a checkpoint held
+  if (!started_) {  // the rate excludes samples before a resume
     started_ = true;
     first_ = done;
     begin_ = last_ = now;

@@ -1,5 +1,5 @@
 #pragma once
-// How far a training run is: one line that renews itself on a terminal, a log line every so often elsewhere.
+// Progress of a training run: one line that is rewritten on a terminal, periodic log lines otherwise.
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@ namespace swingbank::train::loop {
 
 class TrainingProgress {
  public:
-  /// total: samples of all epochs; title starts each line. Writes to standard error.
+  /// total: samples of all epochs; title: start of each line. Writes to standard error.
   TrainingProgress(std::string title, std::uint64_t total, bool quiet = false);
-  /// done: samples so far, those before a resume included; note: what the epoch says of itself.
+  /// done: samples so far, including before a resume; note: text of the epoch.
   void update(std::uint64_t done, const std::string& note);
-  /// A line of its own, whatever the medium.
+  /// Prints a separate line, on a terminal or in a log.
   void line(const std::string& text);
 
  private:
@@ -23,7 +23,7 @@ class TrainingProgress {
   Clock::time_point begin_, last_;
 };
 
-/// "1 h 02 min", "3 min 20 s", "12 s".
+/// Returns "1 h 02 min", "3 min 20 s" or "12 s".
 std::string duration(double seconds);
 
 }  // namespace swingbank::train::loop

@@ -44,8 +44,7 @@ class Cnn final : public Network {
   }
 
  private:
-  /// With a handful of input channels the direct product is short enough: rows (t, b), columns (tap,
-  /// channel).
+  /// With few input channels the direct product is short enough: rows (t, b), columns (tap, channel).
   Tensor first_convolution(const Tensor& x) {
     const auto batch = x.size(0), channels = x.size(1), n = x.size(2), left = (kernel_ - 1) / 2;
     const Tensor padded =

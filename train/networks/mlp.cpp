@@ -1,7 +1,7 @@
-// A residual network on whitened inputs: one layer into a trunk of 768 numbers, three blocks that each add to
+// Residual network on whitened inputs: one layer into a trunk of 768 numbers, three blocks that each add to
 // it (layer norm, 768, GELU, 768), layer norm, GELU, and a linear output that starts at zero about the mean
-// of the targets. The blocks start as nothing, so that the first steps train a linear map (Goyal et al. 2017,
-// section 5.1; Xiong et al. 2020 on the place of the norm).
+// of the targets. The blocks start at zero, so that the first steps train a linear map (Goyal et al. 2017,
+// section 5.1; Xiong et al. 2020 on the position of the norm).
 #include <ATen/ATen.h>
 
 #include <array>
@@ -26,7 +26,7 @@ void start_as_zero(const Dense& layer) {
   layer.weight.zero_();
 }
 
-/// One of the trunk's steps.
+/// One residual block of the trunk.
 struct Block {
   Norm norm;
   Dense first{kTrunk, kTrunk}, second{kTrunk, kTrunk};

@@ -12,7 +12,7 @@
 namespace swingbank::train::posterior {
 namespace {
 
-constexpr std::size_t kRankDraws = 199;  ///< of a belief: a rank among them has 200 values, ten in each bin
+constexpr std::size_t kRankDraws = 199;  ///< posterior samples: a rank has 200 values, ten per bin
 constexpr std::uint32_t kFactorStream = 0, kOwnStream = 1, kReferenceStream = 2;
 
 std::size_t bin_of(double probability) {
@@ -35,7 +35,7 @@ ParameterCoverage of_parameter(const Beliefs& beliefs, const Recalibration& reca
   return c;
 }
 
-/// One sample of a row's belief, as places in the box. `seed`: of the row.
+/// Draws one sample of a row's posterior, as positions in the box. `seed`: of the row.
 void draw(const Beliefs& beliefs, std::span<const Recalibration> recalibrations, std::size_t row,
           std::uint64_t seed, std::size_t sample, std::span<double> out) {
   const double* F = beliefs.factor.data() + row * beliefs.parameters * kFactors;
@@ -61,7 +61,7 @@ double square_distance(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// Rank of the truth's distance from a random point among the samples' distances.
+/// Returns the rank of the truth's distance from a random point among the samples' distances.
 std::size_t tarp_rank(const Beliefs& beliefs, std::span<const Recalibration> recalibrations, std::size_t row,
                       std::span<const double> truth, std::uint64_t seed) {
   std::vector<double> reference(truth.size()), sample(truth.size());
@@ -108,7 +108,7 @@ double Coverage::mean(double ParameterCoverage::*of) const {
 }
 
 double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score) {
-  constexpr double kFarthest = 6.0;  // scores: beyond it a probability is rounding
+  constexpr double kFarthest = 6.0;  // largest score; beyond it a probability is rounding
   return place_of_logit(
       belief.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
 }

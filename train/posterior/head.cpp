@@ -14,8 +14,8 @@ using at::Tensor;
 constexpr std::int64_t kUnits = 256;
 constexpr auto K = static_cast<std::int64_t>(kComponents), F = static_cast<std::int64_t>(kFactors);
 constexpr double kNarrowest = -9.0, kWidest = 2.0;  // logarithms of a component's deviation
-constexpr double kCertain = 1e-5;                   // a normal score is not formed of less [probability]
-constexpr double kBoxEdge = 0.005;                  // estimates stand so far inside the box [share of it]
+constexpr double kCertain = 1e-5;                   // least tail probability for a normal score
+constexpr double kBoxEdge = 0.005;  // least distance of an estimate from the box's ends [share of the box]
 
 Tensor constant(const std::vector<HeadParameter>& all, double HeadParameter::*what) {
   std::vector<float> values;
@@ -28,7 +28,8 @@ Tensor drawn(std::int64_t in, std::int64_t out) {
   return at::empty({in, out}, at::kFloat).uniform_(-bound, bound).requires_grad_(true);
 }
 
-/// Components start side by side about the estimate, each about as wide as the box; nothing correlates.
+/// Returns the initial posterior: components centred on the estimate, each about as wide as the box, without
+/// correlation.
 std::vector<float> first_belief(std::size_t parameters) {
   std::vector<float> all;
   for (std::size_t p = 0; p < parameters; ++p) {
@@ -50,7 +51,7 @@ Parts parts_of(const Tensor& numbers, std::int64_t parameters) {
           all.narrow(2, 2 * K, K).clamp(kNarrowest, kWidest), all.narrow(2, 3 * K, F)};
 }
 
-/// Logarithm of the copula's density, batch.
+/// Returns the logarithm of the copula's density, one value per row of the batch.
 Tensor copula(const Tensor& score, const Tensor& factor) {
   const std::int64_t p = factor.size(1);
   const Tensor root = (factor.square().sum(2, true) + 1.0).rsqrt();
@@ -110,7 +111,7 @@ Tensor Head::forward(const Tensor& x, bool) {
     const Tensor known = trained_.describe(x);
     read = at::cat({known, x.reshape({x.size(0), -1})}, 1);
     const std::int64_t outputs = known.size(1);
-    // the outputs are the last of what it knows
+    // The outputs are the last of the features.
     const auto all = static_cast<std::int64_t>(trained_.parameters().back().numel());
     const Tensor output =
         known.narrow(1, outputs - all, all).index_select(1, at::tensor(l.outputs, at::kLong));
@@ -136,7 +137,7 @@ Tensor Head::loss(const Tensor& numbers, const Tensor& targets) const {
   const Tensor each = parts.log_weight - parts.log_deviation - 0.5 * z.square();
   const Tensor marginal =
       at::logsumexp(each, 2).sum(1) - 0.5 * std::log(constants::turn) * static_cast<double>(p);
-  // the copula learns from the margins' scores as they are: it has no say in the margins
+  // The copula is trained on the detached scores of the marginal distributions and does not influence these.
   const Tensor below =
       (parts.log_weight.detach().exp() * 0.5 * at::erfc(z.detach() * -std::sqrt(0.5))).sum(2);
   const Tensor score = std::sqrt(2.0) * at::erfinv(2.0 * below.clamp(kCertain, 1.0 - kCertain) - 1.0);

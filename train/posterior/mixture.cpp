@@ -20,8 +20,8 @@ double Mixture::quantile_of_score(double score) const {
     low = std::min(low, mean[k] + deviation[k] * score);
     high = std::max(high, mean[k] + deviation[k] * score);
   }
-  // The mixture's quantile lies between those of its components. Newton's method, and a bisection where it
-  // would leave them.
+  // The mixture's quantile lies between those of its components. Newton's method, with bisection if a step
+  // would leave that interval.
   double x = 0.5 * (low + high);
   for (int i = 0; i < 60; ++i) {
     double below = 0.0, density = 0.0;
@@ -32,7 +32,7 @@ double Mixture::quantile_of_score(double score) const {
     }
     (below < p ? low : high) = x;
     double next = x - (below - p) / density;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);  // also where the density is nought
+    if (!(next > low && next < high)) next = 0.5 * (low + high);  // also for zero density
     const double step = std::abs(next - x);
     x = next;
     if (step <= 1e-9 * (1.0 + std::abs(x))) break;

@@ -1,6 +1,6 @@
 #pragma once
-// What is believed of a row's parameters: for each a mixture of normal distributions of its place in the
-// sampling box, and between them a normal copula of low rank. Places are logistic, so that no belief leaves
+// Posterior of a row's parameters. Each parameter has a mixture of normal distributions over the logit of its
+// position in the sampling box; a low-rank normal copula joins them. The logit keeps every posterior inside
 // the box.
 #include <array>
 #include <cstddef>
@@ -8,17 +8,19 @@
 
 namespace swingbank::train::posterior {
 
-inline constexpr std::size_t kComponents = 4;  ///< of a mixture
-inline constexpr std::size_t kFactors = 4;     ///< of the copula's correlations
+inline constexpr std::size_t kComponents = 4;  ///< components of a mixture
+inline constexpr std::size_t kFactors = 4;     ///< rank of the copula's correlations
 
 struct Mixture {
   std::array<double, kComponents> weight{}, mean{}, deviation{};
   [[nodiscard]] double cdf(double x) const;
-  /// Of the probability that a standard normal number is below `score`; to 1e-9 of itself.
+  /// Returns the quantile for the probability of a standard normal number below `score`; relative accuracy
+  /// 1e-9.
   [[nodiscard]] double quantile_of_score(double score) const;
 };
 
-/// Of rows x parameters. A row's normal scores correlate like F F^T + 1, scaled to a diagonal of ones.
+/// Posteriors of rows x parameters. The correlation matrix of a row's normal scores is F F^T + 1, scaled to a
+/// unit diagonal.
 struct Beliefs {
   std::size_t rows = 0, parameters = 0;
   std::vector<Mixture> marginal;
@@ -28,8 +30,8 @@ struct Beliefs {
   }
 };
 
-/// Logit of the place of a value between the ends of its box, and the place again. Values at the ends stand
-/// as if they were a hundred-thousandth of the box inside.
+/// Conversion between the position of a value in its box (0 to 1) and its logit. Positions at the ends are
+/// moved inside by 1e-5 of the box.
 double logit_of_place(double place);
 double place_of_logit(double logit);
 

@@ -20,7 +20,7 @@ const Held& standard() {
   return scores;
 }
 
-/// Straight between the points, and on as between the outer three beyond them.
+/// Interpolates linearly; extrapolates with the slope across the outer three points.
 double along(const Held& from, const Held& to, double x) {
   const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
   if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);
@@ -35,7 +35,7 @@ Recalibration::Recalibration() : held_(standard()) {}
 
 Recalibration Recalibration::fit(std::span<const double> scores) {
   constexpr std::size_t kFewestRows = 20;
-  constexpr double kClosest = 1e-3;  // of neighbouring points, so that the map has an inverse
+  constexpr double kClosest = 1e-3;  // least distance of neighbouring points, so that the map has an inverse
   Recalibration r;
   if (scores.size() < kFewestRows) return r;
   std::vector<double> sorted(scores.begin(), scores.end());

@@ -1,5 +1,6 @@
 #pragma once
-// What several records of one plant say together: the product of the beliefs of each, parameter by parameter.
+// Combined posterior of several records of one plant: the product of their posteriors, parameter by
+// parameter.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace swingbank::train::posterior {
 
-/// Mean place in the box of each parameter under the product of the rows' beliefs, over a prior that is
-/// uniform in the box. Correlations between parameters are left aside. `rows`: at least one.
+/// Returns the mean position in the box of each parameter under the product of the rows' posteriors with a
+/// prior uniform in the box. Correlations between parameters are ignored. `rows`: at least one.
 std::vector<double> together(const Beliefs& beliefs, std::span<const std::size_t> rows);
 
 }  // namespace swingbank::train::posterior

@@ -1,14 +1,15 @@
 #pragma once
-// Leave one generator out: every fold trains on the other generators and is judged on rows it never saw.
+// Cross-validation by leaving one generator out: each fold trains on the other generators and is tested on
+// unseen rows.
 #include <vector>
 
 #include "train/run/run.hpp"
 
 namespace swingbank::train::run {
 
-/// Folds of one process: every size-th, from rank on.
+/// Returns the folds of one process: every size-th, starting at rank.
 std::vector<std::int32_t> share_of(const std::vector<std::int32_t>& folds, runtime::Place place);
-/// Runs the folds in turn; stops after the first that was asked to stop.
+/// Runs the folds in order; stops after the first that is stopped.
 RunOutcome cross_validate(const data::ShardStream& stream, RunRequest request,
                           const std::vector<std::int32_t>& folds);
 

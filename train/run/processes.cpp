@@ -21,7 +21,7 @@ void end_all(const std::vector<pid_t>& children, int signal) {
   for (const pid_t child : children) kill(child, signal);
 }
 
-/// Waits for one child; passes a stop on as soon as it was asked for.
+/// Waits for one child; passes a stop request on to all running children.
 int wait_for(pid_t child, const std::vector<pid_t>& running) {
   bool passed_on = false;
   for (int status = 0;;) {
@@ -47,7 +47,7 @@ int run_processes(int count, const std::function<int(runtime::Place)>& work) {
   if (count <= 1) return work({});
   std::vector<pid_t> children;
   for (int i = 0; i < count; ++i) {
-    // Nobody waits for it when this process has died: it saves a checkpoint and ends.
+    // If this process dies, the child receives SIGTERM: it saves a checkpoint and ends.
     const pid_t child = start_child([&] { return work({i, count}); }, SIGTERM);
     if (child < 0) {
       const int error = errno;

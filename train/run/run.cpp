@@ -23,7 +23,7 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 
-/// What two identities differ in, in words.
+/// Returns the keys in which two identities differ, as text.
 std::string differing(const json& there, const json& here) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : here.items())
@@ -31,8 +31,8 @@ std::string differing(const json& there, const json& here) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-/// True if the result stands there already; refuses one of another run. A finished result may be of another
-/// processor, which it says; one of other software may not.
+/// Returns true if the result already exists. Throws if it is that of another run. A finished result may come
+/// from another processor, which is reported, but not from other software.
 bool already_done(const std::filesystem::path& file, const json& run) {
   if (!std::filesystem::exists(file)) return false;
   const json parsed = json::parse(read_text(file), nullptr, false);
@@ -47,7 +47,7 @@ bool already_done(const std::filesystem::path& file, const json& run) {
                     "remove it, choose another --out, or give --any-maker if it is only the software"});
 }
 
-/// `predicted`: `rows` x parameters, raw units.
+/// Computes the score. `predicted`: `rows` x parameters [raw units].
 loop::Score judge(const std::vector<double>& predicted, const data::ShardStream& stream,
                   const data::TargetScale& scale, std::span<const std::uint64_t> rows) {
   const data::Labels& labels = stream.labels();
@@ -59,7 +59,7 @@ loop::Score judge(const std::vector<double>& predicted, const data::ShardStream&
                       d.parameter_high});
 }
 
-/// What a network corrects, of all rows; empty where it corrects nothing.
+/// Estimates that a network corrects, for all rows; empty if it corrects none.
 struct Guesses {
   std::vector<float> raw,
       scaled;  ///< raw units; in standard deviations about the mean of the training targets
@@ -80,7 +80,7 @@ Guesses guesses_for(const data::ShardStream& stream, const RunRequest& r, const 
   return g;
 }
 
-/// Raw units, inside the sampling box: outside of it there is no truth to be near to.
+/// Returns raw values clamped to the sampling box, which contains every truth.
 std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale,
                                 const mpi::store::DatasetHeader& d, std::span<const std::uint64_t> rows,
                                 const Guesses& guesses) {
@@ -115,7 +115,7 @@ std::string scored(const loop::Score& s, double seconds) {
                      loop::duration(seconds));
 }
 
-/// Keeps about `wanted` rows, evenly spread.
+/// Keeps about `wanted` rows, evenly spaced.
 void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
   const std::size_t every = std::max<std::size_t>(1, rows.size() / wanted);
   std::size_t kept = 0;
@@ -123,7 +123,7 @@ void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
   rows.resize(kept);
 }
 
-/// Methods that look at whole records need them on a disk.
+/// Throws if a method needs complete records but the dataset is not on disk.
 void require_records(const data::ShardStream& stream, const RunRequest& r) {
   const bool reads =
       direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
@@ -140,7 +140,7 @@ struct DirectRun {
   const data::RowSplit& split;
   const data::TargetScale& scale;
 };
-/// Nothing is trained and nothing is saved half done: a run takes minutes at most.
+/// Runs a method without training. No checkpoints: such a run takes minutes at most.
 RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, const DirectRun& d) {
   if (r.shuffle_labels)
     throw InputError({"a control run of " + r.network, "--shuffle-labels", "it is not trained on labels",
@@ -215,7 +215,7 @@ class NetworkRun {
         checkpoint_(request.out / "checkpoints" / (name_ + ".checkpoint")),
         progress_(name_, epochs() * split.train.size(), request.quiet) {}
 
-  /// False if it was stopped and is to be submitted again.
+  /// Trains the network. Returns false if it was stopped and must be submitted again.
   bool train() {
     if (recipe_.noise_levels && load()) return true;
     features_ = data::Features::fit(
@@ -233,7 +233,7 @@ class NetworkRun {
           fmt::format("saved to {}; submit the same command again to go on", checkpoint_.string()));
       return false;
     }
-    // a network that corrects estimates is of no use without whoever makes them
+    // A network that corrects estimates is not saved: it cannot be used without them.
     if (request_.save_network && !request_.shuffle_labels && request_.train_share == 1 && known_.none())
       save_network(file(), {stream_, request_, features_, scale_, split_, identity_, report_, *posterior_},
                    *network_);
@@ -259,7 +259,7 @@ class NetworkRun {
  private:
   [[nodiscard]] std::size_t epochs() const { return request_.epochs.value_or(recipe_.epochs); }
   [[nodiscard]] std::filesystem::path file() const { return network_file(request_.out / (name_ + ".json")); }
-  /// What an earlier run of another level trained.
+  /// Loads the network that an earlier run of another noise level trained.
   bool load() {
     if (!std::filesystem::exists(file())) return false;
     SavedNetwork saved = SavedNetwork::load(file());
@@ -337,7 +337,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   make_folder(r.out);
   make_folder(locks);
   const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
-  // runs of other levels wait for the network that is theirs too
+  // Runs of other noise levels wait for their common network.
   const std::chrono::seconds patience =
       recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
   RunLock lock(locks / (training_name(r) + ".lock"),

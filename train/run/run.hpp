@@ -1,5 +1,5 @@
 #pragma once
-// One run: split, features, training, score, JSON. Used by `swingbank train` and, fold by fold, by
+// One run: split, features, training, score, JSON. Used by `swingbank train` and, for each fold, by
 // `swingbank cross-validate`.
 #include <filesystem>
 #include <functional>
@@ -18,37 +18,36 @@ namespace swingbank::train::run {
 struct RunRequest {
   loop::Experiment experiment;
   std::string preset, network;
-  std::optional<std::int32_t> generator;  ///< to leave out; none: 60/20/20
-  std::optional<std::int32_t> judged;     ///< generator that the run is judged on instead, also left out
+  std::optional<std::int32_t> generator;  ///< left-out generator; none: split 60/20/20
+  std::optional<std::int32_t> judged;     ///< generator tested instead, also left out
   std::uint64_t seed = 1;
-  std::optional<std::size_t> epochs;  ///< instead of the preset's
+  std::optional<std::size_t> epochs;  ///< overrides the preset's
   double noise = 0;  ///< level of measurement noise; the stream must have been opened with it
-  std::optional<std::size_t> test_rows;  ///< about so many, evenly spread; none: all
+  std::optional<std::size_t> test_rows;  ///< approximate number, evenly spaced; none: all
   double train_share = 1.0;              ///< of the training rows
   bool shuffle_labels = false;
-  bool any_maker = false;    ///< what other software or kernels made counts as this run's
-  bool save_network = true;  ///< beside the result (not of a control run)
+  bool any_maker = false;    ///< accept results of other software or kernels
+  bool save_network = true;  ///< beside the result (not for a control run)
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
-  std::function<bool()> stop = {};  ///< asked before each batch; empty: stop_asked()
+  std::function<bool()> stop = {};  ///< polled before each batch; empty: stop_asked()
 };
 
 enum class RunOutcome { done, already_done, stopped };
 
-/// Trains, scores and writes the JSON of train/run/README.md. Goes on from a checkpoint of the same run.
-/// Throws InputError if the output folder holds the result of another run under the same name, or of other
-/// software, or a checkpoint of other software or kernels, or if another process is at this very run
-/// (RunLock).
+/// Trains, scores and writes the JSON of train/run/README.md. Continues from a checkpoint of the same run.
+/// Throws InputError if the output folder holds a result of another run under the same name, or of other
+/// software, or a checkpoint of other software or kernels, or if another process works on this run (RunLock).
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 
-/// Targets of all rows in scaled units. With `shuffled`, the labels of the training and validation rows
-/// change places; those of other rows stay.
+/// Returns the targets of all rows in scaled units. With `shuffled`, the labels of training and validation
+/// rows are permuted; those of other rows are unchanged.
 std::vector<float> scaled_targets(const data::Labels& labels, const data::TargetScale& scale,
                                   const data::RowSplit& split, bool shuffled, std::uint64_t seed);
-/// "V-cnn-quick-seed1-gen30"
+/// Returns "V-cnn-quick-seed1-gen30".
 std::string run_name(const RunRequest& request);
-/// The same without the noise that it is judged with, where the network serves all levels.
+/// Returns the name without the test noise level if the network serves all levels.
 std::string training_name(const RunRequest& request);
 
 }  // namespace swingbank::train::run

@@ -25,7 +25,7 @@ double rms(const float* values, std::size_t count) {
   return std::sqrt(sum / static_cast<double>(count));
 }
 
-/// Largest root mean square of the rows' normalised inputs.
+/// Returns the largest root mean square of the rows' normalised inputs.
 double largest_input(const data::ShardStream& stream, const data::Features& features,
                      std::span<const std::uint64_t> rows) {
   const std::size_t size = features.channels() * features.length();
@@ -41,8 +41,8 @@ double largest_input(const data::ShardStream& stream, const data::Features& feat
   return largest;
 }
 
-/// The parameters with bias and spread on the test rows, which training never saw: where one generator is
-/// left out, they are that generator's.
+/// Returns the parameters with bias and spread on the test rows, which are not used in training. In a fold
+/// they are those of the generator left out.
 json judged_parameters(const NetworkParts& parts, networks::Network& network) {
   const mpi::store::Dataset& d = parts.stream.dataset();
   const data::Labels& labels = parts.stream.labels();
@@ -159,7 +159,7 @@ NetworkInfo info_of(const json& h) {
   return i;
 }
 
-/// The weights that the shape's bias starts are read over it.
+/// Returns the network's shape. The initial bias is a placeholder, because the weights are read afterwards.
 networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
   if (s.kept > 0)
     return {1, static_cast<std::int64_t>(s.kept + s.levels + 1 + s.noisy + s.regressed),
@@ -171,7 +171,7 @@ networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs
           static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
 }
 
-/// The file itself, or the only one of a folder.
+/// Returns the file itself, or the only one in a folder.
 fs::path find_file(const fs::path& path) {
   if (!fs::is_directory(path)) {
     if (fs::exists(path)) return path;

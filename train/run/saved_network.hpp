@@ -1,6 +1,6 @@
 #pragma once
-// A trained network with everything an estimate needs: what it reads and how that is normalised, the weights,
-// and how far it was off on its validation rows. One sealed file beside the result's JSON.
+// A trained network with everything that an estimate needs: input and its normalisation, weights, and errors
+// on its test rows. One sealed file beside the result's JSON.
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -18,35 +18,35 @@ namespace swingbank::train::run {
 /// A parameter that a network estimates.
 struct EstimatedParameter {
   std::string name, unit, effect;  ///< "SEXS.K", "pu", "SEXS"
-  double low = 0.0, high = 0.0;    ///< the sampling box; equal: held, nothing was learnt
-  double bias = 0.0;               ///< mean of estimate less truth on the validation rows [unit]
-  double spread = 0.0;             ///< root mean square of the same [unit]
+  double low = 0.0, high = 0.0;    ///< sampling box; equal: constant, not learnt
+  double bias = 0.0;               ///< mean of estimate minus truth on test rows [unit]
+  double spread = 0.0;             ///< root mean square of estimate minus truth [unit]
 };
 
-/// What a network reads and says.
+/// Inputs and outputs of a network.
 struct NetworkInfo {
   std::string run;  ///< "V-cnn-quick-seed1-gen30"
   std::string network, kind, machine_model, dataset, dataset_hash, software;
-  std::optional<std::int32_t> left_out;           ///< generator no row of which was trained on
+  std::optional<std::int32_t> left_out;           ///< generator whose rows were not used in training
   std::vector<std::string> channels;              ///< as a dataset names them, in order
-  double rate = 0.0;                              ///< samples per second of the records it reads [1/s]
+  double rate = 0.0;                              ///< sampling rate of its records [1/s]
   std::size_t samples = 0;                        ///< of a channel, from t = 0
-  std::optional<double> fault_start;              ///< when its records' faults begin [s]; none: unknown
+  std::optional<double> fault_start;              ///< fault time in its records [s]; none: unknown
   std::optional<sim::FrequencyFilter> frequency;  ///< of the channel "frequency"
   double input_rms_seen = 0.0;  ///< largest root mean square of a validation row's normalised input
-  bool told_noise = false;      ///< it was trained at many levels of noise and is told the record's
+  bool told_noise = false;      ///< trained at many noise levels; the record's level is an input
   std::vector<EstimatedParameter> parameters;
 };
 
-/// Central interval that holds a parameter with a probability of 90 %, and its middle [its unit].
+/// Central 90 % interval of a parameter, and its median [its unit].
 struct Interval {
   double low = 0.0, median = 0.0, high = 0.0;
 };
 
 struct Estimate {
   std::vector<double> values;                      ///< per parameter [its unit]
-  std::vector<std::optional<Interval>> intervals;  ///< the same; none: held, or the network has no posterior
-  double input_rms = 0.0;  ///< of the normalised input: about 1 on rows like those of the training
+  std::vector<std::optional<Interval>> intervals;  ///< [its unit]; none: constant, or no posterior
+  double input_rms = 0.0;  ///< of the normalised input: about 1 on rows like the training rows
 };
 
 struct Posterior;
@@ -62,30 +62,31 @@ struct NetworkParts {
   const Posterior& posterior;
 };
 
-/// "V-cnn-quick-seed1-gen30.network" beside the result.
+/// Returns "V-cnn-quick-seed1-gen30.network" beside the result.
 std::filesystem::path network_file(const std::filesystem::path& result);
-/// Judges the network on its validation rows and writes it. Throws InputError if the file cannot be written.
+/// Evaluates the network on its test rows and writes it. Throws InputError if the file cannot be written.
 void save_network(const std::filesystem::path& file, const NetworkParts& parts, networks::Network& network);
 
 class SavedNetwork {
  public:
-  /// `path`: the file, or a folder that holds one. Throws InputError if there is none, several, or a damaged
-  /// one.
+  /// Loads a network. `path`: the file, or a folder with exactly one. Throws InputError if there is none,
+  /// several, or a damaged one.
   static SavedNetwork load(const std::filesystem::path& path);
   SavedNetwork(SavedNetwork&&) noexcept;
   SavedNetwork& operator=(SavedNetwork&&) noexcept;
   ~SavedNetwork();
   [[nodiscard]] const NetworkInfo& info() const { return info_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// What it was trained as, and how that went.
+  /// Return identity and report of the training.
   [[nodiscard]] const nlohmann::json& identity() const { return *identity_; }
   [[nodiscard]] const loop::LoopReport& report() const { return report_; }
   [[nodiscard]] const data::Features& features() const { return features_; }
-  /// The network itself; no estimate can be made any more.
+  /// Returns the network and gives up ownership; estimates are no longer possible.
   [[nodiscard]] std::unique_ptr<networks::Network> release() { return std::move(network_); }
   [[nodiscard]] std::unique_ptr<Posterior> release_posterior();
-  /// record: info().channels x info().samples, at info().rate from t = 0 [as a dataset's record].
-  /// `noise`: level of the record's noise; of no matter to a network that was not trained at many levels.
+  /// Returns the estimate of a record: info().channels x info().samples, at info().rate from t = 0 [units of
+  /// a dataset's record]. `noise`: noise level of the record; used only by a network that was trained at many
+  /// levels.
   [[nodiscard]] Estimate estimate(std::span<const float> record, double noise = 0.0) const;
 
  private:

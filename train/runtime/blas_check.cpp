@@ -23,7 +23,8 @@ Sgemm sgemm() {
   return found;
 }
 
-/// One thread while it lives: OpenMP's threads, once started, would be missing in a process forked later.
+/// Limits OpenMP to one thread during its lifetime: threads once started would be missing in a process forked
+/// later.
 class OneThread {
  public:
   OneThread() { omp_set_num_threads(1); }
@@ -35,7 +36,7 @@ class OneThread {
   int before_ = omp_get_max_threads();
 };
 
-/// Column by column, as BLAS has it; numbers in -0.5 ... 0.5 without a pattern that products could hide.
+/// Returns a matrix in BLAS's column order with pseudo-random numbers in -0.5 ... 0.5.
 std::vector<float> numbers(int rows, int columns, unsigned seed) {
   std::vector<float> all(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
   for (auto& x : all) {
@@ -45,7 +46,7 @@ std::vector<float> numbers(int rows, int columns, unsigned seed) {
   return all;
 }
 
-/// Largest error of op(A) op(B), m x k times k x n, in units of its bound k eps sum |a b|.
+/// Returns the largest error of op(A) op(B), m x k times k x n, in units of its bound k eps sum |a b|.
 double product_error(int m, int n, int k, bool a_turned, bool b_turned) {
   const int lda = a_turned ? k : m, ldb = b_turned ? n : k;
   const auto a = numbers(lda, a_turned ? m : k, 1), b = numbers(ldb, b_turned ? k : n, 2);
@@ -89,13 +90,13 @@ struct Pack {
   typedef float Type
       __attribute__((vector_size(4 * Lanes)));  // GCC drops the attribute of a dependent `using`
 };
-/// Twelve sums hide the latency of a multiply-add and, with factor and addend, fit sixteen registers.
+/// Twelve sums hide the latency of a multiply-add and, with factor and addend, fit into sixteen registers.
 template <int Lanes>
 [[gnu::always_inline]] inline void add_up() {
   using P = typename Pack<Lanes>::Type;
   static_assert(sizeof(P) == 4 * Lanes);
   P sums[kSums];
-  for (int i = 0; i < kSums; ++i) sums[i] = P{} + static_cast<float>(i);  // equal sums would be made once
+  for (int i = 0; i < kSums; ++i) sums[i] = P{} + static_cast<float>(i);  // equal sums would be merged
   P factor = P{} + 0.999f, addend = P{} + 1e-3f;
   for (int t = 0; t < kTimes; ++t) {
 #pragma GCC unroll 12
@@ -115,7 +116,7 @@ BlasRate measure() {
   std::vector<float> c(a.size());
   const float one = 1.0f, zero = 0.0f;
   BlasRate best;
-  for (int go = 0; go < 6; ++go) {  // alternating, so that both see the same processor
+  for (int go = 0; go < 6; ++go) {  // alternating, so that both run under the same conditions
     best.multiply_adds = std::max(best.multiply_adds, 2e-9 * lanes * kSums * kTimes / seconds(adds));
     if (!sgemm()) continue;
     const double taken = seconds(
@@ -133,7 +134,7 @@ std::string BlasRate::sentence() const {
 }
 
 std::string BlasRate::warning() const {
-  // Kernels as wide as the processor make 60 % and more, SSE kernels 17 % beside AVX-512:
+  // Kernels as wide as the processor reach 60 % and more; SSE kernels reach 17 % on AVX-512:
   // docs/performance.md.
   constexpr double kLeastOfPeak = 0.4;
   if (share() >= kLeastOfPeak) return "";

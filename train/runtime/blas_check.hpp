@@ -1,24 +1,24 @@
 #pragma once
-// Whether the BLAS library multiplies rightly, and how fast beside what the processor itself can do.
+// Checks of the BLAS library: correctness of its products, and speed relative to the processor's peak.
 #include <string>
 
 namespace swingbank::train::runtime {
 struct BlasFound;
 
-/// Single precision on one core, best of several goes, by the processor time of this thread. [GFLOP/s]
+/// Single-precision rates on one core [GFLOP/s], best of several runs, by this thread's processor time.
 struct BlasRate {
-  double product = 0.0;  ///< 512 x 512 times 512 x 512 by the library; 0 if there is none
-  double multiply_adds =
-      0.0;  ///< independent multiply-adds at the widest instructions: what no product exceeds
+  double product = 0.0;        ///< 512 x 512 times 512 x 512 by the library; 0: no library
+  double multiply_adds = 0.0;  ///< independent multiply-adds at the widest instructions: upper bound
   [[nodiscard]] double share() const { return product / multiply_adds; }
   [[nodiscard]] std::string sentence() const;
-  /// A sentence if the library makes less than 40 % of the multiply-adds; else empty.
+  /// Returns a warning if the library reaches less than 40 % of the multiply-add rate, else an empty string.
   [[nodiscard]] std::string warning() const;
 };
-/// Measured once per process, by one thread and without starting others, so that a process may fork after it.
+/// Returns the rates. Measured once per process by one thread without starting others, so that the process
+/// may fork later.
 const BlasRate& blas_rate();
 
-/// Products of odd sizes, also of transposed matrices, against a plain loop in double precision. Throws
+/// Compares products of odd sizes, also of transposed matrices, with a plain loop in double precision. Throws
 /// InputError if one is wrong.
 void require_right_products(const BlasFound& found);
 

@@ -32,7 +32,7 @@ struct Core {
   Width width;
   bool fma4 = false;
 };
-/// The names of OpenBLAS 0.3 for x86-64 (driver/others/dynamic.c), those of SSE only as one.
+/// Names of OpenBLAS 0.3's x86-64 kernels (driver/others/dynamic.c); those of SSE are listed together.
 constexpr std::array<Core, 10> kWide = {{{"Sandybridge", Width::avx},
                                          {"Bulldozer", Width::avx, true},
                                          {"Piledriver", Width::avx, true},
@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 16> kNarrow = {
     "Katmai",     "Coppermine", "Northwood", "Prescott", "Banias",       "Atom",      "Core2",  "Penryn",
     "Dunnington", "Nehalem",    "Athlon",    "Opteron",  "Opteron_SSE3", "Barcelona", "Bobcat", "Nano"};
 
-/// Nothing for a name of a later version: what such a library chooses is left to it and measured.
+/// Returns nullptr for a name of a later version; that library's own choice is kept and measured.
 const Core* core_of(std::string_view name) {
   static constexpr Core narrow{"", Width::sse};
   for (const Core& core : kWide)
@@ -69,10 +69,10 @@ std::string environment(const char* name) {
   return text ? text : "";
 }
 
-/// Returns only if the program cannot be started again: why.
+/// Restarts the program. Returns only on failure, with the reason.
 std::string restart(const std::string& asked, const std::string& alone, char** argv) {
   std::error_code error;
-  // The path itself, not /proc/self/exe: that would be the name which `ps` shows.
+  // The path itself and not /proc/self/exe, which `ps` would show as the name.
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
   setenv(kAsked, asked.c_str(), 1);
   setenv(kAlone, alone.c_str(), 1);
@@ -126,7 +126,7 @@ BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& foun
          fmt::format("they need instructions that this processor does not have; it has {}", name_of(best)),
          fmt::format("unset {}", kAsked)});
   if (core->width == best) return {};
-  // Without a name of its own for AVX, which Debian's OpenBLAS has had for all such processors.
+  // Every AVX processor uses the Sandybridge kernels, as Debian's OpenBLAS does for all of them.
   const std::string restart_with = best == Width::avx512 ? "SKYLAKEX"
                                    : best == Width::avx2 ? "HASWELL"
                                                          : "SANDYBRIDGE";

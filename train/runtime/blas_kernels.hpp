@@ -1,45 +1,44 @@
 #pragma once
-// Which kernels the BLAS library takes, and which it should. OpenBLAS goes by a list of processor models: one
-// newer than the list gets kernels of 2004, in the version of Debian 12 a quarter of the speed.
+// Selection of the BLAS library's kernels. OpenBLAS selects by a list of processor models. A processor newer
+// than the list gets kernels of 2004, which in Debian 12's version have a quarter of the speed.
 #include <string>
 
 namespace swingbank::train::runtime {
 
-/// The instructions by which kernels differ, as processor and operating system offer them.
+/// Instruction sets that kernels depend on, as processor and operating system provide them.
 struct Processor {
   bool avx = false;
   bool avx2 = false;    ///< with FMA
-  bool avx512 = false;  ///< F, CD, BW, DQ and VL: what kernels of Skylake-X need
+  bool avx512 = false;  ///< F, CD, BW, DQ and VL: required by Skylake-X kernels
   bool fma4 = false;    ///< four-operand multiply-adds of AMD's Bulldozer family
   static Processor here();
 };
 
 struct BlasFound {
-  std::string core;   ///< kernels that the library reports ("Haswell"); empty: it is not OpenBLAS
+  std::string core;   ///< kernels reported by the library ("Haswell"); empty: not OpenBLAS
   std::string asked;  ///< OPENBLAS_CORETYPE; empty: not set
-  std::string
-      alone;  ///< what the library took by itself before this program asked for others; empty: it did not
+  std::string alone;  ///< the library's own choice before this program requested others; empty: no request
   static BlasFound here();
 };
 
 struct BlasChoice {
-  std::string restart_with;  ///< OPENBLAS_CORETYPE to start again with; empty: go on
-  std::string warning;       ///< a sentence; empty: nothing is wrong
+  std::string restart_with;  ///< OPENBLAS_CORETYPE for a restart; empty: no restart
+  std::string warning;       ///< a sentence; empty: none
 };
-/// The widest kernels that the processor can run, unless the user asked for others: then a warning. Throws
-/// InputError where those asked for need instructions that the processor does not have.
+/// Chooses the widest kernels that the processor can run. If the user requested others, keeps them with a
+/// warning. Throws InputError if the requested kernels need instructions that the processor lacks.
 BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& found);
 
-/// Library, version and kernels in words; why these, where the library did not choose by itself.
+/// Returns library, version and kernels as text, with the reason if the library did not choose them itself.
 std::string blas_name(const BlasFound& found);
 
-/// "AVX2": instructions of LibTorch's own loops, which it chooses by features and not by model.
+/// Returns the instructions of LibTorch's own loops ("AVX2"), which it selects by features and not by model.
 std::string tensor_instructions();
 
-/// To be called before any thread starts. OpenBLAS chooses while the program is loaded; where it chose badly,
-/// this program runs itself again with the right choice in its environment. Then the library is checked and
-/// measured (blas_check.hpp), and one line on stderr says what is used; warnings follow. Throws InputError if
-/// the library multiplies wrongly or cannot run here.
+/// Selects the best kernels; call before any thread starts. OpenBLAS chooses while the program is loaded. If
+/// that choice is poor, the program restarts itself with the right choice in its environment. Then it checks
+/// and measures the library (blas_check.hpp) and prints one line and any warnings to standard error. Throws
+/// InputError if the library multiplies wrongly or cannot run here.
 void use_best_blas_kernels(char** argv);
 
 }  // namespace swingbank::train::runtime

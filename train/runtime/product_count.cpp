@@ -12,11 +12,11 @@ namespace swingbank::train::runtime {
 namespace {
 
 std::atomic<std::int64_t> counted{0};
-thread_local int depth = 0;  // a batched product may be made of single ones, which LibTorch reports as well
+thread_local int depth = 0;  // a batched product may consist of single ones, which LibTorch reports too
 
 struct Operator {
   std::string_view name;
-  std::size_t factors;  ///< where the two factors begin among its arguments
+  std::size_t factors;  ///< index of the first of two factors in its arguments
 };
 constexpr std::array<Operator, 6> kProducts = {{{"aten::mm", 0},
                                                 {"aten::bmm", 0},

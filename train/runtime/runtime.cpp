@@ -36,7 +36,7 @@ int default_threads() {
     if (const int n = environment_number(name)) return n;
   const int here =
       std::max({1, environment_number("OMPI_COMM_WORLD_LOCAL_SIZE"), environment_number("MPI_LOCALNRANKS")});
-  // OpenMPI binds each process to its own core already; then the affinity mask says it all.
+  // OpenMPI already binds each process to its own cores; the affinity mask then contains only these.
   const int cores = usable_cores();
   return cores < here ? std::max(1, cores) : cores == here ? 1 : std::max(1, cores / here);
 }
@@ -65,7 +65,7 @@ Place launcher_place() {
     const char* text = std::getenv(name);
     return text ? std::atoi(text) : -1;
   };
-  // Slurm's own variables also stand in a batch script that starts one process: only srun gives a step
+  // Slurm's variables are also set in a batch script with a single process; only srun creates a step with
   // several tasks.
   for (const auto& [rank, size] : {std::pair{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                    std::pair{"SLURM_PROCID", "SLURM_STEP_NUM_TASKS"}})

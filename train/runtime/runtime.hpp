@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the process that decide how fast LibTorch trains on a CPU.
+// Process settings that determine the speed of LibTorch on a CPU.
 #include <string>
 
 namespace swingbank::train::runtime {
@@ -8,20 +8,20 @@ struct Runtime {
   int threads = 1;
   std::string blas;        ///< library, version and kernels: blas_name() of blas_kernels.hpp
   std::string loops = {};  ///< instructions of LibTorch's own loops
-  double gflops =
-      0.0;  ///< single-precision products of all threads, from that of one [GFLOP/s]; 0: not known
+  /// Rate of single-precision products of all threads, extrapolated from one [GFLOP/s]; 0: unknown.
+  double gflops = 0.0;
   [[nodiscard]] std::string sentence() const;
 };
-/// Threads of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS, else the cores this process may
-/// use divided by the processes that the launcher started on this node.
+/// Returns the number of threads: that of the Slurm allocation (SLURM_CPUS_PER_TASK), of OMP_NUM_THREADS,
+/// else the available cores divided by the number of processes that the launcher started on this node.
 int default_threads();
-/// threads = 0: default_threads(). Also flushes denormals to zero and keeps
-/// freed memory in the process (LSTM and GRU are several times slower without the first, CNN by a fifth
-/// without the second). Throws InputError for a negative number.
+/// Applies the settings. threads = 0: default_threads(). Flushes denormals to zero, without which LSTM and
+/// GRU are several times slower. Keeps freed memory in the process, without which CNN is slower by a fifth.
+/// Throws InputError for a negative number.
 Runtime set_up_runtime(int threads);
 
-/// Place of this process among those its launcher started (OpenMPI, PMIx or Slurm); 0 of 1 if it runs alone.
-/// Read from the environment, so that a trainer needs no MPI.
+/// Rank of this process among those of its launcher (OpenMPI, PMIx or Slurm); 0 of 1 without a launcher. Read
+/// from the environment, so that training does not need MPI.
 struct Place {
   int rank = 0, size = 1;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// A machine whose terminal voltage is played in: its equations at one instant, with Efd and mechanical torque
-// as in the steady state before the event.
+// Equations of a machine with played-in terminal voltage at one time. Efd and mechanical torque keep their
+// values of the steady state before the event.
 #include <array>
 #include <vector>
 
@@ -8,15 +8,15 @@
 
 namespace swingbank::sim::direct {
 
-/// Of a machine behind a constant impedance. Angles count from the terminal's voltage.
+/// Machine behind a constant impedance. Angles are relative to the terminal voltage.
 template <class T>
 struct DrivenMachine {
   const Ops<T>& ops;
-  std::vector<T> c, x, scratch, dx;  ///< x: set by the caller before evaluate(); at first the steady state
+  std::vector<T> c, x, scratch, dx;  ///< x: set before evaluate(); initially the steady state
   Signals<T> s;
-  T r, xm;  ///< impedance between terminal and inner voltage [pu]
+  T r, xm;  ///< impedance between terminal and internal voltage [pu]
 
-  /// In the steady state with terminal voltage V0 and current Ir0 + j Ii0 out of the machine [pu].
+  /// Initialises the steady state with terminal voltage V0 and current Ir0 + j Ii0 out of the machine [pu].
   DrivenMachine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const T& V0,
                 const T& Ir0, const T& Ii0)
       : ops(effect.get<T>()),
@@ -31,7 +31,7 @@ struct DrivenMachine {
     s.Ii = Ii0;
     ops.machine.steady(p.data(), c.data(), s, x.data());
   }
-  /// Current into the terminal's voltage V, then everything that follows from it.
+  /// Computes the current at terminal voltage V and the signals that follow from it.
   void evaluate(const T& V) {
     T er, ei;
     ops.machine.emf(c.data(), x.data(), scratch.data(), er, ei);
@@ -41,12 +41,12 @@ struct DrivenMachine {
     s.Ii = (r * ei - xm * dr) * k;
     ops.machine.electrical(c.data(), x.data(), scratch.data(), s);
   }
-  /// Fills dx; behind evaluate().
+  /// Computes dx, after evaluate().
   void derive() { ops.machine.derivative(c.data(), x.data(), scratch.data(), s, dx.data()); }
 };
 
-/// One step of the classical fourth-order method from x. `first`: the slope at x; slope(stage, y) gives those
-/// in the middle (stages 1 and 2) and at the end (3).
+/// Performs one step of the classical fourth-order Runge-Kutta method from x. `first`: derivative at x;
+/// slope(stage, y) returns the derivatives in the middle (stages 1 and 2) and at the end (3).
 template <class Vector, class Slope>
 void runge_kutta(Vector& x, const Vector& first, double h, const Slope& slope) {
   using T = typename Vector::value_type;

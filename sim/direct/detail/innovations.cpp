@@ -11,7 +11,7 @@ using States = std::array<T, kMostFlowing>;
 template <class T>
 using Voltage = std::array<T, kInputs>;
 
-/// The machine with V and theta played in; angles in the synchronous frame.
+/// Machine with V and theta played in; angles in the synchronous frame.
 template <class T>
 class Played {
  public:
@@ -32,7 +32,7 @@ class Played {
     m_.x[0] = x[0] - u[kTheta];
     m_.evaluate(u[kV]);
   }
-  /// Behind evaluate().
+  /// Requires evaluate().
   [[nodiscard]] std::array<T, kOutputs> outputs() const {
     const auto& s = m_.s;
     return {s.Vr * s.Ir, T(0.0) - s.Vr * s.Ii, s.speed, s.Ifd};
@@ -43,14 +43,14 @@ class Played {
     std::ranges::copy(m_.dx, dx.begin());
     return dx;
   }
-  /// From the steady state to the first sample behind the event.
+  /// Integrates from the steady state to the first sample after the event.
   States<T> behind_event(const NoisyRecord& r) {
     States<T> x = start_;
     half(x, r.at_event, r.end_of_first, r.first_step);
     correct(x, r.at_first);
     return x;
   }
-  /// From sample k to the next; `first`: slope() at the sample.
+  /// Integrates from sample k to the next; `first`: slope() at the sample.
   void step(const NoisyRecord& r, std::size_t k, States<T>& x, const States<T>& first) {
     const Interval& i = r.behind[k];
     if (!i.leaps) return go(x, first, i.middle, r.in[k + 1], r.step);
@@ -58,12 +58,12 @@ class Played {
     half(x, i.after, r.in[k + 1], r.step / 2);
     if (const auto leap = r.behind_leap.find(k); leap != r.behind_leap.end()) correct(x, leap->second);
   }
-  /// Slope at x under another voltage.
+  /// Returns the derivatives at x for another voltage.
   States<T> slope_at(const States<T>& x, const Inputs& u) {
     evaluate(x, voltage(u));
     return slope();
   }
-  /// The voltage as T; its noise as two directions of a dual where they are asked for.
+  /// Returns the voltage as T, if requested with its noise as two further parameters of a dual.
   [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
     Voltage<T> v = {T(u[kV]), T(u[kTheta])};
     if constexpr (!std::is_same_v<T, double>)
@@ -96,8 +96,8 @@ using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
 using StateMatrix = Eigen::Matrix<double, kMostFlowing, kMostFlowing>;
 using FromInputs = Eigen::Matrix<double, kMostFlowing, kInputs>;
 
-/// A sample's equations about the filter's state: y = C x + D n + v, x' = F x + G n, with n the noise of the
-/// played-in voltage.
+/// Linearised equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n, with the
+/// noise n of the played-in voltage.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();
@@ -105,8 +105,8 @@ struct Linear {
   Eigen::Matrix<double, kOutputs, kInputs> D;
   Eigen::Matrix<double, kOutputs, 1> y;
   Gain::State next = Gain::State::Zero();
-  FromInputs half = FromInputs::Zero();      ///< what a sample's noise has done to the state on the way to it
-  StateMatrix unsure = StateMatrix::Zero();  ///< covariance of what leaps between the samples leave open
+  FromInputs half = FromInputs::Zero();      ///< effect of a sample's noise on the state before the sample
+  StateMatrix unsure = StateMatrix::Zero();  ///< covariance of a step between the samples
 };
 
 class Linearised {
@@ -118,9 +118,10 @@ class Linearised {
         played_(machine, record.conventions, {p.begin(), p.end()},
                 {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}, true) {}
 
-  /// The state at the first sample, and its covariance.
+  /// Returns the state at the first sample and its covariance.
   Gain::State start(StateMatrix& P) {
-    // The voltage at the event is extrapolated from two samples, so the noise of the step is more than one's.
+    // The voltage at the event is extrapolated from two samples, so that its noise exceeds that of one
+    // sample.
     constexpr double kExtrapolated = 1.5 * 1.5 + 0.5 * 0.5;
     const auto first = played_.behind_event(record_);
     Linear l;
@@ -156,7 +157,7 @@ class Linearised {
   }
 
  private:
-  /// Share of an extrapolated difference that is not trusted.
+  /// Relative uncertainty of an extrapolated difference.
   static constexpr double kUnsure = 0.25;
 
   void take(const States<D8>& x, Linear& l) const {
@@ -167,21 +168,21 @@ class Linearised {
       for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostFlowing + static_cast<std::size_t>(j)];
     }
   }
-  /// Half of what a sample's noise does happens on the way to it, half on the way from it. With the state
-  /// counted without the former, the equations keep their form.
+  /// Half of the effect of a sample's noise occurs before the sample, half after it. The state is counted
+  /// without the first half, so that the equations keep their form.
   static void halve(Linear& l) {
     l.half = 0.5 * l.G;
     l.D += 0.5 * l.C * l.G;
     l.G = (0.5 * (l.F * l.G + l.G)).eval();
   }
-  /// Adds the covariance of a step of `h` seconds of which nobody knows whether u or v held.
+  /// Adds the covariance of a step of `h` seconds in which either u or v was present.
   void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
     const auto a = played_.slope_at(x, u), b = played_.slope_at(x, v);
     Gain::State moved = Gain::State::Zero();
     for (std::size_t i = 0; i < states_; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i].a - b[i].a);
     covariance += moved * moved.transpose();
   }
-  /// The voltage leaps at any instant between two samples: one that is uniform has a variance of 1/12.
+  /// The voltage step occurs at any time between two samples; a uniform distribution has a variance of 1/12.
   void leap(const States<D8>& x, std::size_t k, Linear& l) {
     const Interval& i = record_.behind[k];
     open(x, i.before, i.after, record_.step / std::sqrt(12.0), l.unsure);
@@ -203,10 +204,10 @@ Eigen::Matrix<double, kOutputs, 1> variances(const MeasurementNoise& noise, doub
 
 using OutputVector = Eigen::Matrix<double, kOutputs, 1>;
 
-/// A sample's part of the filter, kept for the way back.
+/// Filter step of one sample, stored for the backward pass.
 struct Step {
   Linear l;
-  OutputVector weighed;  ///< innovation over its covariance
+  OutputVector weighed;  ///< innovation divided by its covariance
 };
 
 OutputVector innovation(const NoisyRecord& record, std::size_t k, const Linear& l) {
@@ -220,7 +221,7 @@ OutputMatrix covariance(const NoisyRecord& record, const Linear& l, const StateM
   const double input = record.noise.phasor() * record.noise.phasor();
   OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
   S.diagonal() += variances(record.noise, l.y[kIfd]);
-  if (record.outputs < kOutputs) {  // as if measured without any precision
+  if (record.outputs < kOutputs) {  // as if measured with infinite variance
     S.row(kIfd).setZero();
     S.col(kIfd).setZero();
     S(kIfd, kIfd) = 1;
@@ -234,7 +235,7 @@ Correction correction(const Gain::State& x) {
   return c;
 }
 
-/// The record without its most probable noise, from the last sample back (disturbance smoother of de Jong).
+/// Returns the record without its most probable noise, by a backward pass (disturbance smoother, de Jong).
 NoisyRecord without_noise(const NoisyRecord& record, const std::vector<Step>& steps,
                           const std::vector<Gain>& gains, const StateMatrix& P0) {
   NoisyRecord likely = record;
@@ -256,7 +257,7 @@ NoisyRecord without_noise(const NoisyRecord& record, const std::vector<Step>& st
   return likely;
 }
 
-/// What the machine shows where the record is played in.
+/// Computes the machine's response to the played-in record.
 void show(Played<double> m, NoisyRecord& record) {
   auto x = m.behind_event(record);
   for (std::size_t k = 0; k < record.samples(); ++k) {
@@ -311,7 +312,7 @@ template <class T>
 void innovations(const Effect& machine, const NoisyRecord& r, const std::vector<Gain>& gains,
                  const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out) {
   Played<T> m(machine, r.conventions, p, steady);
-  // Means before the event are as noisy as one sample over the root of their number.
+  // The noise of a mean before the event is that of one sample divided by the root of their number.
   const double mean = std::sqrt(r.before) / r.noise.phasor();
   *out++ = T(mean) * (T(r.P0) - steady[kP0]);
   *out++ = T(mean) * (T(r.Q0) - steady[kQ0]);

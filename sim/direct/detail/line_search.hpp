@@ -1,5 +1,5 @@
 #pragma once
-// All minima of a function of one variable: a grid, then golden sections.
+// Search for all local minima of a function of one variable by a grid and golden sections.
 #include <algorithm>
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace swingbank::sim::direct {
 
-/// The local minima among values on a grid of `points`, each refined between its neighbours to 1e-8 of their
-/// distance; smallest first.
+/// Returns the local minima on a grid of `points` values, smallest first. Each is refined between its
+/// neighbours to 1e-8 of their distance.
 template <class F>
 std::vector<Minimum> minima(const F& f, double low, double high, int points) {
   constexpr int kSections = 40;

@@ -16,7 +16,7 @@ double mean(const std::vector<double>& x, std::size_t count) {
 
 namespace {
 
-/// a + share (b - a)
+/// Returns a + share (b - a).
 Inputs between(const Inputs& a, const Inputs& b, double share) {
   return {a[kV] + share * (b[kV] - a[kV]), a[kTheta] + share * (b[kTheta] - a[kTheta])};
 }
@@ -47,12 +47,12 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
   n.noise = record.noise;
   n.step = record.step;
   n.outputs = record.Ifd.empty() ? kOutputs - 1 : kOutputs;
-  // An event between two samples is taken to begin in their middle where the record does not say.
+  // An event without a recorded time is assumed midway between two samples.
   const double instant =
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
-  // A sample at the very instant may show either side, so it counts on neither.
-  constexpr double kWithinSample = 1e-6;  // of a sample
+  // A sample at the event's time may show either side; it counts on neither.
+  constexpr double kWithinSample = 1e-6;  // [samples]
   const auto count = std::min(static_cast<std::size_t>(std::ceil(instant - kWithinSample)), size);
   const auto first = std::min(static_cast<std::size_t>(instant + kWithinSample) + 1, size);
   n.first_step = (static_cast<double>(first) - instant) * record.step;

@@ -1,10 +1,11 @@
 #pragma once
-// How this room's searches run.
+// Solver options of this module's searches.
 #include <ceres/ceres.h>
 
 namespace swingbank::sim::direct {
 
-/// Levenberg-Marquardt until the cost and the unknowns settle to `settled` of themselves.
+/// Returns options of Levenberg-Marquardt that stops when cost and unknowns change by less than `settled`,
+/// relative.
 inline ceres::Solver::Options search_options(int iterations, double settled) {
   ceres::Solver::Options o;
   o.max_num_iterations = iterations;
@@ -14,7 +15,7 @@ inline ceres::Solver::Options search_options(int iterations, double settled) {
   o.function_tolerance = o.parameter_tolerance = settled;
   o.gradient_tolerance = 0;
   o.max_num_consecutive_invalid_steps = 12;
-  o.max_num_line_search_step_size_iterations = 0;  // a step that bounds cut short is tried as it is
+  o.max_num_line_search_step_size_iterations = 0;  // a step cut by a bound is tried as it is
   return o;
 }
 

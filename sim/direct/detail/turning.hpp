@@ -1,25 +1,26 @@
 #pragma once
-// Voltage behind X'' and current of a machine on axes that turn with its rotor, up to the one angle between
-// rotor and terminal at the start, which no terminal signal shows.
+// Voltage behind X'' and current of a machine on axes that rotate with its rotor. The initial angle between
+// rotor and terminal remains unknown, because no terminal signal shows it.
 #include <Eigen/Core>
 
 #include "sim/core/recording.hpp"
 
 namespace swingbank::sim::direct {
 
-/// Complex columns over one smooth stretch. With `angle` the rotor's at the start,
-///   psi_d + j psi_q = flux exp(-j angle),   i_q - j i_d = current exp(-j angle).
+/// Complex time series over one smooth segment. With `angle` the rotor's initial angle,
+/// \f$ \psi_d + j\psi_q = flux\, e^{-j\,angle} \f$ and \f$ i_q - j i_d = current\, e^{-j\,angle} \f$.
 struct Turning {
   Eigen::VectorXcd flux, current;
-  Eigen::VectorXd V, speed, P, Ifd;      ///< of the stretch; P is the air-gap power [pu]
-  Eigen::VectorXd relative;              ///< rotor against terminal, less the value at the start [rad]
+  Eigen::VectorXd V, speed, P, Ifd;      ///< of the segment; P is the air-gap power [pu]
+  Eigen::VectorXd relative;              ///< rotor relative to terminal, minus the initial value [rad]
   std::complex<double> flux0, current0;  ///< at the first sample, in the terminal's frame
   double Ifd0 = 0, P0 = 0;               ///< at the first sample
-  double field_before = 0;  ///< integral of Ifd0 - Ifd from the first sample to the stretch's [pu s]
+  double field_before = 0;               ///< integral of Ifd0 - Ifd up to the segment's start [pu s]
   double step = 0;
 };
 
-/// Ra + jX'' [pu]: what lies between the terminal and the flux. `count`: samples at most.
+/// Computes the time series. Ra + jX [pu]: impedance between the terminal and the flux. `count`: largest
+/// number of samples.
 Turning turning(const Recording& r, double Ra, double X, std::size_t first, std::size_t count);
 
 }  // namespace swingbank::sim::direct

@@ -1,5 +1,5 @@
 #pragma once
-// The number of a bus, branch or generator as an index of a vector.
+// Conversion of a bus, branch or generator number to a vector index.
 #include <cstddef>
 
 namespace swingbank::sim::network {

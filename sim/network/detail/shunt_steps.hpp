@@ -1,5 +1,5 @@
 #pragma once
-// Steps of switched shunts between solutions of the power flow. Used by powerflow.cpp only.
+// Steps of switched shunts between power-flow solutions. Used by powerflow.cpp only.
 #include <functional>
 #include <vector>
 
@@ -10,10 +10,10 @@ namespace swingbank::sim::network {
 class ShuntSteps {
  public:
   explicit ShuntSteps(const Network& network);
-  /// Moves every shunt whose voltage lies outside its band by one step towards it; `change` adds a
-  /// susceptance [pu] at a bus. False if none moved.
+  /// Moves every shunt whose voltage is outside its band by one step towards it. `change` adds a susceptance
+  /// [pu] at a bus. Returns false if none moved.
   bool step(const std::function<double(int)>& voltage, const std::function<void(int, double)>& change);
-  /// Those that were moved or stand outside their bands.
+  /// Returns the shunts that were moved or whose voltage is outside its band.
   [[nodiscard]] std::vector<SteppedShunt> result(const std::function<double(int)>& voltage) const;
 
  private:

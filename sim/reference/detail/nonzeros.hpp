@@ -1,21 +1,21 @@
 #pragma once
-// Which entries of a segment's Jacobian have ever been other than zero in the run: every unit has room for
-// all of its unknowns by all, and most of that stays empty. What one unit shows counts for all units made of
-// the same effects.
+// Sparsity pattern of a segment's Jacobian: entries that have been nonzero in the run. A unit's block is
+// dense in the full pattern, and most of its entries are always zero. Units of the same effects share their
+// pattern.
 #include "sim/reference/detail/system.hpp"
 
 namespace swingbank::sim::reference {
 
-/// Per kind of unit (ReferencePlants::Unit::kind): 1 where an entry of its block, column by column, was not
-/// zero.
+/// Per kind of unit (ReferencePlants::Unit::kind): 1 for each entry of its block, column by column, that was
+/// nonzero.
 using SeenEntries = std::vector<std::vector<char>>;
 
 class Nonzeros {
  public:
-  /// seen: of the run; kept up to date.
+  /// seen: pattern of the run, updated.
   Nonzeros(const ReferenceSystem& system, SeenEntries& seen);
-  /// Takes in what is not zero among values in the order of the system's pattern; true if the pattern is
-  /// another than before. An entry never goes out.
+  /// Adds the nonzero entries of `values`, given in the order of the system's pattern. Returns true if the
+  /// pattern changed. Entries are never removed.
   bool take(const std::vector<double>& values);
   [[nodiscard]] int count() const { return static_cast<int>(kept_.size()); }
   /// Writes the pattern in compressed columns.
@@ -33,8 +33,8 @@ class Nonzeros {
   const ReferenceSystem& system_;
   const Eigen::SparseMatrix<double>& room_;
   SeenEntries& seen_;
-  std::vector<char> taken_;  ///< per entry of the room
-  std::vector<int> kept_;    ///< places in the room, ascending
+  std::vector<char> taken_;  ///< per entry of the full pattern
+  std::vector<int> kept_;    ///< positions in the full pattern, ascending
   std::vector<int> outer_;
 };
 

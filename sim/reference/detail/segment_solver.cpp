@@ -16,33 +16,34 @@ void require(int flag, const char* call) {
     throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
 }
 
-/// Named, because SegmentSolver::Parts holds its types and files of a room may be compiled as one.
+/// A named namespace, because SegmentSolver::Parts holds its types and files of a module may be compiled as
+/// one unit.
 namespace segments {
 
-constexpr int kMinimumDegree = 0;  ///< of KLU's orders of elimination; less fill than its default here
-/// Part by which the leading coefficient may change before the matrix is factored anew. IDA's own 0.25 is for
-/// matrices that are dear; here a factorisation costs as much as two residuals, and Newton's method leaves
-/// less behind.
+constexpr int kMinimumDegree = 0;  ///< KLU ordering; less fill than its default here
+/// Relative change of the leading coefficient that triggers a new factorisation. IDA's 0.25 is for expensive
+/// matrices. Here a factorisation costs as much as two residuals, and Newton's method leaves smaller
+/// residuals.
 constexpr double kFactorAnew = 0.1;
-/// Steps after which the units' slopes are taken anew, as in CVODE; before that only where a step
-/// has failed: a limit may have been crossed.
+/// Number of steps after which the units' derivatives are recomputed, as in CVODE. Earlier only after a
+/// failed step, which may have crossed a limit.
 constexpr long kSlopesLast = 20;
 
-/// What IDA hands back to the functions below.
+/// User data of the callbacks below.
 struct Problem {
   const ReferenceSystem& system;
   const ReferenceOptions& options;
-  std::vector<double> weight;  ///< per unknown, of its error
+  std::vector<double> weight;  ///< error weight per unknown
   Nonzeros nonzeros;
-  std::vector<double> values;  ///< of the Jacobian, with room for every unit
-  std::vector<int> own;        ///< places of the states' diagonal in the room
+  std::vector<double> values;  ///< of the Jacobian, full pattern
+  std::vector<int> own;        ///< positions of the states' diagonal in the full pattern
   SUNLinearSolver solver = nullptr;
   void* ida = nullptr;
-  double a = 0.0;                           ///< with which `values` are
-  long steps = -kSlopesLast, failures = 0;  ///< when the slopes were taken
+  double a = 0.0;                           ///< leading coefficient of `values`
+  long steps = -kSlopesLast, failures = 0;  ///< when the derivatives were computed
 
-  /// Whether the units' slopes are taken anew where IDA asks for a matrix with leading coefficient `now`. IDA
-  /// asks without a change of it where Newton's method has not converged.
+  /// Whether the units' derivatives must be recomputed when IDA requests a matrix with leading coefficient
+  /// `now`. IDA requests one with an unchanged coefficient if Newton's method has not converged.
   bool old(double now) {
     constexpr double kSame = (1.0 - kFactorAnew) / (1.0 + kFactorAnew);
     long count = 0, failed = 0, rejected = 0;
@@ -62,7 +63,7 @@ int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
   const auto& system = static_cast<const Problem*>(user)->system;
   system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
   const double* value = N_VGetArrayPointer(f);
-  // 1 asks IDA for a smaller step instead of going on with a value that is none.
+  // 1 asks IDA for a smaller step instead of continuing with a value that is not finite.
   return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
 }
 
@@ -75,7 +76,7 @@ int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j
   else
     for (const int place : p.own) p.values[static_cast<std::size_t>(place)] += a - p.a;
   p.a = a;
-  if (anew && p.nonzeros.take(p.values)) {  // then the order of elimination is found anew
+  if (anew && p.nonzeros.take(p.values)) {  // the fill-reducing ordering is recomputed
     if (SUNLinSol_KLUReInit(p.solver, j, p.nonzeros.count(), SUNKLU_REINIT_FULL) < 0) return -1;
     p.nonzeros.pattern(SUNSparseMatrix_IndexPointers(j), SUNSparseMatrix_IndexValues(j));
   }
@@ -83,12 +84,12 @@ int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j
   return 0;
 }
 
-/// IDA empties the matrix before it asks for one, with its pattern; this one is written over as a whole, and
-/// its pattern stays.
+/// Replaces IDA's clearing of the matrix with its pattern: this matrix is overwritten completely and keeps
+/// its pattern.
 int keep(SUNMatrix) { return 0; }
 
-/// Of the largest weighted error (detail/vector.hpp): the tolerance holds for each single unknown; one that
-/// others see through a gain counts by its weight.
+/// Error weights for the norm of the largest weighted error (detail/vector.hpp). The tolerance applies to
+/// each unknown; unknowns that act through a gain have larger weights.
 int error_weights(N_Vector y, N_Vector weights, void* user) {
   const auto& p = *static_cast<const Problem*>(user);
   const double* value = N_VGetArrayPointer(y);
@@ -98,7 +99,7 @@ int error_weights(N_Vector y, N_Vector weights, void* user) {
   return 0;
 }
 
-void quiet(int, const char*, const char*, char*, void*) {}  // failures come back as return values
+void quiet(int, const char*, const char*, char*, void*) {}  // failures are return values
 
 struct FreeMatrix {
   void operator()(SUNMatrix m) const { SUNMatDestroy(m); }

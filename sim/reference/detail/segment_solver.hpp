@@ -1,5 +1,5 @@
 #pragma once
-// IDA of SUNDIALS with KLU on one segment, from consistent values at its start up to exactly its end.
+// SUNDIALS IDA with KLU on one segment, from consistent values at its start exactly to its end.
 #include <memory>
 #include <vector>
 
@@ -9,18 +9,18 @@
 
 namespace swingbank::sim::reference {
 
-/// Throws std::runtime_error if a call of SUNDIALS failed.
+/// Throws std::runtime_error if a SUNDIALS call failed.
 void require(int flag, const char* call);
 
 class SegmentSolver {
  public:
-  /// y, yp: consistent at `start` [s]; `seen`: of the run.
+  /// y, yp: consistent at `start` [s]; `seen`: pattern of the run.
   SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
                 double end, const ReferenceOptions& options, SeenEntries& seen);
   ~SegmentSolver();
   SegmentSolver(const SegmentSolver&) = delete;
   SegmentSolver& operator=(const SegmentSolver&) = delete;
-  /// Advances y and y' to time t; false when IDA cannot, and they are those of `reached`.
+  /// Advances y and y' to time t [s]. Returns false if IDA fails; y and y' are then those at `reached`.
   bool advance(double t);
   [[nodiscard]] double reached() const { return reached_; }  ///< [s]
   [[nodiscard]] long steps() const;

@@ -24,8 +24,8 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Buses with generators that no machine and no fault can hold to a voltage: their equations have no
-/// solution. A converter follows a voltage and makes none.
+/// Returns buses with generators in islands without a voltage source (machine or fault); their equations have
+/// no solution. A converter follows a voltage and does not set one.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
   std::vector<bool> held(island.size() + 1, false);
@@ -63,7 +63,7 @@ const auto& load_equations(const ReferencePlants::Unit& unit) {
     return *unit.consumption_sensitivities;
 }
 
-/// What a plant's control sees of the network.
+/// Sets the remote buses of a plant control.
 void see_far(const network::Network& network, ReferencePlants::Unit& unit) {
   const auto& [bus, branch, at_from] = unit.plant->far_place;
   if (bus >= 0) unit.seen.push_back(bus);
@@ -74,7 +74,7 @@ void see_far(const network::Network& network, ReferencePlants::Unit& unit) {
   unit.seen.push_back(at_from ? b.to : b.from);
 }
 
-/// Current at the end of a branch, from the voltages at its near and its far end.
+/// Returns the current at the end of a branch from the voltages at both ends.
 template <class T>
 std::pair<T, T> flow(const network::BranchEnd& end, const T* near, const T* far) {
   const T gn(end.own.real()), bn(end.own.imag()), gf(end.other.real()), bf(end.other.imag());
@@ -162,7 +162,7 @@ void ReferenceSystem::build_network(const grid::Grid& grid, const network::Topol
   for (int b : network::grounded_buses(grid.network, topology)) bolted_[b] = true;
   for (int b = 0; b < buses_; ++b)
     if (grid.network.buses[b].type == network::BusType::isolated)
-      bolted_[b] = true;  // out of the grid: V = 0
+      bolted_[b] = true;  // outside the grid: V = 0
   const std::vector<int> modelled = grid.modelled_loads();
   const auto matrix = [&](network::TiesIn ties) {
     Rows y = network::dynamic_admittance(grid.network, grid.flow, topology, modelled, ties);
@@ -220,7 +220,7 @@ void ReferenceSystem::build_pattern(const Rows& y) {
       }
 }
 
-/// What the plant's control sees where it names a bus or a branch.
+/// Sets the remote measurement of a plant control that names a bus or a branch.
 template <class T>
 void ReferenceSystem::look_far(const Unit& unit, const T* seen, Signals<T>& s) const {
   const plant::FarPlace& place = unit.plant->far_place;
@@ -239,7 +239,7 @@ void ReferenceSystem::look_far(const Unit& unit, const T* seen, Signals<T>& s) c
   s.far.Q = seen[1] * s.far.Ir - seen[0] * s.far.Ii;
 }
 
-/// One unit at the voltage v of its bus, and those of the buses that it sees: signals, derivatives of its
+/// Evaluates one unit at the voltage v of its bus and those of its remote buses: signals, derivatives of its
 /// states, current into the grid.
 template <class T>
 Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const T* v, const T* seen, T* dx,
@@ -268,7 +268,7 @@ Signals<T> ReferenceSystem::evaluate(std::size_t u, double t, const T* x, const 
     m.resize(static_cast<std::size_t>(equations.scratch()));
   T er, ei;
   equations.emf(c, x, m.data(), er, ei);
-  if (tripped(u)) {  // stands still, open-circuited
+  if (tripped(u)) {  // disconnected, open circuit
     s.Vpr = er;
     s.Vpi = ei;
   }
@@ -295,7 +295,7 @@ Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* 
 
 bool ReferenceSystem::newton(double t, double* y) const {
   constexpr int limit = 50;
-  constexpr double tolerance = 1e-12;  // [pu of voltage]: rounding of a matrix of faults and lines is below
+  constexpr double tolerance = 1e-12;  // [pu of voltage], above the rounding with faults and lines
   std::vector<double> yp(size(), 0.0), f(size());
   Eigen::SparseMatrix<double> j = constant_;
   for (int iteration = 0; iteration < limit; ++iteration) {
@@ -308,10 +308,10 @@ bool ReferenceSystem::newton(double t, double* y) const {
     if (lu.info() != Eigen::Success) return false;
     const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
     Eigen::VectorXd step = lu.solve(rest);
-    step += lu.solve(rest - jv * step).eval();  // a fault impedance of 1e-6 pu stretches the scale
+    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu stretches the scale
     double largest = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) return false;
-    if (largest > 1.0) step *= 1.0 / largest;  // a load of constant power may throw the first steps far
+    if (largest > 1.0) step *= 1.0 / largest;  // a constant-power load may make the first steps very long
     for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
     if (largest < tolerance) break;
     if (iteration + 1 == limit) return false;
@@ -369,8 +369,9 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
   }
 }
 
-/// Adds the current of a tie to the sums of its buses. It is the difference of two nearly equal voltages over
-/// a small impedance: its rounding error enters both sums with opposite signs, and so no voltage.
+/// Adds the current of a tie to the sums of its buses. It is the difference of two nearly equal voltages
+/// divided by a small impedance. Its rounding error enters both sums with opposite signs and therefore no
+/// voltage.
 void ReferenceSystem::tie_current(const network::Tie& tie, const double* y, double* f) const {
   const double *from = y + bus_row(tie.from), *to = y + bus_row(tie.to);
   const Complex into = (Complex(from[0], from[1]) / tie.ratio - Complex(to[0], to[1])) / tie.z;
@@ -421,7 +422,7 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
   for (int from = 0; from < members; from += kDirections) {
     for (int i = 0; i < n; ++i) x[i] = D8(y[unit.first + i]);
     for (int i = n; i < members; ++i) {
-      const int k = i - n;  // voltages of its own bus, then of those that it sees
+      const int k = i - n;  // voltages of its own bus, then of its remote buses
       x[i] = D8(y[(k < 2 ? row : bus_row(unit.seen[k / 2 - 1])) + k % 2]);
     }
     const int to = std::min(from + kDirections, members);

@@ -13,7 +13,7 @@ namespace {
 double* data(N_Vector v) { return N_VGetArrayPointer(v); }
 sunindextype length(N_Vector v) { return N_VGetLength(v); }
 
-/// z = a x + b y; z may be x or y.
+/// Computes z = a x + b y; z may be x or y.
 void linear_sum(realtype a, N_Vector x, realtype b, N_Vector y, N_Vector z) {
   const double *px = data(x), *py = data(y);
   double* pz = data(z);
@@ -32,12 +32,12 @@ void scale(realtype a, N_Vector x, N_Vector z) {
 
 void fill(realtype a, N_Vector z) { std::fill_n(data(z), length(z), a); }
 
-/// Some terms at a time, so that the sum is written once for all of them.
+/// Adds several terms at a time, so that the sum is written once for all of them.
 int linear_combination(int terms, realtype* factors, N_Vector* vectors, N_Vector z) {
   double* pz = data(z);
   const sunindextype n = length(z);
   constexpr int kTerms = 4;
-  // The result may be the first vector, and is no other.
+  // The result may be the first vector, but no other.
   if (terms == 1) {
     scale(factors[0], vectors[0], z);
     return 0;
@@ -63,7 +63,7 @@ int linear_combination(int terms, realtype* factors, N_Vector* vectors, N_Vector
   return 0;
 }
 
-/// z_k = a_k x + y_k
+/// Computes z_k = a_k x + y_k.
 int scale_add_multi(int count, realtype* a, N_Vector x, N_Vector* y, N_Vector* z) {
   for (int k = 0; k < count; ++k) linear_sum(a[k], x, 1.0, y[k], z[k]);
   return 0;
@@ -80,7 +80,7 @@ int scale_array(int count, realtype* a, N_Vector* x, N_Vector* z) {
   return 0;
 }
 
-/// Largest |x_i| w_i; no number where one of them is none.
+/// Returns the largest |x_i| w_i; NaN if an element is NaN.
 realtype largest(N_Vector x, N_Vector w) {
   const double *px = data(x), *pw = data(w);
   const sunindextype n = length(x);
@@ -111,7 +111,7 @@ realtype largest(N_Vector x, N_Vector w) {
 N_Vector new_vector(sunindextype length, SUNContext context) {
   const N_Vector v = N_VNew_Serial(length, context);
   if (v == nullptr) throw std::bad_alloc();
-  N_Vector_Ops ops = v->ops;  // clones take them over
+  N_Vector_Ops ops = v->ops;  // inherited by clones
   ops->nvlinearsum = linear_sum;
   ops->nvscale = scale;
   ops->nvconst = fill;

@@ -1,5 +1,5 @@
 #pragma once
-// A training run on disk, as a sealed file.
+// Checkpoint of a training run as a sealed file.
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -7,10 +7,11 @@
 
 namespace swingbank::train::loop {
 
-/// header: position and identity of the run; arrays: weights, moments and best weights in a fixed order.
+/// Writes a checkpoint. header: position and identity of the run; arrays: weights, moments and best weights
+/// in a fixed order.
 void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& header,
                       const std::vector<std::span<const float>>& arrays);
-/// Reads into `arrays`, whose lengths must be those written. False if there is no such file. Throws
+/// Reads a checkpoint into `arrays` of matching lengths. Returns false if there is no such file. Throws
 /// InputError if it is damaged, belongs to another run (header["run"] differs from `run`), or has arrays of
 /// other lengths.
 bool read_checkpoint(const std::filesystem::path& file, const nlohmann::json& run, nlohmann::json& header,

@@ -1,6 +1,6 @@
 #pragma once
-// Weights as torch::nn initialises them (uniform within 1 / sqrt(fan-in)), and the output layer all networks
-// share.
+// Initial weights as in torch::nn (uniform within 1 / sqrt(fan-in)), and the output layer common to all
+// networks.
 #include <ATen/ATen.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ inline at::Tensor uniform_weight(at::IntArrayRef shape, std::int64_t fan_in) {
   return at::empty(shape, at::kFloat).uniform_(-bound, bound).requires_grad_(true);
 }
 
-/// y = x W + b; W is in x out.
+/// Dense layer y = x W + b; W is in x out.
 struct Dense {
   at::Tensor weight, bias;
   Dense(std::int64_t in, std::int64_t out)
@@ -21,7 +21,7 @@ struct Dense {
   [[nodiscard]] at::Tensor operator()(const at::Tensor& x) const { return at::addmm(bias, x, weight); }
 };
 
-/// The thesis's ReLU output, started at the mean of the targets.
+/// Returns the thesis's ReLU output layer, with the bias at the mean of the targets.
 inline Dense output_layer(std::int64_t in, const std::vector<float>& start) {
   Dense layer(in, static_cast<std::int64_t>(start.size()));
   layer.bias = at::tensor(start, at::kFloat).requires_grad_(true);

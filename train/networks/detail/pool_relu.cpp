@@ -10,9 +10,9 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 namespace {
-constexpr std::uint8_t kCut = 255;  // ReLU is at zero: no gradient to anybody
+constexpr std::uint8_t kCut = 255;  // mark of a ReLU at zero: no gradient
 
-/// One row of channels: the winner of `pool` rows `stride` floats apart.
+/// Pools one row of channels: the maximum of `pool` rows that are `stride` floats apart.
 void pool_row(const float* x, std::int64_t stride, std::int64_t pool, const float* bias,
               std::int64_t channels, float* y, std::uint8_t* winner) {
   for (std::int64_t c = 0; c < channels; ++c) {

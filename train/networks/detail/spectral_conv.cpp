@@ -12,8 +12,7 @@ using at::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Rows of a spectrum come in planes: all real parts, then all imaginary parts. F frequencies, L samples, K
-/// taps.
+/// Spectra are stored in planes: all real parts, then all imaginary parts. F frequencies, L samples, K taps.
 struct SpectralMatrices {
   Tensor series;   ///< 2F x L: samples to spectrum
   Tensor taps;     ///< 2F x K: taps to spectrum
@@ -22,13 +21,13 @@ struct SpectralMatrices {
 
 namespace {
 
-/// 2F x n: cosines over minus sines of 2 pi f (first + i) / period, weighted per frequency.
+/// Returns 2F x n: cosines over minus sines of 2 pi f (first + i) / period, weighted per frequency.
 Tensor waves(std::int64_t period, std::int64_t first, std::int64_t n, bool folded) {
   const std::int64_t f_count = period / 2 + 1;
   Tensor m = at::empty({2 * f_count, n}, at::kFloat);
   float* out = m.data_ptr<float>();
   for (std::int64_t f = 0; f < f_count; ++f) {
-    const bool alone = f == 0 || 2 * f == period;  // no mirrored partner in the real transform
+    const bool alone = f == 0 || 2 * f == period;  // without a mirrored partner in the real transform
     const double weight = folded ? (alone ? 1.0 : 2.0) / static_cast<double>(period) : 1.0;
     for (std::int64_t i = 0; i < n; ++i) {
       const std::int64_t turn = ((f * (first + i)) % period + period) % period;  // exact before the cosine
@@ -40,12 +39,12 @@ Tensor waves(std::int64_t period, std::int64_t first, std::int64_t n, bool folde
   return m;
 }
 
-/// series, n x a x b, to its spectrum's planes 2 x F x a x b.
+/// Transforms a series, n x a x b, to its spectrum's planes 2 x F x a x b.
 Tensor transform(const Tensor& matrix, const Tensor& t) {
   const auto a = t.size(1), b = t.size(2);
   return at::mm(matrix, t.reshape({t.size(0), a * b})).view({2, matrix.size(0) / 2, a, b});
 }
-/// The transposed map: planes back to n x a x b.
+/// Applies the transposed map: planes back to n x a x b.
 Tensor transform_back(const Tensor& matrix, const Tensor& planes) {
   const auto a = planes.size(2), b = planes.size(3);
   return at::mm(matrix, planes.view({2 * planes.size(1), a * b})).view({matrix.size(0), a, b});
@@ -109,7 +108,7 @@ struct SpectralConv : torch::autograd::Function<SpectralConv> {
 SpectralPlan::SpectralPlan(std::int64_t length, std::int64_t kernel) : length_(length), kernel_(kernel) {
   TORCH_CHECK(length >= 1 && kernel >= 1, "spectral_conv: length and kernel must be at least 1");
   const std::int64_t left = (kernel - 1) / 2, right = kernel - 1 - left;
-  // Output t needs lags t - left ... t + right; a lag beyond the series may wrap, but only onto zeros.
+  // Output t needs lags t - left ... t + right. A lag beyond the series may wrap only onto zeros.
   period_ = length + std::max(left, right);
   auto m = std::make_shared<SpectralMatrices>();
   m->series = waves(period_, 0, length, false);

@@ -1,7 +1,7 @@
 #pragma once
-// Stride-1 'same' convolution in one dimension (cross-correlation, as torch::nn::Conv1d) with a long kernel,
-// carried out in the frequency domain. The transforms are dense products with sines and cosines: at kernel
-// lengths around a hundred a matrix product at full speed beats an FFT bound by memory.
+// One-dimensional stride-1 'same' convolution (cross-correlation, as torch::nn::Conv1d) with a long kernel,
+// computed in the frequency domain. The transforms are dense products with sines and cosines. At kernel
+// lengths around 100 a matrix product at full speed is faster than a memory-bound FFT.
 #include <cstdint>
 #include <memory>
 
@@ -13,10 +13,10 @@ namespace swingbank::train::networks {
 
 struct SpectralMatrices;  // the transform matrices, in single precision
 
-/// Transform matrices for one series length and kernel length; made once per layer.
+/// Transform matrices for one series length and kernel length; computed once per layer.
 class SpectralPlan {
  public:
-  /// length, kernel [samples] >= 1. The period is the least one at which no output of 'same' aliases.
+  /// length, kernel [samples] >= 1. The period is the least one without aliasing in the 'same' outputs.
   SpectralPlan(std::int64_t length, std::int64_t kernel);
   ~SpectralPlan();
   SpectralPlan(SpectralPlan&&) noexcept;
@@ -33,9 +33,9 @@ class SpectralPlan {
   std::shared_ptr<const SpectralMatrices> matrices_;
 };
 
-/// x: length x batch x in, weight: kernel x in x out (weight[k][i][o] is Conv1d's weight[o][i][k]); returns
-/// length x batch x out, without bias. Differentiable in both. Like Conv1d, an even kernel gets its extra
-/// zero on the right.
+/// Returns the convolution, length x batch x out, without bias. x: length x batch x in; weight: kernel x in x
+/// out (weight[k][i][o] is Conv1d's weight[o][i][k]). Differentiable in both. As in Conv1d, an even kernel
+/// has its extra zero on the right.
 at::Tensor spectral_conv(const at::Tensor& x, const at::Tensor& weight, const SpectralPlan& plan);
 
 }  // namespace swingbank::train::networks

@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 constexpr SealedKind kGuesses{"file of guesses", "swingbank-guesses-1\n", "remove it; it is made again"};
-constexpr auto kPatience = std::chrono::hours(12);  ///< while another process makes them
+constexpr auto kPatience = std::chrono::hours(12);  ///< longest wait for another process
 
-/// False if the file is not there.
+/// Reads the file. Returns false if it does not exist.
 bool read(const std::filesystem::path& file, const json& identity, std::size_t size,
           std::vector<float>& values) {
   values.resize(size);

@@ -1,6 +1,6 @@
 #pragma once
-// Estimates of all rows by a method without training, which a network reads and corrects. They are made once
-// for a dataset, a noise and a method, and kept in the folder of results.
+// Untrained estimates of all rows, as input of a network that corrects them. Computed once per dataset, noise
+// and method, and kept in the results folder.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace swingbank::train::run {
 
-/// All rows of the stream x parameters, raw units. Reads `folder`/guesses-....bin or makes it; another
-/// process that is at the same waits. Throws InputError if the file is damaged or the method does not fit the
-/// dataset.
+/// Returns all rows of the stream x parameters [raw units]. Reads `folder`/guesses-....bin or creates it; a
+/// second process waits for the first. Throws InputError if the file is damaged or the method does not apply
+/// to the dataset.
 std::vector<float> guesses(const data::ShardStream& stream, const std::string& method,
                            const std::filesystem::path& folder, bool quiet);
 

@@ -1,8 +1,8 @@
 #pragma once
-// What made a result beside its data and settings.
+// Software identification of a result.
 namespace swingbank::train::run {
 
-/// "swingbank 0.1.0, code 1a2b3c": version, and a hash of the sources of train and sim/direct without
+/// Returns "swingbank 0.1.0, code 1a2b3c": version, and a hash of the sources of train and sim/direct without
 /// comments and blanks.
 const char* software();
 

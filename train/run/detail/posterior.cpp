@@ -13,11 +13,11 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 
-constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // its rows have other noise than the network's had
+constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // offset of the head's noise draws from the network's
 constexpr std::uint64_t kCalibrationDraw = 2;
 constexpr std::size_t kCalibrationRows = 3000, kOtherRows = 1000, kLevelsAboveZero = 5;
 
-/// At most about `most` of the rows, evenly spread.
+/// Returns at most about `most` of the rows, evenly spaced.
 std::vector<std::uint64_t> some_of(const std::vector<std::uint64_t>& rows, std::size_t most) {
   const std::size_t every = (rows.size() + most - 1) / most;
   std::vector<std::uint64_t> some;
@@ -50,7 +50,7 @@ posterior::Beliefs beliefs_of(posterior::Head& head, const PosteriorContext& c,
   return head.beliefs(loop::predict(head, c.stream, c.features, rows, {}, noise));
 }
 
-/// The rows whose generators did not train; where none was set aside, those that decided when to stop.
+/// Returns the rows of generators that did not train; if none was set aside, the validation rows.
 const std::vector<std::uint64_t>& calibration_rows(const data::RowSplit& split) {
   return split.calibration.empty() ? split.validation : split.calibration;
 }
@@ -109,7 +109,7 @@ json judged_on(const Posterior& posterior, const PosteriorContext& c, std::span<
   return coverage_json(found, c, *posterior.head, rows.size());
 }
 
-/// Rows of the generator left out that belong to the dataset of training.
+/// Returns the left-out generator's rows in the training dataset.
 std::vector<std::uint64_t> other_rows(const PosteriorContext& c) {
   const data::Labels& labels = c.stream.labels();
   std::vector<std::uint64_t> rows;

@@ -1,6 +1,6 @@
 #pragma once
-// What a run's network believes: the head behind it, set right level by level on rows that did not train, and
-// judged on the rows that the run is judged on.
+// Posterior of a run: training of the head, recalibration at each noise level on rows that did not train, and
+// calibration checks on the test rows.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,21 +14,21 @@
 
 namespace swingbank::train::run {
 
-/// Maps of the parameters that vary, at one level of noise.
+/// Recalibration maps of the varying parameters at one noise level.
 struct LevelMaps {
   double level = 0.0;
   std::vector<posterior::Recalibration> maps;
 };
 
-/// Those of a level, between its neighbours.
+/// Returns the maps at a level, interpolated between its neighbours.
 std::vector<posterior::Recalibration> maps_at(const std::vector<LevelMaps>& levels, double level);
 
 struct Posterior {
-  std::unique_ptr<posterior::Head> head;  ///< none: nothing is believed
+  std::unique_ptr<posterior::Head> head;  ///< nullptr: no posterior
   std::vector<LevelMaps> levels;          ///< ascending
 };
 
-/// What a posterior is made of and judged with.
+/// Inputs of training and checking a posterior.
 struct PosteriorContext {
   const data::ShardStream& stream;
   const data::Features& features;
@@ -38,23 +38,23 @@ struct PosteriorContext {
   std::uint64_t seed = 1;
 };
 
-/// An untrained one. Throws InputError if the network describes nothing.
+/// Creates an untrained head. Throws InputError if the network provides no features.
 std::unique_ptr<posterior::Head> make_head(networks::Network& network, const mpi::store::Dataset& dataset,
                                            const data::TargetScale& scale, std::size_t inputs);
-/// Trains the head and sets it right. False if it was stopped, after a checkpoint.
+/// Trains and recalibrates the head. Returns false if it was stopped, after a checkpoint.
 bool train_posterior(Posterior& posterior, networks::Network& network, const PosteriorContext& context,
                      loop::LoopSettings settings, std::span<const float> targets,
                      loop::TrainingProgress& progress);
-/// For the result file: coverage, ranks and widths on the test rows, and on the rows of the same generator
+/// Returns coverage, ranks and widths for the result file, on the test rows and on the same generator's rows
 /// that never train.
 nlohmann::json judge_posterior(const Posterior& posterior, const PosteriorContext& context);
 
-/// The estimate of a plant from several test rows by the product of their beliefs, raw units; held parameters
-/// at the middle of their box.
+/// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product
+/// of their posteriors. Constant parameters are at the middle of their box.
 std::function<std::vector<double>(std::span<const std::size_t>)> product_of_beliefs(
     const Posterior& posterior, const PosteriorContext& context);
 
-/// For the network file, and back. Throws what nlohmann::json throws.
+/// Convert the maps to JSON for the network file, and back. Throw nlohmann::json's exceptions.
 nlohmann::json maps_json(const Posterior& posterior);
 std::vector<LevelMaps> maps_of(const nlohmann::json& json);
 

@@ -1,30 +1,30 @@
 #pragma once
-// The JSON of one run; its keys stand in train/run/README.md.
+// JSON result of one run; train/run/README.md lists its keys.
 
 #include "base/json.hpp"
 #include "train/run/run.hpp"
 
 namespace swingbank::train::run {
 
-/// The config's name; the folder's, if the dataset was made before headers had a name.
+/// Returns the config's name, or the folder's if the dataset's header has no name (old datasets).
 std::string dataset_name(const mpi::store::Dataset& dataset);
 
-/// What tells this run from every other: data, recipe, seed; software and kernels too, unless any maker will
-/// do. A checkpoint or result with another identity is not its.
+/// Returns the identity of a run: data, recipe, seed, and, unless RunRequest::any_maker is set, software and
+/// kernels. Checkpoints and results with another identity do not belong to the run.
 nlohmann::json identity(const data::ShardStream& stream, const RunRequest& request);
 
-/// What tells the training of this run from every other: a network that was trained at many levels of noise
-/// serves the runs of all of them.
+/// Returns the identity of a run's training. A network trained at many noise levels serves the runs of all
+/// levels.
 nlohmann::json training_identity(const data::ShardStream& stream, const RunRequest& request);
 
 struct RunParts {
   const data::RowSplit& split;
-  const data::Features* features;  ///< nullptr: nothing was trained
+  const data::Features* features;  ///< nullptr: no training
   const loop::LoopReport& report;
   const loop::Score& score;
-  std::optional<double> seen_mse = {};  ///< of the validation rows, raw units
-  nlohmann::json posterior = {};        ///< null where there is none
-  nlohmann::json several = {};          ///< the same
+  std::optional<double> seen_mse = {};  ///< of the validation rows [raw units^2]
+  nlohmann::json posterior = {};        ///< null: no posterior
+  nlohmann::json several = {};          ///< null: no such plants
 };
 nlohmann::json result_json(const data::ShardStream& stream, const RunRequest& request, const RunParts& parts);
 

@@ -10,7 +10,7 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 constexpr std::size_t kFewestRecords = 3;
-constexpr std::array<std::size_t, 3> kRecords = {1, 3, 12};  // that an estimate is made of, at most
+constexpr std::array<std::size_t, 3> kRecords = {1, 3, 12};  // largest numbers of combined records
 }  // namespace
 
 std::vector<std::vector<std::size_t>> plants_of(const data::Labels& labels,
