@@ -1,4 +1,4 @@
-// Pairs: a second effect beside the first, another one in the place of the first, and partners exchanged
+// Pairs of effects: a second effect with the first, replacement of the first, and exchange of partners
 // between pairs.
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Copies the values of the `free` parameters of `like` from one plant to another, where both have them.
+/// Copies the values of the `free` parameters of `like` from one plant to another, if both have them.
 void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
                  const std::vector<fit::FreeParameter>& free, sim::plant::Plant& to) {
   for (const fit::FreeParameter& f : free) {
@@ -20,7 +20,7 @@ void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
   }
 }
 
-/// The second effect of a fit that stays, at the values that it has there.
+/// Returns the second effect of a pair at its values in the fit `in`.
 Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   Judgement stays;
   stays.hypothesis = h;
@@ -28,7 +28,8 @@ Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   copy_values(in.plant, h.plant, h.free, stays.fit.plant);
   return stays;
 }
-/// `h` beside what the stage holds, not fitted: everything starts as in `from`, but what the stage brings.
+/// Returns `h` on the base model `then`, not fitted. Start values are those of `from`, and those of `then`
+/// for its own parameters.
 Judgement begun(const Stage& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";
