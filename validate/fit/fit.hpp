@@ -46,7 +46,7 @@ struct FittedParameter {
   FreeParameter where;
   std::string block, name, unit;
   double start = 0, value = 0;
-  double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
+  double error = 0;          ///< standard error from the curvature [unit]; NaN if the fit is singular
   double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
   /// At the end of its range, or at an ordering constraint (X''d > Xl). The interval is then not valid.
   bool at_bound = false;

@@ -59,7 +59,7 @@ event::FitEvent at_rest(const event::FitEvent& like, double seconds);
 /// (VoltageNoise) on V and theta, and zeros as measured channels.
 event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector3d& variance);
 
-/// Returns the events' noise with the innovations filter of the voltage's noise where it matters. The noise
+/// Returns the events' noise with the innovations filter of the voltage's noise if it matters. The noise
 /// of the played-in voltage passes through exciter and rotor and becomes slow; the filter follows it through
 /// the plant's equations, linearised about each event's start.
 event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,

@@ -45,7 +45,7 @@ struct Unexplained {
 
 /// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
 /// the first search finds none and the other input explains about as much. Returns no search if neither input
-/// explains most of the misfit.
+/// explains most of the residual.
 LawSearch search_laws(const Unexplained& case_, const event::Progress& report = {});
 
 /// Returns for example "None of the 31 known effects explains it; a torque of ... does: ..."; empty without
