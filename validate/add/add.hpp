@@ -19,15 +19,16 @@ struct AddedEvent {
 
 struct Addition {
   hypothesis::Hypothesis hypothesis;
-  plant::PlantModel model;                       ///< with the effect and the fitted values
-  std::vector<fit::FittedParameter> parameters;  ///< all free parameters, those of the effect first; from
-                                                 ///< calibrate if the residual is noise
-  int own = 0;                                   ///< number of parameters of the effect
+  plant::PlantModel model;  ///< with the effect and the fitted values
+  /// All free parameters, those of the effect first; from calibrate if the residual is noise.
+  std::vector<fit::FittedParameter> parameters;
+  int own = 0;  ///< number of parameters of the effect
   std::vector<AddedEvent> events;
-  double evidence = 0;    ///< criterion() without less with the effect, over the seen events; compared with
-                          ///< thresholds::addition.strong
-  bool earns = false;     ///< the evidence is strong, and no unseen event is worse with the effect
-  bool adequate = false;  ///< the residual is noise in every event
+  /// Criterion() without less with the effect, over the seen events; compared with
+  /// thresholds::addition.strong.
+  double evidence = 0;
+  bool earns = false;         ///< the evidence is strong, and no unseen event is worse with the effect
+  bool adequate = false;      ///< the residual is noise in every event
   thresholds::Ruling ruling;  ///< the criterion that decided `adequate`
   std::string sentence;
   event::WhitenedEvents prepared;
@@ -49,8 +50,9 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
 struct Removal {
   std::string effect;
   plant::PlantModel model;
-  double evidence =
-      0;  ///< criterion() without less with the effect; the effect is removed at addition.stays or below
+  /// Difference of criterion(), without minus with the effect. The effect is removed at addition.stays or
+  /// below.
+  double evidence = 0;
 };
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);

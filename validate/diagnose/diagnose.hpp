@@ -50,10 +50,10 @@ struct Diagnosis {
 };
 
 struct DiagnoseOptions {
-  double spread =
-      thresholds::parameters.spread;  ///< prior standard deviation of the model's parameters, relative
-  double adequate =
-      thresholds::adequacy.misfit;     ///< reduced chi-square up to which the residual counts as noise
+  /// Prior standard deviation of the model's parameters, relative.
+  double spread = thresholds::parameters.spread;
+  /// Reduced chi-square up to which the residual counts as noise.
+  double adequate = thresholds::adequacy.misfit;
   int threads = 0;                     ///< 0: number of cores
   event::FitEventOptions events = {};  ///< preparation of the records
   int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events

@@ -19,8 +19,8 @@ using Set = std::vector<std::size_t>;  ///< indices of parameters, ascending
 
 constexpr std::size_t kBeam = 60;     ///< number of sets of each size in the beam
 constexpr std::size_t kRefitted = 3;  ///< number of sets of each size that are refitted
-constexpr std::size_t kTied =
-    6;  ///< number of sets of the selected size that are refitted to find alternatives
+/// Number of sets of the selected size that are refitted to find alternatives.
+constexpr std::size_t kTied = 6;
 
 constexpr double kExactly = 1e-6;  ///< relative prior standard deviation that represents a fixed value
 

@@ -14,10 +14,10 @@ namespace swingbank::validate::fit {
 /// A parameter whose given value the records contradict.
 struct WrongParameter {
   FittedParameter fit;  ///< start: given value; value and interval: with the other parameters of the set free
-  double evidence =
-      0;  ///< rise of the cost with this parameter at its given value and the rest of the set refitted
-  double share = 0;  ///< fraction of the excess cost over the full fit that returns with this parameter at
-                     ///< its given value
+  /// Rise of the cost with this parameter at its given value and the rest of the set refitted.
+  double evidence = 0;
+  /// Fraction of the excess cost over the full fit that returns with this parameter at its given value.
+  double share = 0;
   /// Names of single parameters that explain the records equally well in its place.
   std::vector<std::string> tied = {};
 };

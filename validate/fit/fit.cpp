@@ -102,8 +102,8 @@ class Search {
   }
 
  private:
-  static constexpr int kRound =
-      4;  ///< maximum number of iterations between updates of the reduced chi-square
+  /// Maximum number of iterations between updates of the reduced chi-square.
+  static constexpr int kRound = 4;
 
   /// Throws the values reached so far, without a simulation of the events.
   [[noreturn]] void interrupt(Fit fit) const {

@@ -35,8 +35,8 @@ struct EventFit {
   double chi2 = 0;                         ///< sum of squared whitened residuals
   int values = 0;                          ///< number of compared values
   std::vector<std::vector<double>> model;  ///< [channel][sample]
-  std::vector<std::vector<double>>
-      residual;  ///< model - measured, whitened: [channel][sample]; 0 at samples that are not compared
+  /// Model - measured, whitened: [channel][sample]; 0 at samples that are not compared.
+  std::vector<std::vector<double>> residual;
   event::NoiseModel noise;  ///< noise model in which chi2 and residual are computed
   /// Reduced chi-square [-]; 1 if the residual is noise only.
   [[nodiscard]] double misfit() const { return chi2 / values; }

@@ -18,8 +18,8 @@ namespace {
 constexpr double kBeside = 0.1;
 /// Median of the square of a standard normal variable.
 constexpr double kMedianOfSquare = 0.4549;
-constexpr double kSecondDifference =
-    6;  ///< variance of x[k-1] - 2 x[k] + x[k+1], relative to that of white x
+/// Variance of x[k-1] - 2 x[k] + x[k+1], relative to that of white x.
+constexpr double kSecondDifference = 6;
 /// The standard deviation of log(mean square second difference / variance) of n white samples is
 /// sqrt(kOfRatio / n). It combines the variance's 2 and the differences' 3.89, less twice the covariance's 2.
 constexpr double kOfRatio = 2 * 0.944;
@@ -69,8 +69,8 @@ constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noi
 constexpr double kGuess = 2e-3;             ///< standard deviation of V near a switching, relative
 /// The square of kGuess is larger by this factor for reconstructed samples of V.
 constexpr char kSmeared = 40;
-constexpr double kLeastOwnNoise =
-    0.01;  ///< lower limit of the share of a channel's own noise in its variance
+/// Lower limit of the share of a channel's own noise in its variance.
+constexpr double kLeastOwnNoise = 0.01;
 /// Slow noise matters from this variance, relative to that of the white noise.
 constexpr double kMatters = 1e-3;
 
@@ -182,8 +182,8 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
 
 /// Sums of the least-squares regression of the pre-event residual, in units of each channel's noise.
 struct Sums {
-  Eigen::Matrix2d normal =
-      Eigen::Matrix2d::Zero();  ///< normal matrix of the response and of the fluctuation carried by P and Q
+  /// Normal matrix of the response and of the fluctuation carried by P and Q.
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();  ///< products of these with the residual
   double left = 0, freedom = 0;
   void add(const Sums& other) {

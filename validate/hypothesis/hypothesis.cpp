@@ -24,14 +24,14 @@ using sim::Slot;
 constexpr std::size_t kDrawnStarts = 39;  ///< number of start draws of an effect's parameters
 constexpr std::size_t kPartDraws = 32;    ///< number of draws of the parameters that a group frees
 constexpr std::size_t kRedraws = 20;      ///< maximum number of tries per draw until a draw is valid
-constexpr double kShortestDraw =
-    3e-3;  ///< shortest draw of the longest time constant, relative to the time allowed
-constexpr double kGroupSpread =
-    2.0;  ///< prior standard deviation of ln(value) of parameters at their null values
-constexpr double kAddedSpread =
-    1.0;  ///< prior standard deviation of an added effect's parameters: a factor e
-constexpr double kFactorSpread =
-    0.1;  ///< prior standard deviation of factors near 1, such as a transformer's tap ratio
+/// Shortest draw of the longest time constant, relative to the time allowed.
+constexpr double kShortestDraw = 3e-3;
+/// Prior standard deviation of ln(value) of parameters at their null values.
+constexpr double kGroupSpread = 2.0;
+/// Prior standard deviation of an added effect's parameters: a factor e.
+constexpr double kAddedSpread = 1.0;
+/// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
+constexpr double kFactorSpread = 0.1;
 
 Side side_of(Slot slot) {
   switch (slot) {

@@ -306,9 +306,9 @@ class Identifying {
   Polish polish_;
   std::vector<Identified> tried_;
   Reduced torque_, field_;
-  double none_;                                              ///< cost of the base model
-  double others_ = std::numeric_limits<double>::infinity();  ///< lowest cost of a hypothesis that cannot be
-                                                             ///< identified alone
+  double none_;  ///< cost of the base model
+  /// Lowest cost of a hypothesis that cannot be identified alone.
+  double others_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

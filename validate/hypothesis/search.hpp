@@ -21,9 +21,9 @@ struct Stage {
   sim::Conventions conventions;
   const sim::library::EffectLibrary& library;  ///< source of the effects
   const fit::Fit& fit;                         ///< of this base model
-  std::vector<fit::FreeParameter> own =
-      {};                 ///< parameters of effects added before, with their IDs in `plant`
-  std::string with = {};  ///< name of the effect added before; empty: the given model
+  /// Parameters of effects added before, with their IDs in `plant`.
+  std::vector<fit::FreeParameter> own = {};
+  std::string with = {};                          ///< name of the effect added before; empty: the given model
   double spread = thresholds::parameters.spread;  ///< prior standard deviation of the model's parameters
   int threads = 1;
   /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
@@ -89,8 +89,8 @@ struct Cross {
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
   std::string stays;          ///< name of the effect taken from the other pair
   const Judgement* stays_in;
-  double expected;  ///< evidence of both pairs less that of their partners' pair; reductions of chi2 are
-                    ///< assumed to add up
+  /// Evidence of both pairs less that of their partners' pair; reductions of chi2 are assumed to add up.
+  double expected;
 };
 /// Returns the cross with the highest expected evidence whose two effects are in no common pair, while their
 /// partners are.

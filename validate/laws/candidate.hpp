@@ -26,11 +26,11 @@ inline constexpr std::array kLawSignals = {
 /// Signals and inferred input of one event.
 struct LawTrace {
   std::vector<double> t;  ///< samples [s]
-  std::array<std::vector<double>, kLawSignals.size()>
-      signal;  ///< [signal][sample] [pu on the machine's base]
-  double trigger =
-      std::numeric_limits<double>::quiet_NaN();  ///< first exit of V from its band [s]; NaN: none
-  double begin = 0;                              ///< start of the inferred input [s]
+  /// [signal][sample] [pu on the machine's base].
+  std::array<std::vector<double>, kLawSignals.size()> signal;
+  /// First exit of V from its band [s]; NaN: none.
+  double trigger = std::numeric_limits<double>::quiet_NaN();
+  double begin = 0;                  ///< start of the inferred input [s]
   double rest = 0;                   ///< active power (torque) or field voltage before the event [pu]
   std::vector<double> knots, input;  ///< knots [s] and values [pu] of the inferred input
 };

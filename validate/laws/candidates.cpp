@@ -20,8 +20,8 @@ struct Form {
   Filter filter = Filter::none;
   double T = 0;  ///< time constant of the filter [s]
   Shape shape = Shape::straight;
-  double width =
-      0;  ///< deviation at the limit, or half-width of the dead band; of a curve: its last point [pu]
+  /// Deviation at the limit, or half-width of the dead band; of a curve: its last point [pu].
+  double width = 0;
   double ratio = 0;  ///< of a curve: ratio of consecutive points
 };
 constexpr int kPoints = 4;  ///< number of points of a curve on either side of zero

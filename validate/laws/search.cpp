@@ -18,8 +18,8 @@
 namespace swingbank::validate::laws {
 namespace {
 
-constexpr double kLawSpread =
-    1.0;  ///< prior standard deviation of a parameter about the regression's value: a factor e
+/// Prior standard deviation of a parameter about the regression's value: a factor e.
+constexpr double kLawSpread = 1.0;
 constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that are fitted to the records
 constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
 constexpr std::size_t kJudged = 3;     ///< number of candidates that are judged on held-out events

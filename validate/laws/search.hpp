@@ -23,10 +23,10 @@ struct LawFinding {
 struct LawSearch {
   fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
   std::vector<LawTrace> traces;                ///< inferred input and signals of each event
-  std::vector<LawCandidate>
-      ranked;  ///< the best candidate of each kind, by their regression on the inferred input
-  std::vector<LawFinding>
-      findings;  ///< fitted to the records; accepted ones first, then in descending order of evidence
+  /// The best candidate of each kind, by their regression on the inferred input.
+  std::vector<LawCandidate> ranked;
+  /// Fitted to the records; accepted ones first, then in descending order of evidence.
+  std::vector<LawFinding> findings;
   double seconds = 0;
   [[nodiscard]] const LawFinding* found() const {
     return !findings.empty() && findings.front().judgement.accepted ? &findings.front() : nullptr;

@@ -31,8 +31,8 @@ struct Optimum {
 struct IdentifyOptions {
   int draws = 96;  ///< number of draws that are evaluated
   int kept = 6;    ///< number of best draws that are optimised
-  int steps =
-      5;  ///< steps of each start; the better half then takes twice as many, and so on (successive halving)
+  /// Steps of each start; the better half then takes twice as many, and so on (successive halving).
+  int steps = 5;
   std::vector<Eigen::Index> freed = {};  ///< changes (add_changes) that are free beside the block
 };
 

@@ -23,8 +23,8 @@ class Reduction {
   /// One event.
   struct Event {
     playin::OpenLoop loop;  ///< of the plant's controls
-    Eigen::SparseMatrix<double, Eigen::RowMajor>
-        over_hats;  ///< mean over each knot's hat function: [knot][time point]
+    /// Mean over each knot's hat function: [knot][time point].
+    Eigen::SparseMatrix<double, Eigen::RowMajor> over_hats;
     /// Triangular factor with columns [plant | changes | torque | field | residual without either input],
     /// after elimination of the event's state.
     Eigen::MatrixXd triangle;

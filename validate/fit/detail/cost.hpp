@@ -24,8 +24,8 @@ struct Setting {
   bool lenient = false;        ///< of the search; see FitOptions
   bool linear_slopes = false;  ///< see event::Playing
   bool goes_on = false;        ///< reuses sensitivities that predicted a step well, if lenient
-  bool can_exist =
-      false;  ///< the start passes can_exist_beside(`plant`); the search then keeps to such plants
+  /// The start passes can_exist_beside(`plant`); the search then keeps to such plants.
+  bool can_exist = false;
 };
 
 inline sim::plant::Plant moved(const Setting& s, const double* z) {

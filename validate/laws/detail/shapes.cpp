@@ -12,10 +12,10 @@ namespace {
 
 /// Duration of every start and end [s]: a step would have zero gradient.
 constexpr double kRise = 0.05;
-constexpr double kEdge =
-    0.1;  ///< absolute sine above which a square wave is at its amplitude, for the same reason
-constexpr int kHarmonics =
-    16;  ///< number of harmonics of a sawtooth; the omitted ones contain 4 % of its mean square
+/// Absolute sine above which a square wave is at its amplitude, for the same reason.
+constexpr double kEdge = 0.1;
+/// Number of harmonics of a sawtooth; the omitted ones contain 4 % of its mean square.
+constexpr int kHarmonics = 16;
 
 double edge(double tau) { return std::clamp(tau / kRise, 0.0, 1.0); }
 double sawtooth(double turns) { return 2 * (turns - std::floor(turns)) - 1; }

@@ -12,8 +12,8 @@ struct LawShape {
   enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
   Kind kind = Kind::once;
   std::string family;
-  std::function<double(double tau, double b)>
-      course;                     ///< output [-] at time tau since the start; b: second parameter
+  /// Output [-] at time tau since the start; b: second parameter.
+  std::function<double(double tau, double b)> course;
   std::vector<double> grid = {};  ///< values of b; empty: no second parameter
   LawParameter second = {};
   std::string value;         ///< expression of the TOML file; tau is the time since the start
