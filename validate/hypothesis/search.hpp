@@ -1,6 +1,6 @@
 #pragma once
-// Single trial of every hypothesis on one base model, in descending order of evidence. judge() then tests the
-// leading ones on unseen events.
+// Single trial of every hypothesis on one base model, in descending order of evidence. Afterwards judge()
+// tests the leading ones on unseen events.
 #include <functional>
 #include <optional>
 #include <span>

@@ -1,7 +1,7 @@
 #pragma once
-// A torque or a field voltage that is free in time beside a model. Which of the two explains the records
-// shows on which side of the machine an effect is missing. Its time series is reported, and user-defined
-// models are regressed on it.
+// A torque or a field voltage that is free in time in addition to a model. Which of the two explains the
+// records shows on which side of the machine an effect is missing. Its time series is reported, and
+// user-defined models are regressed on it.
 #include <memory>
 
 #include "validate/reduced/infer.hpp"
