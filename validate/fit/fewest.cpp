@@ -324,8 +324,8 @@ class Selection {
     return names;
   }
   /// Replaces one or two members by a pair, if the pair makes other members redundant. A single parameter may
-  /// compensate for two wrong ones, such as the gain behind a regulator for the regulator's two gains, and
-  /// may then require a third. Returns whether the set changed.
+  /// compensate for two wrong ones and may then require a third. Example: the gain behind a regulator for the
+  /// regulator's two gains. Returns whether the set changed.
   [[nodiscard]] bool exchange(Set& set, Refit& chosen) const {
     as_well_.clear();
     for (const auto& [gone, other] : exchanges(set, chosen)) {

@@ -1,7 +1,7 @@
 #pragma once
 // Bayesian least squares over several events. The plant's free parameters are common to all events; switching
-// times and the initial state belong to one event each. Levenberg-Marquardt (Ceres) on the sensitivities of
-// the playback model.
+// times and the initial state belong to one event each. The optimiser is Levenberg-Marquardt (Ceres) on the
+// sensitivities of the playback model.
 #include <limits>
 #include <optional>
 #include <string>
@@ -84,8 +84,9 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters);
 /// fit failed.
 double penalised(const Fit& f);
 /// Returns -2 log evidence of the structure by Laplace's approximation (MacKay, Neural Computation 4, 1992,
-/// p. 415), up to a constant common to all structures. Fit::passes_less is added back. Requires a fit with
-/// errors.
+/// p. 415), up to a constant common to all structures: \f$ \chi^2 + \sum_i (z_i / \sigma_i)^2 +
+/// \ln\det(\Sigma H) \f$. H is half the Hessian of the cost, and \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$
+/// the prior covariance. Fit::passes_less is added back. Requires a fit with errors.
 double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::passes_less added back; infinite if the fit failed.
 double data_cost(const Fit& f);

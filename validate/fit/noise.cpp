@@ -141,9 +141,9 @@ bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
   });
 }
 
-/// Variances (VoltageNoise) of white noise with the spectral density of V and angle in the band, before the
-/// events and in all later segments with no higher level. `freedom`: effective number of independent bins of
-/// each estimate.
+/// Variances (VoltageNoise) of white noise with the spectral density of V and angle in the band. The data are
+/// the segments before the events and all later segments with no higher level. `freedom`: effective number of
+/// independent bins of each estimate.
 struct Moving {
   Eigen::Vector3d variance, freedom;
 };

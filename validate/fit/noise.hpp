@@ -28,7 +28,7 @@ struct VoltageNoise {
   double share = 0;
   Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< relative standard deviation of each variance
   /// Share of each channel's variance that is its own noise and no response to the voltage's noise, by
-  /// playin::Output. Users apply a lower limit of 0.01.
+  /// playin::Output. slow_noise() applies a lower limit of 0.01.
   std::array<double, playin::kOutputs> own{};
   /// Returns the sensitivity of the measured P and Q to V (relative) and theta [rad] at constant current,
   /// times `carried`: [channel][V, theta], in the channels' units.
@@ -38,8 +38,8 @@ struct VoltageNoise {
 };
 
 /// Returns the state-space model of the voltage's noise behind the plant. Its states are those of the plant,
-/// without the effect of the latest sample, and the mean error of V and theta over the pre-event window,
-/// which is the reference of all deviations. `event` supplies whitening, channels and start.
+/// without the effect of the latest sample, and the mean error of V and theta before the event. All
+/// deviations refer to that mean. `event` supplies whitening, channels and start.
 event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent event,
                             const VoltageNoise& voltage);
 
@@ -55,8 +55,8 @@ VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events);
 /// Returns an event of `seconds` [s] at the operating point of `like`, with zeros as measured channels.
 event::FitEvent at_rest(const event::FitEvent& like, double seconds);
 
-/// Returns an event of one minute at the operating point of `like`, with noise of these variances
-/// (VoltageNoise) on V and theta, and zeros as measured channels.
+/// Returns an event of one minute at the operating point of `like`. V and theta have noise of these variances
+/// (VoltageNoise); measured channels are zero.
 event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector3d& variance);
 
 /// Returns the events' noise with the innovations filter of the voltage's noise if it matters. The noise
@@ -71,8 +71,8 @@ event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& convent
 event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
                                         const event::WhitenedEvents& events);
 
-/// Returns the largest excess of the power of the residual's means over 0.5, 1 and 2 s above that of white
-/// noise [standard deviations], over all channels and lengths.
+/// Returns the largest excess of the residual's slow power over that of white noise [standard deviations].
+/// The power is that of means over 0.5, 1 and 2 s, for each channel.
 double slow_remainder(const Fit& fit, const event::WhitenedEvents& events);
 
 }  // namespace swingbank::validate::fit

@@ -228,8 +228,7 @@ class Identifying {
     fit(some);
   }
   /// Fits the hypotheses whose fits are not complete. The lowest cost of the other hypotheses (`others_`)
-  /// limits only fits of blocks that the identification also places behind it, because a fit may be slow at
-  /// first.
+  /// limits only fits of blocks that the identification also places behind it. A fit may be slow at first.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();

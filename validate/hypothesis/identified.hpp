@@ -19,7 +19,7 @@ void place_unfitted(std::vector<Judgement>& all);
 /// Returns every hypothesis in descending order of evidence. Those that could still become probable besides
 /// the best one are fitted; those without any response are left out. `fit_others` fits the hypotheses that
 /// cannot be identified alone. It is called once with the lowest cost of a whole plant so far and returns the
-/// lowest cost of its fits, so that no hypothesis far behind them is fitted here.
+/// lowest cost of its fits. Hypotheses far behind these are not fitted here.
 std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report);

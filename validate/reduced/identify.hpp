@@ -33,7 +33,7 @@ struct IdentifyOptions {
   int kept = 6;    ///< number of best draws that are optimised
   /// Steps of each start; the better half then takes twice as many, and so on (successive halving).
   int steps = 5;
-  std::vector<Eigen::Index> freed = {};  ///< changes (add_changes) that are free beside the block
+  std::vector<Eigen::Index> freed = {};  ///< changes (add_changes) that are free with the block
 };
 
 /// Returns the distinct local minima in ascending order of cost; empty if no draw can be simulated. `known`:

@@ -70,8 +70,8 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
   return times;
 }
 
-/// Returns the switching times that would leave their range at the optimum of the event's state, and their
-/// moves to the end of the range (active set).
+/// Returns the switching times that would leave their range at the optimum of the event's state (active set),
+/// with their moves to the end of the range.
 std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event, const EventSlopes& slopes,
                                                      const std::vector<double>& priors) {
   const Index n = slopes.state.cols();

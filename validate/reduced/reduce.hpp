@@ -49,8 +49,8 @@ class Reduction {
   [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
-  /// Returns the events' states that minimise the cost for these changes of the plant's parameters and this
-  /// time series of the only input, in the states' units.
+  /// Returns the events' states that minimise the cost, in their units. `plant`: changes of the plant's
+  /// parameters; `series`: time series of the only input.
   [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const event::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;
@@ -74,7 +74,9 @@ class Reduction {
   Gain torque_gain_, field_gain_;
 };
 
-/// Cost of one input's time series in a Reduction.
+/// Cost of one input's time series u in a Reduction: \f$ J(u) = \min_d |r + T d + L g(d) u|^2 + |(o + d) /
+/// \sigma|^2 \f$, with the offset o of the parameters from their prior means and the prior standard
+/// deviations \f$ \sigma \f$.
 class ReducedPlant {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed

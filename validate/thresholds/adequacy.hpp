@@ -6,10 +6,10 @@
 // The limit allows for the event's coloured noise and short pre-event window. Local errors may average out,
 // because the next question is which parameter is wrong, not at which second.
 // Command diagnose refits the parameters and decides whether to name an effect. Besides chi2 over all events
-// it tests slow remainders, steady oscillations and the evidence of free inputs, because effects of 40 times
-// the noise have been hidden in a reduced chi-square of 1.07. A named effect must have its evidence. The
-// criteria differ by the refit and by the consequence of a rejection, so they are not unified. Every verdict
-// reports the criterion that decided it; all limits are in thresholds.hpp.
+// it tests slow remainders, steady oscillations and the evidence of free inputs. Effects of 40 times the
+// noise have been hidden in a reduced chi-square of 1.07. A named effect must have its evidence. The criteria
+// differ by the refit and by the consequence of a rejection, so they are not unified. Every verdict reports
+// the criterion that decided it; all limits are in thresholds.hpp.
 #include <string>
 #include <string_view>
 
