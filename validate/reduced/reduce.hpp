@@ -74,9 +74,9 @@ class Reduction {
   Gain torque_gain_, field_gain_;
 };
 
-/// Cost of one input's time series u in a Reduction: \f$ J(u) = \min_d |r + T d + L g(d) u|^2 + |(o + d) /
-/// \sigma|^2 \f$, with the offset o of the parameters from their prior means and the prior standard
-/// deviations \f$ \sigma \f$.
+/// Cost of one input's time series u in a Reduction, minimised over the changes d of all plant parameters
+/// except the gain's: \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f] o: offsets of the
+/// parameters from their prior means; \f$ \sigma \f$: prior standard deviations.
 class ReducedPlant {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
