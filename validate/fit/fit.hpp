@@ -84,9 +84,12 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters);
 /// fit failed.
 double penalised(const Fit& f);
 /// Returns -2 log evidence of the structure by Laplace's approximation (MacKay, Neural Computation 4, 1992,
-/// p. 415), up to a constant common to all structures: \f[ \chi^2 + \sum_i (z_i / \sigma_i)^2 +
-/// \ln\det(\Sigma H) \f] H: half the Hessian of the cost; \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$: prior
-/// covariance. Fit::passes_less is added back. Requires a fit with errors.
+/// p. 415), up to a constant common to all structures:
+///
+/// \f[ \chi^2 + \sum_i (z_i / \sigma_i)^2 + \ln\det(\Sigma H) \f]
+///
+/// H: half the Hessian of the cost; \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$: prior covariance.
+/// Fit::passes_less is added back. Requires a fit with errors.
 double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::passes_less added back; infinite if the fit failed.
 double data_cost(const Fit& f);

@@ -9,7 +9,8 @@
 namespace swingbank::validate::hypothesis {
 
 /// Returns whether a hypothesis on this base model can be identified alone. Its effect must act only through
-/// torque or field voltage, and the record must be the playback of a voltage at a synchronous machine.
+/// torque or field voltage, and the plant must be a whole synchronous machine. No record may contain a
+/// breaker operation, an open circuit or a staged test.
 bool can_be_identified(const Stage& stage, const Hypothesis& h);
 
 /// Sets the gain of hypotheses that were identified but not fitted: the best gain less their distance in chi2

@@ -16,9 +16,9 @@ struct Explanation {
   double probability = 0;  ///< set by posterior()
 };
 
-/// Computes the probabilities and sorts by them, most probable first. `none` is the evidence of an input that
-/// is free in time, after the larger of two thresholds: an unlisted effect may explain as much. An unlisted
-/// effect may also look like the best listed effect, at the price of thresholds::evidence.accepted once more.
+/// Computes the probabilities and sorts by them, most probable first. `none`: evidence of an unlisted effect
+/// less its threshold, from the free inputs and a steady oscillation. An unlisted effect may also resemble
+/// the best listed one; its evidence is at least that one's less thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
 /// Returns the number of leading explanations whose probabilities sum to thresholds::posterior.set.
@@ -31,7 +31,7 @@ double out_of_reach();
 /// [chi2].
 double out_of_set();
 
-/// "97 %"; never 0 or 100 %: "< 1 %", "> 99 %".
+/// Returns for example "97 %"; "< 1 %" and "> 99 %" at the ends, never 0 or 100 %.
 std::string probability_text(double probability);
 
 }  // namespace swingbank::validate::hypothesis

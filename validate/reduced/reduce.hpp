@@ -75,8 +75,11 @@ class Reduction {
 };
 
 /// Cost of one input's time series u in a Reduction, minimised over the changes d of all plant parameters
-/// except the gain's: \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f] o: offsets of the
-/// parameters from their prior means; \f$ \sigma \f$: prior standard deviations.
+/// except the gain's:
+///
+/// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
+///
+/// o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard deviations.
 class ReducedPlant {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
