@@ -24,7 +24,7 @@ struct Addition {
   std::vector<fit::FittedParameter> parameters;
   int own = 0;  ///< number of parameters of the effect
   std::vector<AddedEvent> events;
-  /// Criterion() without less with the effect, over the seen events; compared with
+  /// Difference of criterion(), without minus with the effect, over the seen events; compared with
   /// thresholds::addition.strong.
   double evidence = 0;
   bool earns = false;         ///< the evidence is strong, and no unseen event is worse with the effect

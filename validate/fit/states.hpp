@@ -37,7 +37,7 @@ inline constexpr std::array<double, kStates> kStateSpread = [] {
   return spread;
 }();
 
-/// Returns the prior standard deviation of each state variable, in its unit; 0: no prior.
+/// Returns the prior standard deviation of each state variable, in units of the search; 0: no prior.
 inline std::vector<double> state_beliefs(const event::FitEvent& event) {
   std::vector<double> all(event.switchings.size(), 0.0);
   all.resize(switching_numbers(event), kTurnBelief);

@@ -1,6 +1,5 @@
 #pragma once
-// Output of a user-defined model along the events, from its compiled effect, i.e. with the equations of a
-// simulation.
+// Output of a user-defined model along the events, computed by its effect with the equations of a simulation.
 #include "validate/laws/regression.hpp"
 
 namespace swingbank::validate::laws {

@@ -21,7 +21,7 @@ struct LawShape {
   std::string words;         ///< description with {A}, {begin} and the second parameter's name
 };
 
-/// Returns all shapes. `length`: length of the records from their first switching on [s].
+/// Returns all shapes. `length`: duration of the inferred input [s].
 std::vector<LawShape> law_shapes(double length);
 
 }  // namespace swingbank::validate::laws
