@@ -6,6 +6,7 @@
 
 namespace swingbank::validate::add {
 
+/// Options of an addition.
 struct AddOptions {
   calibrate::CalibrateOptions calibrate = {};  ///< priors, held-out events, limits, progress
 };
@@ -17,6 +18,7 @@ struct AddedEvent {
   [[nodiscard]] bool improves() const { return score.after < refitted; }
 };
 
+/// Result of an addition.
 struct Addition {
   hypothesis::Hypothesis hypothesis;
   plant::PlantModel model;  ///< with the effect and the fitted values

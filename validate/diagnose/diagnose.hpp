@@ -17,6 +17,7 @@
 
 namespace swingbank::validate::diagnose {
 
+/// Verdict of a diagnosis.
 enum class Verdict {
   adequate,     ///< the residual is noise
   missing,      ///< one effect is missing and named
@@ -26,6 +27,7 @@ enum class Verdict {
 };
 std::string_view verdict_name(Verdict verdict);
 
+/// Result of a diagnosis.
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   hypothesis::Side side = hypothesis::Side::none;
@@ -49,6 +51,7 @@ struct Diagnosis {
   double seconds = 0;
 };
 
+/// Limits, effort and callbacks of a diagnosis.
 struct DiagnoseOptions {
   /// Prior standard deviation of the model's parameters, relative.
   double spread = thresholds::parameters.spread;

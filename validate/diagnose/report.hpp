@@ -19,6 +19,7 @@ struct ReportChannel {
   compare::ErrorMap map_before, map_after;
   double inside_before = 0, inside_after = 0;  ///< share of samples inside the 99 % band of the noise
 };
+/// One event of the report.
 struct ReportEvent {
   const event::FitEvent* event = nullptr;
   std::vector<compare::Window> windows;

@@ -6,6 +6,7 @@
 
 namespace swingbank::validate::diagnose {
 
+/// Returns the diagnosis as text.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 /// Returns every threshold of a verdict with value, unit and reason.
 std::string thresholds_text();

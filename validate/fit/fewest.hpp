@@ -27,6 +27,7 @@ struct Alternative {
   std::vector<std::string> named, instead;
 };
 
+/// Result of the sparse parameter selection.
 struct Fewest {
   std::vector<WrongParameter> wrong;      ///< in descending order of evidence
   std::vector<Alternative> alternatives;  ///< pairs; single replacements are in WrongParameter::tied
@@ -36,6 +37,7 @@ struct Fewest {
   event::WhitenedEvents events;  ///< with the noise model of all fits here
 };
 
+/// Limits of the sparse parameter selection.
 struct FewestOptions {
   std::size_t most = 8;  ///< maximum size of the set
   double each = 10;      ///< minimum evidence of each parameter [chi2]

@@ -30,6 +30,7 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, doubl
 /// Returns the present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
 
+/// Fit of one event: its state, response and residual.
 struct EventFit {
   EventState state;
   double chi2 = 0;                         ///< sum of squared whitened residuals
@@ -42,6 +43,7 @@ struct EventFit {
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
 
+/// A fitted parameter with standard error and 95 % interval.
 struct FittedParameter {
   FreeParameter where;
   std::string block, name, unit;
@@ -57,6 +59,7 @@ struct FittedParameter {
   double decided = 0;
 };
 
+/// Result of a fit to several events.
 struct Fit {
   sim::plant::Plant plant;  ///< with the fitted values
   std::vector<FittedParameter> parameters;
@@ -114,6 +117,7 @@ struct Goal {
   int steps = 0;
 };
 
+/// Effort, tolerances and start of a fit.
 struct FitOptions {
   int iterations = 30;
   double tolerance = kFitTolerance;  ///< of the integration; see event::Playing

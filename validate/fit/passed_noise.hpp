@@ -7,6 +7,7 @@
 
 namespace swingbank::validate::fit {
 
+/// Noise transfer of a reference structure, with which other structures are compared.
 class PassedNoise {
  public:
   /// Sets the reference structure. Noise of these variances is played in for one minute at the first event's

@@ -14,6 +14,7 @@ struct NextRecord {
   std::string what;  ///< "field current in one more event like ev1"
   double expected = 0;
 };
+/// Possible measurements and the present size of the set.
 struct Decision {
   double now = 0;                ///< number of effects in the set
   std::vector<NextRecord> next;  ///< in ascending order of the expected number; empty: nothing to separate

@@ -10,9 +10,11 @@
 
 namespace swingbank::validate::hypothesis {
 
+/// Side of a plant on which an effect acts.
 enum class Side { none, mechanical, excitation, machine, measurement };
 std::string_view side_name(Side side);
 
+/// A possible change of the model: an added or replaced effect, freed parameters, or a convention.
 struct Hypothesis {
   std::string name;       ///< "SEXS", "GENROU:S10,S12", "EXST1 in place of SEXS"
   std::string what;       ///< "exciter SEXS (simplified excitation system)"

@@ -65,7 +65,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   const auto all = all_hypotheses(stage.under_test(), stage.library, stage.component());
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
-  if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
+  if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
   const Judgement stays = staying(*second, pair.fit);
   const Stage then = after(stage, stays);
   std::vector<Judgement> rivals;
@@ -81,7 +81,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
 }
 
 void try_begun(const Stage& stage, Judgement& j) {
-  if (j.fit.events.empty()) return;  // it could not be begun
+  if (j.fit.events.empty()) return;  // the candidate has no start
   const auto free = free_of(j.hypothesis, stage.spread);
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free,
                             fit::continued({.lenient = true}, j.fit, free));

@@ -29,6 +29,7 @@ struct Identified {
   }
 };
 
+/// Joint fits of the whole plant for identified hypotheses on one base model.
 class Polish {
  public:
   using Reduced = std::shared_ptr<const reduced::Reduction>;

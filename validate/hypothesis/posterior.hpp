@@ -9,6 +9,7 @@ namespace swingbank::validate::hypothesis {
 /// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
 
+/// An explanation of the records with its posterior probability.
 struct Explanation {
   std::string name;
   double evidence = 0;  ///< 2 ln(Bayes factor) over the given model, less the threshold for additions [chi2]

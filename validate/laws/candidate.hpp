@@ -35,6 +35,7 @@ struct LawTrace {
   std::vector<double> knots, input;  ///< knots [s] and values [pu] of the inferred input
 };
 
+/// A parameter of a user-defined model with its value and range.
 struct LawParameter {
   std::string name, unit;
   double value = 0, low = 0, high = 0;

@@ -10,6 +10,7 @@ namespace swingbank::validate::laws {
 /// Time series at the samples of the events: [event][sample].
 using Course = std::vector<std::vector<double>>;
 
+/// Regression of the inferred input of all events on candidate time series.
 class LawRegression {
  public:
   explicit LawRegression(const std::vector<LawTrace>& traces);

@@ -20,6 +20,7 @@ struct LawFinding {
   std::string toml;                 ///< TOML file for `swingbank add NAME --law FILE`
 };
 
+/// Result of a search for user-defined models.
 struct LawSearch {
   fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
   std::vector<LawTrace> traces;                ///< inferred input and signals of each event

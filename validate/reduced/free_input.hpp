@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::reduced {
 
+/// An inferred input with its evidence.
 struct FreeInput {
   event::InputKind kind = event::InputKind::none;
   /// Fit of the plant with the input, which the events' states hold; without parameters. `failed`: the plant

@@ -28,6 +28,7 @@ struct Optimum {
   int starts = 0;              ///< number of starts that ended within 1 of this cost
 };
 
+/// Effort of an identification.
 struct IdentifyOptions {
   int draws = 96;  ///< number of draws that are evaluated
   int kept = 6;    ///< number of best draws that are optimised

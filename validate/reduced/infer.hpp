@@ -36,6 +36,7 @@ struct Inputs {
   bool torque = false, field = false;
 };
 
+/// Result of an inference: inputs, parameters and event states, with residuals and Jacobians at that point.
 struct Inference {
   Inputs inputs;
   /// `base`: the submitted plant with the estimated values. `plant`: the simulated plant, which may have an

@@ -21,6 +21,7 @@ struct Errors {
   double mxe = 0, me = 0, mae = 0;
 };
 
+/// A set of limits for fit for purpose.
 struct Acceptance {
   std::string name, source;                     ///< name of the limits, and their source
   std::array<std::array<Errors, 3>, 2> limits;  ///< [P, Q][phase]

@@ -17,6 +17,7 @@
 
 namespace swingbank::validate::thresholds {
 
+/// Criterion of a verdict.
 enum class Criterion {
   cells,         ///< compare: no bin of the error maps exceeds its limit
   events,        ///< calibrate, add: no event's reduced chi-square exceeds its limit
@@ -27,6 +28,7 @@ enum class Criterion {
   named_effect,  ///< diagnose: evidence of the named effect
 };
 
+/// Name and description of a criterion for reports.
 struct CriterionRecord {
   std::string_view name;            ///< in JSON
   std::string_view asks;            ///< description for readers

@@ -6,6 +6,7 @@
 
 namespace swingbank::validate::thresholds {
 
+/// A number that decides a verdict, with its name, unit and reason.
 struct Threshold {
   std::string_view name;  ///< stage.field
   double value;

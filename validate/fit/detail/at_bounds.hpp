@@ -9,6 +9,7 @@
 
 namespace swingbank::validate::fit::fitting {
 
+/// Holds variables of a Ceres problem at their bounds.
 class AtBounds {
  public:
   explicit AtBounds(ceres::Problem& problem) : problem_(problem) {}

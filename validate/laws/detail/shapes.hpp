@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::laws {
 
+/// A shape of a user-defined model of time.
 struct LawShape {
   enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
   Kind kind = Kind::once;
