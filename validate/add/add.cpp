@@ -29,7 +29,7 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// The events, with those that are seen set apart, and the model's own fits of them.
+/// The prepared events, and the subset of seen ones.
 class Bench {
  public:
   Bench(const plant::PlantModel& model, std::vector<record::Record> records,
@@ -40,7 +40,7 @@ class Bench {
   }
   [[nodiscard]] const event::WhitenedEvents& all() const { return all_; }
   [[nodiscard]] const event::WhitenedEvents& seen() const { return seen_; }
-  /// Measures the noise anew through a fit of the events seen, if that is close.
+  /// Measures the noise again through a fit to the seen events, if its reduced chi-square is low enough.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.misfit() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
@@ -51,7 +51,7 @@ class Bench {
   }
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
 
-  /// Fits every event by itself, with only its own state free.
+  /// Fits the state of every event by itself, at fixed parameters.
   std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested, event::Phase phase) const {
     std::vector<fit::EventFit> fits(all_.size());
     in_parallel(
@@ -89,7 +89,7 @@ class Bench {
   event::WhitenedEvents all_, seen_;
 };
 
-/// The fit from where `f` ended.
+/// Continues a fit from the end of `f`.
 fit::Fit go_on(const sim::plant::PlantUnderTest& tested, const Bench& bench,
                const std::vector<fit::FreeParameter>& free, const fit::Fit& f) {
   return fit::fit(tested, bench.seen(), free, fit::continued({}, f, free));
@@ -102,7 +102,7 @@ fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
   return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, spread), o);
 }
 
-/// The fits without the effect and with it.
+/// The fits without and with the effect.
 class Adding {
  public:
   Adding(const plant::PlantModel& model, Bench& bench, const AddOptions& options, Addition& a)
@@ -119,7 +119,8 @@ class Adding {
                .stop = interruption_asked,
                .reached = [this](const fit::Fit& f) { keep(f); }} {}
 
-  /// Where it is interrupted, `with` is the best until then. Returns whether the noise was measured again.
+  /// Makes both fits. After an interruption, `with` is the best fit so far. Returns whether the noise was
+  /// measured again.
   bool run() {
     a_.with = with_effect();
     hypothesis::Hypothesis none;
@@ -144,8 +145,8 @@ class Adding {
                         "check the model's parameters, or add another effect"});
     return finished(j);
   }
-  /// Frees the group of parameters that the effect's default values leave off and that has the most evidence
-  /// over the effect without it. False: none earns its place as an effect has to.
+  /// Frees one group of parameters that the effect's default values leave at null values: the group with the
+  /// most evidence. Returns false if no group has the evidence that an effect needs.
   bool add_left_off() {
     auto groups = hypothesis::with_left_off(a_.hypothesis, a_.with.plant);
     if (groups.empty()) return false;
@@ -161,15 +162,15 @@ class Adding {
     a_.hypothesis.name = name;
     return true;
   }
-  /// The best first.
+  /// Returns the hypotheses in descending order of evidence.
   [[nodiscard]] std::vector<hypothesis::Judgement> judgements(std::vector<hypothesis::Hypothesis> all) {
     std::vector<hypothesis::Judgement> tried;
     until_interrupted([&] { tried = hypothesis::try_hypotheses(stage_, std::move(all), progress_); });
     if (interruption_asked()) end();
     return tried;
   }
-  /// The better one of the fit `f` of `h` and a fit of `h` from where that of another structure ended, so
-  /// that a local optimum of either is no evidence.
+  /// Returns the better of the fit `f` of `h` and a refit of `h` from the end of another structure's fit. The
+  /// difference between two local optima of one structure then does not count as evidence.
   [[nodiscard]] fit::Fit from_other(const hypothesis::Hypothesis& h, const fit::Fit& f,
                                     const fit::Fit& other) const {
     hypothesis::Judgement j;
@@ -178,13 +179,13 @@ class Adding {
     hypothesis::try_from(stage_, other, j);
     return fit::better(j.fit, f) ? finished(j) : f;
   }
-  /// The searches' fits have no errors, or those of lenient steps.
+  /// Returns the fit completed with standard errors: fits of the search have none, or those of lenient steps.
   [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const {
     fit::Fit f =
         go_on(j.hypothesis.under_test(), bench_, hypothesis::free_of(j.hypothesis, stage_.spread), j.fit);
     return f.failed.empty() ? f : j.fit;
   }
-  /// Measures the noise anew through the fit with the effect, if that is close, and fits again.
+  /// Measures the noise again through the fit with the effect, if it is close, and repeats both fits.
   bool measure_noise() {
     const hypothesis::Hypothesis& h = a_.hypothesis;
     if (!bench_.measure_noise(a_.with, h.conventions)) return false;
@@ -210,7 +211,8 @@ class Adding {
   const hypothesis::Stage stage_;
 };
 
-/// Of each event, what the uncertainty of the fitted parameters adds to it if it was not seen.
+/// Returns the increase of each event's limit due to the uncertainty of the fitted parameters; 0 for seen
+/// events.
 std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const Bench& bench,
                                const std::vector<fit::EventFit>& fits,
                                const std::vector<fit::FreeParameter>& free) {
@@ -234,8 +236,8 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
   return added;
 }
 
-/// Takes the noise of the played-in voltage back and widens the intervals for coloured noise, as calibrate
-/// does, with the priors of the hypothesis.
+/// Corrects the parameters for noise of the played-in voltage and widens the intervals for coloured noise, as
+/// calibrate does, with the priors of the hypothesis.
 void calibrate_addition(Addition& a, const std::vector<record::Record>& records, const AddOptions& options) {
   plant::PlantModel prior = a.model;
   prior.plant = a.hypothesis.plant;
@@ -254,7 +256,7 @@ void calibrate_addition(Addition& a, const std::vector<record::Record>& records,
   a.model.plant = c.model.plant;
 }
 
-/// The effect's values, where they are few enough for a sentence; all stand in the table of parameters.
+/// Returns the effect's values if they are few enough for a sentence; the table of parameters has all.
 std::string own_values(const Addition& a) {
   constexpr int kInASentence = 6;
   if (a.own > kInASentence) return fmt::format("Its {} values stand among the parameters", a.own);
@@ -354,7 +356,7 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   a.model.conventions = hypothesis.conventions;
   a.parameters = a.with.parameters;
   if (a.adequate) calibrate_addition(a, records, options);
-  // The effect's parameters stand last in a fit.
+  // A fit lists the effect's parameters last.
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.prepared = bench.all();
   a.sentence = sentence_of(a);

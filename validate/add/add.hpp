@@ -1,70 +1,75 @@
 #pragma once
-// One effect added to a model: fitted with everything else on the events seen, and held against the same
-// structure refitted without it, on the unseen ones too.
+// Addition of one effect to a model: joint fit to the seen events, and comparison with the same structure
+// refitted without the effect, on unseen events too.
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 
 namespace swingbank::validate::add {
 
+/// Options of an addition.
 struct AddOptions {
-  calibrate::CalibrateOptions calibrate = {};  ///< spread, events held out, limits, progress
+  calibrate::CalibrateOptions calibrate = {};  ///< priors, held-out events, limits, progress
 };
 
-/// One event: chi2 per value of the model as it was, refitted without the effect, and with it.
+/// Scores of one event: reduced chi-square of the given model, of the refit without the effect, and with it.
 struct AddedEvent {
-  calibrate::EventScore score;  ///< before: the model as it was; after: with the effect
-  double refitted = 0;          ///< chi2 per value without the effect, after refitting everything else
+  calibrate::EventScore score;  ///< before: given model; after: with the effect
+  double refitted = 0;          ///< reduced chi-square without the effect, everything else refitted
   [[nodiscard]] bool improves() const { return score.after < refitted; }
 };
 
+/// Result of an addition.
 struct Addition {
   hypothesis::Hypothesis hypothesis;
   plant::PlantModel model;  ///< with the effect and the fitted values
-  std::vector<fit::FittedParameter>
-      parameters;  ///< all parameters that were free, those of the effect first; as calibrate gives them
-                   ///< where nothing but noise is left
-  int own = 0;     ///< how many are the effect's
+  /// All free parameters, those of the effect first; from calibrate if the residual is noise.
+  std::vector<fit::FittedParameter> parameters;
+  int own = 0;  ///< number of parameters of the effect
   std::vector<AddedEvent> events;
-  double evidence = 0;        ///< criterion() without - with, over the events seen: it earns its place above
-                              ///< thresholds::addition.strong
-  bool earns = false;         ///< evidence is strong, and no unseen event is worse with it
-  bool adequate = false;      ///< nothing but noise is left in any event
-  thresholds::Ruling ruling;  ///< what decided whether it is
+  /// Difference of criterion(), without minus with the effect, over the seen events; compared with
+  /// thresholds::addition.strong.
+  double evidence = 0;
+  bool earns = false;         ///< the evidence is strong, and no unseen event is worse with the effect
+  bool adequate = false;      ///< the residual is noise in every event
+  thresholds::Ruling ruling;  ///< the criterion that decided `adequate`
   std::string sentence;
   event::WhitenedEvents prepared;
   fit::Fit without, with;
   double seconds = 0;
 };
 
-/// The hypothesis of that name (letters' case and blanks do not matter). Throws InputError naming those that
-/// can be added to this plant; says so where the slot is taken, or where the effect belongs to one event.
+/// Returns the hypothesis of that name, ignoring case and blanks. Throws InputError with the effects that can
+/// be added to this plant. The message states whether the slot is occupied or the effect acts at given times
+/// of one event only.
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name);
 
-/// Throws InputError as calibrate does.
+/// Adds the effect and scores it. Throws InputError as calibrate does.
 Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
                     const std::vector<record::Record>& records, const AddOptions& options);
 
-/// Takes out one control of a model (index into Plant::controls) and says what its evidence is with
-/// everything else refitted. The returned model lacks it.
+/// Result of the removal of one control (index into Plant::controls): its evidence with everything else
+/// refitted, and the model without it.
 struct Removal {
   std::string effect;
   plant::PlantModel model;
-  double evidence =
-      0;  ///< criterion() without - with: at addition.stays and below the effect does not earn its place
+  /// Difference of criterion(), without minus with the effect. The effect is removed at addition.stays or
+  /// below.
+  double evidence = 0;
 };
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);
 
-/// Everything that was done until the model was adequate, or nothing helped any more.
+/// Sequence of additions and removals until the model was adequate or no effect helped.
 struct Completion {
-  std::vector<Addition> added;   ///< in order
-  std::vector<Removal> removed;  ///< of them
+  std::vector<Addition> added;   ///< in order of addition
+  std::vector<Removal> removed;  ///< later removed ones of `added`
   plant::PlantModel model;
   bool adequate = false;
   std::string sentence;
 };
-/// Diagnoses and adds one effect at a time, `most` effects at most. After each addition, what was added
-/// before must still earn its place. Neither diagnosis nor fit sees the events held out.
+/// Diagnoses the model and adds one effect at a time, at most `most` effects. After each addition, the
+/// effects added before must still earn their place. The held-out events are excluded from diagnoses and
+/// fits.
 Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
                               const AddOptions& options, int most = 4);
 

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// By which criterion an effect earns its place here, beside what diagnose asks of one.
+/// Returns the criterion of this command for the effect, with that of diagnose for comparison.
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
   return fmt::format(

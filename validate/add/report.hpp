@@ -1,5 +1,5 @@
 #pragma once
-// An addition as text for the terminal and as JSON.
+// Report of an addition as text for the terminal and as JSON.
 #include <string>
 #include <vector>
 
@@ -9,11 +9,12 @@
 
 namespace swingbank::validate::add {
 
-/// Event, seen or unseen, channel: rms in MW or Mvar and misfit before, refitted without the effect, after.
+/// Returns the table of events (seen or unseen) and channels: RMS error in MW or Mvar and reduced chi-square
+/// of the given model, refitted without the effect, and with it.
 report::Table addition_table(const Addition& a);
 std::string terminal_report(const Addition& a);
 nlohmann::json addition_json(const Addition& a);
-/// Where the values come from: head comment of the plant file.
+/// Returns the head comment of the plant file: the source of the values.
 std::vector<std::string> provenance_lines(const Addition& a, const plant::PlantModel& from,
                                           const std::string& command_line);
 

@@ -1,4 +1,4 @@
-// Diagnosis and addition in turn, until nothing but noise is left or nothing helps.
+// Alternation of diagnosis and addition until the residual is noise or no effect helps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ std::vector<record::Record> seen_of(const std::vector<record::Record>& records,
   return seen;
 }
 
-/// The effect that the diagnosis names. Where it names nothing because more than one effect is missing, this
-/// is the hypothesis with the best evidence among those that improve every event they were not fitted to.
+/// Returns the effect that the diagnosis names. If it names none because more than one effect is missing,
+/// returns the hypothesis with the most evidence among those that improve every unseen event.
 std::string next_effect(const diagnose::Diagnosis& d) {
   if (!d.effects.empty()) return d.effects.front();
   const auto helps = [](const hypothesis::Judgement& j) {
@@ -32,7 +32,7 @@ std::string next_effect(const diagnose::Diagnosis& d) {
   return best == d.ranked.end() ? "" : best->hypothesis.name;
 }
 
-/// Takes out every added control that no longer earns its place.
+/// Removes every added control that no longer earns its place.
 void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
   for (std::size_t a = 0; a + 1 < c.added.size(); ++a) {
     const sim::Effect* effect = c.model.library.find(c.added[a].hypothesis.name);

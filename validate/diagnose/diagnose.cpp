@@ -21,11 +21,11 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// So many hypotheses are judged where none holds.
+/// Minimum number of hypotheses that are judged if none is accepted.
 constexpr int kAtLeast = 3;
-/// The model alone is fitted once more from a better start, so many times at most.
+/// Maximum number of refits of the given model from a better start.
 constexpr int kBases = 2;
-/// Steps of the fits that go on with the noise measured again.
+/// Number of steps of the fits that continue with the new noise model.
 constexpr int kOnwards = 4;
 
 class Diagnoser {
@@ -57,9 +57,10 @@ class Diagnoser {
 
  private:
   [[nodiscard]] bool stopped() const { return interruption_asked() || (options_.stop && options_.stop()); }
-  /// Notes what an interruption leaves: all fits made with the same noise.
+  /// Saves the state for an interruption; all fits in it have the same noise model.
   void keep() { kept_ = result_; }
-  /// The model alone, the missing inputs, every hypothesis. False: a person has ended it.
+  /// Fits the given model, infers the missing inputs and tries every hypothesis. Returns false if the user
+  /// has stopped.
   bool fit_all() {
     const event::WhitenedEvents prepared = result_.events;
     fit::FitOptions from{.lenient = true};
@@ -67,7 +68,7 @@ class Diagnoser {
       report(event::Phase::base, "", 0, 1);
       fit_base(model_, options_, from, result_);
       report(event::Phase::base, "", 1, 1);
-      result_.ranked.clear();  // those of a worse base
+      result_.ranked.clear();  // results on a worse base model
       result_.torque = result_.field = {};
       keep();
       tell(first_sentence(result_, options_.adequate));
@@ -87,12 +88,12 @@ class Diagnoser {
       const auto better = round < kBases ? better_start(stage, result_) : std::nullopt;
       if (!better) break;
       from = *better;
-      result_.events = prepared;  // the noise was measured through the worse base
+      result_.events = prepared;  // discards the noise measured through the worse base model
     }
     try_replacements();
     return !stopped();
   }
-  /// The verdict. False: a person has ended it.
+  /// Judges the hypotheses and sets the verdict. Returns false if the user has stopped.
   bool judge_all() {
     const bool again = measure_noise_again();
     passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
@@ -111,7 +112,7 @@ class Diagnoser {
            options_.progress, result_);
     return true;
   }
-  /// Where the refitted model leaves only noise, a few wrong parameters may be all that it takes.
+  /// If the refitted model's residual is noise, searches for a small set of wrong parameters.
   void few_wrong() {
     result_.wrong.reset();
     if (result_.base.misfit() > options_.adequate) return;
@@ -128,7 +129,7 @@ class Diagnoser {
     result_.wrong = std::move(found);
     tell(wrong_sentence(result_));
   }
-  /// Where no addition leaves only noise, an effect that is there may be of another kind.
+  /// If no addition reduces the residual to noise, tries to replace a control by one of another kind.
   void try_replacements() {
     const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
@@ -138,9 +139,9 @@ class Diagnoser {
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
-  /// A base that fits badly hides the noise. The noise is then measured through the leading extension, and
-  /// all fits go on with it. A hypothesis that does not come along is dropped, because its cost is in units
-  /// of the former noise. Returns whether anything was measured.
+  /// Measures the noise again through the leading extension if the base model's poor fit hides it, and
+  /// continues all fits with it. A hypothesis whose fit fails then is dropped, because its cost has the units
+  /// of the former noise. Returns whether the noise was measured.
   bool measure_noise_again() {
     if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return false;
     const hypothesis::Judgement& best = result_.ranked.front();
@@ -163,7 +164,7 @@ class Diagnoser {
           go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, how);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
-    if (stopped()) throw Interrupted{};  // some fits still have the former noise
+    if (stopped()) throw Interrupted{};  // some fits still have the former noise model
     std::erase_if(result_.ranked, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
     hypothesis::place_unfitted(result_.ranked);
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
@@ -180,8 +181,8 @@ class Diagnoser {
         2, infer, [&](int done) { report(event::Phase::missing_input, "", done, 2); }, threads_);
   }
 
-  /// Judges the leading hypotheses. Then tries each hypothesis beside the companion of the controls, or
-  /// beside the one that holds or, where none does, beside the best two.
+  /// Judges the leading hypotheses. Then tries pairs with the companion of the controls. If none is accepted,
+  /// tries pairs with the best single hypothesis or, if that is not accepted, with the best two.
   void search() {
     const hypothesis::Stage stage = model_stage();
     judge_leading(result_.ranked);
@@ -198,7 +199,7 @@ class Diagnoser {
     try_alone(pairs);
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
-    if (!pairs.empty()) {  // the first effect was chosen while the second was missing
+    if (!pairs.empty()) {  // the first effect was selected without the second one
       std::vector<hypothesis::Judgement> others = exchanged(stage, pairs.front());
       std::ranges::move(beside_second(stage, pairs.front()), std::back_inserter(others));
       std::erase_if(others, unneeded);
@@ -222,8 +223,7 @@ class Diagnoser {
             .torque = &result_.torque,
             .field = &result_.field};
   }
-  /// Tries pairs beside the best single hypotheses, one of each slot. The next single one is tried only if no
-  /// pair beside the one before holds.
+  /// Tries pairs with the best single hypotheses, one of each slot, until a pair is accepted.
   std::vector<hypothesis::Judgement> try_pairs(const hypothesis::Stage& stage) {
     std::vector<const hypothesis::Judgement*> firsts;
     for (const auto& j : result_.ranked) {
@@ -241,8 +241,8 @@ class Diagnoser {
     }
     return pairs;
   }
-  /// Pairs with the effect of the machine or of an instrument beside which some control leaves least: the
-  /// controls were ranked while it was missing. None where no such effect is worth it.
+  /// Returns pairs with the machine or instrument effect that most reduces the cost of a control: the
+  /// controls were ranked without it. Empty if there is no such effect.
   [[nodiscard]] std::vector<hypothesis::Judgement> beside_companion(const hypothesis::Stage& stage) const {
     const auto most = std::ranges::max_element(result_.ranked, {}, &hypothesis::Judgement::companion_gain);
     const auto companion = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& j) {
@@ -263,7 +263,7 @@ class Diagnoser {
     judge_leading(pairs);
     return pairs;
   }
-  /// Rivals of a pair's first effect, fitted in its place: those of its slot, and whatever else holds alone.
+  /// Replaces a pair's first effect by its competitors: effects of its slot, and other accepted effects.
   [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::Stage& stage,
                                                              const hypothesis::Judgement& pair) const {
     auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
@@ -277,8 +277,8 @@ class Diagnoser {
     each(rivals, event::Phase::pair_unseen_events, [&](hypothesis::Judgement& j) { judge_one(j); });
     return rivals;
   }
-  /// What was no rival of a pair's first effect, beside the second one: the first was chosen while the second
-  /// was missing, and may have done the work of two. Nothing where the second is no first by itself.
+  /// Tries the remaining hypotheses with a pair's second effect. The first effect was selected without the
+  /// second one and may have compensated for two. Empty if the second effect cannot be a first one by itself.
   [[nodiscard]] std::vector<hypothesis::Judgement> beside_second(const hypothesis::Stage& stage,
                                                                  const hypothesis::Judgement& pair) const {
     const auto second = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& single) {
@@ -293,8 +293,8 @@ class Diagnoser {
     judge_leading(pairs);
     return pairs;
   }
-  /// Tries the pairs between those that hold: each effect was fitted beside one partner, which may not be the
-  /// best one for it. Only what would be in the set of the probable ones is worth it.
+  /// Tries new pairs of the effects of accepted pairs, because each effect was fitted with one partner only.
+  /// A pair is tried only if its expected evidence would place it in the set.
   void cross(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& pairs) const {
     std::vector<hypothesis::Judgement> tried = pairs;
     const auto in_set = [&](double gain) { return gain > pairs.front().gain - hypothesis::out_of_set(); };
@@ -316,8 +316,8 @@ class Diagnoser {
   static bool out_of_reach(const hypothesis::Judgement& j, const hypothesis::Judgement& pair) {
     return j.gain < pair.gain - thresholds::evidence.within_reach;
   }
-  /// Fits every hypothesis, but those of these names, beside one that is taken as given; the evidence is that
-  /// of both.
+  /// Fits every hypothesis except `but` with the effect of `first` present. `gain` is the evidence of both
+  /// effects together.
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
                                                           const hypothesis::Judgement& first,
                                                           const std::vector<std::string>& but = {}) const {
@@ -325,7 +325,7 @@ class Diagnoser {
     auto all = hypothesis::all_hypotheses(then.under_test(), then.library, then.component());
     std::erase_if(all, [&](const hypothesis::Hypothesis& h) { return std::ranges::count(but, h.name) > 0; });
     auto pairs = hypothesis::try_hypotheses(then, std::move(all), options_.progress);
-    // a rival of the best hypothesis may only have started badly
+    // A competitor of the best hypothesis in the same slot is kept: its start may have been poor.
     const int slot = pairs.empty() || pairs.front().gain < thresholds::evidence.second
                          ? -1
                          : pairs.front().hypothesis.slot;
@@ -335,7 +335,7 @@ class Diagnoser {
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;
   }
-  /// Keeps the better one of "A beside B" and "B beside A".
+  /// Keeps the better one of the pairs "A with B" and "B with A".
   static void keep_one_order(std::vector<hypothesis::Judgement>& pairs) {
     std::vector<hypothesis::Judgement> kept;
     for (hypothesis::Judgement& j : pairs)
@@ -345,8 +345,8 @@ class Diagnoser {
         kept.push_back(std::move(j));
     pairs = std::move(kept);
   }
-  /// Fits each of the best pair's effects alone, from where the pair ended. What looks like a second effect
-  /// may only be a better start for the first.
+  /// Refits each of the best pair's effects alone from the end of the pair's fit. An apparent second effect
+  /// may only have provided a better start for the first.
   void try_alone(const std::vector<hypothesis::Judgement>& pairs) {
     if (pairs.empty() || !pairs.front().accepted) return;
     const hypothesis::Judgement& pair = pairs.front();
@@ -362,7 +362,7 @@ class Diagnoser {
     }
     best_first(result_.ranked);
   }
-  /// Whether a pair explains what no single effect explains. A rival that was not taken may fit as well.
+  /// Returns whether a pair explains what no single accepted effect explains.
   [[nodiscard]] bool needed(const hypothesis::Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const hypothesis::Judgement& single) {
       return single.accepted &&
@@ -370,13 +370,13 @@ class Diagnoser {
               pair.gain - single.gain < thresholds::evidence.second);
     });
   }
-  /// Judges the hypotheses that might still be as good as the best one, and puts accepted ones first. Where
-  /// none of them holds, three are judged.
+  /// Judges the hypotheses within reach of the best one, and puts accepted ones first. Judges at least three
+  /// if none is accepted.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
     int leading = 0;
-    for (double best = tried.front().gain;;) {  // judging may take away some of the first ones' evidence
+    for (double best = tried.front().gain;;) {  // judging may reduce the evidence of the leading ones
       const int judged = leading;
       while (leading < most &&
              tried[static_cast<std::size_t>(leading)].gain > best - thresholds::evidence.within_reach)
@@ -389,7 +389,7 @@ class Diagnoser {
     if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
     best_first(tried);
   }
-  /// The best evidence among the accepted ones, or among all where none is accepted.
+  /// Returns the highest evidence of the accepted hypotheses, or of all if none is accepted.
   static double best_gain(std::span<const hypothesis::Judgement> judged) {
     const auto better = [](const hypothesis::Judgement& x, const hypothesis::Judgement& y) {
       return x.accepted != y.accepted ? y.accepted : x.gain < y.gain;
@@ -402,7 +402,7 @@ class Diagnoser {
                                                : event::Phase::pair_unseen_events,
          [&](hypothesis::Judgement& j) { judge_one(j); });
   }
-  /// Judges on unseen events, and beside the inputs that are free in time.
+  /// Judges a hypothesis on unseen events and against the inputs that are free in time.
   void judge_one(hypothesis::Judgement& j) const {
     hypothesis::judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
@@ -417,7 +417,7 @@ class Diagnoser {
     });
   }
 
-  /// Does something with each judgement, on all cores.
+  /// Applies `act` to each judgement, in parallel.
   template <class F>
   void each(std::span<hypothesis::Judgement> tried, event::Phase phase, F act) const {
     in_parallel(

@@ -1,6 +1,6 @@
 #pragma once
-// Which physical effect does the model lack? The missing input is inferred first (which side?), then every
-// hypothesis is fitted by itself and judged on events it was not fitted to.
+// Diagnosis of the physical effect that a model lacks. The missing input is inferred first, which shows the
+// side; then every hypothesis is fitted by itself and judged on events that its fit excludes.
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,55 +17,60 @@
 
 namespace swingbank::validate::diagnose {
 
+/// Verdict of a diagnosis.
 enum class Verdict {
-  adequate,     ///< nothing but noise is left
-  missing,      ///< one effect is missing, and it is named
-  confusable,   ///< one of several, which make up 95 % of the probability together
-  unexplained,  ///< none of the known effects explains it
-  interrupted,  ///< a person has ended it: nothing is judged
+  adequate,     ///< the residual is noise
+  missing,      ///< one effect is missing and named
+  confusable,   ///< one of several effects, whose probabilities sum to 95 %
+  unexplained,  ///< no known effect explains the records
+  interrupted,  ///< stopped by the user; no hypothesis is judged
 };
 std::string_view verdict_name(Verdict verdict);
 
+/// Result of a diagnosis.
 struct Diagnosis {
   Verdict verdict = Verdict::adequate;
   hypothesis::Side side = hypothesis::Side::none;
-  thresholds::Ruling ruling;            ///< what decided whether the model is adequate
-  std::string sentence;                 ///< the verdict as a grid engineer reads it
-  std::vector<std::string> effects;     ///< names of one effect, or of several that act together
-  std::vector<std::string> equivalent;  ///< names beside it in the set that makes up 95 %
-  /// Every explanation that has not failed; the most probable first.
+  thresholds::Ruling ruling;            ///< the criterion that decided whether the model is adequate
+  std::string sentence;                 ///< the verdict, for a grid engineer
+  std::vector<std::string> effects;     ///< name of one effect, or names of several that act together
+  std::vector<std::string> equivalent;  ///< the other names in the 95 % set
+  /// Every explanation that was not rejected, most probable first.
   std::vector<hypothesis::Explanation> probabilities;
-  hypothesis::Decision would_decide;  ///< what would tell them apart
-  fit::Fit base;                      ///< the present structure, refitted
-  /// The fewest parameters that must change, if these alone leave nothing but noise: what is wrong then is
-  /// they.
+  hypothesis::Decision would_decide;  ///< measurements that would separate them
+  fit::Fit base;                      ///< the given structure, refitted
+  /// Sparse parameter selection: the smallest set of parameters that explains the records. Empty if no small
+  /// set reduces the residual to noise.
   std::optional<fit::Fewest> wrong;
-  double wrong_evidence = 0;         ///< of only these being wrong, over every parameter refitted [chi2]
-  reduced::FreeInput torque, field;  ///< each beside the model alone
-  laws::LawSearch laws;              ///< laws that were searched, where no known effect explains the records
-  std::vector<hypothesis::Judgement> ranked;  ///< best first
-  event::WhitenedEvents events;               ///< with the noise in which all fits are measured
+  double wrong_evidence = 0;  ///< evidence that only these are wrong, over a refit of every parameter [chi2]
+  reduced::FreeInput torque, field;  ///< each inferred without any added effect
+  laws::LawSearch laws;              ///< user-defined models tried if no known effect explains the records
+  std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
+  event::WhitenedEvents events;               ///< with the noise model of all fits
   sim::Conventions conventions;               ///< of the model
   double seconds = 0;
 };
 
+/// Limits, effort and callbacks of a diagnosis.
 struct DiagnoseOptions {
-  double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the model's parameters
-  double adequate = thresholds::adequacy.misfit;  ///< chi2 per value up to which nothing but noise is left
-  int threads = 0;                                ///< 0: as many as there are cores
-  event::FitEventOptions events = {};             ///< how the records are prepared
-  int leading = 9;                                ///< hypotheses at most that are judged on events left out
-  int firsts = 2;  ///< where no hypothesis holds alone, a second one is tried beside so many, in turn
+  /// Prior standard deviation of the model's parameters, relative.
+  double spread = thresholds::parameters.spread;
+  /// Reduced chi-square up to which the residual counts as noise.
+  double adequate = thresholds::adequacy.misfit;
+  int threads = 0;                     ///< 0: number of cores
+  event::FitEventOptions events = {};  ///< preparation of the records
+  int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events
+  int firsts = 2;  ///< number of first effects of pairs, if no hypothesis is accepted alone
   event::Progress progress;
-  /// Called with a sentence as soon as something is known that the verdict will rest on: what is left and on
-  /// which side, then who leads. May be empty.
+  /// Called with each preliminary result: the residual, the side, then the leading hypothesis. May be empty.
   std::function<void(const std::string& sentence)> told = {};
-  /// Whether a person has asked for an end. What was fitted until then is kept, once the model alone is. May
+  /// Returns whether the user has asked to stop. Completed fits are kept once the given model is fitted. May
   /// be empty.
   std::function<bool()> stop = {};
 };
 
-/// Throws InputError as its parts do; needs at least two events to judge.
+/// Runs the diagnosis. Requires at least two events. Throws InputError for records or a model that cannot be
+/// used.
 Diagnosis diagnose(const plant::PlantModel& model, std::vector<record::Record> records,
                    const DiagnoseOptions& options = {});
 

@@ -26,7 +26,7 @@ const reduced::FreeInput* better_input(const Diagnosis& d) {
   return field ? &d.field : nullptr;
 }
 
-/// Model less measured [pu].
+/// Returns modelled - measured [pu].
 std::vector<double> difference(const std::vector<double>& model, const std::vector<double>& measured) {
   std::vector<double> r(measured.size());
   std::ranges::transform(model, measured, r.begin(), std::minus<>());
@@ -41,14 +41,14 @@ double share_inside(const event::FitEvent& e, const std::vector<double>& residua
   }
   return static_cast<double>(inside) / compared;
 }
-/// Of one channel.
+/// Returns the shapes of one channel.
 std::vector<std::vector<double>> shapes_of(const fit::VoltageDoubt& doubt, std::size_t channel) {
   std::vector<std::vector<double>> shapes;
   for (const auto& shape : doubt.shapes) shapes.push_back(shape[channel]);
   return shapes;
 }
 
-/// What the played-in voltage's errors leave in an event, before and after.
+/// Residual shapes of the played-in voltage's errors, for the models before and after the addition.
 struct Doubts {
   fit::VoltageDoubt before, after;
 };
@@ -64,8 +64,8 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
   r.scale = unit.scale;
   r.measured = event.measured(output);
   const auto quiet = static_cast<std::size_t>(event.start.samples);
-  // Before the event the residual is the channel's noise, unless a fit bends the start to mimic what is
-  // missing: the quieter of the two is believed.
+  // The pre-event residual is the channel's noise, unless a fit biases the start to compensate for a missing
+  // effect. The lower of the two estimates is used.
   const auto noise_of = [&](const fit::Fit& fit) {
     const auto residual = difference(fit.events[e].model[c], r.measured);
     return compare::estimate_noise(std::span(residual).first(quiet), unit.floor);

@@ -1,5 +1,5 @@
 #pragma once
-// A diagnosis as one page to hand on, and as JSON with the same figures.
+// Report of a diagnosis as one HTML page, and as JSON with the same figures.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -10,49 +10,50 @@
 
 namespace swingbank::validate::diagnose {
 
-/// One measured channel of one event, with the refitted model as it is (before) and with what it lacks
-/// (after).
+/// One measured channel of one event, with the refitted model before and after the addition of the missing
+/// effect.
 struct ReportChannel {
   std::string name, unit;
-  double scale = 1, noise = 0;                  ///< units in 1 pu; standard deviation [pu]
-  std::vector<double> measured, before, after;  ///< [pu]; after is empty where nothing was added
+  double scale = 1, noise = 0;                  ///< conversion from 1 pu; noise standard deviation [pu]
+  std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
   compare::ErrorMap map_before, map_after;
-  double inside_before = 0, inside_after = 0;  ///< share of samples within the 99 % band of the noise
+  double inside_before = 0, inside_after = 0;  ///< share of samples inside the 99 % band of the noise
 };
+/// One event of the report.
 struct ReportEvent {
   const event::FitEvent* event = nullptr;
   std::vector<compare::Window> windows;
   std::vector<ReportChannel> channels;
-  double before = 0, after = 0;                ///< RMS of the whitened residual [noise]
-  double unseen_before = 0, unseen_after = 0;  ///< the same, not fitted to this event; NaN: not tried
+  double before = 0, after = 0;                ///< RMS of the whitened residual [noise standard deviations]
+  double unseen_before = 0, unseen_after = 0;  ///< the same from a fit without this event; NaN: not tried
 };
-/// What JSON and page are both made of.
+/// Common content of JSON and page.
 struct ReportFigures {
-  const fit::Fit* after = nullptr;  ///< null: nothing was added
-  std::string after_name;           ///< "SEXS", "the inferred field voltage"
+  const fit::Fit* after = nullptr;  ///< null: no addition
+  std::string after_name;           ///< for example "SEXS", "the inferred field voltage"
   std::vector<ReportEvent> events;
 };
-/// `after` is the best hypothesis where one was accepted, else the law that was found, else the inferred
-/// input that leaves less. Refers to
-/// `diagnosis`, which must outlive it.
+/// Returns the figures. `after` is the best hypothesis if one was accepted, otherwise the user-defined model
+/// that was found, otherwise the inferred input with the lower chi2. Refers to `diagnosis`, which must
+/// outlive the result.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 
-/// Verdict, evidence, parameters and error maps; no samples (validate/diagnose/README.md).
+/// Returns verdict, evidence, parameters and error maps, without samples (validate/diagnose/README.md).
 nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& diagnosis,
                               const report::Provenance& provenance);
-/// One self-contained page. The JSON is part of it (element "figures"), so that a program can read what a
-/// person reads.
+/// Returns one self-contained page. It contains the JSON (element "figures"), so that programs can read the
+/// same figures.
 std::string diagnosis_html(const plant::PlantModel& model, const Diagnosis& diagnosis,
                            const report::Provenance& provenance,
                            const std::vector<compare::Played>& played = {});
 
-/// The events of the model as it is, with what it lacks where an effect or a law was accepted, and with its
-/// parameters refitted: the last counts.
+/// Plays the events into three models: the given one, the one with the accepted addition (if any), and the
+/// given one with refitted parameters. The last model decides the exit code.
 std::vector<compare::Played> play_models(const plant::PlantModel& model, const Diagnosis& diagnosis,
                                          const thresholds::Acceptance& by,
                                          const compare::CompareOptions& options = {});
 
-/// Hashes of model and records, version and command line.
+/// Returns hashes of model and records, version and command line.
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& diagnosis,
                                         const std::string& command_line);
 

@@ -17,8 +17,8 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kBars = 12;          // hypotheses drawn; the table holds all
-constexpr std::size_t kLeastProbable = 4;  // explanations drawn, if the set is smaller
+constexpr std::size_t kBars = 12;          // maximum number of plotted hypotheses; the table holds all
+constexpr std::size_t kLeastProbable = 4;  // number of plotted explanations if the set is smaller
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
@@ -120,7 +120,7 @@ class DiagnosisPage {
     page_.table(table);
     tolerance();
   }
-  /// How much of each channel lies within the stated tolerance.
+  /// Adds the share of each channel's samples within the stated tolerance.
   void tolerance() {
     report::Table table{
         "Share of samples within the stated tolerance, the 99 % band of each channel's noise; noise alone "
@@ -213,7 +213,7 @@ class DiagnosisPage {
     page_.table(table);
   }
 
-  /// Where a few wrong parameters are all that it takes.
+  /// Adds the section on wrong parameters, if a small set of them explains the records.
   void few_wrong() {
     if (!d_.wrong) return;
     page_.section("Which parameters are wrong");
@@ -236,9 +236,9 @@ class DiagnosisPage {
   }
 
   void parameters() {
-    if (!with_after() && !d_.ruling.adequate) return;  // fitted values of a model that is rejected
+    if (!with_after() && !d_.ruling.adequate) return;  // values of a rejected model are not shown
     const fit::Fit& last = with_after() ? *figures_.after : d_.base;
-    if (last.parameters.empty()) return;  // an inferred input
+    if (last.parameters.empty()) return;  // the addition is an inferred input
     page_.section("Parameters");
     report::Table table{
         "95 % intervals. The last column says how much of the interval "

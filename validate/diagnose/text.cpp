@@ -13,10 +13,10 @@ namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr std::size_t kHypothesesShown = 12;
-constexpr double kShownFrom = 0.01;  ///< probability of what is shown, if the set is smaller
+constexpr double kShownFrom = 0.01;  ///< minimum probability of a printed explanation, if the set is smaller
 
 void add_inputs(const Diagnosis& d, std::string& text) {
-  if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before
+  if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before the inference
   text += fmt::format(
       "\n"
       "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "

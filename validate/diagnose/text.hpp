@@ -1,13 +1,14 @@
 #pragma once
-// A diagnosis for a terminal: the verdict, the inferred inputs, and every hypothesis that was fitted.
+// Terminal report of a diagnosis: verdict, inferred inputs, and every fitted hypothesis.
 #include <string>
 
 #include "validate/diagnose/diagnose.hpp"
 
 namespace swingbank::validate::diagnose {
 
+/// Returns the diagnosis as text.
 std::string diagnosis_text(const Diagnosis& diagnosis);
-/// Every threshold of a verdict with value, unit and why.
+/// Returns every threshold of a verdict with value, unit and reason.
 std::string thresholds_text();
 
 }  // namespace swingbank::validate::diagnose

@@ -9,14 +9,14 @@
 
 namespace swingbank::validate::fit {
 
-/// A free parameter as the search sees it: z = 0 at the start, steps of order 1.
+/// A free parameter in the coordinate of the search: z = 0 at the start, steps of order 1.
 struct Axis {
   FreeParameter where;
-  double start, low, high;  ///< of the parameter
+  double start, low, high;  ///< of the parameter, in its unit
   bool logarithmic;
-  double unit;  ///< of z, where linear
-  /// The value is rounded to 40 binary digits, so that parameters at the same bound stay equal wherever they
-  /// started from.
+  double unit;  ///< parameter units per unit of z; linear axis only
+  /// Returns the parameter's value, rounded to 40 binary digits. Parameters at the same bound are then equal
+  /// whatever their start values.
   [[nodiscard]] double value(double z) const {
     const double v = logarithmic ? start * std::exp(z) : start + unit * z;
     if (v == 0 || !std::isfinite(v)) return v;

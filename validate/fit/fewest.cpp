@@ -15,13 +15,14 @@
 namespace swingbank::validate::fit {
 namespace {
 
-using Set = std::vector<std::size_t>;  ///< of parameters, in order
+using Set = std::vector<std::size_t>;  ///< indices of parameters, ascending
 
-constexpr std::size_t kBeam = 60;     ///< sets of each size that are kept
-constexpr std::size_t kRefitted = 3;  ///< sets of each size that are refitted
-constexpr std::size_t kTied = 6;      ///< sets of the size that is taken that are refitted to find ties
+constexpr std::size_t kBeam = 60;     ///< number of sets of each size in the beam
+constexpr std::size_t kRefitted = 3;  ///< number of sets of each size that are refitted
+/// Number of sets of the selected size that are refitted to find alternatives.
+constexpr std::size_t kTied = 6;
 
-constexpr double kExactly = 1e-6;  ///< a share by which what is held exactly may move, for the algebra
+constexpr double kExactly = 1e-6;  ///< relative prior standard deviation that represents a fixed value
 
 const FitOptions kSearch = {.lenient = true};
 
@@ -61,10 +62,10 @@ class Selection {
     double taken = chosen.cost;
     for (std::size_t size = 1; size < beams_.size(); ++size) {
       if (stopped()) return back;
-      if (taken - penalised(all_) < options_.each) break;  // every other parameter together earns no more
+      if (taken - penalised(all_) < options_.each) break;  // no other parameters can earn more
       const auto& [refitted, best] = best_of(size);
       report(event::Phase::parameter_subsets, size, beams_.size() - 1);
-      // a set of this size may look poor where the next one holds two that work together
+      // A set may look poor although the next size contains two parameters that act together.
       if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
         taken = refitted.cost;
         chosen = refitted;
@@ -78,7 +79,8 @@ class Selection {
     while (exchange(set, chosen)) {
     }
     std::vector<double> rises = evidence(set, chosen.fit);
-    // one that earned its place only while the others moved a little is no news where they stay
+    // A parameter may have earned its place only because the others moved slightly; it is dropped if they are
+    // fixed.
     for (auto least = std::ranges::min_element(rises); least != rises.end() && *least < options_.each;
          least = std::ranges::min_element(rises)) {
       set = without(set, static_cast<std::size_t>(least - rises.begin()));
@@ -110,11 +112,10 @@ class Selection {
       throw InputError(
           {"the model cannot be fitted", "the model", f.failed, "correct the model or leave the record out"});
   }
-  /// Curvature of the cost where all are free, and where that is, in units of what is believed of the
-  /// parameters.
+  /// Computes the Hessian of the cost at the full fit, and the location of that fit, in units of the priors.
   void learn_curvature() {
     const auto n = static_cast<Eigen::Index>(free_.size());
-    curvature_ = Eigen::MatrixXd::Identity(n, n);  // that of the beliefs
+    curvature_ = Eigen::MatrixXd::Identity(n, n);  // of the priors
     for (std::size_t e = 0; e < events_.size(); ++e)
       curvature_ += information(
           event_slopes({all_.plant, tested_.conventions}, events_.whitened(e), all_.events[e].state, free_));
@@ -126,15 +127,15 @@ class Selection {
                    : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
-  /// What the curvature foretells if these move and the others stay within what is right: by how much the
-  /// cost exceeds that with all free, where all end, and the log determinant of what is known of them
-  /// (Fit::occam).
+  /// Prediction of the quadratic model if a set is free and the other parameters keep to the tolerance of a
+  /// correct value. `excess`: cost above that of the full fit; `at`: location of the optimum; `occam`: log
+  /// determinant of the posterior precision (Fit::occam).
   struct Foretold {
     double excess = 0, occam = 0;
     Eigen::VectorXd at = {};
   };
   [[nodiscard]] Foretold foretold(const Set& set) const { return foretold(set, options_.right); }
-  /// `right`: standard deviation of the others about what is believed of them, as a share of it.
+  /// `right`: prior standard deviation of the other parameters, relative.
   [[nodiscard]] Foretold foretold(const Set& set, double right) const {
     const Eigen::VectorXd toward = curvature_ * at_;
     Eigen::MatrixXd held = curvature_;
@@ -154,14 +155,14 @@ class Selection {
     f.occam = known.vectorD().array().log().sum() - believed;
     return f;
   }
-  /// The sets of every size that cost least, on the curvature.
+  /// Fills the beams: the sets of every size with the lowest predicted cost.
   void grow() {
     beams_ = {{{0, {}}}};
     for (std::size_t size = 1; size <= std::min(options_.most, free_.size()); ++size)
       beams_.push_back(grown(beams_.back()));
     refitted_.resize(beams_.size());
   }
-  /// The best sets with one more parameter.
+  /// Returns the best sets with one more parameter.
   [[nodiscard]] std::vector<Ranked> grown(const std::vector<Ranked>& beam) const {
     std::vector<Ranked> next;
     std::set<Set> known;
@@ -178,11 +179,11 @@ class Selection {
     next.resize(std::min(next.size(), kBeam));
     return next;
   }
-  /// Evidence over every parameter free, less what each of these has to earn.
+  /// Returns the gain in evidence over the full fit, less the price of each parameter.
   [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
     return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
   }
-  /// Whether even the set that the curvature thinks most of has too little evidence once it is refitted.
+  /// Returns whether even the set with the highest predicted evidence has too little after its refit.
   [[nodiscard]] bool hopeless() {
     if (options_.least == -std::numeric_limits<double>::infinity()) return false;
     double most = -std::numeric_limits<double>::infinity();
@@ -196,7 +197,7 @@ class Selection {
       }
     return size == 0 || worth(best_of(size).first.cost, best.occam, size) < options_.least;
   }
-  /// Where the curvature foretells that a parameter ends.
+  /// Returns the value of a parameter at the predicted optimum.
   [[nodiscard]] double foretold_value(const Foretold& there, std::size_t i) const {
     const double believed = parameter_value(tested_.plant, free_[i].id),
                  z = there.at[static_cast<Eigen::Index>(i)];
@@ -204,16 +205,16 @@ class Selection {
                ? believed * std::exp(z * free_[i].spread)
                : believed + z * axis_unit(tested_.plant, free_[i]);
   }
-  /// A fit in which these alone move, and what it would cost if the others moved within what is right.
+  /// A fit with only these parameters free, and its estimated cost if the others move within the tolerance.
   struct Refit {
     Fit fit;
     double cost = std::numeric_limits<double>::infinity();
   };
-  /// Fits these alone from where the curvature foretells their optimum. A fit that ends where the curvature
-  /// has it has missed nothing; any other one gets a second start, at the believed values. Of what the fit
-  /// costs beyond that with all free, the others would take off the share that the curvature foretells. A
-  /// limit costs no more once it is not met, so that the curvature foretells too much of its believed value:
-  /// then what is left beside the others is no less than they leave on the curvature.
+  /// Fits a set from its predicted optimum. If the fit does not reach the predicted cost, it is repeated from
+  /// the given values. Of the fit's cost above the full fit, the other parameters would remove the predicted
+  /// share. The quadratic model overestimates the cost of a limit's given value, because a limit that is not
+  /// reached costs nothing more. The estimate is therefore at least the predicted excess, but not above the
+  /// fit's own excess.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Foretold fixed = foretold(set, kExactly), soft = foretold(set);
     FitOptions o = kSearch;
@@ -238,7 +239,7 @@ class Selection {
       r.cost = most + std::max(over * soft.excess / fixed.excess, std::min(over, soft.excess));
     return r;
   }
-  /// The best of this size, of those that the curvature likes best.
+  /// Returns the best set of this size, of those with the lowest predicted cost.
   const std::pair<Refit, Set>& best_of(std::size_t size) {
     auto& best = refitted_[size];
     if (best) return *best;
@@ -252,8 +253,8 @@ class Selection {
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
     return set;
   }
-  /// Drops members that the others have made needless, the least first; of a smaller size, only few sets were
-  /// refitted.
+  /// Drops members that the others have made redundant, the least important first. This is needed because
+  /// only few sets of a smaller size were refitted.
   void drop_idle(Set& set, Refit& chosen) const {
     while (!set.empty()) {
       std::vector<double> evidence;
@@ -270,13 +271,13 @@ class Selection {
       chosen = std::move(cheapest);
     }
   }
-  /// By how much the cost rises without each of the set, the others exactly as believed.
+  /// Returns the rise of the cost without each member of the set, all others at their given values.
   [[nodiscard]] std::vector<double> evidence(const Set& set, const Fit& only) const {
     std::vector<double> rises;
     for (std::size_t i = 0; i < set.size(); ++i) rises.push_back(gain(refit(without(set, i)).fit, only));
     return rises;
   }
-  /// The set as a person reads it, from fits in which the others stay exactly as believed.
+  /// Fills the result from fits in which the other parameters keep their given values.
   void describe(const Set& set, const std::vector<double>& rises, const Refit& chosen, Fewest& back) const {
     const double excess = penalised(back.fit) - penalised(all_);
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -292,13 +293,13 @@ class Selection {
       if (other.size() == 2) back.alternatives.push_back({names_of(gone), names_of(other)});
     back.fit = chosen.fit;
   }
-  /// Whether a set leaves no more than the chosen one; each is refitted once.
+  /// Returns whether a set explains the records as well as the chosen one. Each set is refitted once.
   [[nodiscard]] bool does_as_well(const Set& set, const Refit& chosen) const {
     const auto known = as_well_.find(set);
     if (known != as_well_.end()) return known->second;
     return as_well_[set] = refit(set).cost - chosen.cost < options_.each;
   }
-  /// What would do in place of one of the set.
+  /// Returns the names of single parameters that could replace one of the set.
   [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Refit& chosen) const {
     std::vector<std::string> names;
     std::size_t tried = 0;
@@ -322,8 +323,9 @@ class Selection {
     for (const std::size_t i : set) names.push_back(name(i));
     return names;
   }
-  /// A single parameter that does what two are wrong in, as the gain behind a regulator's two, may ask for a
-  /// third to make up for it. Where the pair in its place makes others needless, the smaller set is taken.
+  /// Replaces one or two members by a pair, if the pair makes other members redundant. A single parameter may
+  /// compensate for two wrong ones and may then require a third. Example: the gain behind a regulator for the
+  /// regulator's two gains. Returns whether the set changed.
   [[nodiscard]] bool exchange(Set& set, Refit& chosen) const {
     as_well_.clear();
     for (const auto& [gone, other] : exchanges(set, chosen)) {
@@ -342,9 +344,9 @@ class Selection {
     }
     return false;
   }
-  using Exchange = std::pair<Set, Set>;  ///< gone, in their place
-  /// Pairs that would do in place of one or two of the set, such as the two gains of a regulator and the gain
-  /// behind it. Where a part of the exchange is an alternative by itself it is told alone.
+  using Exchange = std::pair<Set, Set>;  ///< removed members, replacement
+  /// Returns one or two parameters that could replace members of the set. A replacement that contains a
+  /// smaller one is left out.
   [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
     const double here = foretold(set).excess;
     std::vector<Exchange> found;
@@ -361,7 +363,7 @@ class Selection {
         std::ranges::set_difference(r.set, set, std::back_inserter(other));
         std::ranges::set_difference(set, r.set, std::back_inserter(gone));
         if (gone.empty() || other.size() > 2 || told(gone, other)) continue;
-        // beams begin with what the curvature likes best: those behind would be worse still
+        // Beams are in ascending order of predicted cost, so all later sets are worse.
         if (tried++ == kTied || foretold(r.set).excess > here + options_.each) break;
         if (does_as_well(r.set, chosen)) found.emplace_back(std::move(gone), std::move(other));
       }
@@ -381,7 +383,7 @@ class Selection {
   Eigen::VectorXd at_;
   std::vector<std::vector<Ranked>> beams_;  ///< [size of the sets]
   std::vector<std::optional<std::pair<Refit, Set>>> refitted_;
-  mutable std::map<Set, bool> as_well_;  ///< of does_as_well()
+  mutable std::map<Set, bool> as_well_;  ///< results of does_as_well()
 };
 
 }  // namespace

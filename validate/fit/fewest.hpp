@@ -1,6 +1,6 @@
 #pragma once
-// Which parameters are wrong: the fewest that must change for the model to explain the records, while every
-// other one stays as it is believed, or within what a right value is off by.
+// Sparse parameter selection: the smallest set of parameters that must change for the model to explain the
+// records. All other parameters keep their given values, within the tolerance of a correct value.
 #include <functional>
 #include <limits>
 #include <string>
@@ -11,52 +11,54 @@
 
 namespace swingbank::validate::fit {
 
-/// A parameter that the records say is wrong.
+/// A parameter whose given value the records contradict.
 struct WrongParameter {
-  FittedParameter fit;  ///< start: as believed; value and interval with the others of the set free
-  double evidence =
-      0;  ///< by how much the cost rises if it keeps its believed value, the rest of the set refitted
-  double share = 0;  ///< of what the model leaves beyond the best fit, that returns with it
-  /// Names of parameters that would do in its place: the records cannot tell them apart.
+  FittedParameter fit;  ///< start: given value; value and interval: with the other parameters of the set free
+  /// Rise of the cost with this parameter at its given value and the rest of the set refitted.
+  double evidence = 0;
+  /// Fraction of the excess cost over the full fit that returns with this parameter at its given value.
+  double share = 0;
+  /// Names of single parameters that explain the records equally well in its place.
   std::vector<std::string> tied = {};
 };
 
-/// Parameters that, changed together in place of some that are named, explain the records as well.
+/// Parameters `instead` that, changed together in place of `named`, explain the records equally well.
 struct Alternative {
   std::vector<std::string> named, instead;
 };
 
+/// Result of the sparse parameter selection.
 struct Fewest {
-  std::vector<WrongParameter> wrong;      ///< the largest share first
-  std::vector<Alternative> alternatives;  ///< where no single one would do (WrongParameter::tied)
-  Fit fit;                                ///< with these free and all others as believed
-  double before = 0;                      ///< chi2 per value of the model as it is, events' own states fitted
-  double best = 0;                        ///< chi2 per value with every parameter free
-  event::WhitenedEvents events;           ///< with the noise that the fits are measured in
+  std::vector<WrongParameter> wrong;      ///< in descending order of evidence
+  std::vector<Alternative> alternatives;  ///< pairs; single replacements are in WrongParameter::tied
+  Fit fit;                       ///< with the named parameters free and all others at their given values
+  double before = 0;             ///< reduced chi-square of the given model, with each event's state fitted
+  double best = 0;               ///< reduced chi-square with every parameter free
+  event::WhitenedEvents events;  ///< with the noise model of all fits here
 };
 
+/// Limits of the sparse parameter selection.
 struct FewestOptions {
-  std::size_t most = 8;  ///< so many at most
-  double each = 10;      ///< what a parameter must earn [chi2]
-  /// Standard deviation of a value that is right about the one that is believed, as a share of it: parameters
-  /// that are not named may move by that much while sets are compared (spike and slab; George and McCulloch,
-  /// J. Am. Stat. Assoc. 88, 1993, p. 881). In what is returned they stay as they are.
+  std::size_t most = 8;  ///< maximum size of the set
+  double each = 10;      ///< minimum evidence of each parameter [chi2]
+  /// Prior standard deviation of a correct parameter about its given value, relative. Parameters outside the
+  /// set move within it while sets are compared (spike and slab; George and McCulloch, J. Am. Stat. Assoc.
+  /// 88, 1993, p. 881). The returned fit keeps them at their given values.
   double right = 0.01;
   event::Progress progress = {};
-  /// Asked between sets; true: nothing is named.
+  /// Called between sets; if it returns true, no parameter is named.
   std::function<bool()> stop = {};
-  /// Every parameter fitted to these events, in their noise, with errors. Null: that is done here, and the
-  /// noise is measured through it.
+  /// A fit of every parameter to these events with this noise model and with errors. Null: the fit is made
+  /// here, and the noise is measured through it.
   const Fit* all = nullptr;
-  /// Evidence over every parameter free (criterion), less `each` for each one named, below which nothing is
-  /// named.
+  /// No parameter is named if the criterion improves on the full fit by less than this, after subtracting
+  /// `each` for every named parameter.
   double least = -std::numeric_limits<double>::infinity();
 };
 
-/// Sets of parameters are compared on the curvature of the cost where all are free, and the best of each size
-/// are refitted, with the others within what is right, from where it foretells their optimum. `free` may
-/// move; what is believed of those that do stands in their spread. Throws InputError where the model cannot
-/// be fitted.
+/// Searches sets of parameters by beam search on the quadratic model of the cost about the full fit. The best
+/// sets of each size are refitted from the optimum that the quadratic model predicts. `free` lists the
+/// candidates with their priors. Throws InputError if the model cannot be fitted.
 Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
               const std::vector<FreeParameter>& free, const FewestOptions& options = {});
 

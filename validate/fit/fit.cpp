@@ -20,11 +20,11 @@ namespace {
 
 using namespace fitting;
 
-/// A search of a few steps must not end on refused steps, which cost no slopes. So kRefusedSteps more steps
-/// are tried where at most kFewSteps are allowed.
+/// A search of few steps must not end on refused steps, which need no sensitivities. With at most kFewSteps
+/// steps, kRefusedSteps more are tried.
 constexpr int kFewSteps = 4, kRefusedSteps = 3;
 
-/// Counts the steps taken, and stops the search when they are enough or the goal is out of reach.
+/// Counts the steps, and stops the search after enough steps or if the goal is out of reach.
 class Steps : public ceres::IterationCallback {
  public:
   Steps(int enough, const Goal& goal) : enough_(enough), goal_(goal) {}
@@ -41,7 +41,7 @@ class Steps : public ceres::IterationCallback {
   }
   [[nodiscard]] int taken() const { return taken_; }
   [[nodiscard]] bool out_of_reach() const { return out_of_reach_; }
-  /// Twice Ceres' cost at the best point.
+  /// Twice the cost of Ceres at the best point.
   [[nodiscard]] double cost() const {
     return costs_.empty() ? std::numeric_limits<double>::infinity() : costs_.back();
   }
@@ -56,7 +56,7 @@ class Steps : public ceres::IterationCallback {
 
   int enough_, taken_ = 0;
   Goal goal_;
-  std::vector<double> costs_;  ///< at the start and after each step
+  std::vector<double> costs_;  ///< at the start and after each successful step
   bool out_of_reach_ = false;
 };
 
@@ -102,9 +102,10 @@ class Search {
   }
 
  private:
-  static constexpr int kRound = 4;  ///< iterations between two looks at the misfit
+  /// Maximum number of iterations between updates of the reduced chi-square.
+  static constexpr int kRound = 4;
 
-  /// Throws the values that were reached, without a look at the events.
+  /// Throws the values reached so far, without a simulation of the events.
   [[noreturn]] void interrupt(Fit fit) const {
     fit.plant = moved(setting_, z_.data());
     collect_parameters(fit);
@@ -115,7 +116,7 @@ class Search {
     throw InterruptedFit{{}, std::move(fit)};
   }
 
-  /// chi2 per value, at least 1.
+  /// Returns the reduced chi-square, at least 1.
   double misfit() const {
     double chi2 = 0;
     int values = 0;
@@ -130,8 +131,8 @@ class Search {
     }
     return std::max(1.0, chi2 / values);
   }
-  /// A search of at most so many iterations; true if it converged. What stands at a bound then is held there
-  /// while the others go on, as long as that is something else each time.
+  /// Searches for at most `iterations` iterations; returns true if the search converged. Variables at a bound
+  /// are then held while the others continue, until the held set repeats.
   bool solve(int iterations, int& done) {
     const int before = done;
     bool converged = search(iterations, done);
@@ -139,11 +140,11 @@ class Search {
            bounds_->hold())
       converged = search(iterations - (done - before), done);
     bounds_->release();
-    for (EventCost* c : costs_) c->look_at(1);  // for whoever asks for slopes at the end
+    for (EventCost* c : costs_) c->look_at(1);  // for the sensitivities of the final errors
     return converged;
   }
   bool search(int iterations, int& done) {
-    // a start that cannot be evaluated comes back in the summary: no line of the log
+    // A start that cannot be evaluated is reported in the summary; the log line is suppressed.
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;
@@ -157,13 +158,12 @@ class Search {
     o.function_tolerance = options_.enough;
     o.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     o.logging_type = ceres::SILENT;
-    o.num_threads = 1;  // hypotheses run side by side
+    o.num_threads = 1;  // hypotheses run in parallel
     o.initial_trust_region_radius = 1e2;
     o.max_num_consecutive_invalid_steps = 12;
-    // A step that bounds cut short is tried as it is, because a search along it costs several Jacobians a
-    // step.
+    // No line search along a step that bounds cut short: it would cost several Jacobians per step.
     o.max_num_line_search_step_size_iterations = 0;
-    o.update_state_every_iteration = true;  // so that an interrupted search keeps its best point
+    o.update_state_every_iteration = true;  // an interrupted search keeps its best point
     ceres::Solver::Summary summary;
     ceres::Solve(o, problem_.get(), &summary);
     done += std::max(1, steps.taken());
@@ -187,7 +187,7 @@ class Search {
     blocks.push_back(states_[e].data());
     problem_->AddResidualBlock(cost, nullptr, blocks);
     problem_->AddResidualBlock(new Belief(state_beliefs(event), &discrepancy_), nullptr, {states_[e].data()});
-    // an instant on a sample would change sides with it
+    // A switching time must not reach a sample, because the sample would change sides.
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
     for (std::size_t k = 0; k < event.switchings.size(); ++k) {
@@ -216,7 +216,7 @@ class Search {
     auto walls = std::make_unique<Walls>(setting_, &discrepancy_);
     if (!walls->empty()) problem_->AddResidualBlock(walls.release(), nullptr, {z_.data()});
   }
-  /// Why the start cannot be evaluated.
+  /// Returns the reason why the start cannot be evaluated.
   std::string reason() const {
     const sim::plant::Plant plant = moved(setting_, z_.data());
     try {
@@ -229,7 +229,7 @@ class Search {
     return "its parameters contradict each other";
   }
 
-  /// What lenient steps get past may stop others.
+  /// Returns the final response, with lenient steps if exact ones fail.
   playin::Response answer_at_end(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
     if (!setting_.lenient || options_.brief) return costs_[e]->answer(plant, at, setting_.lenient);
     try {
@@ -252,8 +252,8 @@ class Search {
     }
     fit.fitted += static_cast<int>(z_.size());
   }
-  /// Collects the values and their errors: the inverse of the curvature, with the events' states projected
-  /// out.
+  /// Collects the values and their standard errors from the inverse Hessian, with the events' states
+  /// projected out.
   void collect_parameters(Fit& fit) const {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
@@ -294,7 +294,7 @@ class Search {
       fit.parameters.push_back(p);
     }
   }
-  /// Adds what one event knows of the parameters where the fit ended, its own state projected out.
+  /// Adds the Hessian of one event at the end of the fit, with the event's state projected out.
   void add_curvature(std::size_t e, Eigen::MatrixXd& curvature) const {
     using Row = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto rows = static_cast<Eigen::Index>(costs_[e]->num_residuals());
@@ -316,8 +316,8 @@ class Search {
   const Setting& setting_;
   const FitOptions& options_;
   double discrepancy_ = 1.0;
-  bool out_of_reach_ = false;                                 ///< of the goal
-  double reached_ = std::numeric_limits<double>::infinity();  ///< cost that the last search ended with
+  bool out_of_reach_ = false;                                 ///< the goal cannot be reached
+  double reached_ = std::numeric_limits<double>::infinity();  ///< cost at the end of the last search
   std::vector<double> z_;
   std::vector<std::vector<double>> states_;
   std::vector<EventCost*> costs_;

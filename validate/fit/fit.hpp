@@ -1,7 +1,7 @@
 #pragma once
-// Least squares over several events at once: the plant's free parameters, common to all, and what belongs to
-// one event only (when exactly it was switched, where exactly the plant stood). Levenberg-Marquardt (Ceres)
-// on the sensitivities of the driven plant.
+// Bayesian least squares over several events. The plant's free parameters are common to all events; switching
+// times and the initial state belong to one event each. The optimiser is Levenberg-Marquardt (Ceres) on the
+// sensitivities of the playback model.
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,133 +14,143 @@ namespace swingbank::validate::fit {
 
 using event::EventState, event::InputKind;
 
-/// A parameter that may move. `spread` is how far its value is believed to be off: relative where the
-/// parameter is positive by nature (it is then fitted as a logarithm), absolute otherwise; 0: no belief.
+/// A parameter that may move. `spread` is its prior standard deviation: relative if the parameter is positive
+/// by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
 struct FreeParameter {
   sim::plant::ParameterId id;
   double spread = 0.3;
 };
 
-/// Parameters of a block that a fit may move: no codes, none that sits at its neutral value or at zero, and
-/// none that says when something happens.
+/// Returns the parameters of a block that a fit may move. Codes, parameters at zero or at their null value,
+/// and parameters that set the time of an action are left out.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread);
-/// The same of all blocks but the instruments.
+/// The same for all blocks except the instruments.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double spread);
 
-/// Present values of the free parameters.
+/// Returns the present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
 
+/// Fit of one event: its state, response and residual.
 struct EventFit {
   EventState state;
   double chi2 = 0;                         ///< sum of squared whitened residuals
-  int values = 0;                          ///< how many
+  int values = 0;                          ///< number of compared values
   std::vector<std::vector<double>> model;  ///< [channel][sample]
-  std::vector<std::vector<double>>
-      residual;             ///< model - measured, whitened: [channel][sample]; 0 where not compared
-  event::NoiseModel noise;  ///< what chi2 and residual are measured in
-  /// chi2 per value: 1 where nothing but noise is left.
+  /// Model - measured, whitened: [channel][sample]; 0 at samples that are not compared.
+  std::vector<std::vector<double>> residual;
+  event::NoiseModel noise;  ///< noise model in which chi2 and residual are computed
+  /// Reduced chi-square [-]; 1 if the residual is noise only.
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
 
+/// A fitted parameter with standard error and 95 % interval.
 struct FittedParameter {
   FreeParameter where;
   std::string block, name, unit;
   double start = 0, value = 0;
-  double error = 0;          ///< standard error from the curvature [unit]; NaN where the fit is singular
+  double error = 0;          ///< standard error from the curvature [unit]; NaN if the fit is singular
   double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
-  /// At the end of its range, or held by an ordering (X''d > Xl): the interval is then not valid.
+  /// At the end of its range, or at an ordering constraint (X''d > Xl). The interval is then not valid.
   bool at_bound = false;
-  std::string held_by = {};  ///< that ordering, "X''d > Xl"; empty: none
+  std::string held_by = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
-  /// Share of the interval that the records decide; the belief decides the rest. 0: the records decide
-  /// nothing, 1: all.
+  /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value; 1:
+  /// the records alone determine it.
   double decided = 0;
 };
 
+/// Result of a fit to several events.
 struct Fit {
   sim::plant::Plant plant;  ///< with the fitted values
   std::vector<FittedParameter> parameters;
   std::vector<EventFit> events;
-  event::NoiseModel noise;      ///< what chi2 is measured in
-  double chi2 = 0, belief = 0;  ///< chi2 of the data, and the cost of the beliefs
-  int values = 0, fitted = 0;   ///< numbers compared; free numbers, those of the events included
-  /// Log determinant of what records and beliefs know of the parameters, in units of what the beliefs knew. A
-  /// parameter that the records do not decide adds nothing. NaN without errors.
+  event::NoiseModel noise;      ///< noise model in which chi2 is computed
+  double chi2 = 0, belief = 0;  ///< chi2 of the data, and of the priors
+  int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
+  /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
+  /// that the records do not determine contributes 0. NaN without errors.
   double occam = 0;
-  /// Chi2 that is gone only because this structure passes less of the voltage's noise than the one it is held
-  /// against: it explains nothing, so data_cost() and criterion() count it back. 0 until count_passed().
+  /// Part of the fall of chi2 that comes only from lower transfer of the voltage noise than in the reference
+  /// structure. It explains nothing, so data_cost() and criterion() add it back. 0 until count_passed().
   double passes_less = 0;
   int iterations = 0;
   bool converged = false;
-  std::string failed;  ///< why the start could not be evaluated; empty if it could
+  std::string failed;  ///< reason why the start could not be evaluated; empty: it could
   [[nodiscard]] double misfit() const { return chi2 / values; }
 };
 
-/// "GENROU.Xdpp (held by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is not valid."; empty
-/// where none is.
+/// Returns for example "GENROU.Xdpp (held by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is not
+/// valid."; empty if no parameter is at a bound.
 std::string bounds_text(const std::vector<FittedParameter>& parameters);
 
-/// The cost that is minimised, where nothing but noise is left; infinite if the fit failed.
+/// Returns chi2 of data and priors, the minimised cost once the reduced chi-square is near 1; infinite if the
+/// fit failed.
 double penalised(const Fit& f);
-/// -2 log of the structure's evidence by Laplace's approximation (MacKay, Neural Computation 4, 1992, p.
-/// 415), up to what all structures share, with what less passed noise took off counted back
-/// (Fit::passes_less). Needs a fit with errors.
+/// Returns -2 log evidence of the structure by Laplace's approximation (MacKay, Neural Computation 4, 1992,
+/// p. 415), up to a constant common to all structures:
+///
+/// \f[ \chi^2 + \sum_i (z_i / \sigma_i)^2 + \ln\det(\Sigma H) \f]
+///
+/// H: half the Hessian of the cost; \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$: prior covariance.
+/// Fit::passes_less is added back. Requires a fit with errors.
 double criterion(const Fit& f);
-/// chi2 of the data alone, counted back in the same way; infinite if the fit failed.
+/// Returns chi2 of the data alone, with Fit::passes_less added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
-/// By how much a cost falls from one fit to another; negative if it rises. Every comparison of two fits goes
-/// through here. Throws std::logic_error where they were made with different noise, because their costs are
-/// then in different units. A fit that failed costs infinitely much in any unit.
+/// Returns the reduction of `cost` between two fits; negative if the cost rises. Every comparison of two fits
+/// uses this function. Throws std::logic_error if the fits have different noise models, because their costs
+/// then have different units. A failed fit has infinite cost in any unit.
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&) = penalised);
 /// The same for chi2 of one event.
 double gain(const EventFit& from, const EventFit& to);
-/// Whether the first fit costs less than the second.
+/// Returns whether fit `a` has the lower penalised cost.
 bool better(const Fit& a, const Fit& b);
-/// Throws std::logic_error where gain() would, for fits that are set beside each other.
+/// Throws std::logic_error if the two fits have different noise models.
 void require_same_noise(const EventFit& a, const EventFit& b);
 
-constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration
+constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration; see event::Playing
 
-/// What a fit has to get to: to cost `cost` (penalised) at most, in as many steps as are left to it and to
-/// the fits that go on from it.
+/// Target of a fit: a penalised cost of at most `cost` within `steps` steps, those of continued fits
+/// included.
 struct Goal {
   double cost = std::numeric_limits<double>::infinity();
   int steps = 0;
 };
 
+/// Effort, tolerances and start of a fit.
 struct FitOptions {
   int iterations = 30;
-  double tolerance = kFitTolerance;  ///< of the integration
-  /// Steps may miss what the channels do not show, and slopes are linear about each step (event::Playing),
-  /// corrected by what steps of the search showed them to be off by. What the fit ends with is measured
-  /// without; its errors are not. Where other steps do not get past the start, these are taken in any case.
+  double tolerance = kFitTolerance;  ///< of the integration; see event::Playing
+  /// The search integrates with an error allowance for states that the channels do not show, and with
+  /// linearised sensitivities (event::Playing). The sensitivities are corrected by secant updates (Broyden)
+  /// during the search. The final cost is computed without the allowance, the errors with it. A fit that
+  /// cannot be evaluated at the start is repeated with this option.
   bool lenient = false;
-  /// It is compared with other brief fits only: a lenient one ends with what its own steps made of the
-  /// answer.
+  /// The fit is compared only with other brief fits. A lenient fit then keeps the response of its own search
+  /// instead of computing it without the allowance.
   bool brief = false;
-  bool start_stands = false;           ///< every event starts in the steady state before it
-  double enough = 1e-5;                ///< relative change of the cost at which the fit stops
-  std::vector<EventState> start = {};  ///< of the events; empty: as prepared
-  std::vector<double> values = {};     ///< of the free parameters, to start from; empty: the plant's
-  bool errors = true;                  ///< of the parameters too: one more look at all slopes
-  /// It ends early where it is out of reach: where the goal would be missed even if every step that is left
-  /// took off as large a share of the cost as the better one of the last two.
+  bool start_stands = false;           ///< every event starts in its pre-event steady state
+  double enough = 1e-5;                ///< relative change of the cost that ends the fit
+  std::vector<EventState> start = {};  ///< start values of the event states; empty: as prepared
+  std::vector<double> values = {};     ///< start values of the free parameters; empty: the plant's
+  bool errors = true;  ///< computes standard errors, which costs one further evaluation of all sensitivities
+  /// The fit ends early if it cannot reach this goal. The prediction assumes that every remaining step
+  /// reduces the cost by the larger relative reduction of the last two steps.
   Goal goal = {};
 };
 
-/// Options to go on where `f` ended; beliefs stay about the plant that is fitted.
+/// Returns options that continue from the end of `f`. The priors stay centred on the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// Fills in everything but the state: what `answer` leaves of that event.
+/// Fills `fit`, except its state, with the comparison of the response `answer` and one event.
 void compare(const event::WhitenedEvents& events, std::size_t event, const playin::Response& answer,
              EventFit& fit);
 
-/// Fits `free` parameters of the plant and every event's own state. A start that cannot be evaluated gives
-/// `failed`; parameters that cannot be are never reached, the search turns back. While the structure is wrong
-/// the misfit is large, and beliefs would count for nothing: parameters would be bent out of all reason to
-/// mimic what is missing. So beliefs weigh as if the noise were as large as the misfit reached, and give way
-/// as it falls.
+/// Fits the `free` parameters of the plant and every event's own state. If the start cannot be evaluated, the
+/// result has `failed` set; later steps to such points are refused. With a wrong structure the residuals
+/// would outweigh the priors, and parameters would be biased to compensate for the missing effect. The
+/// priors' cost is therefore multiplied by the reduced chi-square reached so far, as if the noise variance
+/// were larger by this factor. The factor falls as the fit improves.
 Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options = {});
 

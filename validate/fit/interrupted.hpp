@@ -1,12 +1,12 @@
 #pragma once
-// What an interrupted fit leaves: the best values until then.
+// Result of an interrupted fit: the best values so far.
 #include "base/stop_signal.hpp"
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit {
 
-/// Thrown by fit(), and by what is made of fits, where they were interrupted: `reached` holds plant,
-/// parameters (without errors), chi2, belief and values of the best point, but no events.
+/// Thrown by fit(), and by functions that call it, on interruption. `reached` holds plant, parameters
+/// (without errors), chi2, belief and values of the best point, but no events.
 struct InterruptedFit : Interrupted {
   Fit reached;
 };

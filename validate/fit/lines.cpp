@@ -1,4 +1,4 @@
-// A steady oscillation in what a fit leaves.
+// Detection of a steady oscillation in a fit's residual.
 #include "validate/fit/lines.hpp"
 
 #include <algorithm>
@@ -11,12 +11,13 @@
 namespace swingbank::validate::fit {
 namespace {
 
-constexpr double kHighestLine = 5.0;  ///< [Hz]; beyond it nothing of a plant swings for long
-constexpr double kOfNyquist = 0.8;    ///< an instrument's filter takes what lies above
-constexpr int kFewestPeriods = 2;     ///< in the longest record
-constexpr int kPerResolved = 2;       ///< frequencies looked at for each that can be told apart
+constexpr double kHighestLine = 5.0;  ///< [Hz]; faster oscillations of a plant are damped quickly
+constexpr double kOfNyquist = 0.8;    ///< above this share of the Nyquist frequency an instrument filters
+constexpr int kFewestPeriods = 2;     ///< minimum number of periods in the longest record
+constexpr int kPerResolved = 2;       ///< number of examined frequencies per resolvable one
 
-/// chi2 that a wave of this frequency takes off a whitened residual; 2 of noise.
+/// Returns the reduction of chi2 of a whitened residual by a sine of this frequency; 2 on average for white
+/// noise.
 double taken_off(const std::vector<double>& residual, double turns_per_sample) {
   const Complex turn = std::polar(1.0, constants::turn * turns_per_sample);
   Complex sum = 0, phasor = 1;

@@ -14,20 +14,22 @@
 namespace swingbank::validate::fit {
 namespace {
 
-/// Samples this close to a switching on either side are left out [s].
+/// Samples this close to a switching are left out on either side [s].
 constexpr double kBeside = 0.1;
-/// Median of the square of a normal variable, in units of its variance.
+/// Median of the square of a standard normal variable.
 constexpr double kMedianOfSquare = 0.4549;
-constexpr double kSecondDifference = 6;  ///< variance of x[k-1] - 2 x[k] + x[k+1], in that of white x
-/// Standard deviation of log(second differences / variance) of n white samples is sqrt(kOfRatio / n): the
-/// variance's 2 and the differences' 3.89, less twice the covariance's 2.
+/// Variance of x[k-1] - 2 x[k] + x[k+1], relative to that of white x.
+constexpr double kSecondDifference = 6;
+/// The standard deviation of log(mean square second difference / variance) of n white samples is
+/// sqrt(kOfRatio / n). It combines the variance's 2 and the differences' 3.89, less twice the covariance's 2.
 constexpr double kOfRatio = 2 * 0.944;
 
-/// Residual of a channel, one event after the other. Samples that do not count interrupt it.
+/// Residual statistics of a channel over all events.
 struct Channel {
-  std::vector<double> square;        ///< second differences, of the whole records
-  double quiet = 0, quiet_hf = 0;    ///< before the events: variance, mean square second difference
-  int samples = 0, differences = 0;  ///< how many of each
+  std::vector<double> square;  ///< squared second differences of the whole records
+  double quiet = 0,
+         quiet_hf = 0;  ///< before the events: sums of squared deviations and of squared second differences
+  int samples = 0, differences = 0;  ///< number of samples and of second differences
 };
 
 void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& channel) {
@@ -53,7 +55,7 @@ void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& ch
   }
 }
 
-/// Variance of the noise over that of the pre-event stretch; 1 where that is not white.
+/// Returns the variance of the noise relative to the pre-event segment; 1 if that segment is not white.
 double ratio(Channel channel) {
   const double variance = channel.quiet / channel.samples, hf = channel.quiet_hf / channel.differences;
   const double off = std::log(hf / (kSecondDifference * variance));
@@ -63,15 +65,16 @@ double ratio(Channel channel) {
   return *middle / kMedianOfSquare / kSecondDifference / variance;
 }
 
-constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is measured [Hz]
-constexpr double kGuess = 2e-3;             ///< V may be off by this share of itself beside a switching
-/// Where V was brought back, the square of kGuess is this many times larger.
+constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is estimated [Hz]
+constexpr double kGuess = 2e-3;             ///< standard deviation of V near a switching, relative
+/// The square of kGuess is larger by this factor for reconstructed samples of V.
 constexpr char kSmeared = 40;
-constexpr double kLeastOwnNoise = 0.01;  ///< at least this share of a channel's variance is its own noise
-/// Slow noise matters from this share of the variance of white noise.
+/// Lower limit of the share of a channel's own noise in its variance.
+constexpr double kLeastOwnNoise = 0.01;
+/// Slow noise matters from this variance, relative to that of the white noise.
 constexpr double kMatters = 1e-3;
 
-/// The first `count` values less their mean and slope.
+/// Returns the first `count` values without their mean and linear trend.
 template <class T>
 Eigen::ArrayX<T> detrended(const std::vector<T>& x, int count) {
   const Eigen::Map<const Eigen::ArrayX<T>> values(x.data(), count);
@@ -79,26 +82,26 @@ Eigen::ArrayX<T> detrended(const std::vector<T>& x, int count) {
   return values - values.mean() - (values * ramp).sum() / ramp.square().sum() * ramp;
 }
 
-/// What moves in the band in one stretch of a record: sums over lines, of V (relative), of theta, and of what
-/// an integrated theta moves by from sample to sample.
+/// Power in the band in one segment of a record: sums over frequency bins for V (relative), for theta, and
+/// for the increments of an integrated theta.
 struct Band {
   Eigen::Array3d sum = Eigen::Array3d::Zero(), lines = Eigen::Array3d::Zero();
   void add(const Band& other) {
     sum += other.sum;
     lines += other.lines;
   }
-  /// Variances of white noise of the same density.
+  /// Returns the variances of white noise with the same spectral density.
   [[nodiscard]] Eigen::Vector3d level() const { return sum / lines.max(1.0); }
 };
 
 bool integrated(const event::FitEvent& e) { return e.record.angle == record::AngleSource::integrated; }
 
-/// Neighbouring lines behind a Hann window, of stretches that overlap by half, tell as much as so many times
-/// fewer lines would that know nothing of each other (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70).
+/// Hann windows with 50 % overlap correlate neighbouring bins. The effective number of independent bins is
+/// the number of bins divided by this factor (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, p. 70).
 constexpr double kLinesPerFreedom = 2.06;
 
-/// What a stretch of n samples is multiplied by for its line m: a wave behind a Hann window, less what a mean
-/// and a slope have of it, which in a stretch of a fifth of a second is a quarter of its lowest line.
+/// Returns the weights of bin m for a segment of n samples: a Hann-windowed complex exponential without its
+/// mean and linear trend. In a segment of 0.2 s the trend contains a quarter of the lowest bin.
 Eigen::ArrayXcd line_of(int n, int m) {
   std::vector<Complex> wave;
   for (int k = 0; k < n; ++k)
@@ -107,14 +110,14 @@ Eigen::ArrayXcd line_of(int n, int m) {
   return detrended(wave, n);
 }
 
-/// The band in n samples from `first` on.
+/// Returns the band's power in n samples from `first` on.
 Band in_band(const event::FitEvent& e, std::size_t first, int n) {
   const auto power = [&](const std::vector<double>& x, const Eigen::ArrayXcd& line) {
     const Eigen::Map<const Eigen::ArrayXd> piece(x.data() + first, n);
     return std::norm((piece.cast<Complex>() * line).sum()) / line.abs2().sum();
   };
   const double per_angle =
-      integrated(e) ? constants::turn * e.record.base.frequency * e.record.step() : 1.0;  // a step's turn
+      integrated(e) ? constants::turn * e.record.base.frequency * e.record.step() : 1.0;  // angle per step
   const double apart = 1 / (n * e.record.step());
   Band band;
   const Eigen::Index of_angle = integrated(e) ? 2 : 1;
@@ -128,7 +131,7 @@ Band in_band(const event::FitEvent& e, std::size_t first, int n) {
   return band;
 }
 
-/// Whether a switching or a lost sample lies in the stretch or close to it.
+/// Returns whether a switching or a missing sample lies in the segment or near it.
 bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
   const std::size_t last = first + n - 1;
   for (std::size_t k = first; k <= last; ++k)
@@ -138,16 +141,16 @@ bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
   });
 }
 
-/// Variances (VoltageNoise) of the white noise that would have the density that V and angle show in the band
-/// before the events, and in every later stretch that moves no more than that; and how many squares of normal
-/// variables, twice over, they rest on.
+/// Variances (VoltageNoise) of white noise with the spectral density of V and angle in the band. The data are
+/// the segments before the events and all later segments with no higher level. `freedom`: effective number of
+/// independent bins of each estimate.
 struct Moving {
   Eigen::Vector3d variance, freedom;
 };
 Moving moving_in_band(const event::WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
-  // A shorter stretch has so few lines that any level could be theirs, and so may have what was before the
-  // events: the level is found so many times.
+  // Shorter segments contain too few bins to estimate the noise level. The pre-event segment may be one of
+  // these, so the estimate is repeated kLevels times.
   constexpr double kStretch = 1.0;  // [s]
   constexpr int kLevels = 3;
   Band before;
@@ -177,10 +180,11 @@ Moving moving_in_band(const event::WhitenedEvents& events) {
   return all;
 }
 
-/// Sums over samples before the events of what the residual is told by, each in units of the channel's noise.
+/// Sums of the least-squares regression of the pre-event residual, in units of each channel's noise.
 struct Sums {
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();  ///< of the answer, and of V and theta as a carried noise
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();   ///< of these with the residual
+  /// Normal matrix of the response and of the fluctuation carried by P and Q.
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();  ///< products of these with the residual
   double left = 0, freedom = 0;
   void add(const Sums& other) {
     normal += other.normal;
@@ -188,13 +192,13 @@ struct Sums {
     left += other.left;
     freedom += other.freedom;
   }
-  /// What such a combination leaves of the residual.
+  /// Returns the sum of squares of the residual after subtraction of this combination.
   [[nodiscard]] double rest(const Eigen::Vector2d& x) const {
     return std::max(0.0, left - 2 * x.dot(right) + x.dot(normal * x));
   }
 };
 std::array<Sums, playin::kOutputs> sums_of(const Fit& fit, const event::WhitenedEvents& events) {
-  constexpr double kOfLine = 2;  // what a mean and a slope take
+  constexpr double kOfLine = 2;  // degrees of freedom of mean and linear trend
   std::array<Sums, playin::kOutputs> sums;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
@@ -218,9 +222,9 @@ std::array<Sums, playin::kOutputs> sums_of(const Fit& fit, const event::Whitened
   return sums;
 }
 
-/// How much of the answer's own movement before the events is found in the residual, and how much of the
-/// voltage's movement is found in the measured P and Q as if the current stood still; by least squares. What
-/// these leave is the channels' own noise.
+/// Least-squares coefficients of the pre-event residual on the simulated response (`instrument`) and on the
+/// voltage fluctuation at constant current (`carried`). `own` is the remaining variance, the channels' own
+/// noise.
 struct Shares {
   double instrument = 1, carried = 0;
   std::array<double, playin::kOutputs> own{};
@@ -233,7 +237,7 @@ Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
   const Eigen::Matrix2d inverse = all.normal.inverse();
   const Eigen::Vector2d found = inverse * all.right;
   const double scatter = all.rest(found) / std::max(1.0, all.freedom - 2);
-  // the larger value where that cannot be told
+  // One standard error is added, so that the share is not underestimated.
   Shares shares{.instrument = std::clamp(found[0] + std::sqrt(scatter * inverse(0, 0)), 0.0, 1.0)};
   if (shares.instrument > 0) shares.carried = std::clamp(found[1] / shares.instrument, 0.0, 1.0);
   for (std::size_t c = 0; c < sums.size(); ++c)
@@ -241,7 +245,7 @@ Shares shares_of(const Fit& fit, const event::WhitenedEvents& events) {
   return shares;
 }
 
-/// Whether the slow part of any channel's noise has a variance worth speaking of by the record's end.
+/// Returns whether the slow noise of any channel has a relevant variance by the end of the record.
 bool matters(const event::SlowNoise& s, const event::WhitenedEvent& e) {
   Eigen::MatrixXd P = s.P;
   for (int k = 0; k < e.event.record.samples(); ++k) P = (s.A * P * s.A.transpose() + s.Q).eval();
@@ -296,7 +300,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
     C.row(c) = plant.C.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
     D.row(c) = plant.D.row(static_cast<Eigen::Index>(e.channels[static_cast<std::size_t>(c)]));
   }
-  // the voltage is taken as straight over one sample: x1 = F x0 + G u0 + H (u1 - u0)
+  // The voltage is linear over one sample: x1 = F x0 + G u0 + H (u1 - u0).
   const double h = e.record.step();
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + 4, n + 4);
   whole.topLeftCorner(n, n) = h * plant.A;
@@ -319,7 +323,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
   s.Q(m - 1, m - 1) = variance[2];
-  // the voltage is only guessed between the samples about a switching
+  // Near a switching, the voltage between samples is interpolated.
   s.jump = Eigen::MatrixXd::Zero(m, m);
   s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
@@ -331,8 +335,8 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
-  // the measured noise already holds what the voltage's noise does at once, and what is left beside that is
-  // no less than the channels' own: the difference of two large variances tells it badly
+  // The measured noise contains the immediate effect of the voltage's noise. The remainder, a difference of
+  // two large variances, is inaccurate; the channels' own noise is its lower limit.
   const Eigen::MatrixXd scale = noise.deviation.asDiagonal(),
                         unit = noise.deviation.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd white = unit * noise.whitening.inverse();

@@ -1,75 +1,78 @@
 #pragma once
-// How large the noise is, from the whole records instead of the quiet stretch before the event alone: a
-// verdict on a few per cent of chi2 needs it to a few per cent.
+// Noise level of the channels and of the played-in voltage, estimated from the whole records instead of the
+// pre-event segment alone. An adequacy verdict resolves a few per cent of chi2, so the noise must be accurate
+// to a few per cent.
 #include <array>
 
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit {
 
-/// The events' noise with every channel's scaled to what the residual of `fit` shows from sample to sample.
-/// The measure is the median of the squared second differences, which neither a slow misfit nor the moments
-/// around a switching move. It supposes white noise, so the noise stays that of the pre-event stretch where
-/// the residual before the events is not white.
+/// Returns the events' noise with each channel scaled to the sample-to-sample noise of the residual of `fit`.
+/// The estimator is the median of the squared second differences, which is insensitive to slow model error
+/// and to samples near a switching. It assumes white noise: a channel whose pre-event residual is not white
+/// keeps its noise.
 event::NoiseModel sharpen_noise(const Fit& fit, const event::WhitenedEvents& events);
 
-/// Noise of the played-in voltage, white where it was measured. An angle that was integrated from a frequency
-/// goes astray from sample to sample instead.
+/// Noise of the played-in voltage, white in each measured channel. An angle that was integrated from the
+/// frequency has a random walk instead.
 struct VoltageNoise {
-  /// Of V (relative), of theta [rad^2], and of what an integrated theta goes astray by in one sample [rad^2].
+  /// Variances of V (relative), of theta [rad^2], and of the random walk of an integrated theta [rad^2 per
+  /// sample].
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
-  /// Share of this noise that the measured P and Q carry too: 1 where an instrument makes them of the phasors
-  /// that it records, 0 where each channel has noise of its own.
+  /// Share of this noise that the measured P and Q also carry. 1: the instrument computes P and Q from the
+  /// recorded phasors; 0: each channel has independent noise.
   double carried = 0;
-  /// Share of the pre-event movement of V and theta that is the instrument's. It is 1 if the measured P and Q
-  /// do not answer the movement, and 0 if they do as the model says, because the plant has then really seen
-  /// it.
+  /// Share of the pre-event fluctuation of V and theta that is instrument noise. 1: the measured P and Q do
+  /// not respond to the fluctuation; 0: they respond as the model does, so the fluctuation is real.
   double share = 0;
-  Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< standard deviation of each variance, relative
-  /// Share of a channel's variance that is its own noise and no answer to that of the voltage, by
-  /// playin::Output; a hundredth is supposed at least.
+  Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< relative standard deviation of each variance
+  /// Share of each channel's variance that is its own noise and no response to the voltage's noise, by
+  /// playin::Output. slow_noise() applies a lower limit of 0.01.
   std::array<double, playin::kOutputs> own{};
-  /// What P and Q of this operating point move by with V (relative) and theta [rad] where the current stands
-  /// still, times `carried`: [channel][V, theta], in the channels' units.
+  /// Returns the sensitivity of the measured P and Q to V (relative) and theta [rad] at constant current,
+  /// times `carried`: [channel][V, theta], in the channels' units.
   [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;
-  /// The variances, less those that this event has not.
+  /// Returns the variances that apply to this event's kind of angle; the others are 0.
   [[nodiscard]] Eigen::Vector3d of(const event::FitEvent& event) const;
 };
 
-/// Noise of the played-in voltage as the plant answers it. The states are the plant's, less what the latest
-/// sample did to them, and the mean error of V and theta over the pre-event window, from which everything is
-/// counted. `event` gives the whitening, the channels and the start.
+/// Returns the state-space model of the voltage's noise behind the plant. Its states are those of the plant,
+/// without the effect of the latest sample, and the mean error of V and theta before the event. All
+/// deviations refer to that mean. `event` supplies whitening, channels and start.
 event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEvent event,
                             const VoltageNoise& voltage);
 
-/// The memory of an event's noise by slow_noise() about its start; none where slow noise hardly matters.
+/// Returns the innovations filter of an event's noise, from slow_noise() about its start; null if slow noise
+/// is negligible.
 std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnderTest& tested,
                                                     event::WhitenedEvent event, const VoltageNoise& voltage);
 
-/// Measures it by what moves: at 3 to 10 Hz, because below this band the grid itself moves, and above it
-/// instruments filter; before the events, and wherever the record moves no more than there.
+/// Estimates the voltage's noise from its fluctuation between 3 and 10 Hz, before the events and in later
+/// segments that fluctuate no more. Below this band the grid itself moves; above it instruments filter.
 VoltageNoise voltage_noise(const Fit& fit, const event::WhitenedEvents& events);
 
-/// So many seconds at the operating point of `like` [s]. Answers are compared with zero.
+/// Returns an event of `seconds` [s] at the operating point of `like`, with zeros as measured channels.
 event::FitEvent at_rest(const event::FitEvent& like, double seconds);
 
-/// A minute at the operating point of `like`, with V and theta moved by noise of these variances
-/// (VoltageNoise). Answers are compared with zero.
+/// Returns an event of one minute at the operating point of `like`. V and theta have noise of these variances
+/// (VoltageNoise); measured channels are zero.
 event::FitEvent minute_of_noise(const event::FitEvent& like, const Eigen::Vector3d& variance);
 
-/// Noise of the played-in voltage passes exciter and rotor, and what comes out is slow. This follows it
-/// through the plant's equations about each event's start, and returns the events' noise with that memory
-/// where it matters.
+/// Returns the events' noise with the innovations filter of the voltage's noise if it matters. The noise
+/// of the played-in voltage passes through exciter and rotor and becomes slow; the filter follows it through
+/// the plant's equations, linearised about each event's start.
 event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& conventions,
                                  const event::WhitenedEvents& events);
 
-/// Measures the events' noise anew through a fit of whatever structure: its variance where the fit is close,
-/// its size from sample to sample, and its memory. Costs measured in it cannot be held against earlier ones.
+/// Measures the events' noise anew through a fit of any structure: its variance if the fit is close, its
+/// sample-to-sample level, and its innovations filter. Costs in the new noise are not comparable with earlier
+/// ones.
 event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
                                         const event::WhitenedEvents& events);
 
-/// How far the power of slow means of the residual (over 0.5, 1 and 2 s) lies above that of white noise, in
-/// standard deviations, for the channel and length where it is largest.
+/// Returns the largest excess of the residual's slow power over that of white noise [standard deviations].
+/// The power is that of means over 0.5, 1 and 2 s, for each channel.
 double slow_remainder(const Fit& fit, const event::WhitenedEvents& events);
 
 }  // namespace swingbank::validate::fit

@@ -1,4 +1,4 @@
-// Which parameters of a plant are free, and their values.
+// Selection of a plant's free parameters, and their values.
 #include <algorithm>
 
 #include "validate/fit/fit.hpp"

@@ -1,37 +1,38 @@
 #pragma once
-// Noise of the played-in voltage that a structure passes into its answer. A structure that passes less of it
-// explains the records better without explaining anything. For example, a current that is late by part of a
-// sample is read between the samples, where the curve through them is smoother than the noise on them.
+// Transfer of the played-in voltage's noise into the response of a structure. A structure with lower noise
+// transfer has a lower chi2 without explaining anything. Example: a current with a delay of a part of a
+// sample is interpolated, and the interpolated curve is smoother than the noise of the samples.
 #include "validate/event/event.hpp"
 #include "validate/fit/noise.hpp"
 
 namespace swingbank::validate::fit {
 
+/// Noise transfer of a reference structure, with which other structures are compared.
 class PassedNoise {
  public:
-  /// Takes the structure that others are held against. Noise of these variances is played in for a minute at
-  /// the first event's operating point, and whitened as the residual of this structure is.
+  /// Sets the reference structure. Noise of these variances is played in for one minute at the first event's
+  /// operating point and whitened as the residual of this structure.
   PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
               const VoltageNoise& voltage);
-  /// By how much chi2 of all events falls with another structure because it passes less noise. Negative if it
-  /// passes more, 0 where it cannot be run.
+  /// Returns the fall of chi2 over all events due to the lower noise transfer of another structure. Negative
+  /// if its transfer is higher, 0 if it cannot be simulated.
   [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;
-  /// Chi2 of all events that the structure's own passed noise makes.
+  /// Returns chi2 over all events due to the reference structure's noise transfer.
   [[nodiscard]] double own() const { return own_; }
 
  private:
-  /// Chi2 that a plant's passed noise makes; NaN where it cannot be run.
+  /// Returns chi2 due to a plant's noise transfer; NaN if it cannot be simulated.
   [[nodiscard]] double passed(const sim::plant::PlantUnderTest& tested) const;
 
   event::FitEvent quiet_, noisy_;
   event::EventNoise noise_;  ///< of both
-  double times_ = 0;         ///< values of the events per value of the minute
+  double times_ = 0;         ///< ratio of the events' number of values to the minute's
   double own_ = 0;
 };
 
-/// Takes down in the fit of another structure what it takes off chi2 by passing less noise. Every explanation
-/// that is weighed against another one comes through here, a free input's refitted plant as well as an
-/// effect. What passes more is not credited for it. Null: this noise is not considered.
+/// Sets Fit::passes_less of another structure's fit, at least 0: a higher noise transfer earns no credit.
+/// Every explanation that competes with another must be corrected here, a free input's refitted plant
+/// included. Null: the noise transfer is ignored.
 void count_passed(const PassedNoise* passed, const sim::Conventions& conventions, Fit& fit);
 
 }  // namespace swingbank::validate::fit

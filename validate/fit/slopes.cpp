@@ -10,7 +10,7 @@ namespace {
 
 using Kind = playin::Direction::Kind;
 
-/// Slopes are then accurate to 1e-5 of themselves.
+/// Tolerance at which sensitivities are accurate to 1e-5 of their values.
 constexpr event::Playing kExact{.tolerance = 1e-7, .hasty = false};
 
 std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
@@ -26,7 +26,7 @@ std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
   return along;
 }
 
-/// The state on these directions, in their units; a belief of one unit stands on each.
+/// Returns the state in units of these sensitivity parameters, each with a prior standard deviation of 1.
 Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& state) {
   std::vector<double> all;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
@@ -41,7 +41,7 @@ Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& st
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-/// [compared sample * channels + channel], whitened.
+/// Returns the whitened values: [compared sample * channels + channel].
 Eigen::VectorXd whitened(const event::WhitenedEvent& e, const std::vector<double>* values,
                          bool less_measured) {
   event::RowMatrix all = e.event.collected(values, less_measured);
@@ -78,7 +78,7 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
     const Eigen::VectorXd column = whitened(e, r.slopes[static_cast<std::size_t>(d)].value, false);
     (d < parameters ? back.slopes.col(d) : own.col(d - parameters)) = column;
   }
-  // the states, with their beliefs of one unit each, absorb what the projection takes out
+  // The states, with unit priors, absorb the projected part.
   const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
   const auto solved = inner.ldlt();
   const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.slopes);

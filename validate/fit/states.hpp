@@ -1,6 +1,6 @@
 #pragma once
-// The state that every event has of its own: when it was switched, where an angle that was not measured
-// turns, its operating point and how it moves at the start.
+// The state variables of one event: switching times, jumps of an integrated angle at the switchings,
+// operating point and initial motion.
 #include <array>
 #include <vector>
 
@@ -10,34 +10,34 @@
 
 namespace swingbank::validate::fit {
 
-/// Instants and turns, which stand before the rest.
+/// Returns the number of switching times and angle jumps, which come before the other variables.
 inline std::size_t switching_numbers(const event::FitEvent& event) {
   return event.switchings.size() * (event.turns() ? 2 : 1);
 }
 
 /// One unit of a switching time [s].
 inline constexpr double kSwitchScale = 1e-3;
-/// One unit of a turn [rad], and how many of them it is believed to be off from where it was found: a
-/// reactance that is wrong by a fifth makes it wrong by so much.
+/// One unit of an angle jump [rad], and its prior standard deviation in such units. An error of one fifth in
+/// a reactance causes a jump error of this size.
 inline constexpr double kTurnScale = 1e-3, kTurnBelief = 100;
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
 inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
     playin::Direction::Kind::P, playin::Direction::Kind::Q, playin::Direction::Kind::angle,
     playin::Direction::Kind::speed};
-/// One unit of each state, as the search steps: it is far below any effect and far above rounding.
+/// One unit of each state in the search, far below any effect and far above rounding.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
-/// A start is believed to be off by so many of those units, because a plant nearly stands still before an
+/// Prior standard deviation of the initial state, in those units: a plant is nearly in steady state before an
 /// event.
 inline constexpr std::array<double, kStates> kStateBelief = {20, 20, 20, 20};
-/// The same in the units of the states.
+/// The same in physical units.
 inline constexpr std::array<double, kStates> kStateSpread = [] {
   std::array<double, kStates> spread{};
   for (std::size_t k = 0; k < kStates; ++k) spread[k] = kStateScale[k] * kStateBelief[k];
   return spread;
 }();
 
-/// How far each number of the state is believed to be off, in its units; 0: nothing is believed.
+/// Returns the prior standard deviation of each state variable, in units of the search; 0: no prior.
 inline std::vector<double> state_beliefs(const event::FitEvent& event) {
   std::vector<double> all(event.switchings.size(), 0.0);
   all.resize(switching_numbers(event), kTurnBelief);
@@ -45,7 +45,7 @@ inline std::vector<double> state_beliefs(const event::FitEvent& event) {
   return all;
 }
 
-/// An event's state as the search sees it, without an input.
+/// Returns the event's state in units of the search, without an input.
 inline std::vector<double> state_of(const event::FitEvent& event, const event::EventState& from) {
   std::vector<double> s;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
@@ -57,7 +57,7 @@ inline std::vector<double> state_of(const event::FitEvent& event, const event::E
   return s;
 }
 
-/// The reverse.
+/// Returns the event's state from the search's variables; the inverse of state_of().
 inline event::EventState event_state(const event::FitEvent& event, const double* s) {
   event::EventState at;
   for (const auto& w : event.switchings) at.switchings.push_back(w.time + kSwitchScale * *s++);
@@ -70,7 +70,7 @@ inline event::EventState event_state(const event::FitEvent& event, const double*
   return at;
 }
 
-/// The directions of these numbers.
+/// Returns the sensitivity parameters of these variables.
 inline std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
   using Kind = playin::Direction::Kind;
   std::vector<playin::Direction> along;

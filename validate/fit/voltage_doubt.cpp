@@ -11,17 +11,17 @@
 namespace swingbank::validate::fit {
 namespace {
 
-/// Columns whose products with themselves make up a covariance of rank three at most.
+/// Returns a square root of a covariance of rank three at most: columns whose outer products sum to it.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(covariance);
   return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
-/// By how much an angle that was integrated from f goes astray in one sample [rad^2].
+/// Returns the random walk's variance per sample of an angle that was integrated from f [rad^2].
 double astray(const record::Record& r, std::size_t n) {
   return white_variance(std::span(r.f).first(n)) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
 }
 
-/// The plant's answer to kicks of its states: [channel][sample].
+/// Returns the plant's response to impulses on its states: [channel][sample].
 template <class Kick>
 VoltageDoubt::Shape answer(const event::SlowNoise& noise, std::size_t samples, Kick kick) {
   VoltageDoubt::Shape shape(static_cast<std::size_t>(noise.C.rows()), std::vector<double>(samples, 0.0));
@@ -38,7 +38,7 @@ VoltageDoubt::Shape answer(const event::SlowNoise& noise, std::size_t samples, K
 
 VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent whitened) {
   const event::FitEvent& e = whitened.event;
-  constexpr std::uint32_t kDraws = 48;  // so many draws tell a variance to 20 %
+  constexpr std::uint32_t kDraws = 48;  // gives a variance to 20 %
   const std::size_t samples = e.record.t.size();
   const auto quiet = static_cast<std::size_t>(e.start.samples);
   const bool integrated = e.record.angle == record::AngleSource::integrated;

@@ -1,14 +1,14 @@
 #pragma once
-// Shapes of what errors of the played-in voltage may leave in a residual; they add to a map's variance.
+// Residual shapes of errors of the played-in voltage, which add to the variance of an error map.
 #include "validate/event/event.hpp"
 
 namespace swingbank::validate::fit {
 
-/// What the played-in voltage's own errors may leave in an event's channels, as shapes of one standard
-/// deviation each: two for the errors of the means of V and theta before the event, a number of draws for
-/// what their noise becomes behind the plant (the draws share its variance), and two for each sample about a
-/// switching or in place of smeared samples, where the voltage is guessed. The plant is linear about the
-/// start.
+/// Shapes of the residual that errors of the played-in voltage cause in an event's channels, one standard
+/// deviation each. Two shapes are for errors of the pre-event means of V and theta. A number of random draws,
+/// which share the variance, are for the voltage noise behind the plant. Two shapes are for each sample near
+/// a switching or in place of a filtered sample, where the voltage is interpolated. The plant is linearised
+/// about the start.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
   std::vector<Shape> shapes;

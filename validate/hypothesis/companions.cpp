@@ -10,16 +10,16 @@ namespace {
 
 using Eigen::Index;
 
-/// A column is the change by this share of an effect's start.
+/// Size of a change for its Jacobian column, relative to the effect's start value.
 constexpr double kChangeShare = 0.05;
 
-/// An effect and its columns: the whole of it, and each of its parameters about that.
+/// An effect and its columns: one for the whole effect, and one for each of its parameters.
 struct Companion {
   std::string name;
   std::vector<Index> columns;
 };
 
-/// What may stand beside a control in the plant of this fit, and the changes that it makes.
+/// Returns the possible companions of a control in this plant, and appends their changes to `changes`.
 std::vector<Companion> companions_in(const Stage& stage, const sim::plant::Plant& plant,
                                      std::vector<reduced::Change>& changes) {
   std::vector<Companion> all;
@@ -62,7 +62,7 @@ void find_companions(const Stage& stage, const Polish& polish, const Identified&
   struct Beside {
     Identified* h;
     std::vector<std::vector<double>> known = {};
-    double alone = 0, with_all = 0;  ///< costs
+    double alone = 0, with_all = 0;  ///< costs alone and with all changes free
   };
   std::vector<Beside> some;
   for (Identified& h : tried)

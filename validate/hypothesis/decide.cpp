@@ -19,34 +19,35 @@ namespace {
 
 using playin::Output;
 
-/// An instrument of a plant resolves this much [pu]: a tenth of a per cent of rated Efd and Ifd, and of the
-/// speed what shaft pickups do.
+/// Assumed noise of channels that are not recorded [pu]: 0.1 % of rated Efd and Ifd; for speed, the
+/// resolution of shaft pickups.
 constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
-/// So many of the set are told apart.
+/// Maximum number of competing hypotheses.
 constexpr std::size_t kRivals = 6;
-constexpr double kFrequencyDip = 0.2;        ///< of the frequency after a load step far away [Hz]
-constexpr double kFrequencyDipWithin = 1.0;  ///< [s]
+constexpr double kFrequencyDip = 0.2;        ///< frequency drop after a remote load step [Hz]
+constexpr double kFrequencyDipWithin = 1.0;  ///< duration of the frequency drop [s]
 constexpr double kReferenceStep = 0.02;      ///< of Vref [pu]
-constexpr double kSceneBegins = 1.0;         ///< both, after the record's begin [s]
-/// Of the noise of a further record: nodes and weights of a standard normal variable (Gauss and Hermite).
+constexpr double kSceneBegins = 1.0;         ///< of both, after the start of the record [s]
+/// Nodes and weights of Gauss-Hermite quadrature over the noise of a further record, a standard normal
+/// variable.
 constexpr std::array<std::pair<double, double>, 3> kNodes = {
     {{0.0, 2.0 / 3}, {std::numbers::sqrt3, 1.0 / 6}, {-std::numbers::sqrt3, 1.0 / 6}}};
 constexpr std::array<std::pair<Output, const char*>, 3> kMoreChannels = {
     {{Output::Ifd, "field current"}, {Output::Efd, "field voltage"}, {Output::speed, "speed"}}};
 
-/// What is played, and what a person calls it.
+/// A simulated experiment and its description for the user.
 struct Scene {
   event::FitEvent event;
-  int recorded = -1;  ///< which of the events it repeats; -1: none
+  int recorded = -1;  ///< index of the repeated event; -1: none
   std::string name;
 };
-/// What one rival answers in a scene, in units of noise, and slopes along its parameters.
+/// Response of one hypothesis in a scene and its sensitivities, in units of noise.
 struct Answer {
   std::array<Eigen::VectorXd, playin::kOutputs> value;
   std::array<Eigen::MatrixXd, playin::kOutputs> slopes;
 };
 
-/// Nothing happens in the network; the frequency goes down by `dip` [Hz].
+/// Returns an event without a disturbance in the network, except a frequency drop of `dip` [Hz].
 event::FitEvent quiet(const event::FitEvent& like, double dip) {
   event::FitEvent e = like;
   e.switchings.clear();
@@ -98,7 +99,8 @@ class Separations {
 
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
   [[nodiscard]] const std::vector<Output>& channels() const { return events_.front().channels; }
-  /// What rival j leaves of what i answers there, once it is refitted; nothing where one cannot be played.
+  /// Returns chi2 of hypothesis j, after a refit, against the response of hypothesis i as the record. Empty
+  /// if one cannot be simulated.
   [[nodiscard]] std::optional<double> between(std::size_t scene, const std::vector<Output>& outputs,
                                               std::size_t i, std::size_t j) const {
     const auto &truth = answer(scene, i), &other = answer(scene, j);
@@ -121,7 +123,7 @@ class Separations {
   [[nodiscard]] const std::optional<Answer>& answer(std::size_t scene, std::size_t rival) const {
     return answers_[scene * rivals_.size() + rival];
   }
-  /// Of recorded channels it is what the first rival leaves.
+  /// Sets the noise of the recorded channels to the RMS residual of the first hypothesis.
   void measure_noise() {
     noise_.fill(kFieldNoise);
     noise_[at(Output::speed)] = kSpeedNoise;
@@ -165,7 +167,7 @@ class Separations {
       }
       return a;
     } catch (const InputError&) {
-      return std::nullopt;  // this rival cannot be played there
+      return std::nullopt;  // this hypothesis cannot be simulated in this scene
     }
   }
 
@@ -174,7 +176,7 @@ class Separations {
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
   std::vector<std::optional<Answer>> answers_;  ///< [scene * rivals + rival]
-  std::vector<Eigen::MatrixXd> known_;          ///< of each rival's parameters, from the records
+  std::vector<Eigen::MatrixXd> known_;  ///< information of the records on each hypothesis's parameters
   std::array<double, playin::kOutputs> noise_;
 };
 
@@ -183,7 +185,8 @@ double effects_in_set(const std::vector<Explanation>& all) {
   return static_cast<double>(std::count_if(all.begin(), end, [](const auto& e) { return e.place >= 0; }));
 }
 
-/// How many of the set are left on average once this is recorded; nothing where a rival cannot be played.
+/// Returns the expected number of effects in the set after this record; empty if a hypothesis cannot be
+/// simulated.
 std::optional<double> expected_size(const Separations& between, std::size_t scene,
                                     const std::vector<Output>& outputs, const std::vector<Explanation>& set) {
   double sum = 0, weight = 0;
@@ -225,7 +228,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
     const auto size = expected_size(between, scene, outputs, set);
     if (!size) return;
     const Scene& s = between.scenes()[scene];
-    // of events like those recorded the most telling one stands for all
+    // Of the events like recorded ones, only the best is kept.
     const auto like = std::ranges::find_if(d.next, [&](const NextRecord& n) {
       return s.recorded >= 0 && n.what.starts_with(channel + " in one more");
     });

@@ -1,5 +1,6 @@
 #pragma once
-// What a person could record next to tell apart what is left, and how small the set would then be.
+// Recommendation of the next measurement: the record that best separates the remaining hypotheses, and the
+// expected size of the set after it.
 #include <string>
 #include <vector>
 
@@ -8,25 +9,27 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// A record that could be made, and how many effects the set would then hold on average.
+/// A possible record, and the expected number of effects in the set after it.
 struct NextRecord {
   std::string what;  ///< "field current in one more event like ev1"
   double expected = 0;
 };
+/// Possible measurements and the present size of the set.
 struct Decision {
-  double now = 0;                ///< effects in the set
-  std::vector<NextRecord> next;  ///< the most telling one first; empty: nothing to tell apart
+  double now = 0;                ///< number of effects in the set
+  std::vector<NextRecord> next;  ///< in ascending order of the expected number; empty: nothing to separate
 };
 
-/// Plays the rivals of the set into what could be recorded: events like those that were (the most telling
-/// one), a load step far away, a step of the voltage's reference; with the channels of these records, and
-/// with speed, field voltage or field current as well. One rival's answer is what is recorded, another's is
-/// refitted to it (linear about its fit, with what the records know of its parameters), and what it then
-/// leaves is the fall of its evidence. Only of whole plants.
+/// Simulates the competing hypotheses of the set in possible records: events like the recorded ones (the best
+/// one is kept), a remote load step, and a step of the voltage reference. Channels are those of these
+/// records, or these with speed, field voltage or field current. The response of one hypothesis serves as the
+/// record. Each other hypothesis is refitted to it (linearised about its fit, with the records' information
+/// on its parameters); the remaining chi2 is the fall of its evidence. Only for records of whole plants.
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
                            const event::WhitenedEvents& events, double spread, int threads);
 
-/// "Field current in one more event like ev1 would decide: set of 4 -> 1.2."; empty without rivals.
+/// Returns for example "Field current in one more event like ev1 would decide: set of 4 -> 1.2."; empty
+/// without competing hypotheses.
 std::string decide_sentence(const Decision& decision);
 
 }  // namespace swingbank::validate::hypothesis

@@ -21,13 +21,17 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::size_t kDrawnStarts = 39;  ///< draws of an effect's parameters, as starts
-constexpr std::size_t kPartDraws = 32;    ///< draws of what a part of an effect frees
-constexpr std::size_t kRedraws = 20;      ///< tries for each draw until one is sound, at most
-constexpr double kShortestDraw = 3e-3;    ///< the shortest draw takes this share of the time allowed
-constexpr double kGroupSpread = 2.0;      ///< of ln(value) of parameters at their null values
-constexpr double kAddedSpread = 1.0;      ///< an added effect's parameters are believed within a factor e
-constexpr double kFactorSpread = 0.1;  ///< and its factors about 1, as a transformer's taps, within a tenth
+constexpr std::size_t kDrawnStarts = 39;  ///< number of start draws of an effect's parameters
+constexpr std::size_t kPartDraws = 32;    ///< number of draws of the parameters that a group frees
+constexpr std::size_t kRedraws = 20;      ///< maximum number of tries per draw until a draw is valid
+/// Shortest draw of the longest time constant, relative to the time allowed.
+constexpr double kShortestDraw = 3e-3;
+/// Prior standard deviation of ln(value) of parameters at their null values.
+constexpr double kGroupSpread = 2.0;
+/// Prior standard deviation of an added effect's parameters: a factor e.
+constexpr double kAddedSpread = 1.0;
+/// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
+constexpr double kFactorSpread = 0.1;
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -64,10 +68,10 @@ bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// Draws about the values that the plant has of `free`, parameters of one block. Only trying finds the draws
-/// that lie where the records ask for. Half of the width is common to all parameters of a unit, so that
-/// points of one curve and its times keep their order. A draw that contradicts itself is drawn again. If
-/// `within` is above 0, the longest time is at most about that [s].
+/// Returns random draws about the plant's values of `free`, parameters of one block. Half of the variance is
+/// common to all parameters of a unit, so that points of one curve and its times keep their order. A draw
+/// that is inconsistent is repeated. If `within` is positive, the longest time constant is about `within` [s]
+/// at most.
 std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
                                        const std::vector<fit::FreeParameter>& free, std::size_t count,
                                        unsigned seed, double within = 0) {
@@ -75,7 +79,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
   for (const auto& f : free)
     if (sim::plant::parameter_record(plant, f.id).unit == "s")
       longest = std::max(longest, sim::plant::parameter_value(plant, f.id));
-  std::mt19937_64 random(seed);  // the same draws every time: a diagnosis can be repeated
+  std::mt19937_64 random(seed);  // fixed seed: a diagnosis is reproducible
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   sim::plant::Plant drawn = plant;
@@ -87,7 +91,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
     std::vector<double> values;
     for (const auto& f : free) {
       const auto& p = sim::plant::parameter_record(plant, f.id);
-      // gains are believed within decades, times and limits within a factor
+      // Gains are uncertain by decades, times and limits by a factor.
       const double width = (p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8) * f.spread;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
       const bool bounded = p.unit == "s" && within > 0;
@@ -105,7 +109,8 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
   return all;
 }
 
-/// An instrument is nearly right: its errors are small, and their answer straight.
+/// Sets the free parameters and start values of an instrument. Its errors are small, and the response is
+/// linear in them.
 void start_near_neutral(Hypothesis& h, int block) {
   const sim::Effect& effect = sim::plant::block_effect(h.plant, block);
   for (std::size_t i = 0; i < effect.parameters.size(); ++i)
@@ -120,8 +125,8 @@ void start_near_neutral(Hypothesis& h, int block) {
   }
 }
 
-/// Parameters of an added effect that are free. One whose standard value is its neutral one is a part that is
-/// left off, unless it is a factor: of a transformer that nobody mentioned nobody knows the ratio.
+/// Returns the free parameters of an added effect. A parameter whose default value is its null value stays
+/// fixed, unless it is a factor: the ratio of an undocumented transformer is unknown.
 std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, int block) {
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedSpread);
   const auto& parameters = sim::plant::block_effect(plant, block).parameters;
@@ -131,7 +136,7 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   return free;
 }
 
-/// Frees these parameters of one block, which start at the plant's values and at draws about them.
+/// Frees these parameters of one block. The starts are the plant's values and random draws about them.
 void free_by_draws(Hypothesis& h, std::vector<fit::FreeParameter> free) {
   h.free = std::move(free);
   h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
@@ -139,7 +144,7 @@ void free_by_draws(Hypothesis& h, std::vector<fit::FreeParameter> free) {
   h.drawn = true;
 }
 
-/// The effect in a slot that has room for it.
+/// Returns the hypothesis of an effect in a free slot.
 Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect& effect) {
   Hypothesis h;
   h.name = effect.name;
@@ -162,7 +167,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
   for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
-    const bool tried = !sim::library::variant_of(*effect);  // else the effect that it is a variant of is
+    const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
     if (!fits || !tried || effect->instants || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(component, effect->slot)) continue;
     if (!sim::misfit(*tested.plant.machine.effect, *effect).empty()) continue;
@@ -171,19 +176,20 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
   }
 }
 
-/// "S10" -> "S": parameters of one name with different numbers describe one curve.
+/// Returns the name without its number ("S10" -> "S"): parameters that differ only in a number describe one
+/// curve.
 std::string_view stem(std::string_view name) {
   while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back()))) name.remove_suffix(1);
   return name;
 }
 
-/// Parts of the room that parameters have, from which they begin.
+/// Start values of a group, relative to the range of its parameters.
 constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
-/// Of a dead-band's edges. Ranges of 1 pu are a form; a voltage's dead-band is a few hundredths of that, a
-/// frequency's a thousandth, and one wider than all that moves has no slope to come back by.
+/// Start values of a dead band's edges, relative to their range of 1 pu. A voltage's dead band is a few
+/// hundredths of 1 pu, a frequency's a thousandth. A dead band wider than the signal has zero gradient.
 constexpr std::array kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
 
-/// Whether a group is the two edges of a dead-band about a neutral 0.
+/// Returns whether a group consists of the two edges of a dead band about a null value of 0.
 bool is_band(const sim::Effect& effect, const std::vector<int>& group) {
   if (group.size() != 2) return false;
   const auto &lower = effect.parameters[static_cast<std::size_t>(group[0])],
@@ -192,7 +198,7 @@ bool is_band(const sim::Effect& effect, const std::vector<int>& group) {
          upper.low == 0.0 && upper.high > 0.0;
 }
 
-/// Every group of parameters that a block has at their null values.
+/// Returns a hypothesis for every group of parameters of a block that are at their null values.
 std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested, int b) {
   std::vector<Hypothesis> all;
   const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
@@ -230,7 +236,7 @@ std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested,
       for (std::size_t k = 0; k < group.size(); ++k) {
         const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
         const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
-        // a curve's later points lie above its earlier ones
+        // later points of a curve lie above earlier ones
         const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
         const double v = p.neutral + (band ? share * (p.high > p.neutral ? p.high : p.low) : curve);
         values.push_back(v);
@@ -250,7 +256,7 @@ std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested,
   return all;
 }
 
-/// Each switch of a converter's controls in its other position.
+/// Adds a hypothesis for each switch of a converter's controls in its other position.
 void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   if (!tested.plant.machine.effect->converter) return;
   for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
@@ -285,8 +291,8 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
   all.push_back(std::move(h));
 }
 
-/// Whether a parameter of a block may be 0 in `without` and not in `with`, as the time constant of a rate
-/// feedback: its default value is then that of a part that is left off.
+/// Returns whether a parameter may be 0 in `without` but not in `with`, such as the time constant of a rate
+/// feedback. It then acts only with the group that is at its null value.
 bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
                       sim::plant::ParameterId id) {
   const auto may_be_zero = [&](const sim::plant::Plant& plant) {
@@ -297,11 +303,12 @@ bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant&
   return may_be_zero(without) && !may_be_zero(with);
 }
 
-/// Values of what is free in `h`: those of `fitted`, and of the parameters `freed` log-uniform draws within
-/// two prior standard deviations.
+/// Returns values of the free parameters of `h`: those of `fitted`, and log-uniform draws within two prior
+/// standard deviations for the parameters `freed`.
 std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector<fit::FreeParameter>& freed,
                                           const sim::plant::Plant& fitted) {
-  std::mt19937_64 random(3);  // the same draws every time: an addition can be repeated
+  std::mt19937_64 random(3);  // fixed seed: an addition is reproducible
+
   std::uniform_real_distribution<double> uniform(-2, 2);
   std::vector<std::vector<double>> all;
   for (std::size_t tries = 0; all.size() < kPartDraws && tries < kRedraws * kPartDraws; ++tries) {

@@ -15,16 +15,16 @@ namespace {
 
 using event::InputKind;
 
-/// So many of the best are fitted with the whole plant, to find the leader.
+/// Number of best hypotheses that are fitted with the whole plant to find the leader.
 constexpr std::size_t kLeading = 3;
-/// The plant is made linear about the leader, and about the next one where another leads then.
+/// Maximum number of linearisations about a leader: a second one if the leader changes.
 constexpr int kLinearPoints = 2;
-/// So many draws suit the block, beside those of identification.
+/// Number of draws specific to the block, in addition to those of the identification.
 constexpr std::size_t kSuitedDraws = 80;
-/// Optima of one hypothesis that are kept.
+/// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
-/// Evidence of an input that is free in time from which blocks are looked for that make it: strong, by the
-/// scale of Kass and Raftery (1995).
+/// Minimum evidence of an input that is free in time for a search on its side: strong on the scale of Kass
+/// and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
 
 std::uint64_t stream_of(const std::string& name) {  // FNV-1a
@@ -63,11 +63,12 @@ class Identifying {
   }
 
  private:
-  /// What the blocks of one side are identified against; null: nothing of this side can be what is missing.
+  /// Reduced plant of one side for the identification of its blocks; null: no effect can be missing on this
+  /// side.
   using Reduced = Polish::Reduced;
 
-  /// Where the stage nearly fits, the plant is linear about its fit, and nothing is missing on a side whose
-  /// input, free in time, explains no more than noise. Where it does not fit, its inputs are inferred.
+  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
+  /// is skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
   void begin() {
     if (stage_.fit.misfit() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
@@ -83,14 +84,14 @@ class Identifying {
       (kind == InputKind::torque ? torque_ : field_) = side;
     }
   }
-  /// What is known of an input, or its inference beside the stage's fit.
+  /// Returns the base model's known inferred input, or infers it.
   [[nodiscard]] std::shared_ptr<const reduced::FreeInput> free_input(InputKind kind) const {
     const reduced::FreeInput* known = kind == InputKind::torque ? stage_.torque : stage_.field;
     if (known) return {std::shared_ptr<void>(), known};
     return std::make_shared<const reduced::FreeInput>(reduced::free_input(
         kind, stage_.under_test(), stage_.events, polish_.free(), stage_.fit, stage_.threads));
   }
-  /// Inferences with torque, with field voltage, and with both: their evidence says whether one is enough.
+  /// Infers torque, field voltage and both. Their evidence decides whether one input suffices.
   void infer() {
     constexpr std::array kInputs = {reduced::Inputs{true, false}, reduced::Inputs{false, true},
                                     reduced::Inputs{true, true}};
@@ -106,7 +107,7 @@ class Identifying {
         },
         [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, stage_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
-    // the better one alone; the other, too, where it comes near
+    // The better input alone; also the other one if its reduction of chi2 is similar.
     const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
       if (found[i]->criterion < found[1 - i]->criterion ||
@@ -123,7 +124,7 @@ class Identifying {
   [[nodiscard]] const Reduced& side_of(const Identified& h) const {
     return h.input() == InputKind::torque ? torque_ : field_;
   }
-  /// Whether something is missing on the other side as well.
+  /// Returns whether an effect is missing on the other side as well.
   static bool other_is_free(const Reduced& side) {
     return side->inference().inputs.torque && side->inference().inputs.field;
   }
@@ -166,15 +167,15 @@ class Identifying {
     const auto best = std::ranges::min_element(tried_, {}, &Identified::cost);
     return best == tried_.end() || !std::isfinite(best->cost) ? nullptr : &*best;
   }
-  /// Whether the best of them may take off what a hypothesis needs. The reduced plant foretells that to a few
-  /// of chi2.
+  /// Returns whether the best hypothesis may reach half of the required evidence. The reduced plant predicts
+  /// it to a few units of chi2.
   [[nodiscard]] bool worth_a_fit() {
     const Identified* best = least();
     return best &&
            none_ - best->cost >
                (stage_.with.empty() ? thresholds::evidence.accepted : thresholds::evidence.second) / 2;
   }
-  /// The best of those that lead, fitted with the whole plant. Null: none can be.
+  /// Fits the leading hypotheses with the whole plant and returns the best; null if none can be fitted.
   [[nodiscard]] Identified* fitted_leader() {
     std::vector<Identified*> leading;
     for (Identified& h : tried_)
@@ -194,7 +195,7 @@ class Identifying {
     const Identified* best = best_fitted();
     return best ? fit::penalised(*best->best()) : std::numeric_limits<double>::infinity();
   }
-  /// Blocks of the leader's side are then identified about its fit. False where that cannot be simulated.
+  /// Linearises the leader's side about its fit. Returns false if that plant cannot be simulated.
   [[nodiscard]] bool linearise_about(const Identified& leader) {
     Reduced& side = leader.input() == InputKind::torque ? torque_ : field_;
     try {
@@ -204,17 +205,17 @@ class Identifying {
     }
     return true;
   }
-  /// Of the leader, where nothing was added before and its plant can be made linear.
+  /// Finds companions about the leader, if no effect was added before and its plant can be linearised.
   void find_companions() {
     const Identified* leader = best_fitted();
     if (!leader || !stage_.with.empty() || stage_.stopped() || others_ < leader->cost) return;
     try {
       hypothesis::find_companions(stage_, polish_, *leader, tried_);
-    } catch (const InputError&) {  // slopes take other steps, and this plant cannot be run with them
+    } catch (const InputError&) {  // runs with sensitivities take other steps, and these fail for this plant
     }
   }
-  /// Fits what may come within reach of the best. How far behind a block with many parameters is cannot be
-  /// seen from a plant that is linear about another block, unless it does not fit at all.
+  /// Fits the hypotheses that may come within reach of the best. A linearisation about another block does not
+  /// predict the cost of a block with many parameters, unless that block does not fit at all.
   void fit_in_reach() {
     const Identified* leader = least();
     if (!leader) return;
@@ -226,8 +227,8 @@ class Identifying {
     }
     fit(some);
   }
-  /// Fits those that were not yet fitted to the end. A hypothesis of another kind ends the fits only of
-  /// blocks that identification, too, has behind it: a fit may be slow at first.
+  /// Fits the hypotheses whose fits are not complete. The lowest cost of the other hypotheses (`others_`)
+  /// limits only fits of blocks that the identification also places behind it. A fit may be slow at first.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();
@@ -237,7 +238,7 @@ class Identifying {
           (h.cost < others_ ? least : std::min(others_, least)) + thresholds::evidence.within_reach;
       other_is_free(side) ? polish_.briefly(h, *side) : polish_.polish(h, *side, goal);
       h.polished = true;
-      if (!h.best() || other_is_free(side)) return;  // polish() has the cost of what it gave up
+      if (!h.best() || other_is_free(side)) return;  // polish() has set the cost of an abandoned fit
       h.cost = fit::penalised(*h.best());
       if (!(h.cost < goal)) h.fits.clear();
     });
@@ -304,8 +305,9 @@ class Identifying {
   Polish polish_;
   std::vector<Identified> tried_;
   Reduced torque_, field_;
-  double none_;                                              ///< cost without any
-  double others_ = std::numeric_limits<double>::infinity();  ///< least cost of a hypothesis of another kind
+  double none_;  ///< cost of the base model
+  /// Lowest cost of a hypothesis that cannot be identified alone.
+  double others_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// Hypotheses that act through torque or field voltage, identified against the time series that the records
-// ask for (validate/reduced), then fitted with the whole plant from there.
+// Search among hypotheses that act through torque or field voltage. They are identified against the inferred
+// input (validate/reduced), then fitted with the whole plant.
 #include <functional>
 #include <vector>
 
@@ -8,17 +8,19 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// Whether a hypothesis of this stage can be identified so: its effect acts through one of these inputs
-/// alone, and the recorded voltage drives a synchronous machine.
+/// Returns whether a hypothesis on this base model can be identified alone. Its effect must act only through
+/// torque or field voltage, and the plant must be a whole synchronous machine. No record may contain a
+/// breaker operation, an open circuit or a staged test.
 bool can_be_identified(const Stage& stage, const Hypothesis& h);
 
-/// Gives those that were identified and not fitted the evidence of the best one, less what they are behind.
+/// Sets the gain of hypotheses that were identified but not fitted: the best gain less their distance in chi2
+/// (Judgement::behind).
 void place_unfitted(std::vector<Judgement>& all);
 
-/// Every hypothesis, the best first; those that could still become probable beside the best one are fitted.
-/// What answers nothing is left out. `fit_others` fits the hypotheses of other kinds: it is called once, with
-/// the least cost of a whole plant so far, and returns that of theirs, so that nothing is fitted here that is
-/// far behind them.
+/// Returns every hypothesis in descending order of evidence. Those that could still become probable besides
+/// the best one are fitted; those without any response are left out. `fit_others` fits the hypotheses that
+/// cannot be identified alone. It is called once with the lowest cost of a whole plant so far and returns the
+/// lowest cost of its fits. Hypotheses far behind these are not fitted here.
 std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report);

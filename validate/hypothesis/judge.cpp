@@ -9,7 +9,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Of the fit that a verdict rests on.
+/// Maximum number of steps of the final fit.
 constexpr int kMostSteps = 60;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Pairs: a second effect beside the first, another one in the place of the first, and partners exchanged
+// Pairs of effects: a second effect with the first, replacement of the first, and exchange of partners
 // between pairs.
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Copies the values of the `free` parameters of `like` from one plant to another, where both have them.
+/// Copies the values of the `free` parameters of `like` from one plant to another, if both have them.
 void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
                  const std::vector<fit::FreeParameter>& free, sim::plant::Plant& to) {
   for (const fit::FreeParameter& f : free) {
@@ -20,7 +20,7 @@ void copy_values(const sim::plant::Plant& from, const sim::plant::Plant& like,
   }
 }
 
-/// The second effect of a fit that stays, at the values that it has there.
+/// Returns the second effect of a pair at its values in the fit `in`.
 Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   Judgement stays;
   stays.hypothesis = h;
@@ -28,7 +28,8 @@ Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   copy_values(in.plant, h.plant, h.free, stays.fit.plant);
   return stays;
 }
-/// `h` beside what the stage holds, not fitted: everything starts as in `from`, but what the stage brings.
+/// Returns `h` on the base model `then`, not fitted. Start values are those of `from`, and those of `then`
+/// for its own parameters.
 Judgement begun(const Stage& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";
@@ -64,7 +65,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   const auto all = all_hypotheses(stage.under_test(), stage.library, stage.component());
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
-  if (first == all.end() || second == all.end()) return {};  // one effect needs the other to be there
+  if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
   const Judgement stays = staying(*second, pair.fit);
   const Stage then = after(stage, stays);
   std::vector<Judgement> rivals;
@@ -80,7 +81,7 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
 }
 
 void try_begun(const Stage& stage, Judgement& j) {
-  if (j.fit.events.empty()) return;  // it could not be begun
+  if (j.fit.events.empty()) return;  // the candidate has no start
   const auto free = free_of(j.hypothesis, stage.spread);
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free,
                             fit::continued({.lenient = true}, j.fit, free));

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-/// Steps of a fit of the whole plant: to find the leader, at the end.
+/// Maximum number of steps of a fit of the whole plant: to find the leader, and at the end.
 constexpr int kLeaderSteps = 8, kPolishSteps = 40;
-/// The plant is made linear about an optimum so often, with so many steps of the block each time, until less
-/// than this of chi2 is to be gained.
+/// Maximum number of linearisations about an optimum, and of the block's steps for each. The rounds end if
+/// less than this reduction of chi2 is predicted.
 constexpr int kLinearRounds = 3, kLinearSteps = 8;
 constexpr double kSettledCost = 1.0;
 
@@ -39,7 +39,7 @@ VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) 
   return z;
 }
 
-/// Where the reduced plant sees an optimum.
+/// Returns the optimum that the reduced plant predicts.
 Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const {
   Point to{reduction.inference().offset + found.plant, own_of(h, found.values),
@@ -51,7 +51,7 @@ Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& re
   return to;
 }
 
-/// A parameter of a block that the hypothesis takes out is left out.
+/// Returns the plant at a point. Parameters of a block that the hypothesis removes are skipped.
 sim::plant::Plant Polish::whole(const Identified& h, const Point& point) const {
   sim::plant::Plant plant = h.trial.plant;
   for (std::size_t i = 0; i < free_.size(); ++i)
@@ -164,7 +164,7 @@ void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) 
           reduced::identify(*reduction, h.input(), h.trial, {.draws = 0, .kept = 0, .steps = kLinearSteps},
                             {fit::values_of(whole(h, at), h.trial.free)});
       if (nearby.empty() || cost - nearby.front().cost < kSettledCost) break;
-      // what the plant says that is linear about a point far from the optimum does not count yet
+      // The first prediction does not count: its linearisation point may be far from the optimum.
       if (round > 0 && nearby.front().cost > goal) {
         given_up = std::min(given_up, nearby.front().cost);
         out_of_reach = true;

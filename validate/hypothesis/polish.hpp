@@ -1,5 +1,5 @@
 #pragma once
-// Joint optimisation of a plant and its hypothesis from where identification saw an optimum.
+// Joint optimisation of a plant and its hypothesis, started from the optima of the identification.
 #include <limits>
 #include <memory>
 #include <span>
@@ -16,55 +16,56 @@ struct Identified {
   Hypothesis hypothesis;
   reduced::Trial trial;
   std::vector<reduced::Optimum> optima = {};  ///< best first
-  /// Of the best optimum or, once the whole plant was fitted, of that.
+  /// Cost of the best optimum; after a fit of the whole plant, that of the fit.
   double cost = std::numeric_limits<double>::infinity();
   std::vector<fit::Fit> fits = {};  ///< of the whole plant
-  bool polished = false;            ///< they went to the end
+  bool polished = false;            ///< the fits are complete
   std::string companion = {};       ///< see Judgement
   double companion_gain = 0;
-  /// Null: there is none, or all failed.
+  /// Returns the best fit; null if there is none or all failed.
   [[nodiscard]] const fit::Fit* best() const;
   [[nodiscard]] event::InputKind input() const {
     return hypothesis.side == Side::mechanical ? event::InputKind::torque : event::InputKind::field;
   }
 };
 
+/// Joint fits of the whole plant for identified hypotheses on one base model.
 class Polish {
  public:
   using Reduced = std::shared_ptr<const reduced::Reduction>;
   explicit Polish(const Stage& stage);
 
-  /// Free parameters of the stage's plant.
+  /// Free parameters of the base model.
   [[nodiscard]] const std::vector<fit::FreeParameter>& free() const { return free_; }
   [[nodiscard]] static reduced::Inputs only(event::InputKind kind) {
     return {.torque = kind == event::InputKind::torque, .field = kind == event::InputKind::field};
   }
-  /// The plant linear about the best fit, and in these changes of it. Throws InputError where that cannot be
-  /// simulated.
+  /// Linearises the plant about the best fit, with a column for each of `changes`. Throws InputError if the
+  /// plant cannot be simulated.
   [[nodiscard]] Reduced linear_about(const Identified& h,
                                      std::span<const reduced::Change> changes = {}) const;
-  /// Fits the whole plant for a few steps from the best optimum of a linear point that may be far away.
+  /// Fits the whole plant for a few steps from the best optimum. The linearisation may be far away.
   void briefly(Identified& h, const reduced::Reduction& from) const;
-  /// Fits the whole plant from each optimum, as far as it may come below `goal`; there is no fit where the
-  /// plant that is linear about the optimum itself says that it does not. Before that, the plant is
-  /// made linear about the optimum itself, from where the block is identified again, a few times: the reduced
-  /// plant goes along valleys in which a fit is slow, as that of gain and T'do.
+  /// Fits the whole plant from each optimum, if it may come below `goal`. Before the fit, the plant is
+  /// linearised about the optimum and the block is identified again, at most three times. The reduced plant
+  /// moves along narrow valleys in which a fit is slow, such as that of gain and T'do. There is no fit if
+  /// such a linearisation predicts a cost above `goal`.
   void polish(Identified& h, const reduced::Reduction& from, double goal) const;
 
  private:
-  /// Values of a whole plant and of each event, on their axes.
+  /// Values of the whole plant and of each event, on their axes.
   struct Point {
-    Eigen::VectorXd plant, own;  ///< parameters of the stage's plant, of the hypothesis
+    Eigen::VectorXd plant, own;  ///< parameters of the base model and of the hypothesis
     std::vector<Eigen::VectorXd> states;
   };
   [[nodiscard]] static Eigen::VectorXd own_of(const Identified& h, const std::vector<double>& values);
   [[nodiscard]] Point expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const;
-  /// The linear point itself, with the block that was found.
+  /// Returns the linearisation point, with the identified block.
   [[nodiscard]] static Point reference(const Identified& h, const reduced::Reduction& reduction,
                                        const reduced::Optimum& found);
-  /// Calls `act` at `to` or, where that returns false or the plant cannot be simulated, part of the way back
-  /// to `from`; `to` is then that point. Returns whether it did anywhere.
+  /// Calls `act` at `to`. While it returns false or the plant cannot be simulated, `to` is moved halfway back
+  /// to `from`. Returns whether `act` succeeded at any point.
   template <class F>
   static bool between(const Point& from, Point& to, F act);
   [[nodiscard]] sim::plant::Plant whole(const Identified& h, const Point& point) const;
@@ -76,7 +77,7 @@ class Polish {
 
   const Stage& stage_;
   std::vector<fit::FreeParameter> free_;
-  std::vector<fit::Axis> axes_;  ///< of them
+  std::vector<fit::Axis> axes_;  ///< axes of `free_`
 };
 
 }  // namespace swingbank::validate::hypothesis

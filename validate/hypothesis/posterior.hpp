@@ -1,36 +1,38 @@
 #pragma once
-// How probable each explanation is, given all that were tried and that none of them may be right.
+// Posterior probabilities of the explanations tried, including that none of them is right.
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace swingbank::validate::hypothesis {
 
-/// What the list of explanations holds beside effects.
+/// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
 
+/// An explanation of the records with its posterior probability.
 struct Explanation {
   std::string name;
-  double evidence = 0;     ///< over the model as it is, less the price of what it adds [chi2]
-  int place = -1;          ///< of the effect in the list that it comes from; -1: it is none
+  double evidence = 0;  ///< 2 ln(Bayes factor) over the given model, less the threshold for additions [chi2]
+  int place = -1;       ///< index of the effect in the source list; -1: no effect
   double probability = 0;  ///< set by posterior()
 };
 
-/// Fills the probabilities in and puts the most probable first. `none` is the worth of an input that is
-/// free in time, by the dearer of two prices: what is in no list may do as much. It may also look like the
-/// best effect of the list, whose price it pays once more (thresholds::evidence.accepted).
+/// Computes the probabilities and sorts by them, most probable first. `none`: evidence of an unlisted effect
+/// less its threshold, from the free inputs and a steady oscillation. An unlisted effect may also resemble
+/// the best listed one; its evidence is at least that one's less thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
-/// So many of the leading ones make up thresholds::posterior.set.
+/// Returns the number of leading explanations whose probabilities sum to thresholds::posterior.set.
 std::size_t credible(const std::vector<Explanation>& all);
 
-/// By how much evidence an explanation stands behind another one beside which it is negligible
+/// Returns the difference of evidence from a better explanation beyond which an explanation is negligible
 /// (thresholds::posterior.negligible) [chi2].
 double out_of_reach();
-/// What a hypothesis may stand behind the best one and still be in the set of the probable ones [chi2].
+/// Returns the difference of evidence from the best hypothesis up to which a hypothesis may be in the set
+/// [chi2].
 double out_of_set();
 
-/// "97 %"; never 0 or 100 %: "< 1 %", "> 99 %".
+/// Returns for example "97 %"; "< 1 %" and "> 99 %" at the ends, never 0 or 100 %.
 std::string probability_text(double probability);
 
 }  // namespace swingbank::validate::hypothesis

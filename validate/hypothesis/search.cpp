@@ -15,9 +15,9 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Steps of the fit from each start, and of the fit that goes on from the best of them, at most.
+/// Maximum number of steps of the fit from each start, and of the fit that continues from the best one.
 constexpr int kFirstSteps = 4, kLastSteps = 40;
-/// Draws of an added effect that are evaluated, beside those of its starts.
+/// Number of evaluated draws of an added effect, in addition to its starts.
 constexpr std::size_t kFurtherDraws = 80;
 
 /// Values of all free parameters of a hypothesis, and the events' states.
@@ -29,18 +29,19 @@ struct Start {
 /// A hypothesis that is fitted with the whole plant.
 struct Candidate {
   Hypothesis hypothesis;
-  sim::plant::Plant prior = {};  ///< its prior mean
+  sim::plant::Plant prior = {};  ///< the plant at its prior mean
   std::vector<fit::FreeParameter> free = {};
-  std::vector<Start> starts = {};  ///< none: it changes nothing
+  std::vector<Start> starts = {};  ///< empty: the hypothesis has no influence
   std::vector<fit::Fit> fits = {};
 };
 
-/// Hypotheses that cannot be identified alone. Draws are evaluated in lanes about two points: the submitted
-/// values and the stage's fit. The best of each point and the standard values are fitted for a few steps,
-/// and the best of these to the end, as far as it may come within reach of the best hypothesis.
+/// Fits of hypotheses that cannot be identified alone. Draws are evaluated in SIMD batches about two points:
+/// the submitted values and the base model's fit. The best draw at each point and the default values are
+/// fitted for a few steps. The best of these fits is completed, if it may come within reach of the best
+/// hypothesis.
 class WholeFits {
  public:
-  /// `least`: cost of the best that was fitted already.
+  /// `least`: lowest cost of the hypotheses that are fitted already.
   WholeFits(const Stage& stage, const event::Progress& report, double least)
       : stage_(stage), report_(report), least_(least) {
     for (const auto& e : stage.fit.events) fitted_states_.push_back(e.state);
@@ -122,7 +123,7 @@ class WholeFits {
         c.starts.push_back({fit::values_of(plants[k], c.free), {}});
         if (!submitted) c.starts.back().states = states;
       };
-      if (submitted && best != 0) add(0);  // the one that leaves least may hardly act
+      if (submitted && best != 0) add(0);  // the draw with the lowest chi2 may have almost no effect
       add(best);
     };
     sim::plant::Plant plant = stage_.plant;
@@ -141,8 +142,8 @@ class WholeFits {
   static void keep(Candidate& c, fit::Fit f) {
     if (f.failed.empty()) c.fits.push_back(std::move(f));
   }
-  /// The cost from which a fit is worth going on: within reach of the best, and with half the evidence that
-  /// is needed.
+  /// Returns the cost that a fit must be able to reach: within reach of the best, and with half of the
+  /// required evidence.
   [[nodiscard]] double goal(const std::vector<Candidate>& candidates) const {
     double least = least_;
     for (const Candidate& c : candidates)
@@ -165,7 +166,7 @@ class WholeFits {
         },
         stage_.threads);
   }
-  /// Whether nothing was added to the model before.
+  /// Returns whether the base model is the given model.
   [[nodiscard]] bool first() const { return stage_.with.empty(); }
 
   const Stage& stage_;

@@ -1,6 +1,6 @@
 #pragma once
-// Every hypothesis tried by itself on one structure, in order of its evidence. Judging the leading ones on
-// unseen events comes after (judge).
+// Single trial of every hypothesis on one base model, in descending order of evidence. Afterwards judge()
+// tests the leading ones on unseen events.
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,87 +14,89 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// A structure that a hypothesis may be added to.
+/// Base model of a search: a structure to which a hypothesis may be added.
 struct Stage {
   const event::WhitenedEvents& events;
-  sim::plant::Plant plant;  ///< holds the nominal values, which beliefs are about
+  sim::plant::Plant plant;  ///< with the nominal values, the centres of the priors
   sim::Conventions conventions;
-  const sim::library::EffectLibrary& library;  ///< whose effects may be added
-  const fit::Fit& fit;                         ///< of this structure
-  std::vector<fit::FreeParameter> own =
-      {};                 ///< parameters that earlier stages brought, as numbered in `plant`
-  std::string with = {};  ///< name of what was added; empty: the model as it was given
-  double spread = thresholds::parameters.spread;  ///< believed of the model's parameters
+  const sim::library::EffectLibrary& library;  ///< source of the effects
+  const fit::Fit& fit;                         ///< of this base model
+  /// Parameters of effects added before, with their IDs in `plant`.
+  std::vector<fit::FreeParameter> own = {};
+  std::string with = {};                          ///< name of the effect added before; empty: the given model
+  double spread = thresholds::parameters.spread;  ///< prior standard deviation of the model's parameters
   int threads = 1;
-  /// Whether a person has asked for an end: what was begun is kept as it is then. May be empty.
+  /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
   std::function<bool()> stop = {};
-  /// Inputs that are free in time beside this structure; null: not known yet.
+  /// Inferred inputs that are free in time with this base model; null: not yet inferred.
   const reduced::FreeInput *torque = nullptr, *field = nullptr;
-  /// Called with what a fit of a hypothesis has reached, an interrupted one included; from any thread. May be
+  /// Called with the state of each hypothesis's fit, interrupted ones included, from any thread. May be
   /// empty.
   std::function<void(const fit::Fit&)> reached = {};
   [[nodiscard]] bool stopped() const { return stop && stop(); }
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
-  /// What of a plant the events are of.
+  /// Returns the part of a plant that the events record.
   [[nodiscard]] record::Component component() const {
     return events.empty() ? record::Component::plant : events.front().record.component;
   }
 };
 
-/// Fits the hypotheses and does not judge them. Returns the best first and leaves out those that change
-/// nothing. `gain` is over the stage's fit.
+/// Fits the hypotheses without judging them. Returns them in descending order of evidence, without those that
+/// have no influence. `gain` is relative to the base model's fit.
 std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
                                       const event::Progress& report = {});
 
-/// fit::fit of a hypothesis of this stage, which reports what was reached (Stage::reached).
+/// Calls fit::fit for a hypothesis on this base model and reports the result to Stage::reached.
 fit::Fit fit_at(const Stage& stage, const sim::plant::PlantUnderTest& tested,
                 const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options);
 
-/// chi2 of each plant with each event at its entry of `states`; infinite where a plant cannot be simulated.
-/// The plants differ in values only, and are simulated in lanes.
+/// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
+/// The plants differ only in parameter values and are simulated in SIMD batches.
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
                                  const sim::Conventions& conventions, const event::WhitenedEvents& events,
                                  const std::vector<fit::EventState>& states);
 
-/// The plant at its prior mean: the hypothesis at its first start, and the parameters of earlier stages at
-/// their prior means.
+/// Returns the plant at its prior mean: the hypothesis at its first start, and parameters of effects added
+/// before at their prior means.
 sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h);
 
-/// A fit of the hypothesis with its errors, which its evidence needs; nothing where they cannot be had.
+/// Returns the fit of the hypothesis with standard errors, which its evidence needs; empty if they cannot be
+/// computed.
 std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f);
 
-/// Fits a hypothesis that gave no hope, from its start.
+/// Fits a hypothesis that was not promising, from its start values.
 void fit_alone(const Stage& stage, Judgement& j);
 
-/// Fits `j` from where the fit of another structure ended.
+/// Refits `j` from the end point of the fit of another structure, and keeps the better fit.
 void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
 
-/// The stage at which `j`, added to `stage`, is there already.
+/// Returns the base model that consists of `stage` and the hypothesis of `j`.
 Stage after(const Stage& stage, const Judgement& j);
 
-/// Frees in `h` the parameters that earlier stages brought, at their fitted values.
+/// Frees in `h` the parameters of effects added before, at their fitted values.
 void bring(const Stage& stage, Hypothesis& h);
 
-/// What could stand in the place of a pair's first effect, beside its second one: whatever fills the first
-/// one's slot, and those of `alone` that are accepted. These are not fitted. `fit` has the values and states
-/// to start from: the first effect's as `alone` found them, the second effect's as the pair has them.
+/// Returns the candidates for the place of a pair's first effect, with its second effect kept: all effects of
+/// the first one's slot, and the accepted hypotheses of `alone`. They are not fitted. `fit` holds the start
+/// values and states: those of the candidate as in `alone`, those of the second effect as in the pair.
 std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
-/// Fits one that `exchanges` or `crossed` has begun, from its start. One that could not be begun stays as it
-/// is.
+/// Fits a candidate of `exchanges` or `crossed` from its start. Does nothing if the candidate has no start.
 void try_begun(const Stage& stage, Judgement& j);
-/// Two effects that were found in two pairs, each beside a partner of the other.
+/// Two effects that were found in two pairs, each with a partner of its own.
 struct Cross {
-  std::string joins;          ///< name of the effect that is taken out of the better pair
-  const Judgement* joins_in;  ///< the better pair, whose machine is taken as well
-  std::string stays;          ///< name of the effect that is taken out of the other pair
+  std::string joins;          ///< name of the effect taken from the better pair
+  const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
+  std::string stays;          ///< name of the effect taken from the other pair
   const Judgement* stays_in;
-  double
-      expected;  ///< evidence of both pairs less that of their partners' pair: what effects take off adds up
+  /// Evidence of both pairs less that of their partners' pair; reductions of chi2 are assumed to add up.
+  double expected;
 };
-/// The most promising cross whose two effects are in no pair together, while their partners are.
+/// Returns the cross with the highest expected evidence whose two effects are in no common pair, while their
+/// partners are.
 std::optional<Cross> best_cross(std::span<const Judgement> pairs);
-/// The pair of a cross, not fitted. Where one effect needs another to be there, it holds the names alone.
+/// Returns the pair of a cross, not fitted. If one effect requires another to be present, only the names are
+/// set.
 Judgement crossed(const Stage& stage, const Cross& cross);
 
 }  // namespace swingbank::validate::hypothesis

@@ -1,7 +1,7 @@
 #pragma once
-// Small laws u = f(signal) or u = f(time) that could be the inferred input. They are enumerated over grids of
-// their few numbers, and each is judged by how much of the input's course it takes away. This is cheap, so
-// thousands can be tried; the leading ones are then fitted to the records themselves (search.hpp).
+// Candidates for a user-defined model u = f(signal) or u = f(time) of the inferred input. They are enumerated
+// on grids of their few parameters and ranked by regression on the inferred input, which is cheap enough for
+// thousands. The leading candidates are then fitted to the records (search.hpp).
 #include <array>
 #include <limits>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace swingbank::validate::laws {
 
-/// A signal that laws may read, as deviation from its value at the operating point.
+/// A signal that a user-defined model may use, as deviation from its value at the operating point.
 struct LawSignal {
   std::string_view name, expression, words;
 };
@@ -23,43 +23,47 @@ inline constexpr std::array kLawSignals = {
     LawSignal{"Q", "Q - Q0", "the deviation of the reactive power from its value before the event"},
     LawSignal{"Ifd", "Ifd - Ifd0", "the deviation of the field current from its value before the event"}};
 
-/// One event as laws see it.
+/// Signals and inferred input of one event.
 struct LawTrace {
   std::vector<double> t;  ///< samples [s]
-  std::array<std::vector<double>, kLawSignals.size()>
-      signal;                                                 ///< [signal][sample] [pu on the machine's base]
-  double trigger = std::numeric_limits<double>::quiet_NaN();  ///< first switching that V shows [s]; NaN: none
-  double begin = 0;                                           ///< from when the input is known [s]
-  double rest = 0;                                            ///< active power or field voltage at rest [pu]
-  std::vector<double> knots, input;                           ///< the inferred input [s], [pu]
+  /// [signal][sample] [pu on the machine's base].
+  std::array<std::vector<double>, kLawSignals.size()> signal;
+  /// First exit of V from its band [s]; NaN: none.
+  double trigger = std::numeric_limits<double>::quiet_NaN();
+  double begin = 0;                  ///< start of the inferred input [s]
+  double rest = 0;                   ///< active power (torque) or field voltage before the event [pu]
+  std::vector<double> knots, input;  ///< knots [s] and values [pu] of the inferred input
 };
 
+/// A parameter of a user-defined model with its value and range.
 struct LawParameter {
   std::string name, unit;
   double value = 0, low = 0, high = 0;
-  bool gain = false;  ///< at zero the law does nothing
+  bool gain = false;  ///< the model has no output if it is zero
   std::string meaning;
 };
 
-/// A law: its text but for the parameters' values.
+/// A candidate: text of the user-defined model, and its parameters.
 struct LawCandidate {
   fit::InputKind kind = fit::InputKind::torque;
   std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
-  std::string signal;             ///< of kLawSignals, "time" or "time since the voltage moved"
-  std::string words;              ///< with {name} where a parameter's value belongs
-  std::string value, body;        ///< of the law file: the expression, and the tables that it needs
-  std::string requirements = "";  ///< of the law file: conditions on the parameters, in quotes
+  std::string signal;             ///< name in kLawSignals, "time" or "time since the voltage moved"
+  std::string words;              ///< description with {name} in place of a parameter's value
+  std::string value, body;        ///< expression and tables of the TOML file
+  std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes
   std::vector<LawParameter> parameters;
-  double explained = 0;                     ///< share of the inferred input's square that it takes away
-  double score = 0;                         ///< the same less what its numbers cost; lower is better
+  double explained = 0;  ///< coefficient of determination of the inferred input
+  double score = 0;      ///< Bayesian information criterion of the regression; lower is better
   std::vector<std::vector<double>> course;  ///< [event][knot] [pu]
 };
 
-/// Deviation of the voltage that counts as an event [pu]. It is well above the voltage's noise, and half of
-/// what the smallest event with a switching shows. 0: no event shows any.
+/// Returns the deviation of the voltage that triggers a candidate's clock [pu]. It exceeds the voltage's
+/// noise and is at most half of the deviation in the smallest event with a switching. 0: no event has a
+/// switching, or the smallest deviation is too small.
 double trigger_level(const event::WhitenedEvents& events);
 
-/// The best of each family and signal, best first. `level` as from trigger_level.
+/// Returns the best candidate of each family and signal, in ascending order of score. `level`: see
+/// trigger_level().
 std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<LawTrace>& traces,
                                          double level);
 

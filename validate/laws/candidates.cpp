@@ -1,4 +1,5 @@
-// Laws that follow a signal: at once, lagged or washed out; straight, limited, dead-banded or curved.
+// Candidates that depend on a signal: unfiltered, lagged or washed out; linear, limited, dead-banded or
+// curved.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,17 +18,18 @@ enum class Shape { straight, limited, dead_band, bent, even, curve };
 struct Form {
   std::size_t signal = 0;
   Filter filter = Filter::none;
-  double T = 0;  ///< of the filter [s]
+  double T = 0;  ///< time constant of the filter [s]
   Shape shape = Shape::straight;
-  double width = 0;  ///< of the limit's rise or of the dead band; of a curve: its last point [pu]
-  double ratio = 0;  ///< of a curve: between its points
+  /// Deviation at the limit, or half-width of the dead band; of a curve: its last point [pu].
+  double width = 0;
+  double ratio = 0;  ///< of a curve: ratio of consecutive points
 };
-constexpr int kPoints = 4;  ///< of a curve, on either side of zero
+constexpr int kPoints = 4;  ///< number of points of a curve on either side of zero
 
-/// Abscissa of a curve's point, k = 0 ... kPoints.
+/// Returns the abscissa of a curve's point, k = 0 ... kPoints.
 double point_of(const Form& f, int k) { return k == 0 ? 0.0 : f.width * std::pow(f.ratio, kPoints - k); }
 
-/// First-order lag of a course that begins at rest.
+/// Returns the response of a first-order lag to a time series that starts at zero.
 std::vector<double> lagged(const std::vector<double>& t, const std::vector<double>& x, double T) {
   std::vector<double> y(x.size(), 0.0);
   for (std::size_t k = 1; k < x.size(); ++k) {
@@ -72,7 +74,8 @@ Course shaped(Course course, const Form& f) {
       }
   return course;
 }
-/// Hats over a curve's points, odd in the signal; beyond the last point it stays at its value.
+/// Returns hat functions of the signal at a curve's points, odd in the signal. Beyond the last point the
+/// value is constant.
 std::vector<Course> hats(const Course& course, const Form& f) {
   std::vector<Course> all(kPoints, course);
   for (int k = 1; k <= kPoints; ++k) {
@@ -98,14 +101,13 @@ LawParameter gain_of(const std::string& name, double value, double most, const s
   return {name, "pu", value, -most, most, true, meaning};
 }
 
-/// A curve through points (w1, u1), (w2, u2), ... and, turned round, on the other side of zero.
+/// Describes an odd piecewise linear curve through the points (w1, u1), (w2, u2), ...
 void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
   const double least = 0.05 * factors.cwiseAbs().maxCoeff();
   std::string points, order;
   for (int k = 1; k <= kPoints; ++k) {
     double u = factors[k - 1];
-    if (std::abs(u) < least)
-      u = std::copysign(least, u);  // a search in parts of its own size could not leave zero
+    if (std::abs(u) < least) u = std::copysign(least, u);  // steps relative to the value could not leave zero
     law.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
                               fmt::format("deviation at point {}", k)});
     law.parameters.push_back(
@@ -122,7 +124,7 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate&
   law.requirements = order;
   law.words = "a curve of {x}, through " + points + ", straight between and with its sign";
 }
-/// What each shape puts out, in TOML and in words; `y` stands for the filtered signal.
+/// Writes the TOML expression and the description of each shape. `y`: name of the filtered signal.
 void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
   constexpr double kMostGain = 1e6, kMostLevel = 10;
   const double factor = factors[0];
@@ -190,7 +192,7 @@ std::vector<Form> forms_of(std::size_t signal) {
   return forms;
 }
 
-/// Traces without their signals, thinned to twenty samples a second, which is enough for what knots can show.
+/// Returns the traces without signals, at 20 samples per second, which resolves the knots.
 std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
   for (auto& e : traces) {
     std::vector<double> t;
@@ -205,7 +207,7 @@ std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
 }  // namespace
 
 double trigger_level(const event::WhitenedEvents& events) {
-  constexpr double kLeastTrigger = 0.01;  // [pu]; instruments and ambient changes stay below
+  constexpr double kLeastTrigger = 0.01;  // [pu]; above instrument errors and ambient changes
   double smallest = 1e300, noise = 0;
   for (const event::FitEvent& e : events) {
     const double rest = std::abs(e.start.voltage);

@@ -26,7 +26,7 @@ LawRegression::LawRegression(const std::vector<LawTrace>& traces) : traces_(trac
     }
     for (auto& h : hats) h.share /= sum[static_cast<std::size_t>(h.knot)];
     hats_.push_back(std::move(hats));
-    // the last pieces hardly move the answer any more, so nothing is known of them
+    // The last knots hardly influence the response, so their values are not determined.
     constexpr std::size_t kUnknown = 3;
     for (std::size_t k = 0; k < e.knots.size(); ++k, ++at) {
       target_[at] = e.input[k];
@@ -36,7 +36,7 @@ LawRegression::LawRegression(const std::vector<LawTrace>& traces) : traces_(trac
     }
   }
   total_ = weight_.cwiseProduct(target_).squaredNorm();
-  // neighbours share what the bends' penalty ties together
+  // Neighbouring knots are correlated, so only half of them count as independent.
   count_ = static_cast<double>((weight_.array() > 0).count()) / 2;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Least squares of the inferred input on one or two courses, over all events together.
+// Weighted linear regression of the inferred input on one or more time series, over all events together.
 #include <Eigen/Dense>
 #include <vector>
 
@@ -7,9 +7,10 @@
 
 namespace swingbank::validate::laws {
 
-/// Courses at the samples of the events, [event][sample].
+/// Time series at the samples of the events: [event][sample].
 using Course = std::vector<std::vector<double>>;
 
+/// Regression of the inferred input of all events on candidate time series.
 class LawRegression {
  public:
   explicit LawRegression(const std::vector<LawTrace>& traces);
@@ -19,11 +20,12 @@ class LawRegression {
     double explained = 0, score = 0;
     Eigen::VectorXd course;  ///< at all knots, event after event
   };
-  /// `numbers` says with how many numbers the courses were chosen, besides their factors.
+  /// Regresses the input on `columns`. `numbers`: number of parameters selected for the columns, besides
+  /// their factors.
   [[nodiscard]] Answer fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
-  /// A course as the input shows it: its mean around each knot, weighted as the straight pieces are.
+  /// Returns a time series at the knots: its mean over each knot's hat function.
   [[nodiscard]] Eigen::VectorXd at_knots(const Course& course) const;
-  /// The same of a function of event and time.
+  /// The same for a function of trace and time.
   template <class F>
   [[nodiscard]] Eigen::VectorXd at_knots_of(F f) const {
     Course course(traces_.size());

@@ -18,12 +18,13 @@
 namespace swingbank::validate::laws {
 namespace {
 
-constexpr double kLawSpread = 1.0;     ///< a law's numbers are believed within a factor e of the regression's
-constexpr std::size_t kFitted = 8;     ///< laws fitted to the records
-constexpr std::size_t kPerSignal = 3;  ///< laws of one signal that are fitted, at most
-constexpr std::size_t kJudged = 3;     ///< laws judged on events left out
+/// Prior standard deviation of a parameter about the regression's value: a factor e.
+constexpr double kLawSpread = 1.0;
+constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that are fitted to the records
+constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
+constexpr std::size_t kJudged = 3;     ///< number of candidates that are judged on held-out events
 
-/// Whether every word of `a`'s family is one of `b`'s; then `b` is `a` with something added.
+/// Returns whether `b` is `a` with additions: every word of `a`'s family is one of `b`'s.
 bool within(const LawCandidate& a, const LawCandidate& b) {
   const auto words = [](const std::string& family) {
     std::set<std::string> all;
@@ -37,8 +38,8 @@ bool within(const LawCandidate& a, const LawCandidate& b) {
   };
   return a.signal == b.signal && std::ranges::includes(words(b.family), words(a.family));
 }
-/// The leading laws. Not all of them are of one signal, and none of them is a better one with something
-/// added.
+/// Returns the leading candidates. The number per signal is limited, and candidates that extend a better one
+/// are skipped.
 std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   std::map<std::string, std::size_t> of_signal;
   std::vector<LawCandidate> chosen;
@@ -49,8 +50,8 @@ std::vector<LawCandidate> leading(const std::vector<LawCandidate>& ranked) {
   }
   return chosen;
 }
-/// By how much a law must answer better before it is preferred. A time of the record means something only
-/// where records begin alike, and a law in proportion to the start says more than one that is not.
+/// Returns the extra evidence that a candidate needs. A time of the record is meaningful only if records
+/// start alike. A candidate in proportion to the initial value is more specific than one that is not.
 double handicap(const LawCandidate& law) {
   return (law.signal == "time" ? thresholds::laws.own_time.value : 0.0) +
          (law.family.ends_with("in proportion") ? thresholds::laws.in_proportion.value : 0.0);
@@ -62,7 +63,7 @@ std::string source_of(const event::WhitenedEvents& events) {
   return "found by swingbank diagnose in " + names;
 }
 
-/// The present values of `from` in a plant that has one block more.
+/// Returns the values of `from` and of the block `law` in a plant with this block added.
 std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::Block& law, int block,
                               const std::vector<fit::FreeParameter>& free) {
   std::vector<double> values;

@@ -1,7 +1,7 @@
 #pragma once
-// Where no known effect explains the records: does a small law explain the input that would? Candidates are
-// ranked on the inferred input; the leading ones become law effects, are fitted to the records and judged on
-// events left out, as every hypothesis is. A law that does not predict unseen events is not offered.
+// Search for a user-defined model of the inferred input, if no known effect explains the records. Candidates
+// are ranked on the inferred input. The leading ones are fitted to the records and judged on held-out events,
+// as every hypothesis. Only a model that predicts unseen events is offered.
 #include <memory>
 
 #include "validate/event/progress.hpp"
@@ -11,27 +11,30 @@
 
 namespace swingbank::validate::laws {
 
-/// A law fitted to the records and judged.
+/// A user-defined model that was fitted to the records and judged.
 struct LawFinding {
   LawCandidate law;  ///< with the fitted values
   std::shared_ptr<const sim::Effect> effect;
-  hypothesis::Judgement judgement;  ///< its plant has the law in it
-  std::string words;                ///< the law with its fitted numbers, units and intervals
-  std::string toml;                 ///< the law file: `swingbank add NAME --law FILE` takes it
+  hypothesis::Judgement judgement;  ///< its plant contains the model
+  std::string words;                ///< description with fitted values, units and intervals
+  std::string toml;                 ///< TOML file for `swingbank add NAME --law FILE`
 };
 
+/// Result of a search for user-defined models.
 struct LawSearch {
-  fit::InputKind kind = fit::InputKind::none;  ///< of the input that laws were searched for; none: no search
-  std::vector<LawTrace> traces;                ///< per event: the inferred input and the signals
-  std::vector<LawCandidate> ranked;  ///< the best of each kind, by what they explain of the inferred input
-  std::vector<LawFinding> findings;  ///< those fitted to the records, best first; accepted ones lead
+  fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
+  std::vector<LawTrace> traces;                ///< inferred input and signals of each event
+  /// The best candidate of each kind, by their regression on the inferred input.
+  std::vector<LawCandidate> ranked;
+  /// Fitted to the records; accepted ones first, then in descending order of evidence.
+  std::vector<LawFinding> findings;
   double seconds = 0;
   [[nodiscard]] const LawFinding* found() const {
     return !findings.empty() && findings.front().judgement.accepted ? &findings.front() : nullptr;
   }
 };
 
-/// What stands when no known effect was accepted.
+/// Result of a diagnosis without an accepted effect.
 struct Unexplained {
   const plant::PlantModel& model;
   hypothesis::Trial trial;
@@ -41,14 +44,17 @@ struct Unexplained {
   int threads = 1;
 };
 
-/// Searches in the input that explains more. Searches in the other input too if that explains as much and the
-/// first one gave no law. Does not search where neither takes away most of the misfit.
+/// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
+/// the first search finds none and the other input explains about as much. Returns no search if neither input
+/// explains most of the residual.
 LawSearch search_laws(const Unexplained& case_, const event::Progress& report = {});
 
-/// "None of the 31 known effects explains it; a torque of ... does: ..."; empty without an accepted law.
+/// Returns for example "None of the 31 known effects explains it; a torque of ... does: ..."; empty without
+/// an accepted model.
 std::string law_sentence(const LawSearch& search, std::size_t hypotheses);
 
-/// The plant with the law's effect behind what stands in its slot. `block` becomes its number.
+/// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its
+/// number.
 sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
 
 }  // namespace swingbank::validate::laws

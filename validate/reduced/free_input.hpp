@@ -1,31 +1,35 @@
 #pragma once
-// A torque or a field voltage that is free in time beside a model. Which of the two explains the records says
-// on which side something is missing; its time series is shown, and laws are looked for in it.
+// A torque or a field voltage that is free in time in addition to a model. Which of the two explains the
+// records shows on which side of the machine an effect is missing. Its time series is reported, and
+// user-defined models are regressed on it.
 #include <memory>
 
 #include "validate/reduced/infer.hpp"
 
 namespace swingbank::validate::reduced {
 
+/// An inferred input with its evidence.
 struct FreeInput {
   event::InputKind kind = event::InputKind::none;
-  /// The plant with the input, which the events' states hold; without parameters. Failed: it cannot be run.
+  /// Fit of the plant with the input, which the events' states hold; without parameters. `failed`: the plant
+  /// cannot be simulated.
   fit::Fit fit;
   std::vector<Eigen::VectorXd> deviation;  ///< posterior standard deviation of the input [event][knot] [pu]
-  /// Evidence over the model without it: difference of -2 log by Laplace's approximation, with the most
-  /// probable intensity of the input's random walk. Noise alone gave -3 to 6 in six cases.
+  /// 2 ln(Bayes factor) over the model without the input, by Laplace's approximation, at the most probable
+  /// intensity of the input's random walk. Noise alone gave -3 to 6 in six cases.
   double evidence = 0;
-  std::shared_ptr<const Inference> inference;  ///< with the prior intensity
+  std::shared_ptr<const Inference> inference;  ///< at the prior intensity
 
-  /// chi2 per value; infinite where the plant cannot be run.
+  /// Reduced chi-square; infinite if the plant cannot be simulated.
   [[nodiscard]] double misfit() const;
   [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
     return fit.events[event].state.input(kind);
   }
 };
 
-/// Infers the input. `without`: the fit of the tested plant without it. The inference begins there, or at the
-/// submitted values where `without` fits badly and its parameters are biased.
+/// Infers the input. `without`: the fit of the tested plant without it. The inference begins at this fit if
+/// its reduced chi-square is below thresholds::noise.measurable. Otherwise its parameters are biased, and the
+/// inference begins at the submitted values.
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
                      const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                      const fit::Fit& without, int threads);

@@ -15,31 +15,33 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double kDifference = 1e-3;  ///< of an axis, for slopes
-constexpr double kDrawWidth = 1.2;    ///< of draws, in spreads
-/// A quarter of the values are drawn log-uniformly down to a hundredth of the standard value: a limit acts
-/// only if it is as low as its signal.
+constexpr double kDifference = 1e-3;  ///< finite difference on an axis, for Jacobians
+constexpr double kDrawWidth = 1.2;    ///< standard deviation of the draws, in prior standard deviations
+/// A quarter of the values are drawn log-uniformly between the start value and a hundredth of it. A limit
+/// acts only if it is as low as its signal.
 constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
-/// After each optimisation so many rounds of draws about the optima found, in spreads at most and a tenth of
-/// that at least. They find what steps along a gradient do not: the time at which a limiter picks up.
+/// Number of rounds of draws about the optima found, one after each optimisation. Widths are between
+/// `kWidestNearby` prior standard deviations and a tenth of that. Such draws find optima that gradient steps
+/// miss: the time at which a limiter picks up.
 constexpr int kRoundsNearby = 3, kWidthsNearby = 8;
 constexpr double kWidestNearby = 0.5;
-constexpr double kShortestTime = 0.2;                         ///< sampling intervals
-constexpr double kStartSettled = 0.02;                        ///< a step that gains less ends a start
-constexpr double kGivenUp = 1e6;                              ///< damping
-constexpr std::size_t kLastStarts = 2;                        ///< so many are optimised to the end
-constexpr double kSameOptimum = 1.0;                          ///< costs closer than this are one optimum
-constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< of an axis in one step
-constexpr double kLengths[] = {0.1, 1.0, 10.0, 1000.0};       ///< damping of the steps that are tried at once
+constexpr double kShortestTime = 0.2;   ///< of a time constant, in sampling intervals
+constexpr double kStartSettled = 0.02;  ///< cost reduction of a step below which a start has converged
+constexpr double kGivenUp = 1e6;        ///< damping factor at which a start is given up
+constexpr std::size_t kLastStarts = 2;  ///< number of starts that are optimised to the end
+constexpr double kSameOptimum = 1.0;    ///< costs closer than this belong to one optimum
+constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< maximum steps on an axis and of the gain
+constexpr double kLengths[] = {0.1, 1.0, 10.0,
+                               1000.0};  ///< factors on the damping of the steps that are tried at once
 
-/// Marks parameters of the submitted plant whose blocks `plant` does not have.
+/// Marks parameters of the submitted plant whose blocks are absent from `plant`.
 std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant) {
   std::vector<char> marks;
   for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.base, f.id) ? 0 : 1);
   return marks;
 }
 
-/// One trial.
+/// Identification of one trial.
 class Identifying {
  public:
   Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial,
@@ -50,7 +52,7 @@ class Identifying {
         reduced_(reduction, input, held_by(reduction.inference(), trial.plant), freed) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
-      // the records cannot tell a time constant far below the sampling interval from zero
+      // A time constant far below the sampling interval is indistinguishable from zero in the records.
       if (parameter_record(trial.plant, f.id).unit == "s")
         axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduction.step()));
       axes_.push_back(axis);
@@ -76,7 +78,8 @@ class Identifying {
     double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
     bool done = false;
   };
-  /// Every start takes so many steps; then the better half takes twice as many, and so on.
+  /// Optimises the starts by successive halving: every start takes `steps` steps, then the better half takes
+  /// twice as many, and so on.
   void optimise(int steps) {
     for (;; steps *= 2) {
       for (int step = 0; step < steps; ++step) {
@@ -88,7 +91,7 @@ class Identifying {
       starts_.resize((starts_.size() + 1) / 2);
     }
   }
-  /// Adds the best of the draws about the present optima, from narrow to wide.
+  /// Adds the best draws about the present optima; the widths of the draws cycle from wide to narrow.
   void add_nearby(int round, const IdentifyOptions& options) {
     std::vector<VectorXd> points;
     for (int draw = 0; draw < options.draws; ++draw) {
@@ -109,7 +112,7 @@ class Identifying {
     some.resize(std::min(some.size(), static_cast<std::size_t>(options.kept)));
     std::ranges::move(some, std::back_inserter(starts_));
   }
-  /// Those of the points that can be simulated.
+  /// Returns the points that can be simulated, with their costs.
   [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points,
                                              const MatrixXd& made) const {
     const VectorXd cost = costs(made, points, VectorXd::Zero(static_cast<Index>(points.size())));
@@ -119,7 +122,7 @@ class Identifying {
         all.push_back({points[k], 0, cost[static_cast<Index>(k)]});
     return all;
   }
-  /// The trial whose other blocks are as they are at the inference.
+  /// Returns the trial with the plant's other parameters at the values of the inference.
   static Trial about(const Inference& inference, Trial trial) {
     for (const auto& f : inference.free)
       if (const auto id = same_parameter(trial.plant, inference.base, f.id);
@@ -133,7 +136,7 @@ class Identifying {
       parameter_value(plant, trial_.free[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
     return plant;
   }
-  /// Time series of the input that these values add to the plant's own controls.
+  /// Returns the input's time series that these values add to the plant's own controls.
   [[nodiscard]] MatrixXd series(const std::vector<VectorXd>& all) const {
     std::vector<sim::plant::Plant> plants;
     for (const VectorXd& z : all) plants.push_back(plant_at(z));
@@ -148,7 +151,7 @@ class Identifying {
         cost += std::pow(z[static_cast<Index>(i)] / spread, 2);
     return cost;
   }
-  /// Costs; infinite where a trial cannot be simulated.
+  /// Returns the costs; infinite for a trial that cannot be simulated.
   [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
                                const VectorXd& gains) const {
     VectorXd cost = reduced_.costs(made, gains);
@@ -203,12 +206,13 @@ class Identifying {
     starts_ = starts_at(all, made);
     std::ranges::stable_sort(starts_, {}, &Start::cost);
     starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
-    all.resize(given);  // given starts are optimised in any case
+    all.resize(given);  // given starts are always optimised
     std::ranges::move(starts_at(all, made.leftCols(static_cast<Index>(given))), std::back_inserter(starts_));
   }
-  /// Further draws where fewer than `enough` act. A limiter that has picked up before the event cannot be
-  /// simulated, and one that picks up far above its signal does nothing. On the way from such a draw to the
-  /// other lies the first point that can be simulated; they lie shortly beyond it.
+  /// Returns further draws if fewer than `enough` draws have an effect. A limiter that has picked up before
+  /// the event cannot be simulated; one whose pickup level is far above its signal has no effect. On the line
+  /// from a draw of the first kind to one of the second, bisection finds the first point that can be
+  /// simulated. The returned points lie shortly beyond it.
   [[nodiscard]] std::vector<VectorXd> between_failing_and_idle(const std::vector<VectorXd>& all,
                                                                const MatrixXd& made, int enough) const {
     constexpr std::size_t kPairs = 64;
@@ -249,7 +253,7 @@ class Identifying {
       return playin::can_run(sim::plant::block_at(plant, f.id.block));
     });
   }
-  /// One step of every start that has not converged; false where all have.
+  /// Takes one step of every start that has not converged; returns false if all have.
   bool advance() {
     const auto np = static_cast<Index>(axes_.size());
     std::vector<Start*> moving;
@@ -310,8 +314,8 @@ class Identifying {
     }
     return true;
   }
-  /// Damped minimum; a parameter at its bound is fixed there and the others are solved for again (active
-  /// set).
+  /// Returns the step to the damped minimum within the bounds. A parameter at its bound is fixed there, and
+  /// the others are solved for again (active set).
   [[nodiscard]] VectorXd bounded_step(const ReducedPlant::Quadratic& quadratic, const Start& s,
                                       double damping) const {
     constexpr double kRidge = 1e-12;
@@ -365,7 +369,7 @@ class Identifying {
   Trial trial_;
   ReducedPlant reduced_;
   std::vector<fit::Axis> axes_;
-  MatrixXd without_;  ///< response of the submitted plant's own controls
+  MatrixXd without_;  ///< open-loop response of the submitted plant's own controls
   std::vector<Start> starts_;
 };
 

@@ -16,17 +16,18 @@ using Kind = playin::Direction::Kind;
 using detail::Normal, detail::Point;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Intensities of the inputs' random walk that are tried beside the prior's, at most; which are the same; and
-/// factors from one to the next, where residuals are not linear in the inputs and where they are.
+/// Maximum number of intensities of the inputs' random walk besides the prior's; the difference of two
+/// logarithms below which intensities are equal; and the maximum factor between consecutive intensities, for
+/// residuals that are nonlinear and linear in the inputs.
 constexpr int kIntensities = 5;
 constexpr double kSameIntensity = 0.7;  // of the logarithm
 constexpr double kNearIntensity = 100, kAnyIntensity = 1e12;
 /// Knots are one sample apart for this long after a switching time; then their spacing grows.
 constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;  // [s], factor, [s]
-constexpr double kMostKnots = 100;                                          ///< of what lies far apart
+constexpr double kMostKnots = 100;                                          ///< in the part with wide spacing
 
-/// Prior standard deviation of an input's jump at a switching time [pu]: a turbine's torque does not jump, a
-/// rectifier's voltage may.
+/// Prior standard deviation of an input at the first switching time, and of the field
+/// voltage's jump at later ones [pu]. A turbine's torque does not jump; a rectifier's voltage may.
 constexpr double kFirstTorque = 1e-3, kFirstField = 10.0;
 
 Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
@@ -126,12 +127,12 @@ class Inferring {
     return found;
   }
 
-  /// The intensity of the inputs' walk that is the most probable one, by the quadratic model about an
+  /// Returns the most probable intensity of the inputs' random walk, by the quadratic model about an
   /// inference.
   [[nodiscard]] double most_probable_intensity(const Inference& about) const {
     constexpr double kLeastIntensity = 1e-10, kMostIntensity = 1e2, kIntensityFactor = 3.0;
     Normal data = without_walks(about.events, axes_, at_, events_);
-    Point none = at_;  // where the walk costs nothing, so that no large numbers cancel
+    Point none = at_;  // inputs of zero, where the walk has no cost; avoids cancellation of large numbers
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const Index states = at_.states[e].size(), inputs = data.own[e].rows() - states;
       VectorXd input(inputs);
@@ -155,9 +156,9 @@ class Inferring {
     }
     return best;
   }
-  /// The inference with the most probable intensity, with standard deviations of the inputs. The intensity
-  /// moves by a factor of `farthest` at most from one inference to the next, as far as the quadratic model
-  /// holds.
+  /// Returns the inference at the most probable intensity, with standard deviations of the inputs. The
+  /// intensity changes by a factor of at most `farthest` between inferences, because the quadratic model
+  /// holds only nearby.
   Inference smoothed(const Inference& first, double farthest) {
     Inference best = first;
     for (int round = 0; round < kIntensities; ++round) {
@@ -176,7 +177,7 @@ class Inferring {
     add_deviations(best);
     return best;
   }
-  /// Adds the standard deviations of the inputs.
+  /// Adds the posterior standard deviations of the inputs.
   void add_deviations(Inference& found) const {
     const auto all = deviations(normal_of(found.events));
     for (std::size_t e = 0; e < all.size(); ++e) {
@@ -189,15 +190,15 @@ class Inferring {
  private:
   static constexpr double kFirstDamping = 1e-3;
   static constexpr int kDampings = 8;
-  static constexpr double kWorthAStep = 1.0;  ///< of chi2
-  static constexpr double kLongestLog = 0.5;  ///< step of a logarithm
+  static constexpr double kWorthAStep = 1.0;  ///< minimum gain of a step to continue [chi2]
+  static constexpr double kLongestLog = 0.5;  ///< maximum step of a logarithm
 
   [[nodiscard]] Normal normal_of(const std::vector<EventSlopes>& slopes) const {
     Normal normal = without_walks(slopes, axes_, at_, events_);
     add_walks(slopes, at_, intensity_, normal);
     return normal;
   }
-  /// An input that an event's state has on the same knots; else zero.
+  /// Returns the values of an input that is given on the same knots; otherwise zeros.
   [[nodiscard]] static VectorXd at_knots(const playin::PiecewiseLinear& input, const Knots& knots) {
     if (input.t.size() != knots.t.size()) return VectorXd::Zero(static_cast<Index>(knots.t.size()));
     return Eigen::Map<const VectorXd>(input.value.data(), static_cast<Index>(input.value.size()));
@@ -215,7 +216,7 @@ class Inferring {
     if (inputs_.field) s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
     return s;
   }
-  /// Knots at switching times move with them.
+  /// Returns the knots with those at switching times moved along.
   [[nodiscard]] Knots knots_of_moved(std::size_t e, const event::EventState& s) const {
     Knots knots = knots_[e];
     if (s.switchings.empty()) return knots;
@@ -251,7 +252,7 @@ class Inferring {
     std::vector<Kind> kinds;
     if (inputs_.torque) kinds.push_back(Kind::torque);
     if (inputs_.field) kinds.push_back(Kind::field);
-    for (int k = 0; k < knots; ++k)  // in the order in which they begin
+    for (int k = 0; k < knots; ++k)  // in order of time
       for (const Kind kind : kinds) along.push_back({.kind = kind, .index = k});
     const playin::Response r =
         event::play({plant, tested_.conventions}, event, state, along, {.linear_slopes = true});
@@ -276,7 +277,7 @@ class Inferring {
     slopes.state_at = p.states[e];
     return slopes;
   }
-  /// Infinite where the plant cannot be run.
+  /// Returns the cost at a point; infinite if the plant cannot be simulated.
   [[nodiscard]] double cost_at(const Point& p) const {
     const sim::plant::Plant plant = plant_at(p.z);
     if (!playin::can_exist_beside(plant, tested_.plant)) return kInfinite;
@@ -309,7 +310,7 @@ class Inferring {
     }
     return cost;
   }
-  /// Log determinant of the prior precision of all that is free.
+  /// Returns the log determinant of the prior precision of all free variables.
   [[nodiscard]] double log_prior(double intensity) const {
     double sum = 0;
     for (const fit::Axis& axis : axes_) sum -= axis.spread() > 0 ? 2 * std::log(axis.spread()) : 0.0;
@@ -347,11 +348,11 @@ class Inferring {
   const std::vector<fit::FreeParameter>& free_;
   Inputs inputs_;
   int threads_;
-  double intensity_ = 1.0;  ///< of the inputs' walk, as a multiple of the prior's
+  double intensity_ = 1.0;  ///< intensity of the inputs' walk, relative to the prior's
   std::vector<fit::Axis> axes_;
   std::vector<Knots> knots_;
   sim::plant::Plant simulated_;
-  std::vector<std::optional<sim::plant::ParameterId>> ids_;  ///< of the free parameters in it
+  std::vector<std::optional<sim::plant::ParameterId>> ids_;  ///< IDs of the free parameters in `simulated_`
   Point at_;
 };
 

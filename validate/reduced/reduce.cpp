@@ -14,17 +14,17 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using event::InputKind;
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Prior precision of a change, of its column's square.
+/// Prior precision of a change, relative to the squared norm of its column.
 constexpr double kChangePrecision = 1e-8;
 
-/// The upper triangle with the same products of columns, from column `first` on.
+/// Returns the triangular factor R with R'R = all'all, from row and column `first` on.
 MatrixXd triangle(const MatrixXd& all, Index first) {
   const Eigen::HouseholderQR<MatrixXd> qr(all);
   const Index left = all.cols() - first;
   return qr.matrixQR().block(first, first, left, left).triangularView<Eigen::Upper>();
 }
 
-/// Weights that average values at the time points over each knot's hat function: [knot][time point].
+/// Returns weights that average values at the time points over each knot's hat function: [knot][time point].
 Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::TimePoint>& times) {
   const auto count = static_cast<Index>(knots.t.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -57,7 +57,8 @@ Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::TimePoi
   return weights;
 }
 
-/// Ends of the blocks' steps: a few between two knots, none shorter than a sample.
+/// Returns the ends of the blocks' integration steps: at most four between two knots, none much shorter than
+/// a sample.
 std::vector<double> steps_between(const Knots& knots, double sample) {
   constexpr double kStepsPerKnot = 4;
   std::vector<double> times{knots.t.front()};
@@ -69,8 +70,8 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
   return times;
 }
 
-/// Switching times that would leave their range where the event's state fits best, and their moves to its
-/// end.
+/// Returns the switching times that would leave their range at the optimum of the event's state (active set),
+/// with their moves to the end of the range.
 std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event, const EventSlopes& slopes,
                                                      const std::vector<double>& priors) {
   const Index n = slopes.state.cols();
@@ -109,7 +110,7 @@ VectorXd at_times(const playin::PiecewiseLinear& input,
                   const std::vector<playin::OpenLoop::TimePoint>& times) {
   VectorXd values(static_cast<Index>(times.size()));
   for (std::size_t k = 0; k < times.size(); ++k) {
-    // the end of a segment lies before the switching time
+    // A segment's end is evaluated just before the switching time.
     const bool ends = k + 1 < times.size() && times[k + 1].segment != times[k].segment;
     values[static_cast<Index>(k)] = input(times[k].t - (ends ? sim::plant::kBeforeSwitching : 0.0));
   }
@@ -268,7 +269,7 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
   MatrixXd curvature = MatrixXd::Zero(m, m);
   first_ = VectorXd::Zero(m);
   for (Index k = 0; k < m; ++k) {
-    if (k >= parameters) {  // so wide that it matters only where columns are multiples of one another
+    if (k >= parameters) {  // a weak prior, which matters only for collinear columns
       double square = 0;
       for (const Reduction::Event& e : reduction.events())
         square += e.triangle.col(free_[static_cast<std::size_t>(k)]).squaredNorm();
@@ -288,7 +289,7 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
     const bool both = at.inputs.torque && at.inputs.field;
     const MatrixXd explained = R.middleCols(n + (both && field ? K : 0), K),
                    rest = R.middleCols(n + (both && !field ? K : 0), both ? K : 0);
-    // derivative by the gain's parameter at constant product of gain and input
+    // Derivative with respect to the gain's parameter at constant product of gain and input.
     if (gain_.number >= 0)
       plant.col(gain_.number) -= gain_.exponent * (explained * reduction.series(kind).segment(row, K));
     const Index first = rest.cols();

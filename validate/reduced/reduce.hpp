@@ -1,11 +1,11 @@
 #pragma once
-// The reduced plant. Near an inference the residuals of an event are linear in the plant's parameters, the
-// event's state, torque and field voltage. A QR decomposition eliminates the event's state. What remains is
-// the cost of any time series u(t) of one input, whichever block makes it, minimised over the plant's
-// parameters d:
+// The reduced plant: the cost of an input's time series with all other unknowns eliminated. Near an inference
+// the residuals of an event are linear in the plant's parameters, the event's state, torque and field
+// voltage. A QR decomposition eliminates the event's state. The remaining cost of any time series u(t) of one
+// input, whichever block generates it, is minimised over the plant's parameters d:
 //   |r + T d + L g u|^2 + |(offset + d) / spread|^2
-// One parameter, d_g, also scales the effect of the input: a machine's state follows it at the rate 1/T'do
-// (field voltage) or 1/2H (torque). It stays explicit: g = exp(exponent d_g).
+// One parameter, d_g, also scales the effect of the input, because a machine's state follows it at the rate
+// 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent d_g).
 #include <Eigen/SparseCore>
 
 #include "validate/playin/open_loop.hpp"
@@ -13,7 +13,7 @@
 
 namespace swingbank::validate::reduced {
 
-/// Of the inputs that an inference has, in all events.
+/// Reduction of all events for the inputs of an inference.
 class Reduction {
  public:
   Reduction(Inference inference, const event::WhitenedEvents& events, const sim::Conventions& conventions);
@@ -23,39 +23,40 @@ class Reduction {
   /// One event.
   struct Event {
     playin::OpenLoop loop;  ///< of the plant's controls
-    Eigen::SparseMatrix<double, Eigen::RowMajor>
-        over_hats;  ///< mean over each knot's hat function: [knot][time point]
-    /// Rows of [plant | changes | torque | field | residual without either input], once the event's state is
-    /// eliminated.
+    /// Mean over each knot's hat function: [knot][time point].
+    Eigen::SparseMatrix<double, Eigen::RowMajor> over_hats;
+    /// Triangular factor with columns [plant | changes | torque | field | residual without either input],
+    /// after elimination of the event's state.
     Eigen::MatrixXd triangle;
-    /// The same of [state | plant | changes | torque | field | residual]: what the state then is.
+    /// Rows of the same factor with columns [state | plant | changes | torque | field | residual], which
+    /// determine the state.
     Eigen::MatrixXd by_state;
     Knots knots;
   };
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
-  /// How many changes beside the plant's parameters (add_changes).
+  /// Number of changes besides the plant's parameters (add_changes).
   [[nodiscard]] Eigen::Index changes() const { return inference_.events.front().changes.cols(); }
-  /// How many knots all events have.
+  /// Total number of knots of all events.
   [[nodiscard]] Eigen::Index knots() const { return knots_; }
-  /// Between two samples [s].
+  /// Sampling interval [s].
   [[nodiscard]] double step() const { return step_; }
-  /// What the controls of plants with the same blocks make of the signals of the simulated plant, at all
-  /// knots: [knot][plant].
+  /// Returns the open-loop output of the controls of several plants with equal blocks, at all knots:
+  /// [knot][plant]. The controls receive the signals of the simulated plant.
   [[nodiscard]] Eigen::MatrixXd responses(event::InputKind kind,
                                           const std::vector<sim::plant::Plant>& plants) const;
-  /// What the simulated plant has of an input beside the controls of the submitted plant, at all knots: as
-  /// inferred, or what its other block makes.
+  /// Returns the part of an input that the submitted plant's controls do not produce, at all knots: the
+  /// inferred input, or the output of the simulated plant's additional block.
   [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
-  /// The events' states that minimise the cost at these changes of the plant's parameters, with this time
-  /// series of the only input, in the states' units.
+  /// Returns the events' states that minimise the cost, in their units. `plant`: changes of the plant's
+  /// parameters; `series`: time series of the only input.
   [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const event::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;
   /// The plant parameter that scales an input, and its exponent.
   struct Gain {
-    Eigen::Index number = -1;  ///< -1: none is
+    Eigen::Index number = -1;  ///< index of the parameter; -1: none
     double exponent = 0;
   };
   [[nodiscard]] Gain gain(event::InputKind kind) const {
@@ -73,32 +74,40 @@ class Reduction {
   Gain torque_gain_, field_gain_;
 };
 
-/// Cost of one input's time series.
+/// Cost of one input's time series u in a Reduction, minimised over the changes d of all plant parameters
+/// except the gain's:
+///
+/// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
+///
+/// o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard deviations.
 class ReducedPlant {
  public:
-  /// The other input stays free where the reduction has it. `held` marks plant parameters that are fixed
-  /// because their blocks are absent; empty: none. Of the changes only those of `freed` are made.
+  /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
+  /// because their blocks are absent; empty: none. Only the changes in `freed` are free.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
                const std::vector<Eigen::Index>& freed = {});
 
-  /// Cost of each time series [knot of all events][series], each with its change of the gain's parameter.
+  /// Returns the cost of each time series [knot of all events][series], each with its change of the gain's
+  /// parameter.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
-  /// Half the gradient and the Gauss-Newton Hessian of the cost of one time series, by the gain's parameter
-  /// and by those whose Jacobian `slopes` [knot][parameter] is; the other plant parameters are eliminated.
+  /// Half the gradient and half the Gauss-Newton Hessian of the cost of one time series. The variables are
+  /// the gain's parameter and the parameters of the Jacobian `slopes` [knot][parameter]; all other plant
+  /// parameters are eliminated.
   struct Quadratic {
     Eigen::MatrixXd curvature;
     Eigen::VectorXd gradient;
   };
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
                                     const Eigen::MatrixXd& slopes) const;
-  /// Changes of the plant parameters that minimise the cost of a time series; without those of add_changes.
+  /// Returns the changes of the plant parameters that minimise the cost of a time series, without those of
+  /// add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
 
  private:
   struct Event {
     Eigen::VectorXd r, by_gain;
-    Eigen::MatrixXd T, L;  ///< by the eliminated parameters, by the time series
+    Eigen::MatrixXd T, L;  ///< Jacobians by the eliminated parameters and by the time series
   };
   [[nodiscard]] double factor(double gain) const { return std::exp(gain_.exponent * gain); }
 
@@ -106,9 +115,9 @@ class ReducedPlant {
   std::vector<Eigen::Index> free_;  ///< eliminated parameters
   Eigen::Index numbers_;
   std::vector<Event> events_;
-  Eigen::MatrixXd inverse_;  ///< of their Hessian
+  Eigen::MatrixXd inverse_;  ///< inverse Hessian of the eliminated parameters
   Eigen::VectorXd first_;    ///< half the gradient of their prior
-  double prior_cost_ = 0;    ///< of the present values
+  double prior_cost_ = 0;    ///< prior cost at the present values
   double gain_precision_ = 0, gain_offset_ = 0;
 };
 

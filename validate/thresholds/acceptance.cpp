@@ -16,11 +16,11 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-/// IEC 61400-27-2 lets no more than this be left out after a fault and after its clearing [s].
+/// Maximum time left out after a fault and after its clearing in IEC 61400-27-2 [s].
 constexpr double kMostAfterFault = 0.14, kMostAfterClearing = 0.5;
 constexpr double kMostPercent = 1000;
 
-/// One preset of the header; P and Q have the same limits.
+/// Returns one preset of thresholds.hpp; P and Q have the same limits.
 template <class Preset>
 Acceptance acceptance_of(const Preset& p, std::string name, std::string source) {
   const std::array<Errors, 3> one = {Errors{p.pre_fault_mxe, p.pre_fault_me, p.pre_fault_mae},
@@ -46,7 +46,7 @@ const Acceptance* preset(const std::string& name) {
   return found == presets().end() ? nullptr : &*found;
 }
 
-/// Key of a window in the file.
+/// Keys of the windows in the file.
 constexpr std::array<std::string_view, 3> kKeys = {"pre_fault", "fault", "post_fault"};
 
 Acceptance read(Config& file) {

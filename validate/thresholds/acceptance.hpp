@@ -1,7 +1,7 @@
 #pragma once
-// "Is the model fit for its purpose?" is asked beside "is nothing but noise left?": engineering limits of the
-// errors of P and Q, window by window, as IEC 61400-27-2 counts them. The limits are a preset or stand in a
-// file (configs/accept/README.md).
+// Fit for purpose: engineering limits of the errors of P and Q in each window, with the error measures of IEC
+// 61400-27-2. This test is independent of the test for noise. The limits are a preset or are read from a file
+// (configs/accept/README.md).
 #include <array>
 #include <string>
 #include <string_view>
@@ -9,21 +9,23 @@
 
 namespace swingbank::validate::thresholds {
 
-/// Windows of an event: before its first switching, between that and its last one, and after it.
+/// Windows of an event: before the first switching, between the first and the last one, and after the last
+/// one.
 enum class Phase { pre_fault, fault, post_fault };
 inline constexpr std::array kPhases = {Phase::pre_fault, Phase::fault, Phase::post_fault};
 std::string_view phase_name(Phase phase);  ///< "pre-fault"
 
-/// Maximum, mean and mean absolute error, of modelled less measured [% of the machine's MVA]. Of limits the
-/// mean's holds for its size.
+/// Maximum, mean and mean absolute error, modelled - measured [% of the machine's MVA]. As limits, `me`
+/// applies to the absolute value of the mean.
 struct Errors {
   double mxe = 0, me = 0, mae = 0;
 };
 
+/// A set of limits for fit for purpose.
 struct Acceptance {
-  std::string name, source;                     ///< what the limits are called, and where they come from
-  std::array<std::array<Errors, 3>, 2> limits;  ///< of P and of Q, by phase
-  double after_fault = 0, after_clearing = 0;   ///< not compared after the first and the last switching [s]
+  std::string name, source;                     ///< name of the limits, and their source
+  std::array<std::array<Errors, 3>, 2> limits;  ///< [P, Q][phase]
+  double after_fault = 0, after_clearing = 0;   ///< time left out after the first and the last switching [s]
   double movement = 0;  ///< RMS error after the last switching [% of the RMS movement of the channel]
   /// `channel`: 0 is P, 1 is Q.
   [[nodiscard]] const Errors& of(int channel, Phase phase) const {
@@ -33,27 +35,26 @@ struct Acceptance {
 
 /// Names of the presets; the first is the default.
 std::vector<std::string> acceptance_presets();
-/// A preset by its name, the default where `what` is empty, else the file of that name. Throws InputError
-/// with every fault of the file, or that there is neither.
+/// Returns the preset `what` (the default if empty) or the limits of the file of that name. Throws InputError
+/// with every fault of the file, or if there is neither.
 Acceptance read_acceptance(const std::string& what);
-/// From a file's text; `name` stands for it in messages.
+/// Reads limits from a file's text; `name` is the file name in messages.
 Acceptance parse_acceptance(const std::string& text, const std::string& name);
 
-/// The error of one window that is nearest to its limit, or furthest beyond it.
+/// The error of one window with the largest ratio to its limit.
 struct Nearest {
   std::string_view name;        ///< "MXE"
-  double error = 0, limit = 0;  ///< [% of MVA]; the mean's as its size
-  double ratio = 0;             ///< error / limit; infinite where the error is no number
+  double error = 0, limit = 0;  ///< [% of MVA]; absolute value of the mean
+  double ratio = 0;             ///< error / limit; infinite if the error is not finite
 };
 Nearest nearest(const Errors& errors, const Errors& limits);
-/// How many of the three exceed their limits; what is no number does.
+/// Returns how many of the three errors exceed their limits; NaN counts as exceeding.
 int exceeding(const Errors& errors, const Errors& limits);
 
-/// Exit code of a command that judges a model. 0: nothing but noise is left, and it is fit for purpose; 3:
-/// not adequate, more than noise is left; 4: the same, but fit for purpose; 5: nothing but noise is left, but
-/// not fit for purpose.
+/// Returns the exit code of a command that judges a model. 0: statistically complete (the residual is noise)
+/// and fit for purpose; 3: neither; 4: fit for purpose only; 5: statistically complete only.
 int exit_code(bool complete, bool fit);
-/// The same in words, for `--help`.
+/// The same as text, for `--help`.
 extern const char* const kExitCodes;
 
 }  // namespace swingbank::validate::thresholds

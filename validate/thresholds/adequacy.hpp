@@ -1,21 +1,15 @@
 #pragma once
-// "Is the model adequate?" is the exit code of three commands, and each asks a question of its own:
-//   compare    plays the records into the model as it is. Nothing is refitted, so the bend of a wrong
-//   parameter shows
-//              and must count: every cell of the error maps has its own bound, and one cell beyond it is
-//              enough.
-//   calibrate  refits the parameters, then asks per event, held out or not, whether chi2 per value stays
-//   below a limit and add    that knows this event's coloured noise and short pre-event. Localised errors are
-//   allowed to average out,
-//              because the next question is which parameter, not which second.
-//   diagnose   refits the parameters too and decides whether to name an effect. Besides chi2 over all events
-//   it asks for
-//              slow remainders, for steady oscillations and for what an input that is free in time would
-//              explain, because effects of 40 times the noise have hidden in a chi2 of 1.07; and a named
-//              effect must have its evidence.
-// They differ by what has been refitted and by what follows from "no", so they are three criteria and not
-// one. All of them stand here, every verdict says which one decided it, and their numbers are those of
-// thresholds.hpp.
+// Criteria by which three commands decide whether a model is adequate, which sets their exit codes.
+// Command compare plays the records into the given model without a refit, so the effect of a wrong parameter
+// counts. Every bin of the error maps has its own limit, and one bin beyond its limit is enough. Commands
+// calibrate and add refit the parameters, then test the reduced chi-square of each event, held out or not.
+// The limit allows for the event's coloured noise and short pre-event window. Local errors may average out,
+// because the next question is which parameter is wrong, not at which second.
+// Command diagnose refits the parameters and decides whether to name an effect. Besides chi2 over all events
+// it tests slow remainders, steady oscillations and the evidence of free inputs. Effects of 40 times the
+// noise have been hidden in a reduced chi-square of 1.07. A named effect must have its evidence. The criteria
+// differ by the refit and by the consequence of a rejection, so they are not unified. Every verdict reports
+// the criterion that decided it; all limits are in thresholds.hpp.
 #include <string>
 #include <string_view>
 
@@ -23,42 +17,44 @@
 
 namespace swingbank::validate::thresholds {
 
+/// Criterion of a verdict.
 enum class Criterion {
-  cells,         ///< compare: no cell of the error maps exceeds its bound
-  events,        ///< calibrate, add: no event's chi2 per value exceeds its limit
-  misfit,        ///< diagnose: chi2 per value over all events
+  cells,         ///< compare: no bin of the error maps exceeds its limit
+  events,        ///< calibrate, add: no event's reduced chi-square exceeds its limit
+  misfit,        ///< diagnose: reduced chi-square over all events
   slow,          ///< diagnose: slow remainder of the residual
-  line,          ///< diagnose: what a steady oscillation explains
+  line,          ///< diagnose: reduction of chi2 by a steady oscillation
   free_input,    ///< diagnose: evidence of a torque or field voltage that is free in time
-  named_effect,  ///< diagnose: evidence of the effect that it names
+  named_effect,  ///< diagnose: evidence of the named effect
 };
 
+/// Name and description of a criterion for reports.
 struct CriterionRecord {
   std::string_view name;            ///< in JSON
-  std::string_view asks;            ///< as a reader reads it
+  std::string_view asks;            ///< description for readers
   std::string_view unit;            ///< of value and limit
-  std::string_view while_adequate;  ///< how the value stands to the limit while the model is adequate
+  std::string_view while_adequate;  ///< relation of value to limit while the model is adequate
 };
 const CriterionRecord& criterion_record(Criterion criterion);
 
-/// One criterion applied: what decided a verdict.
+/// One applied criterion, which decided a verdict.
 struct Ruling {
   Criterion by = Criterion::misfit;
   bool adequate = false;
   double value = 0, limit = 0;  ///< [criterion_record(by).unit]
-  std::string where = {};       ///< record, cell or input; empty: everything together
+  std::string where = {};       ///< record, bin or input; empty: all together
 };
 
-/// Judged by the error map's cells: `exceeding` of `cells` exceed their bounds.
+/// Returns the ruling by the error maps' bins: `exceeding` of `cells` exceed their limits.
 Ruling judged_by_cells(int exceeding, int cells);
 
-/// Whether an event leaves no more than its limit.
+/// Returns whether an event's reduced chi-square is within its limit.
 inline bool within_limit(double misfit, double limit) { return misfit <= limit; }
-/// An event's limit of chi2 per value: `spread` is the standard deviation that noise alone gives it, `least`
-/// what interpolation of the voltage leaves in any case.
+/// Returns an event's limit of the reduced chi-square. `spread`: its standard deviation due to noise alone;
+/// `least`: lower bound of the limit, due to the interpolation of the voltage.
 double event_limit(double spread, double least);
-/// Adequate if every event (`record`, and chi2 per value: `after`, `limit`) is within its limit. The event
-/// that is furthest off, relative to its limit, decides.
+/// Returns the ruling over events (`record`, and reduced chi-square `after` with its `limit`). Adequate if
+/// every event is within its limit. The event with the largest ratio to its limit decides.
 template <class Events>
 Ruling judged_by_events(const Events& events) {
   Ruling worst{Criterion::events, true};
@@ -71,21 +67,21 @@ Ruling judged_by_events(const Events& events) {
   return worst;
 }
 
-/// What diagnose knows of a model once its parameters are refitted.
+/// Measures of the residual of a refitted model.
 struct Refitted {
-  double misfit;         ///< chi2 per value over all events
+  double misfit;         ///< reduced chi-square over all events
   double slow;           ///< slow remainder [standard deviations]
-  double line;           ///< what a steady oscillation explains, beyond its price [chi2]
-  double torque, field;  ///< evidence of each, free in time [chi2]
+  double line;           ///< reduction of chi2 by a steady oscillation, less its penalty [chi2]
+  double torque, field;  ///< evidence of each input, free in time [chi2]
 };
-/// Adequate if all five hold (`least` is the limit of the misfit); the first that does not decides, and where
-/// all hold, the misfit is told.
+/// Returns adequate if all five criteria hold. The first violated criterion decides; if none is violated, the
+/// reduced chi-square is reported. `least`: limit of the reduced chi-square.
 Ruling judged_by_remainder(const Refitted& r, double least);
-/// Not adequate: an effect of this evidence was accepted.
+/// Returns not adequate: an effect of this evidence was accepted.
 Ruling judged_by_evidence(const std::string& effect, double evidence);
 
-/// Exit codes of a command that judges a model (acceptance.hpp): more than noise is left, and it is not fit
-/// for purpose; it is fit for purpose only; it is statistically complete only.
+/// Exit codes of a command that judges a model (acceptance.hpp): neither statistically complete nor fit for
+/// purpose; fit for purpose only; statistically complete only.
 inline constexpr int kNotAdequate = 3, kFitOnly = 4, kNotFit = 5;
 
 }  // namespace swingbank::validate::thresholds

@@ -1,5 +1,5 @@
 #pragma once
-// All thresholds, in the order of the stages, and how reports write them.
+// List of all thresholds in the order of the stages, and their JSON.
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace swingbank::validate::thresholds {
 std::vector<Threshold> all_thresholds();
 /// [{"name", "value", "unit", "why"}]
 nlohmann::json thresholds_json();
-/// {"criterion", "asks", "adequate", "value", "limit", "unit", "where"}; value null where it is not finite.
+/// Returns {"criterion", "asks", "adequate", "value", "limit", "unit", "where"}; value null if not finite.
 nlohmann::json ruling_json(const Ruling& ruling);
 
 }  // namespace swingbank::validate::thresholds

@@ -1,23 +1,21 @@
 #pragma once
-// Every number on which a verdict hangs: what counts as noise, as evidence, as predicted, as adequate. One
-// struct per stage, one record per threshold; `swingbank diagnose --thresholds` prints them all. A number
-// that says how long a search goes on (steps, starts, rounds) decides no verdict and stands where the search
-// is.
+// Every number that decides a verdict: limits of noise, evidence, prediction and adequacy. One struct per
+// stage, one record per threshold; `swingbank diagnose --thresholds` prints them all. Numbers that only
+// control the effort of a search (steps, starts, rounds) are defined with the search.
 #include <string_view>
 
 namespace swingbank::validate::thresholds {
 
+/// A number that decides a verdict, with its name, unit and reason.
 struct Threshold {
   std::string_view name;  ///< stage.field
   double value;
   std::string_view unit;
-  std::string_view
-      why;  ///< what it decides, and the decision record (docs/decisions) or the source it comes from
-  constexpr operator double() const { return value; }  // NOLINT: it is that number wherever it is compared
+  std::string_view why;  ///< the decision it controls, and its decision record (docs/decisions) or source
+  constexpr operator double() const { return value; }  // NOLINT: a threshold is used as its value
 };
 
-/// Evidence is twice the log of a Bayes factor by Laplace's approximation, so it is counted in units of chi2
-/// (decision 18).
+/// Thresholds of evidence, 2 ln(Bayes factor) by Laplace's approximation in units of chi2 (decision 18).
 struct Evidence {
   Threshold accepted{
       "evidence.accepted", 40, "chi2",
@@ -40,7 +38,7 @@ struct Evidence {
 };
 inline constexpr Evidence evidence;
 
-/// From evidences to probabilities (decision 41).
+/// Conversion of evidence to posterior probabilities (decision 41).
 struct Posterior {
   Threshold scale{
       "posterior.scale", 6, "chi2",
@@ -55,7 +53,7 @@ struct Posterior {
 };
 inline constexpr Posterior posterior;
 
-/// What an unseen event says of an effect (decision 18).
+/// Thresholds of the hold-out test of an effect on unseen events (decision 18).
 struct HeldOut {
   Threshold worse{
       "held_out.worse", 1.02, "ratio of costs",
@@ -79,7 +77,7 @@ struct HeldOut {
 };
 inline constexpr HeldOut held_out;
 
-/// Whether nothing but noise is left; adequacy.hpp says which command asks which of these.
+/// Limits of a residual that counts as noise; adequacy.hpp lists the commands that use them.
 struct Adequacy {
   Threshold misfit{
       "adequacy.misfit", 1.12, "chi2 per value",
@@ -104,7 +102,7 @@ struct Adequacy {
 };
 inline constexpr Adequacy adequacy;
 
-/// From which misfit on something else than noise governs a fit.
+/// Values of the reduced chi-square above which something other than noise dominates a fit.
 struct Noise {
   Threshold measurable{
       "noise.measurable", 4, "chi2 per value",
@@ -119,7 +117,7 @@ struct Noise {
 };
 inline constexpr Noise noise;
 
-/// Which hypotheses are fitted, and how far.
+/// Selection of the hypotheses that are fitted, and of the effort.
 struct Search {
   Threshold nearly_fits{
       "search.nearly_fits", 1.5, "chi2 per value",
@@ -132,7 +130,7 @@ struct Search {
 };
 inline constexpr Search search;
 
-/// Laws from the inferred input (decision 21).
+/// Search for user-defined models of the inferred input (decision 21).
 struct Laws {
   Threshold explains{"laws.explains", 0.3, "share of the base's misfit",
                      "an input is worth a law if it leaves no more: it takes away 70 % (decision 21)"};
@@ -154,9 +152,8 @@ struct Laws {
 };
 inline constexpr Laws laws;
 
-/// `swingbank add`: a person has named the effect, so one hypothesis stands against one other. Diagnose asks
-/// for four times as much evidence because it takes the best of some thirty, and chance offers that many
-/// wrong ones.
+/// `swingbank add`: the user has named the effect, so one hypothesis competes with one other. Diagnose
+/// requires four times the evidence because it selects the best of about thirty, some of which fit by chance.
 struct Addition {
   Threshold strong{
       "addition.strong", 10, "chi2",
@@ -168,7 +165,7 @@ struct Addition {
 };
 inline constexpr Addition addition;
 
-/// What calibrate and the tables say of a parameter (decision 17).
+/// Statements of calibrate and the tables on a parameter (decision 17).
 struct Parameters {
   Threshold spread{"parameters.spread", 0.2, "relative",
                    "standard deviation believed of a model's parameters, unless --spread says otherwise "
@@ -191,9 +188,9 @@ struct Parameters {
 };
 inline constexpr Parameters parameters;
 
-/// Fit for purpose: engineering limits of what a model may be off, window by window, with the errors of IEC
-/// 61400-27-2 (which sets no limits itself). These are the limits of RTE's connection code, for a reference
-/// that was measured and for one that was simulated; `--accept` takes others (acceptance.hpp).
+/// Fit for purpose: engineering limits of a model's errors in each window, with the error measures of IEC
+/// 61400-27-2, which sets no limits itself. The limits are those of RTE's connection code, for a measured and
+/// for a simulated reference; `--accept` selects others (acceptance.hpp).
 struct DtrTest {
   Threshold pre_fault_mxe{
       "dtr_test.pre_fault_mxe", 8, "% of MVA",
@@ -228,7 +225,7 @@ struct DtrTest {
                            "not compared after the last switching (RTE, DTR fiche I16, reference measured)"};
 };
 inline constexpr DtrTest dtr_test;
-/// The same where the reference is a simulation.
+/// The same for a simulated reference.
 struct DtrSimulation {
   Threshold pre_fault_mxe{
       "dtr_simulation.pre_fault_mxe", 5, "% of MVA",
@@ -263,8 +260,8 @@ struct DtrSimulation {
                            "not compared after the last switching (RTE, DTR fiche I16, reference simulated)"};
 };
 inline constexpr DtrSimulation dtr_simulation;
-/// The error of a channel beside what the channel itself moves: a limit in % of MVA passes a unit whose whole
-/// response is missing where that response is small.
+/// Limit of a channel's error relative to its movement. A limit in % of MVA alone passes a unit whose whole
+/// response is missing if that response is small.
 struct Movement {
   Threshold error{
       "movement.error", 25, "% of movement",

@@ -11,20 +11,20 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// The model alone is fitted once more from so many leading extensions.
+/// Number of leading extensions from which the given model is refitted.
 constexpr std::size_t kWaysOut = 2;
-/// A fit of the model alone that nearly fits goes on until it has converged, in so many rounds at most.
+/// Maximum number of fits until convergence of a given model that nearly fits.
 constexpr int kBaseRounds = 4;
-/// The noise is measured through the model alone that often, where it leaves little more. A noisy voltage
-/// pulls a fit, and through one that it pulls less its noise is seen otherwise.
+/// Maximum number of noise measurements through a given model whose residual is little more than noise. Noise
+/// of the voltage biases a fit, and a less biased fit gives another noise estimate.
 constexpr int kMeasured = 3;
 
-/// Whether more steps of the model's fit might leave nothing but noise.
+/// Returns whether further steps of the model's fit might reduce the residual to noise.
 bool unfinished(const fit::Fit& f) {
   return f.failed.empty() && !f.converged && f.misfit() < thresholds::noise.believed;
 }
 
-/// The model alone as a hypothesis that frees nothing but what is free anyway.
+/// Returns the given model as a hypothesis without free parameters of its own.
 hypothesis::Hypothesis alone(const hypothesis::Stage& stage) {
   hypothesis::Hypothesis h;
   h.plant = stage.plant;
@@ -40,7 +40,8 @@ fit::Fit from_extensions(const hypothesis::Stage& stage, const std::vector<hypot
     if (ranked[k].fitted) hypothesis::try_from(stage, ranked[k].fit, base);
   return std::move(base.fit);
 }
-/// From where one other value of the model leaves least. A limit that is never met has no slope.
+/// Fits the model from the best single change of one parameter. A limit that is never reached has zero
+/// gradient.
 fit::Fit from_another_value(const hypothesis::Stage& stage) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(stage.plant, stage.spread);

@@ -1,5 +1,5 @@
 #pragma once
-// The model alone, with nothing added: its fit, the noise through it, and ways out of where that fit ends.
+// Fit of the given model without additions: its parameters, the noise measured through it, and better starts.
 #include <optional>
 
 #include "validate/diagnose/diagnose.hpp"
@@ -7,17 +7,18 @@
 
 namespace swingbank::validate::diagnose {
 
-/// Throws InputError where the fit of the model alone failed.
+/// Throws InputError if the fit of the given model failed.
 void require_fitted(const fit::Fit& base, const plant::PlantModel& model);
 
-/// Fits the model alone from there and measures the noise through it: fills base and events. Throws
-/// InputError where the model cannot be fitted.
+/// Fits the given model from the start `from` and measures the noise through the fit; fills `base` and
+/// `events` of `d`. Throws InputError if the model cannot be fitted.
 void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
               Diagnosis& d);
 
-/// From where the model alone fits much better than `d` has it. Its leading extensions may have been ways out
-/// of a poor minimum; and where an input that is free in time explains more than any of them, a limit that
-/// was never met may be one: it has no slope to be lowered by. Nothing where there is no such place.
+/// Returns a start from which the given model fits much better than in `d`; empty if none is found. Two kinds
+/// of starts are tried. The leading extensions may have escaped from a poor local optimum. If a free input
+/// explains more than any extension, a limit that was never reached may be wrong, because its gradient is
+/// zero.
 std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose

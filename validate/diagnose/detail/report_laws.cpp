@@ -16,7 +16,7 @@ constexpr const char* kLaw = "#d68910";
 std::string input_name(const laws::LawSearch& s) {
   return s.kind == fit::InputKind::torque ? "inferred torque" : "inferred field voltage";
 }
-/// The law whose course is drawn: the one found, else none.
+/// Returns the user-defined model whose time series is plotted: the one found, or null.
 const laws::LawFinding* drawn(const Diagnosis& d) { return d.laws.found(); }
 
 void add_scatters(const Diagnosis& d, report::Page& page) {

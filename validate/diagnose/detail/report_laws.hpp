@@ -1,5 +1,5 @@
 #pragma once
-// What a diagnosis says of laws, for its page, its JSON and the terminal.
+// Results of the search for user-defined models, for the page, the JSON and the terminal.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -8,10 +8,10 @@
 
 namespace swingbank::validate::diagnose {
 
-/// The inferred input against every signal, the laws tried, and the file of the one that was found. Nothing
-/// where no law was searched.
+/// Adds plots of the inferred input over time and against every signal, and a table of the models tried. Does
+/// nothing if there was no search.
 void laws_on_page(const Diagnosis& d, report::Page& page);
-/// null where no law was searched.
+/// Returns null if there was no search.
 nlohmann::json laws_json(const Diagnosis& d);
 std::string laws_text(const Diagnosis& d);
 

@@ -15,25 +15,25 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr double kEffectShownFrom = 0.01;    ///< probability of an effect by itself
-constexpr std::size_t kPairsInSentence = 3;  ///< the page and the table hold them all
+constexpr double kEffectShownFrom = 0.01;    ///< minimum probability of a single effect in the sentence
+constexpr std::size_t kPairsInSentence = 3;  ///< page and table show all pairs
 
-/// What an explanation with so many effects has to earn before it is as probable as one without.
+/// Returns the evidence that an explanation with so many effects needs to be as probable as one without.
 double price(const hypothesis::Hypothesis& h) {
   return thresholds::evidence.accepted + (h.with.empty() ? 0.0 : thresholds::evidence.second.value);
 }
-/// "GENROU.H, SEXS.K"
+/// Returns for example "GENROU.H, SEXS.K".
 std::string wrong_names(const Diagnosis& d) {
   std::string names;
   for (const auto& w : d.wrong->wrong) names += (names.empty() ? "" : ", ") + w.fit.full_name();
   return names;
 }
-/// "nothing missing, but wrong: GENROU.H, SEXS.K"
+/// Returns for example "nothing missing, but wrong: GENROU.H, SEXS.K".
 std::string wrong_name(const Diagnosis& d) {
   return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d));
 }
-/// The model as it is, or with a few parameters wrong, and every effect that unseen events have not refused,
-/// with what is in no list.
+/// Computes the probabilities of the explanations: the given model, the given model with a few wrong
+/// parameters, every effect that unseen events have not rejected, and none of these.
 void weigh(Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = {{hypothesis::kNothingMissing}};
   if (d.wrong) all.push_back({wrong_name(d), d.wrong_evidence});
@@ -46,13 +46,14 @@ void weigh(Diagnosis& d) {
   d.probabilities = hypothesis::posterior(std::move(all), std::max({worth(d.torque), worth(d.field), line}));
 }
 
-/// What is left of the model with its parameters refitted; of the inputs only what is known by then.
+/// Returns the measures of the refitted model's residual; `torque` and `field`: evidence of the inputs, if
+/// known yet.
 thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
   return {d.base.misfit(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
           torque, field};
 }
-/// " What is left oscillates at 0.37 Hz in P ..."; empty where something else shows that more than noise is
-/// left, because any misfit has a frequency at which it is strongest.
+/// Returns " What is left oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
+/// because any residual has a frequency at which it is strongest.
 std::string line_sentence(const Diagnosis& d) {
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.misfit).by !=
       thresholds::Criterion::line)
@@ -67,8 +68,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// Says how far the error falls on unseen events. No other event can predict an effect that shows in one
-/// event only; its error is then that of the fit to this event.
+/// Describes the fall of the error on unseen events. If an effect appears in one event only, no other event
+/// can predict it; the errors are then those of the fit to this event.
 std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& best) {
   double saved = 0, before = 0, after = 0;
   for (const auto& h : best.held_out) {
@@ -95,7 +96,7 @@ double probability_of_nothing_missing(const Diagnosis& d) {
   return sum;
 }
 
-/// That nothing is missing, and what is wrong where that is few parameters.
+/// Returns that nothing is missing, and the wrong parameters if they are few.
 std::string adequate_sentence(const Diagnosis& d) {
   const std::string probable = hypothesis::probability_text(probability_of_nothing_missing(d));
   if (d.wrong)
@@ -110,7 +111,7 @@ std::string adequate_sentence(const Diagnosis& d) {
       probable, d.base.misfit());
 }
 
-/// "SEXS (62 %), EXST1 (21 %)"
+/// Returns for example "SEXS (62 %), EXST1 (21 %)".
 std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
   std::string text;
   for (const auto& e : some)
@@ -118,19 +119,20 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
                         hypothesis::probability_text(e.probability));
   return text;
 }
-/// The same of a set. Effects that may stand beside each other make many pairs: the first of them then.
+/// Returns the same for a set; of many pairs, only the first ones.
 std::string set_text(std::span<const hypothesis::Explanation> set, bool pairs) {
   if (!pairs || set.size() <= kPairsInSentence) return with_probabilities(set);
   return fmt::format("{} and {} more", with_probabilities(set.first(kPairsInSentence)),
                      set.size() - kPairsInSentence);
 }
 
-/// What makes up the set.
+/// Returns the explanations of the set.
 std::span<const hypothesis::Explanation> credible_set(const Diagnosis& d) {
   return std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
 }
 
-/// "Each effect by itself: IEEET1 (62 %), IEEEG1 (44 %).": of all explanations that hold it, together.
+/// Returns for example "Each effect by itself: IEEET1 (62 %), IEEEG1 (44 %).". Each probability is the sum
+/// over all explanations with the effect.
 std::string by_effect_sentence(const Diagnosis& d) {
   std::vector<hypothesis::Explanation> alone;
   const auto count = [&](const std::string& name, double probability) {
@@ -155,7 +157,7 @@ bool names_an_effect(const Diagnosis& d) {
   return std::ranges::any_of(credible_set(d), [](const auto& e) { return e.place >= 0; });
 }
 
-/// Takes back what was accepted where other explanations make up the set.
+/// Withdraws acceptances if other explanations make up the set.
 void refuse_all(Diagnosis& d) {
   for (hypothesis::Judgement& j : d.ranked) {
     if (!j.accepted) continue;

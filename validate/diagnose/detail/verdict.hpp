@@ -1,26 +1,27 @@
 #pragma once
-// The verdict in one word and one sentence.
+// Verdict of a diagnosis and its sentences.
 #include "validate/calibrate/wrong_parameters.hpp"
 #include "validate/diagnose/diagnose.hpp"
 
 namespace swingbank::validate::diagnose {
 
-/// Fills verdict, side, sentence, effects and their rivals from base, inputs and ranking, all of which are
-/// judged. Searches for laws where neither the model nor a known effect explains the records.
+/// Sets verdict, side, sentence, effects and their competitors from the fit of the given model, the inferred
+/// inputs and the judged hypotheses. Searches for a user-defined model if no known effect explains the
+/// records.
 void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d);
 
-/// The verdict where a person has ended the work: what was fitted until then, and that it is not judged.
+/// Sets the verdict of an interrupted diagnosis: completed fits are kept, and no hypothesis is judged.
 void interrupt(Diagnosis& d);
 
-/// What is left of the refitted model, before anything else is known.
+/// Returns the first preliminary result: the residual of the refitted model.
 std::string first_sentence(const Diagnosis& d, double adequate);
-/// Which few parameters are wrong and explain the records by themselves.
+/// Returns the small set of wrong parameters that explains the records.
 std::string wrong_sentence(const Diagnosis& d);
-/// The same with table and JSON; for none where no few are.
+/// Returns the same with table and JSON; empty if there is no small set.
 std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d);
-/// On which side something is missing, by the inputs that are free in time.
+/// Returns the side on which an effect is missing, by the inferred inputs.
 std::string side_sentence(const Diagnosis& d);
-/// Who leads once hypotheses were fitted.
+/// Returns the leading hypotheses after their fits.
 std::string leading_sentence(const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose

@@ -17,7 +17,7 @@ void AtBounds::apply(double* block, const std::vector<int>& which) {
   problem_.SetManifold(block, which.empty() ? nullptr : new ceres::SubsetManifold(n, which));
 }
 
-/// -1: at its lower bound, 1: at its upper one, 0: between.
+/// Returns -1 at the lower bound, 1 at the upper bound, 0 in between.
 double AtBounds::beyond(double* block, int i) const {
   return block[i] <= problem_.GetParameterLowerBound(block, i)   ? -1
          : block[i] >= problem_.GetParameterUpperBound(block, i) ? 1

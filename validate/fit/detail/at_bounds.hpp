@@ -1,6 +1,7 @@
 #pragma once
-// Numbers of a search that stand at a bound and are drawn beyond it are held there while the others go on. A
-// step that bounds cut short need not lead down, so a search ends on it though a way down is left.
+// Active set of bounds in a Ceres problem. Variables at a bound whose gradient points outward are held while
+// the others move. Ceres projects steps onto the bounds; a projected step need not reduce the cost, so a
+// search may end before the optimum.
 #include <ceres/ceres.h>
 
 #include <map>
@@ -8,18 +9,20 @@
 
 namespace swingbank::validate::fit::fitting {
 
+/// Holds variables of a Ceres problem at their bounds.
 class AtBounds {
  public:
   explicit AtBounds(ceres::Problem& problem) : problem_(problem) {}
-  /// These numbers of a block never move.
+  /// Fixes these variables of a block for the whole search.
   void fix(double* block, std::vector<int> which);
-  /// Holds what stands at a bound and is drawn beyond it. False where nothing is, or what was held before.
+  /// Holds the variables at a bound whose gradient points outward. Returns false if no variable is at a
+  /// bound, or if the held set has not changed.
   bool hold();
-  /// Only what never moves stays.
+  /// Releases all held variables; fixed ones stay fixed.
   void release();
 
  private:
-  using Which = std::map<double*, std::vector<int>>;  ///< of each block, ascending
+  using Which = std::map<double*, std::vector<int>>;  ///< indices per block, ascending
   [[nodiscard]] bool any_at_bound() const;
   [[nodiscard]] double beyond(double* block, int i) const;
   void apply(double* block, const std::vector<int>& which);

@@ -1,6 +1,5 @@
 #pragma once
-// What a fit minimises beside the residuals of its events, as Ceres takes it: priors and orderings; and the
-// axes that it moves along.
+// Priors and ordering constraints of a fit as Ceres cost functions, and the axes of the search.
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -15,7 +14,7 @@ namespace swingbank::validate::fit::fitting {
 
 using Kind = playin::Direction::Kind;
 
-/// What stands fixed during a fit.
+/// Quantities that stay constant during a fit.
 struct Setting {
   const sim::plant::Plant* plant;
   const sim::Conventions* conventions;
@@ -24,8 +23,9 @@ struct Setting {
   double tolerance;
   bool lenient = false;        ///< of the search; see FitOptions
   bool linear_slopes = false;  ///< see event::Playing
-  bool goes_on = false;        ///< with slopes that foretold a step well, if lenient
-  bool can_exist = false;      ///< the start, beside `plant`; the search then stays among such plants
+  bool goes_on = false;        ///< reuses sensitivities that predicted a step well, if lenient
+  /// The start passes can_exist_beside(`plant`); the search then keeps to such plants.
+  bool can_exist = false;
 };
 
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
@@ -35,7 +35,7 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
   return plant;
 }
 
-/// The belief in each parameter: one residual z/spread, in units of the misfit reached.
+/// Gaussian priors: one residual z/spread per parameter, scaled by the reduced chi-square reached.
 class Belief : public ceres::CostFunction {
  public:
   Belief(std::vector<double> spread, const double* discrepancy)
@@ -59,9 +59,9 @@ class Belief : public ceres::CostFunction {
   const double* discrepancy_;
 };
 
-/// Keeps the physical orderings of a machine's parameters (Xd > X'd > ...): a wall that rises from kMargin
-/// before two of them are equal. A model that stands nearer begins at the wall's foot, one that violates an
-/// ordering is drawn back to it, unless it may be meant.
+/// Penalty on the physical orderings of a machine's parameters (Xd > X'd > ...). It rises from kMargin before
+/// two of them are equal. If the start is nearer, the penalty begins at the start's distance; a start that
+/// violates an ordering is drawn back to it, unless the violation may be intended.
 class Walls : public ceres::CostFunction {
  public:
   Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
@@ -77,7 +77,7 @@ class Walls : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
   }
   [[nodiscard]] bool empty() const { return walls_.empty(); }
-  /// The ordering that holds the axis back at z, "X''d > Xl"; empty: none.
+  /// Returns the active ordering on the axis at z, for example "X''d > Xl"; empty: none.
   [[nodiscard]] std::string holding(std::size_t axis, const double* z) const {
     const sim::plant::Plant plant = moved(setting_, z);
     const auto symbol = [&](int parameter) {
@@ -112,9 +112,9 @@ class Walls : public ceres::CostFunction {
 
  private:
   static constexpr double kMargin = 0.01;      ///< of ln(greater / smaller)
-  static constexpr double kSteepness = 0.001;  ///< of the same: one unit of misfit
+  static constexpr double kSteepness = 0.001;  ///< of the same: one unit of reduced chi-square
   struct Wall {
-    std::array<int, 2> parameters, axes;  ///< greater, smaller; an axis is -1 where the parameter stands
+    std::array<int, 2> parameters, axes;  ///< greater, smaller; axis -1: that parameter is fixed
     double foot;
   };
   static double gap(const sim::plant::Block& b, const sim::plant::Ordering& o) {

@@ -8,14 +8,15 @@
 namespace swingbank::validate::fit::fitting {
 namespace {
 
-constexpr double kFirstPart = 0.5;  ///< the first part ends that long after the last switching [s]
-/// An answer has run away where a value of the later part leaves so much more than one of the first [-].
+constexpr double kFirstPart = 0.5;  ///< end of the first part after the last switching [s]
+/// Ratio of the reduced chi-square of the later part to that of the first part from which a response diverges
+/// [-].
 constexpr double kRunAway = 10;
-/// The instants are to blame where so much of that is gone with others [-].
+/// Share of the later part's residual that other switching times must remove [-].
 constexpr double kGone = 0.75;
 constexpr int kEarlySteps = 12;
 
-/// Whether an instant is fitted at all.
+/// Returns whether any switching time is fitted.
 bool is_open(const event::FitEvent& e) {
   return !playin::is_part(e.record) && !e.record.breaker() &&
          std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.uncertainty > 0; });
@@ -29,7 +30,7 @@ EventState as_prepared(const event::FitEvent& e) {
 
 double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kFirstPart; }
 
-/// The event until `until`, in white noise.
+/// Returns the event up to `until`, with white noise.
 event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until) {
   constexpr double kBeginning = -std::numeric_limits<double>::infinity();
   event::FitEvent e = whole.event;
@@ -42,7 +43,7 @@ event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until
   return {{std::move(e)}, event::NoiseModel({std::move(noise)})};
 }
 
-/// chi2 per value of what an answer leaves, in white noise: until `until`, and after.
+/// Returns the reduced chi-square of a response in white noise, up to `until` and after it.
 std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::Response& answer,
                                double until) {
   const event::FitEvent& e = whole.event;
@@ -61,7 +62,7 @@ std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::
   return {early / std::max(1, first), late / std::max(1, then)};
 }
 
-/// Nothing where the event begins as it was prepared.
+/// Returns the start state of an event; empty if it starts as prepared.
 std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
                                       const event::WhitenedEvent& whole, const FitOptions& options) {
   const event::FitEvent& e = whole.event;
@@ -95,7 +96,7 @@ std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
         states[e] = std::move(*state);
         any = true;
       }
-  } catch (const InputError&) {  // the search says why
+  } catch (const InputError&) {  // the search reports the reason
     return {};
   }
   return any ? states : std::vector<EventState>{};

@@ -1,13 +1,13 @@
 #pragma once
-// Where a search begins in an event whose answer runs away from its instants.
+// Start states of a fit for events whose response diverges from the record because of a wrong switching time.
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit::fitting {
 
-/// Driven by its own voltage, a plant that regulates through integrals hardly comes back: a millisecond of an
-/// instant moves Q ten seconds later by more than the machine is large, and no step of a search follows that
-/// far. In such an event instants and start are fitted to its first part alone, until shortly after the last
-/// switching. Returns the states to begin with; empty where all events begin as they were prepared.
+/// Returns the start states of all events; empty: all as prepared. A plant with integral control hardly
+/// recovers from a wrong switching time when its own voltage is played in. One millisecond changes Q ten
+/// seconds later by more than the machine's rating, and no step of a search follows that far. In such an
+/// event, the switching times are first fitted to the record up to shortly after the last switching.
 std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
                                      const event::WhitenedEvents& events, const FitOptions& options);
 

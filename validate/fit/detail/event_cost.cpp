@@ -1,4 +1,4 @@
-// What one event costs at a point of the fit, with slopes, as Ceres takes it.
+// Cost of one event and its sensitivities as a Ceres cost function.
 #include "validate/fit/detail/event_cost.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace swingbank::validate::fit::fitting {
 namespace {
 
-/// What a step finds slopes to be off by is theirs up to this share of how far the residuals moved; more of
-/// it is the answer's own bend.
+/// A step's prediction error up to this share of the residuals' change is attributed to the sensitivities; a
+/// larger one is due to the response's nonlinearity.
 constexpr double kOffAtMost = 0.2;
-/// Slopes that foretold a step up to this share of how far the residuals moved are not taken anew, kGoOn
-/// times in a row at most.
+/// Sensitivities are reused if they predicted a step up to this share of the residuals' change, at most kGoOn
+/// times in a row.
 constexpr double kAsForetold = 0.2;
 constexpr int kGoOn = 6;
 
@@ -50,7 +50,8 @@ EventCost::EventCost(const Setting& setting, std::size_t event)
 bool EventCost::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   try {
     return evaluate(blocks, residuals, jacobians);
-  } catch (const Interrupted&) {  // nothing is thrown through Ceres; the search ends and throws it again
+  } catch (const Interrupted&) {  // no exception passes through Ceres; the search ends and throws it again
+
     last_ = {};
     return false;
   }

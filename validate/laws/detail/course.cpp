@@ -29,9 +29,9 @@ class Runner {
   }
 
  private:
-  static constexpr double kRated = 1.0;  ///< laws see the voltage's deviation only
+  static constexpr double kRated = 1.0;  ///< models use the deviation of V only
 
-  /// Signals between sample k and the next one, at this `share` of the way.
+  /// Returns the signals between sample k and the next one, interpolated at `share`.
   [[nodiscard]] sim::Signals<double> signals(std::size_t k, double share) const {
     const auto at = [&](const std::vector<double>& v) {
       return k + 1 < v.size() ? (1 - share) * v[k] + share * v[k + 1] : v[k];

@@ -1,11 +1,11 @@
 #pragma once
-// What a law puts out along the events, by the effect itself: the same equations as in any run.
+// Output of a user-defined model along the events, computed by its effect with the equations of a simulation.
 #include "validate/laws/regression.hpp"
 
 namespace swingbank::validate::laws {
 
-/// At every sample of the traces [event][sample] [pu]: the effect's states are integrated by Runge-Kutta's
-/// fourth order from sample to sample.
+/// Returns the output at every sample of the traces [event][sample] [pu]. The states are integrated by the
+/// fourth-order Runge-Kutta method from sample to sample.
 Course law_course(const sim::Effect& effect, const std::vector<double>& parameters, fit::InputKind kind,
                   const std::vector<LawTrace>& traces);
 

@@ -10,15 +10,17 @@
 namespace swingbank::validate::laws {
 namespace {
 
-/// Length of every beginning and end [s], since a jump would have no slope to follow.
+/// Duration of every start and end [s]: a step would have zero gradient.
 constexpr double kRise = 0.05;
-constexpr double kEdge = 0.1;   ///< sine at which a square wave is at its height, for the same reason
-constexpr int kHarmonics = 16;  ///< harmonics of a sawtooth; those left out hold 4 % of its square
+/// Absolute sine above which a square wave is at its amplitude, for the same reason.
+constexpr double kEdge = 0.1;
+/// Number of harmonics of a sawtooth; the omitted ones contain 4 % of its mean square.
+constexpr int kHarmonics = 16;
 
 double edge(double tau) { return std::clamp(tau / kRise, 0.0, 1.0); }
 double sawtooth(double turns) { return 2 * (turns - std::floor(turns)) - 1; }
 double square(double turns) { return std::clamp(std::sin(constants::turn * turns) / kEdge, -1.0, 1.0); }
-/// The sawtooth as a Fourier series, for law files know no remainder; turn = pi f tau.
+/// Returns the sawtooth as a Fourier series, because TOML files have no remainder function; turn = pi f tau.
 std::string sawtooth_series() {
   std::string text;
   for (int k = 1; k <= kHarmonics; ++k)

@@ -1,5 +1,5 @@
 #pragma once
-// Shapes of laws that follow the clock: what they put out over the time since their beginning.
+// Shapes of user-defined models of time: their outputs as functions of the time since their start.
 #include <functional>
 #include <string>
 #include <vector>
@@ -8,19 +8,21 @@
 
 namespace swingbank::validate::laws {
 
+/// A shape of a user-defined model of time.
 struct LawShape {
-  enum class Kind { once, wave, sine };  ///< wave: its phase is zero when it begins; sine: any phase
+  enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
   Kind kind = Kind::once;
   std::string family;
-  std::function<double(double tau, double b)> course;  ///< [1]; b: its second number
-  std::vector<double> grid = {};                       ///< of b; empty: it has none
+  /// Output [-] at time tau since the start; b: second parameter.
+  std::function<double(double tau, double b)> course;
+  std::vector<double> grid = {};  ///< values of b; empty: no second parameter
   LawParameter second = {};
-  std::string value;         ///< of the law file, with tau for the time since the beginning
+  std::string value;         ///< expression of the TOML file; tau is the time since the start
   std::string signals = "";  ///< further lines of [signals]
-  std::string words;         ///< with {A}, {begin} and the second parameter's name
+  std::string words;         ///< description with {A}, {begin} and the second parameter's name
 };
 
-/// `length`: of the records from their first switching on [s].
+/// Returns all shapes. `length`: duration of the inferred input [s].
 std::vector<LawShape> law_shapes(double length);
 
 }  // namespace swingbank::validate::laws

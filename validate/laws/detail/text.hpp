@@ -1,14 +1,15 @@
 #pragma once
-// A law as a file and in words.
+// TOML file and description of a user-defined model.
 #include "validate/laws/candidate.hpp"
 
 namespace swingbank::validate::laws {
 
-/// "TORQUE_LIMITED_SPEED": an identifier.
+/// Returns an identifier, for example "TORQUE_LIMITED_SPEED".
 std::string law_name(const LawCandidate& law);
-/// The law file (docs/add-an-effect.md); the parameters' values stand in it as their standard values.
+/// Returns the TOML file (docs/add-an-effect.md). The parameters' values are its default values.
 std::string law_toml(const LawCandidate& law, const std::string& source);
-/// "a torque of 0.021 pu (0.02 to 0.022) × the speed deviation"; intervals where `fitted` has them.
+/// Returns for example "a torque of 0.021 pu (0.02 to 0.022) × the speed deviation"; intervals are those of
+/// `fitted`.
 std::string law_words(const LawCandidate& law, const std::vector<fit::FittedParameter>& fitted = {});
 
 }  // namespace swingbank::validate::laws

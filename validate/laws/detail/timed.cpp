@@ -13,10 +13,10 @@ namespace {
 
 using Kind = LawShape::Kind;
 
-/// Where time is counted from.
+/// Origin and scale of a candidate.
 struct Clock {
-  bool triggered = false;  ///< from when the voltage moved, else from the record's zero
-  bool scaled = false;     ///< in proportion to the power or field voltage at rest
+  bool triggered = false;  ///< counted from the voltage deviation, otherwise from time zero of the record
+  bool scaled = false;     ///< in proportion to the initial active power or field voltage
 };
 
 void replace(std::string& text, const std::string& what, const std::string& with) {
@@ -55,7 +55,7 @@ class Timed {
     const auto column = [&](const auto& course) {
       return regression_.at_knots_of([&](const LawTrace& e, double t) {
         const double tau = t - begin - (clock.triggered ? e.trigger : 0.0);
-        if (!(tau > 0)) return 0.0;  // an event without a trigger has no such time
+        if (!(tau > 0)) return 0.0;  // also if the event has no trigger (NaN)
         return (clock.scaled ? e.rest : 1.0) * course(tau);
       });
     };
@@ -73,7 +73,7 @@ class Timed {
 
   [[nodiscard]] LawCandidate best_of(const LawShape& shape, const Clock& clock) const {
     const double from = clock.triggered ? 0.0 : first_, to = clock.triggered ? last_ - first_ : last_;
-    // a wave may have begun up to a period before anything is known
+    // A wave may have started up to one period before the inferred input.
     const auto least = [&](double b) {
       return shape.kind == Kind::wave && !clock.triggered ? from - 1 / b : from;
     };
@@ -82,7 +82,7 @@ class Timed {
     const std::vector<double> only = {0.0};
     for (const double b : shape.grid.empty() ? only : shape.grid)
       for (double begin = least(b); begin < to - 0.3; begin += step) consider(shape, clock, begin, b, best);
-    // a pattern search from the best point of the grid
+    // Pattern search from the best grid point.
     double by = shape.kind == Kind::once ? 0.25 * best.b : 0.25 / (last_ - first_);
     for (int round = 0; round < 5; ++round, step /= 2, by /= 2) {
       const At centre = best;
@@ -102,7 +102,8 @@ class Timed {
     best = {begin, b, std::move(answer)};
   }
 
-  /// `always` means that the law is there when anything is known, so its beginning is not among its numbers.
+  /// Returns the candidate. `always`: it is active from the start of the inferred input, so the start time is
+  /// no parameter.
   [[nodiscard]] LawCandidate candidate(const LawShape& shape, const Clock& clock, const At& at,
                                        bool always) const {
     LawCandidate law;
@@ -132,7 +133,7 @@ class Timed {
     law.course = regression_.by_event(at.answer.course);
     return law;
   }
-  /// Adds when the law begins: as a parameter, or as a number where nothing could tell.
+  /// Adds the start time as a parameter, or as a constant if it is not determined.
   std::string add_begin(const Clock& clock, const At& at, bool always, LawCandidate& law) const {
     const std::string level = fmt::format("the voltage has left ± {:.3g} pu", level_);
     if (always) {
@@ -141,7 +142,7 @@ class Timed {
     }
     replace(law.words, "{begin}",
             clock.triggered ? "{delay} after " + level : std::string("at {start} of the record"));
-    if (clock.triggered)  // on a logarithmic scale a delay of nothing would have no room to grow
+    if (clock.triggered)  // a delay of zero could not change on a logarithmic scale
       law.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
                                 "time from the voltage's move to its beginning"});
     else
@@ -149,14 +150,14 @@ class Timed {
           {"start", "s", at.begin, -1e5, 1e5, false, "time of the record at which it begins"});
     return law.parameters.back().name;
   }
-  /// Adds the phase at the middle of what is known, where it does not depend on the frequency.
+  /// Adds the phase at the centre of the records, where it is nearly independent of the frequency.
   void add_phase(const Clock& clock, const At& at, const std::string& now, LawCandidate& law) const {
     const double middle =
         std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;
     double phase =
         std::atan2(at.answer.factors[1], at.answer.factors[0]) + constants::turn * at.b * (middle - at.begin);
     phase -= constants::turn * std::floor(phase / constants::turn);
-    if (phase < 0.3) phase += constants::turn;  // a logarithmic scale needs room below
+    if (phase < 0.3) phase += constants::turn;  // leaves room below on a logarithmic scale
     law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
     law.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
     replace(law.words, "{centre}",

@@ -1,4 +1,4 @@
-// The inferred input and the signals of the plant that has it.
+// Computation of the traces from the playback of the plant with the inferred input.
 #include "validate/laws/detail/traces.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace swingbank::validate::laws {
 namespace {
 
-/// First switching after which the voltage leaves its band; NaN: it never does.
+/// Returns the time of the first sample at which the voltage is outside its band; NaN: never.
 double trigger_of(const event::FitEvent& e, double level) {
   const record::Record& r = e.played();
   const auto first = static_cast<std::size_t>(e.start.samples);
@@ -19,7 +19,7 @@ double trigger_of(const event::FitEvent& e, double level) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The plant driven with the inferred input, by the steps of the search where exact ones do not get on.
+/// Plays the event into the plant with the inferred input, with lenient steps if exact ones fail.
 playin::Response driven(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
                         const fit::EventState& state) {
   try {
@@ -39,7 +39,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     const fit::EventState& state = input.fit.events[i].state;
     const auto switchings = event::switchings_at(e, state);
     const playin::VoltageCurve curve(e.played(), switchings);
-    // The signals are those that the instruments show, as the fit had them.
+    // The signals are those of the instruments, as in the fit.
     const playin::Response r = driven({input.fit.plant, model.conventions}, e, state);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
@@ -53,7 +53,8 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
       for (const double v : x) d.push_back(scale * (v - x.front()));
       return d;
     };
-    std::vector<double> V;  // as played in: smooth across what an instrument smeared
+    std::vector<double> V;  // of the played-in curve, which is smooth across filtered samples
+
     for (std::size_t k = 0, segment = 0; k < t.t.size(); ++k) {
       while (segment < switchings.size() && t.t[k] > switchings[segment].time) ++segment;
       V.push_back(std::abs(curve(static_cast<int>(segment), t.t[k])) - std::abs(e.start.voltage));
