@@ -3,8 +3,9 @@
 
 namespace swingbank {
 
-/// Proportion hits/n of a binomial count, with Wilson's 95 % interval \f[ \frac{\hat p + z^2/2n \pm z
-/// \sqrt{\hat p (1 - \hat p)/n + z^2/4n^2}}{1 + z^2/n} \f] (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
+/// Proportion \f$ \hat p \f$ = hits/n of a binomial count, with Wilson's 95 % interval
+/// \f[ \frac{\hat p + z^2/2n \pm z \sqrt{\hat p (1 - \hat p)/n + z^2/4n^2}}{1 + z^2/n}, \quad z = 1.96 \f]
+/// (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
 struct Rate {
   int hits = 0, n = 0;
   void count(bool hit) {

@@ -130,7 +130,7 @@ inline const Course kFewestCourse = {
     {Phase::playing, 0.98, 1},
 };
 
-/// Progress of a command through its phases. The printed share never decreases, and the printed total time
+/// Progress of a command through its phases. The printed share never decreases, and the estimated total time
 /// never increases.
 class CourseProgress {
  public:

@@ -22,8 +22,7 @@ const Range kBusNumber{1, 999997, ""};
 const Range kCount{1, 1e10, ""};  // 1e10 rows are 400 TB
 const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""}, kRate{1.0, 1e5, "1/s"};
 const Range kShardSize{0.001, 1e5, "MB"};
-constexpr double kUsualShard =
-    64.0;  ///< default size of a shard [MB]: about 1 s of a core, efficient to write
+constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], about 1 s of core time
 
 std::string parameter_list(const sim::Effect& e) {
   std::string all;
