@@ -1,6 +1,6 @@
-// Every block of memory begins at a multiple of a cache line. Sums of vectors are taken in packs that begin
-// at the first aligned element, so that their order, and with it their last digit, would depend on where the
-// allocator happened to put them: on the thread, on what else was allocated, on how a program was linked.
+// Global operator new with alignment to cache lines, for reproducible sums. Eigen sums a vector in SIMD packs
+// that begin at its first aligned element. With the default allocator, the order of summation, and thus the
+// last digit, would depend on the thread, on other allocations and on linking.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -15,12 +15,12 @@
 #define SWINGBANK_OWN_ALLOCATOR 1
 #endif
 
-#ifndef SWINGBANK_OWN_ALLOCATOR  // a sanitizer has its own
+#ifndef SWINGBANK_OWN_ALLOCATOR  // sanitizers replace operator new themselves
 namespace {
 
 constexpr std::size_t kCacheLine = 64;
 
-/// The pointer that malloc gave stands in front of the block.
+/// Returns an aligned block; the pointer from malloc is stored directly before it.
 void* aligned(std::size_t size) noexcept {
   constexpr std::size_t kMore = kCacheLine + sizeof(void*);
   void* const given = size > SIZE_MAX - kMore ? nullptr : std::malloc(size + kMore);

@@ -1,5 +1,5 @@
 #pragma once
-// Names whose case does not matter.
+// Case-insensitive names: conversion to capital letters.
 #include <algorithm>
 #include <cctype>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace swingbank {
 
-/// ASCII letters as capitals.
+/// Returns `text` with its ASCII letters as capitals.
 inline std::string capitals(std::string_view text) {
   std::string all(text);
   std::ranges::transform(all, all.begin(),

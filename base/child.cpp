@@ -31,23 +31,23 @@ std::optional<Clock::time_point> end_after(double limit) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit));
 }
 
-/// Milliseconds until `end`, as poll wants them; -1: there is no end.
+/// Returns the time until `end` for poll(2) [ms]; -1: no time limit.
 int until(std::optional<Clock::time_point> end) {
   using namespace std::chrono;
   return end ? static_cast<int>(std::max<long>(0, ceil<milliseconds>(*end - Clock::now()).count())) : -1;
 }
 
-/// What comes out of the pipe until its other end is closed; kills the child when its time is over.
+/// Reads the pipe into `ended.output` until its other end is closed. Kills the child after `limit` [s].
 void take_output(int pipe, pid_t child, double limit, ProgramEnd& ended) {
   auto end = end_after(limit);
   std::array<char, 4096> piece{};
   for (;;) {
     pollfd wait{pipe, POLLIN, 0};
     const int ready = ::poll(&wait, 1, until(end));
-    if (ready < 0) continue;  // a signal
+    if (ready < 0) continue;  // interrupted by a signal
     if (ready == 0) {
       ended.late = true;
-      ::kill(child, SIGKILL);  // one that was stopped, too
+      ::kill(child, SIGKILL);  // also ends a stopped process
       end.reset();
       continue;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Processes that this one starts and waits for: copies of itself, and other programs.
+// Child processes: forked copies of this process, and other programs, each started and waited for.
 #include <sys/types.h>
 
 #include <filesystem>
@@ -9,27 +9,30 @@
 
 namespace swingbank {
 
-/// A copy of this process that does `work` and ends with its code; no exception may leave it. It gets the
-/// signal `at_our_end` when this process dies before it. -1, with errno set, if it cannot be started. No
-/// other thread may run.
+/// Forks a copy of this process that runs `work` and exits with its return value. Returns the process id, or
+/// -1 with errno set if the fork fails. `work` must not throw. The child receives the signal `at_our_end` if
+/// this process dies first. No other thread may run at the time of the fork.
 pid_t start_child(const std::function<int()>& work, int at_our_end);
-/// Waits for its end; the status as waitpid(2) gives it.
+/// Waits until the child ends. Returns the status of waitpid(2).
 int wait_for_child(pid_t child);
 
+/// Options of `run_program`.
 struct ProgramRun {
   enum class Output { shown, dropped, taken };
-  Output output = Output::dropped;  ///< what it prints
-  bool silent = false;              ///< its messages (stderr) are dropped
-  double limit = 0.0;               ///< [s] after which it is killed; 0: none; only where the output is taken
+  Output output = Output::dropped;  ///< treatment of standard output
+  bool silent = false;              ///< discard standard error
+  double limit = 0.0;               ///< time limit [s], then SIGKILL; 0: none; needs Output::taken
 };
+/// Result of `run_program`.
 struct ProgramEnd {
-  std::string output;  ///< where it was taken
-  int status = 0;      ///< as waitpid(2) gives it
-  bool late = false;   ///< it took longer than the limit
-  /// Its exit code; 128 + signal if a signal ended it.
+  std::string output;  ///< standard output, for Output::taken
+  int status = 0;      ///< status of waitpid(2)
+  bool late = false;   ///< whether the time limit was exceeded
+  /// Returns the exit code, or 128 + the signal's number if a signal ended the program.
   [[nodiscard]] int code() const;
 };
-/// Runs a program, words[0] as its name, to its end. Throws InputError where it cannot be started.
+/// Runs a program to its end with the arguments `words`; words[0] is its name. Throws InputError if it cannot
+/// be started.
 ProgramEnd run_program(const std::filesystem::path& program, const std::vector<std::string>& words,
                        const ProgramRun& how);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Phasors, impedances and powers.
+// Complex number type of phasors, impedances and powers.
 #include <complex>
 
 namespace swingbank {

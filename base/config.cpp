@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 struct Config::Tree {
   toml::table root;
-  std::set<std::string> asked;  ///< leaves and tables someone has read
+  std::set<std::string> asked;  ///< keys that were read
 
   [[nodiscard]] const toml::node* at(const std::string& key) const { return root.at_path(key).node(); }
 };
@@ -30,14 +30,14 @@ std::string place(const fs::path& name, const toml::source_position& p) {
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
-/// "use one of: GENCLS, GENROU; did you mean GENROU?"
+/// Returns `remedy`, the words and a suggestion: "use one of: GENCLS, GENROU; did you mean GENROU?".
 std::string choose_from(std::string_view word, const std::vector<std::string>& words,
                         const std::string& remedy) {
   const std::string nearest = nearest_word(word, words);
   return remedy + list(words) + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
-// What a node of TOML is called, and how it becomes a T.
+// Conversion of a TOML node to T, and the name of T in messages.
 bool convert(const toml::node& n, bool& v) { return n.is_boolean() && (v = n.as_boolean()->get(), true); }
 bool convert(const toml::node& n, std::int64_t& v) {
   return n.is_integer() && (v = n.as_integer()->get(), true);
@@ -95,7 +95,7 @@ std::string written(const toml::node& n) {
   return text.str();
 }
 
-/// Every leaf that nobody asked for.
+/// Adds a problem for every key that was never read.
 void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
              const fs::path& name, Problems& problems) {
   std::vector<std::string> known;
@@ -117,11 +117,11 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
   }
 }
 
-/// Parts of a dotted key. toml++ limits the depth of values to 256, but each key in them may be dotted, and
-/// its tables are destroyed by recursion.
+/// Largest number of parts of a dotted key. toml++ limits the depth of values to 256, but each key in them
+/// may be dotted, and it destroys its tables by recursion.
 constexpr int kMostKeyParts = 32;
 
-/// Walks over a TOML text and counts the dots of each key outside strings and comments.
+/// Scanner of a TOML text that counts the dots of each key outside strings and comments.
 class KeyLengths {
  public:
   KeyLengths(std::string_view text, const fs::path& name) : text_(text), name_(name) {}
@@ -147,7 +147,7 @@ class KeyLengths {
   void step() {
     if (text_[at_++] == '\n') ++line_, begin_ = at_;
   }
-  /// To behind its closing quotes, or to the end of the line where a string of one line has none.
+  /// Moves past the closing quotes, or to the end of the line if a one-line string lacks them.
   void skip_string(char quote) {
     const std::string three(3, quote);
     const bool lines = text_.substr(at_, 3) == three;
@@ -172,8 +172,8 @@ class KeyLengths {
   std::size_t at_ = 0, begin_ = 0, line_ = 1;
 };
 
-/// toml++ reads a number through a stream, which takes failing memory for a malformed number: only an error
-/// that comes again is one of the text.
+/// Parses the text, a second time after an error: toml++ reads numbers through a stream, which reports a
+/// failed allocation as a malformed number. Only a repeated error is one of the text.
 toml::table parse(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text, name);

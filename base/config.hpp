@@ -1,7 +1,7 @@
 #pragma once
-// A strict TOML reader. Keys are dotted paths ("fault.start"). Every problem is collected with
-// file:line:column and thrown together by raise(): missing keys, wrong types, values outside their range, and
-// keys nobody asked for.
+// Strict TOML reader. Keys are dotted paths ("fault.start"). Every problem is collected with
+// file:line:column, and raise() throws all of them together: missing keys, wrong types, values outside their
+// range, and unknown keys.
 //   Config c(file);
 //   const double start = c.require<double>("fault.start", {0.0, 100.0, "s"});
 //   const auto seed = c.optional<std::int64_t>("seed", 1);
@@ -18,50 +18,56 @@
 
 namespace swingbank {
 
-/// Allowed values of a number, ends included.
+/// Closed interval of the allowed values of a number.
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   std::string unit = "";
 };
 
+/// TOML file that is read key by key.
 class Config {
  public:
   /// Reads a file. Throws InputError if it cannot be read or is not TOML.
   explicit Config(const std::filesystem::path& file);
-  /// Reads a text; `name` stands for the file in messages, relative paths refer to its folder.
+  /// Parses `text`. Messages cite `name` as the file, and relative paths refer to its folder. Throws
+  /// InputError if the text is not TOML.
   Config(const std::string& text, const std::filesystem::path& name);
 
-  /// T: bool, std::int64_t, double (integers are taken too), std::string, or a vector of the last three. A
-  /// missing or wrong value is noted and T{} returned. Ranges apply to each number.
+  /// Returns the value of a required key. T: bool, std::int64_t, double (integers are accepted), std::string,
+  /// or a vector of the last three. Records a problem and returns T{} if the value is missing or wrong. The
+  /// range applies to each number of a list.
   template <class T>
   T require(const std::string& key, const Range& range = {});
+  /// Returns the value of a key, or `otherwise` if the key is missing or its value is wrong; the latter is
+  /// recorded as a problem.
   template <class T>
   T optional(const std::string& key, T otherwise, const Range& range = {});
-  /// One of the given words.
+  /// Returns a text that must be one of `words`.
   std::string choice(const std::string& key, const std::vector<std::string>& words);
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      const std::string& otherwise);
-  /// A file's path; relative ones refer to the config's folder. Notes a problem if there is no such file.
+  /// Returns the path of a file; relative paths refer to the config's folder. Records a problem if no such
+  /// file exists.
   std::filesystem::path file(const std::string& key);
-  /// Two numbers, low <= high.
+  /// Returns an interval [low, high], low <= high.
   std::pair<double, double> interval(const std::string& key, const Range& range = {});
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] bool is_array(const std::string& key) const;
   [[nodiscard]] bool is_text(const std::string& key) const;
-  /// Names in a table, in order of the alphabet; empty if there is no such table.
+  /// Returns the keys of a table in alphabetical order; empty if there is no such table.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
-  /// "file.toml:12:3" of a key, or of the file if it is not there.
+  /// Returns the place of a key's value, "file.toml:12:3", or the file's name if the key is missing.
   [[nodiscard]] std::string where(const std::string& key) const;
-  /// Line and column of a key's value, {0, 0} if it is not there.
+  /// Returns line and column of a key's value, {0, 0} if the key is missing.
   [[nodiscard]] std::pair<unsigned, unsigned> position(const std::string& key) const;
-  /// Notes a problem with a key's value.
+  /// Records a problem with a key's value.
   void problem(const std::string& key, const std::string& what, const std::string& why,
                const std::string& remedy);
-  /// Takes a key or table as known, whatever it holds.
+  /// Accepts a key or a table with any content, so that raise() does not report it as unknown.
   void ignore(const std::string& key);
   [[nodiscard]] bool sound() const { return problems_.empty(); }
-  /// Notes every key that was not asked for, then throws InputError if there are problems.
+  /// Records every key that was never read as unknown, then throws InputError if there are problems.
   void raise();
   [[nodiscard]] const std::filesystem::path& name() const { return name_; }
 

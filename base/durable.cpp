@@ -60,8 +60,7 @@ class Descriptor {
   int fd_;
 };
 
-/// Opens the temporary file for writing. What stood there is removed first, and a link that is made meanwhile
-/// is refused.
+/// Opens the temporary file for writing. Removes an existing file first and refuses a link created meanwhile.
 int open_new(const fs::path& temporary) {
   if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) return -1;
   return until_done(
@@ -72,7 +71,7 @@ int flush(int fd) {
   return until_done([&] { return ::fsync(fd); });
 }
 
-/// Hands on the bytes of a file, a mebibyte at a time. An error in the midst is not its end.
+/// Passes the bytes of a file to `take`, 1 MiB at a time. Throws InputError on a read error.
 void read_pieces(const fs::path& file, const std::function<void(std::string_view)>& take) {
   const Descriptor d(file, O_RDONLY);
   if (d.get() < 0) raise_file_error(file, errno, "cannot read the file");
@@ -110,8 +109,7 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
   const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  // Not posix_fallocate: where the file system has none it writes every block, and the file is written
-  // anyway.
+  // Not posix_fallocate, which writes every block on file systems without fallocate.
   const auto ask = [&] { return ::fallocate(d.get(), 0, 0, static_cast<off_t>(bytes)); };
   if (bytes == 0 || until_done(ask) == 0 || errno == EOPNOTSUPP) return;
   const int error = errno;
@@ -126,7 +124,7 @@ void flush_temporary(const fs::path& file) {
 
 namespace {
 
-/// Calls `meanwhile` with the temporary name while a thread of its own waits for the disk.
+/// Publishes a file. Calls `meanwhile` with the temporary name while another thread waits for the disk.
 void publish_and(const fs::path& file, const std::function<void(const fs::path&)>& meanwhile) {
   const fs::path temporary = temporary_name(file);
   try {
@@ -181,8 +179,7 @@ void NewFile::publish() {
   require_inputs_kept({{file_, file_.string()}});
   const fs::path temporary = temporary_name(file_);
   if (flush(fd_) != 0 || ::rename(temporary.c_str(), file_.c_str()) != 0) fail();
-  if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR)
-    fail();  // interrupted, it is closed all the same
+  if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR) fail();  // after EINTR the descriptor is closed
   flush_folder(file_.parent_path());
 }
 

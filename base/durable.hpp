@@ -1,6 +1,6 @@
 #pragma once
-// Files that exist whole or not at all: temporary name, write, fsync, rename, fsync of the folder. What
-// stands under the temporary name is removed, never opened, so that a link there leads nowhere.
+// Atomic writing of files: temporary name, write, fsync, rename, fsync of the folder. An existing file under
+// the temporary name is removed and never opened, so a symbolic link of that name is not followed.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -9,31 +9,31 @@
 
 namespace swingbank {
 
-/// The name a file carries while it is written: ".<name>.part" beside it. Whoever else writes there makes the
-/// file with `reserve`.
+/// Returns the temporary name of a file while it is written: ".<name>.part" in the same folder. Code that
+/// writes to it by other means (HDF5, MPI-IO) creates it with `reserve`.
 std::filesystem::path temporary_name(const std::filesystem::path& file);
-/// Creates a folder and its parents. Throws InputError naming the folder and the system's reason.
+/// Creates a folder and its parents. Throws InputError with the folder and the system's error text.
 void make_folder(const std::filesystem::path& folder);
-/// Creates the temporary file anew and asks the system for `bytes` of space. Throws InputError with the
-/// system's reason (disk full, no permission), which HDF5 and MPI-IO do not pass on; removes the temporary
-/// then.
+/// Creates the temporary file anew and allocates `bytes` of disk space. On failure, removes the temporary
+/// file and throws InputError with the system's error text (disk full, no permission), which HDF5 and MPI-IO
+/// do not pass on.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes);
-/// Flushes the temporary file to the disk and gives it its final name. Throws InputError; removes the
-/// temporary then.
+/// Flushes the temporary file to the disk and renames it to its final name. On failure, removes the temporary
+/// file and throws InputError.
 void publish(const std::filesystem::path& file);
-/// Flushes what this machine has written of the temporary file. Throws InputError.
+/// Flushes the data that this machine has written to the temporary file. Throws InputError on failure.
 void flush_temporary(const std::filesystem::path& file);
 void flush_folder(const std::filesystem::path& folder);
-/// A file that is written piece by piece. Where it is not published, nothing of it stays.
+/// File that is written piece by piece. The destructor removes it unless it was published.
 class NewFile {
  public:
-  /// `failure` is said of whatever cannot be written. Throws InputError, as all others do.
+  /// Creates the temporary file. All members throw InputError on failure, with `failure` as its first words.
   explicit NewFile(std::filesystem::path file, std::string failure = "cannot write the file");
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
   void write(const void* data, std::size_t bytes);
-  /// Flushes the file and gives it its final name.
+  /// Flushes the file and renames it to its final name.
   void publish();
 
  private:
@@ -42,15 +42,15 @@ class NewFile {
   std::string failure_;
   int fd_ = -1;
 };
-/// Writes text whole or not at all.
+/// Writes a text file atomically. Throws InputError on failure.
 void write_text(const std::filesystem::path& file, std::string_view text);
-/// Throws InputError if the file cannot be read.
+/// Returns the content of a file. Throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& file);
-/// Throws InputError: "<what> at <file> (<the system's reason>): <remedy>".
+/// Throws InputError "<what> at <file> (<text of errno value `error`>): <remedy>".
 [[noreturn]] void raise_file_error(const std::filesystem::path& file, int error, const std::string& what);
-/// XXH3-64 over the bytes of a file, 16 hex digits. Throws InputError.
+/// Returns the XXH3-64 hash of a file's bytes, 16 hex digits. Throws InputError if the file cannot be read.
 std::string hash_of_file(const std::filesystem::path& file);
-/// 16 lower-case hex digits.
+/// Returns a number as 16 lower-case hex digits.
 std::string hex(std::uint64_t value);
 
 }  // namespace swingbank

@@ -1,13 +1,14 @@
 #pragma once
-// A minimum of a function of one variable, between two bounds that enclose it.
+// Golden-section search: minimum of a function of one variable between two bounds that enclose it.
 namespace swingbank {
 
+/// Minimiser and minimum of a function.
 struct Minimum {
   double at = 0, value = 0;
 };
 
-/// Golden sections: every step takes 38 % off the interval. Goes on while more(steps so far, width of what is
-/// left) holds.
+/// Computes a local minimum of `f` in [low, high] by golden-section search. Each step shortens the interval
+/// by 38 %. Continues while more(number of steps, width of the interval) returns true.
 template <class F, class More>
 Minimum golden_section(const F& f, double low, double high, const More& more) {
   constexpr double kGolden = 0.6180339887498949;

@@ -1,5 +1,5 @@
 #pragma once
-// Independent pieces of work on all cores, with exceptions and progress.
+// Parallel loop over independent tasks, with exceptions and progress.
 #include <omp.h>
 
 #include <concepts>
@@ -8,9 +8,9 @@
 
 namespace swingbank {
 
-/// Calls work(k) for every k < n, in any order, and after each, one at a time, done(how many are finished) or
-/// done(how many, k). On `threads` cores, 0: all. The first exception of a piece is thrown again once all
-/// have ended.
+/// Calls work(k) for every k < n on `threads` threads (0: one per core), in any order. After each task, calls
+/// done(number finished) or done(number finished, k) under a lock. Rethrows the first exception of a task
+/// after all tasks have ended; a task that throws does not count as finished.
 template <class Work, class Done>
 void in_parallel(std::size_t n, Work work, Done done, int threads = 0) {
   std::exception_ptr failure;

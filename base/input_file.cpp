@@ -14,12 +14,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The shell hands a pattern on as it is where no file matches it.
+/// Returns whether a path is a shell pattern; the shell passes it unexpanded if no file matches.
 bool is_pattern(const fs::path& file) {
   return file.filename().string().find_first_of("*?[") != std::string::npos;
 }
 
-/// "configs/plants/x.toml" or "plants/x.toml" among the examples; of a pattern its folder.
+/// Returns the example "configs/plants/x.toml" or "plants/x.toml"; for a pattern, its folder.
 fs::path example_of(const fs::path& file, const fs::path& examples) {
   if (examples.empty() || file.is_absolute()) return {};
   std::error_code ignored;
@@ -55,8 +55,8 @@ fs::path example_configs() {
   std::error_code error;
   fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};
-  if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // of one instruction set
-  // The second is the build folder's, whatever an installation is laid out like.
+  if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // instruction-set folder
+  // The second path is that of the build folder, for any layout of an installation.
   for (const char* way : {SWINGBANK_CONFIGS_FROM_BIN, "../share/swingbank/configs"}) {
     const fs::path folder = fs::canonical(own / way, error);
     if (!error && fs::is_directory(folder, error)) return folder;

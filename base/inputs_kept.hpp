@@ -1,25 +1,27 @@
 #pragma once
-// The check that no output of a command replaces one of its inputs. Whatever reads a file for the user notes
-// it; commands check their outputs before the work, and durable.hpp checks once more before each rename.
+// Protection of input files: no output of a command may replace one of its inputs. Readers of user files
+// register each file. Commands check their outputs before the work, and durable.hpp repeats the check before
+// each rename.
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace swingbank {
 
-/// Protects what this process reads as input from now on, or forgets all of it. A process that is no command
-/// may write what it has read.
+/// Clears the list of inputs and switches the protection on or off. It is off by default: a process other
+/// than a command may overwrite files that it has read.
 void keep_inputs(bool on = true);
-/// Notes a file that was read for the user. Its name may be of any spelling; links lead to their target.
+/// Registers a file that was read for the user. The path may be relative or a link; `require_inputs_kept`
+/// resolves it.
 void note_input(const std::filesystem::path& file);
 
-/// A file that the command is going to write or to remove.
+/// File that the command is going to write or to remove.
 struct Output {
   std::filesystem::path file;
   std::string where;  ///< the option that names it or its folder
 };
-/// Throws InputError for each output that is the same file as an input (through links, hard links and other
-/// spellings too), and for two outputs that are one file. Only after keep_inputs().
+/// Throws InputError for each output that is the same file as an input, also through links, hard links and
+/// other spellings, and for two outputs that are the same file. Does nothing while the protection is off.
 void require_inputs_kept(const std::vector<Output>& outputs);
 
 }  // namespace swingbank

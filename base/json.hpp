@@ -1,15 +1,16 @@
 #pragma once
-// JSON as every source reads and writes it: nlohmann's, with whole numbers that are whole, and as text.
+// JSON reading and writing: nlohmann's library with range-checked conversion of integers.
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <type_traits>
 #include <utility>
 
-/// The library casts: 1e95 as a count is undefined, 1.5 becomes 1, -1 becomes 2^64 - 1 and true becomes 1.
-/// Here a whole number is one that was written as such and fits; anything else throws type_error. Sources
-/// include this file and not the library's, so that no two of them read differently; so do the precompiled
-/// headers, in which clang instantiates (and would take the library's own).
+/// Conversion of JSON numbers to integers. The library's own conversion casts: 1e95 as a count is undefined,
+/// 1.5 becomes 1, -1 becomes 2^64 - 1 and true becomes 1. This one accepts only an integer that fits into T,
+/// and throws type_error otherwise. All sources and the precompiled headers include this file instead of the
+/// library's header, so that every translation unit uses the same conversion (clang instantiates templates in
+/// precompiled headers).
 template <class T>
 struct nlohmann::adl_serializer<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
   template <class Json>
@@ -37,7 +38,8 @@ struct nlohmann::adl_serializer<T, std::enable_if_t<std::is_integral_v<T> && !st
 
 namespace swingbank {
 
-/// A file's name need not be UTF-8: what is not is replaced, so that no result is lost for it.
+/// Returns JSON as text. Bytes that are not UTF-8 (a file name may contain some) are replaced, so that no
+/// result is lost.
 inline std::string json_text(const nlohmann::json& j, int indent = -1) {
   return j.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -1,19 +1,19 @@
 #pragma once
-// Medians of values that are there.
+// Medians of non-empty lists.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
 namespace swingbank {
 
-/// The upper one of two middle values, so that it is one of the values. `values` is not empty.
+/// Returns the upper median, which is always an element of `values`. `values` must not be empty.
 inline double upper_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-/// The mean of two middle values where their number is even. `values` is not empty.
+/// Returns the median: for an even count, the mean of the two middle values. `values` must not be empty.
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

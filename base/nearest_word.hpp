@@ -1,5 +1,5 @@
 #pragma once
-// The known word nearest to a mistyped one, for "did you mean".
+// Spelling suggestions: the known word nearest to a mistyped one, for "did you mean".
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,8 +10,8 @@
 
 namespace swingbank {
 
-/// Returns how many letters must be inserted, removed, replaced or swapped with their neighbour to turn `a`
-/// into `b` (optimal string alignment).
+/// Returns the edit distance between `a` and `b`: the smallest number of insertions, deletions, substitutions
+/// and swaps of neighbouring letters (optimal string alignment).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -27,8 +27,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last.back();
 }
 
-/// Returns the one of `words` that was probably meant, whatever the case of its letters; empty if none is
-/// near. A word that begins with the wanted one, of three letters or more, comes before all others.
+/// Returns the word of `words` nearest to `wanted`, ignoring case; empty if none is near. Words that begin
+/// with `wanted` (three letters or more) come before all others.
 inline std::string nearest_word(std::string_view wanted, const std::vector<std::string>& words) {
   const auto lower = [](std::string_view text) {
     std::string small(text);
@@ -36,10 +36,9 @@ inline std::string nearest_word(std::string_view wanted, const std::vector<std::
     return small;
   };
   const std::string sought = lower(wanted);
-  const std::size_t most =
-      std::max<std::size_t>(1, sought.size() / 3);  // farther than this is no likely slip
+  const std::size_t most = std::max<std::size_t>(1, sought.size() / 3);  // largest plausible edit distance
   std::string best;
-  // whether it only resembles the wanted one, its distance and how much longer or shorter it is
+  // sort key: 0 for a word that begins with `wanted`, edit distance, difference in length
   std::array<std::size_t, 3> least{};
   for (const auto& word : words) {
     const std::string known = lower(word);
@@ -56,7 +55,7 @@ inline std::string nearest_word(std::string_view wanted, const std::vector<std::
   }
   return best;
 }
-/// Returns "did you mean GENROU?", or `otherwise` where no word is near.
+/// Returns "did you mean GENROU?", or `otherwise` if no word is near.
 inline std::string suggestion(std::string_view wanted, const std::vector<std::string>& words,
                               const std::string& otherwise) {
   const std::string nearest = nearest_word(wanted, words);

@@ -19,7 +19,7 @@ fs::path list_file(const fs::path& folder, const std::string& command) {
   return folder / (".swingbank-" + command);
 }
 
-/// Lines of "hash name". A name with a folder in it was not written by this program.
+/// Reads lines of "hash name". Ignores names with a folder, which this program does not write.
 std::map<std::string, std::string> read_list(const fs::path& file) {
   std::map<std::string, std::string> all;
   std::error_code error;
@@ -49,7 +49,7 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
                 LockWords{"another command works in the output folder", "--out " + folder_.string(),
                           "wait for it, or give another folder"},
                 std::chrono::milliseconds(0));
-  earlier_ = read_list(list_file(folder_, command_));  // the holder before may have written meanwhile
+  earlier_ = read_list(list_file(folder_, command_));  // again: the previous holder may have changed it
 }
 
 OutputFolder::~OutputFolder() {

@@ -1,6 +1,6 @@
 #pragma once
-// The folder of a command's results: locked while the command works, without stale results of an earlier run
-// of the same command afterwards, and never at the cost of an input.
+// Output folder of a command: locked while the command works and cleared of stale results of earlier runs. It
+// never overwrites an input.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -12,31 +12,32 @@
 
 namespace swingbank {
 
+/// Lock on a command's output folder, with a list of the files that the command writes into it.
 class OutputFolder {
  public:
-  /// Once all inputs are read, before the work. `names`: files that the command may write in it; `others`:
-  /// outputs elsewhere. Throws InputError where an output is an input, where a file of an earlier run, which
-  /// may be removed, is one, and where another command works in the folder.
+  /// Locks the folder; call it after all inputs are read and before the work. `names`: files that the command
+  /// may write into the folder; `others`: outputs elsewhere. Throws InputError if an output or a file of an
+  /// earlier run is an input, or if another command uses the folder.
   OutputFolder(std::filesystem::path folder, std::string command, const std::vector<std::string>& names,
                const std::vector<Output>& others = {});
-  /// Leaves no lock file, and no empty folder that was not there before.
+  /// Removes the lock file, and the folder if the constructor created it and it is empty.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Path of a result of this run.
+  /// Returns the path of a result and registers it as written by this run.
   std::filesystem::path file(const std::string& name);
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
-  /// What becomes of the results of an earlier run that this run has not written anew.
+  /// Treatment of results of an earlier run that this run has not overwritten.
   enum class Earlier { removed, stay };
-  /// Once the results are written. Removes those of an earlier run of this command; a file that was changed
-  /// since stays, because it is the user's now.
+  /// Writes the list of results; call it after the last result is written. Removes unchanged results of an
+  /// earlier run of this command. Keeps a file that was changed since then, because the user has edited it.
   void finish(Earlier earlier = Earlier::removed);
 
  private:
   std::filesystem::path folder_;
   std::string command_;
-  std::map<std::string, std::string> earlier_;  ///< names and hashes of the files of an earlier run
+  std::map<std::string, std::string> earlier_;  ///< hashes of an earlier run's files, by name
   std::vector<std::string> written_;
   bool created_ = false;
   std::optional<RunLock> lock_;

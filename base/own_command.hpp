@@ -1,6 +1,6 @@
 #pragma once
-// Other commands of this build, run as programs of their own: so that calibrate and add need not link the
-// libraries that train and generate do.
+// Other commands of this build, run as separate programs, so that calibrate and add need not link the
+// libraries of train and generate.
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,12 +15,13 @@
 
 namespace swingbank::jobs {
 
+/// Returns the folder of the running executable.
 inline std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-/// Path of swingbank-<command>, which stands in this program's own folder. Throws InputError where this build
-/// does not have it; `remedy`: what to do then.
+/// Returns the path of swingbank-<command> in this program's folder. Throws InputError with `remedy` if it is
+/// missing.
 inline std::filesystem::path own_command(const std::string& command, const std::string& remedy) {
   const auto program = own_folder() / ("swingbank-" + command);
   if (::access(program.c_str(), X_OK) != 0)
@@ -28,8 +29,9 @@ inline std::filesystem::path own_command(const std::string& command, const std::
   return program;
 }
 
-/// Runs it to its end; what it prints is left out unless `shown`, its messages (stderr) only if `silent`. The
-/// exit code; 128 + signal if a signal ended it. Throws InputError where it cannot be started.
+/// Runs a program to its end. Discards its standard output unless `shown`, and its standard error if
+/// `silent`. Returns the exit code, or 128 + the signal's number if a signal ended it. Throws InputError if
+/// it cannot be started.
 inline int run_own(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                    bool shown = false, bool silent = false) {
   std::vector<std::string> words = {program.string()};
@@ -38,7 +40,7 @@ inline int run_own(const std::filesystem::path& program, const std::vector<std::
   return run_program(program, words, {shown ? Output::shown : Output::dropped, silent, 0.0}).code();
 }
 
-/// A folder for files that are gone when it goes out of scope.
+/// Temporary folder, removed with its content by the destructor.
 class Scratch {
  public:
   Scratch() {

@@ -8,11 +8,11 @@ namespace swingbank {
 
 namespace {
 
-constexpr std::size_t kLongestShown = 1000;  ///< bytes of a text that is shown whole
+constexpr std::size_t kLongestShown = 1000;  ///< largest length of a text that is not cut [bytes]
 
 unsigned at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// Bytes of the character that begins at i; 0 where none of UTF-8 does.
+/// Returns the length of the UTF-8 character at i [bytes]; 0 if there is none.
 std::size_t character(std::string_view text, std::size_t i) {
   const unsigned first = at(text, i);
   const std::size_t n = first < 0x80       ? 1
@@ -26,7 +26,7 @@ std::size_t character(std::string_view text, std::size_t i) {
   return n;
 }
 
-/// Whether a terminal acts on it: below the blank, DEL, and U+0080 to U+009F.
+/// Returns whether a character is a control character: below U+0020, DEL, or U+0080 to U+009F.
 bool is_control(std::string_view character) {
   const unsigned first = at(character, 0);
   return first < 0x20 || first == 0x7F || (first == 0xC2 && at(character, 1) < 0xA0);

@@ -1,6 +1,6 @@
 #pragma once
-// What is wrong with an input, where, why, and what to do about it. All problems of one input are
-// collected and thrown together, so that a person mends them in one go.
+// Problems of an input: what is wrong, where, why, and the remedy. All problems of one input are collected
+// and thrown together, so that the user can correct them at once.
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -8,8 +8,9 @@
 
 namespace swingbank {
 
-/// Text of a user's file or name as it may be shown: control characters and bytes that are no UTF-8 are
-/// escaped, so that a terminal does what it did before, and a text of more than 1,000 bytes is cut.
+/// Returns a text from a user's file or path in a form that is safe to print. Escapes control characters and
+/// bytes that are not UTF-8, so that they cannot change the terminal's state, and cuts texts after 1,000
+/// bytes.
 std::string shown(std::string_view text);
 
 /// One sentence to the user: "<what> at <where> (<why>): <remedy>".
@@ -20,7 +21,7 @@ struct Problem {
   }
 };
 
-/// Thrown with every problem of one input; what() holds one sentence per line.
+/// Exception with all problems of one input; what() has one sentence per line.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Problem> problems)
@@ -37,7 +38,7 @@ class InputError : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-/// Collects problems while an input is read; `raise()` throws them together if there are any.
+/// Collector of problems while an input is read; `raise()` throws all of them as one InputError, if any.
 class Problems {
  public:
   void add(std::string what, std::string where, std::string why, std::string remedy) {

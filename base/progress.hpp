@@ -1,6 +1,6 @@
 #pragma once
-// How far a run is, with its rate and the time it still needs: one line in place on a terminal, log lines
-// elsewhere.
+// Progress display of a long run: share done, rate and remaining time, as one updated line on a terminal and
+// as log lines elsewhere.
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -8,19 +8,20 @@
 
 namespace swingbank {
 
+/// Progress counter that prints to standard error: at most every 0.2 s as a bar, every 5 s as lines.
 class Progress {
  public:
   enum class Mode { automatic, bar, lines, none };
-  /// Of --progress, in the order of Mode.
+  /// Returns the values of --progress, in the order of Mode.
   static const std::vector<std::string>& words();
-  /// `done`: what earlier runs have made. `unit`: "draws".
+  /// `total`: number of items; `done`: items that earlier runs have completed; `unit`: "draws".
   Progress(Mode mode, std::string unit, std::uint64_t total, std::uint64_t done);
   ~Progress() { finish(); }
-  /// Notes `count` more; prints if it is time.
+  /// Counts `count` more items; prints if the last output is old enough.
   void add(std::uint64_t count);
   void finish();
   [[nodiscard]] double seconds() const;
-  [[nodiscard]] double rate() const;  ///< of this run [1/s]
+  [[nodiscard]] double rate() const;  ///< items of this run per second [1/s]
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -29,12 +30,12 @@ class Progress {
   std::string unit_;
   std::uint64_t total_, before_, done_;
   Clock::time_point start_ = Clock::now(), printed_ = Clock::now();
-  bool open_ = false;  ///< a line without its line feed stands on the terminal
+  bool open_ = false;  ///< whether the terminal's last line lacks its line feed
 };
 
-/// "120 draws/s", and where that would be below one "4.5 plants/min" or "2.0 plants/h".
+/// Returns a rate as "120 draws/s", below 1/s as "4.5 plants/min" or "2.0 plants/h".
 std::string rate_text(double per_second, const std::string& unit);
-/// "1 h 02 min", "3 min 20 s", "12 s".
+/// Returns a duration as "1 h 02 min", "3 min 20 s" or "12 s".
 std::string duration_text(double seconds);
 
 }  // namespace swingbank

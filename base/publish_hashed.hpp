@@ -1,12 +1,12 @@
 #pragma once
-// A file's hash taken while the disk is flushed, which leaves the processor free.
+// Atomic publication of a file together with its hash, computed while the disk flushes.
 #include <filesystem>
 #include <string>
 
 namespace swingbank {
 
-/// `publish` of base/durable.hpp, and the hash of the file's bytes as hash_of_file has it. Throws InputError;
-/// removes the temporary file then.
+/// Publishes a file as `publish` (base/durable.hpp) does and returns the hash of its bytes as `hash_of_file`
+/// does. On failure, removes the temporary file and throws InputError.
 std::string publish_hashed(const std::filesystem::path& file);
 
 }  // namespace swingbank

@@ -1,9 +1,11 @@
 #pragma once
-// A share that was counted, with its uncertainty.
+// Observed proportion with its confidence interval.
 
 namespace swingbank {
 
-/// k of n with Wilson's 95 % interval (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
+/// Proportion \f$ \hat p \f$ = hits/n of a binomial count, with Wilson's 95 % interval
+/// \f[ \frac{\hat p + z^2/2n \pm z \sqrt{\hat p (1 - \hat p)/n + z^2/4n^2}}{1 + z^2/n}, \quad z = 1.96 \f]
+/// (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
 struct Rate {
   int hits = 0, n = 0;
   void count(bool hit) {
@@ -11,6 +13,7 @@ struct Rate {
     hits += hit ? 1 : 0;
   }
   [[nodiscard]] double value() const { return n > 0 ? static_cast<double>(hits) / n : 0.0; }
+  /// Lower and upper end of the interval; 0 and 1 for n = 0.
   [[nodiscard]] double low() const;
   [[nodiscard]] double high() const;
 };

@@ -20,14 +20,14 @@
 namespace swingbank {
 namespace {
 
-constexpr double kPatience = 300.0;          ///< [s] for what waits: a disk, a process that was stopped
-constexpr rlim_t kProcessorTime = 30;        ///< [s] a damaged file can keep its reader busy for ever
-constexpr std::uintmax_t kSlow = 5'000'000;  ///< [bytes/s] that any reader manages
-constexpr int kProblemsTold = 3;             ///< exit code: the answer is a list of problems
+constexpr double kPatience = 300.0;          ///< wall-clock limit [s], for a slow disk or a stopped process
+constexpr rlim_t kProcessorTime = 30;        ///< limit of processor time [s]: endless loop on damaged files
+constexpr std::uintmax_t kSlow = 5'000'000;  ///< lowest reading rate of any reader [bytes/s]
+constexpr int kProblemsTold = 3;             ///< exit code: the output is a list of problems
 constexpr const char* kWhat = "a file that cannot be read";
 constexpr const char* kRemedy = "get the file again from where it came from, or make it again";
 
-/// The problems that the program told; none: what it printed is no such list.
+/// Returns the problems in the reader's output; empty if it is not a list of problems.
 std::vector<Problem> problems_in(const std::string& text) {
   const auto list = nlohmann::json::parse(text, nullptr, false);
   std::vector<Problem> problems;
@@ -76,7 +76,7 @@ int answer_apart(const std::filesystem::path& file, const std::function<std::str
       (none ? 0 : static_cast<rlim_t>(size / kSlow));
   const rlimit limit{seconds, seconds}, no_core{0, 0};
   ::setrlimit(RLIMIT_CPU, &limit);
-  ::setrlimit(RLIMIT_CORE, &no_core);  // a crash is an answer
+  ::setrlimit(RLIMIT_CORE, &no_core);  // a crash is an expected result
   nlohmann::json problems = nlohmann::json::array();
   try {
     return write_all(STDOUT_FILENO, work()) ? 0 : 1;

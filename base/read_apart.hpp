@@ -1,6 +1,6 @@
 #pragma once
-// Files that a library may crash on, read by a program of its own: HDF5 1.10 and libmatio do on damaged ones.
-// The program is swingbank-read-hdf5, beside this one; what it read comes back through a pipe.
+// Reading of untrusted files in a separate process, because HDF5 1.10 and libmatio crash on some damaged
+// files. The program is swingbank-read-hdf5 in this program's folder; it returns the content through a pipe.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace swingbank {
 
-/// What the program answers to `kind`, `file` and `words`. Throws InputError with the problems that it found,
-/// or one that says how it ended: a crash, or no end within five minutes. May be called from several threads,
-/// and after MPI_Init: no copy of this process runs anything but that program.
+/// Returns the output of the reader for the arguments `kind`, `file` and `words`. Throws InputError with the
+/// problems that the reader found, or with its failure: a crash, or a timeout (300 s and 1 s more for each 5
+/// MB). Safe to call from several threads and after MPI_Init, because the child process runs nothing but that
+/// program.
 std::string read_apart(const std::string& kind, const std::filesystem::path& file,
                        const std::vector<std::string>& words);
 
-/// The other end: prints what `work` makes of the file, or its InputError's problems, to stdout. The exit
-/// code. The process is ended after 30 s of processor time and one more for each 5 MB;
-/// SWINGBANK_READER_SECONDS: instead of 30.
+/// Reader's side: prints the result of `work` for the file, or the problems of its InputError, to standard
+/// output. Returns the exit code. Limits the process to 30 s of processor time (environment variable
+/// SWINGBANK_READER_SECONDS: another limit) and 1 s more for each 5 MB.
 int answer_apart(const std::filesystem::path& file, const std::function<std::string()>& work);
 
 }  // namespace swingbank

@@ -21,7 +21,7 @@ namespace swingbank {
 
 namespace {
 
-/// Text of a lock file. It may have been written by anybody, so only printable characters are told.
+/// Returns the printable characters of a lock file, which any process may have written.
 std::string owner_in(int fd) {
   std::array<char, 200> text{};
   const ssize_t n = ::pread(fd, text.data(), text.size(), 0);
@@ -87,7 +87,8 @@ bool RunLock::try_lock() {
        "choose a folder on another disk, or have this one mounted with locks (Lustre: -o flock)"});
 }
 
-/// A holder may have withdrawn the file between opening and locking it; the lock is then on no file at all.
+/// Returns whether the locked file still has this name. Another holder may have removed it between open and
+/// lock.
 bool RunLock::is_the_one_of_that_name() const {
   struct stat held {
   }, named{};
@@ -99,7 +100,7 @@ void RunLock::refuse() const {
   throw InputError({words_.what, words_.where, owner_in(fd_) + " holds it", words_.remedy});
 }
 
-/// For people only: a full disk, which cannot take it, is no reason to refuse.
+/// Writes the holder into the file. Ignores errors such as a full disk, because the text is only informative.
 void RunLock::write_owner() const {
   const std::string owner = this_process() + (kind_ == Kind::shared ? " or another part" : "") + "\n";
   if (::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, owner.data(), owner.size(), 0) < 0) return;

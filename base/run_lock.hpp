@@ -1,40 +1,42 @@
 #pragma once
-// One run at a time in a folder, or several that share it: a flock on a file of its own, so that nothing a
-// run replaces (the journal, a checkpoint) carries the lock with it.
+// Exclusive or shared lock on a folder: flock(2) on a file of its own, because a run replaces other files
+// (journal, checkpoint), and a lock on them would be lost.
 #include <chrono>
 #include <filesystem>
 #include <string>
 
 namespace swingbank {
 
-/// What a refusal says: "<what> at <where> (process 12 on host a holds it): <remedy>".
+/// Words of the error for a lock that is held: "<what> at <where> (process 12 on host a holds it): <remedy>".
 struct LockWords {
   std::string what, where, remedy;
 };
 
+/// Lock on a folder, held from construction to destruction.
 class RunLock {
  public:
-  /// Whether others of the same kind may hold the lock at the same time.
+  /// Exclusive lock, or a lock that several holders of this kind share.
   enum class Kind { alone, shared };
 
-  /// Creates `file` if need be (its folder must exist), locks it and writes into it who holds it: process,
-  /// host, Slurm job. A run that was just ended may take a moment to go, so a held lock is tried again for
-  /// `patience`. Throws InputError naming the holder if the lock stays held, and with the system's reason if
-  /// the file system does not lock files: such a folder is neither free nor in use.
+  /// Creates `file` if it is missing (its folder must exist), locks it and writes the holder into it:
+  /// process, host, Slurm job. Retries a held lock for `patience`, because a run that was just ended may
+  /// still be exiting. Throws InputError with the holder if the lock stays held, and with the system's error
+  /// text if the file system does not support locks.
   RunLock(std::filesystem::path file, LockWords words,
           std::chrono::milliseconds patience = std::chrono::seconds(5), Kind kind = Kind::alone);
-  /// The lock falls when the last process that holds the file ends, however it ends; a child made by fork
-  /// holds it too. The file stays, because a file that is removed could be locked by two.
+  /// Releases the lock. The kernel also releases it when the last process with the open file ends, in any
+  /// way; a forked child inherits the lock. The file remains, because two processes could each lock a removed
+  /// and recreated file.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
-  /// Removes the file, where nobody needs the lock any more: in a folder that is refused, or after the result
-  /// stands. Leaves a file that was there before, unless `always`.
+  /// Removes the file if this object created it, or in any case with `always`. For folders that no run needs
+  /// to lock any more: one that is refused, or one whose results are complete.
   void withdraw(bool always = false);
 
  private:
   void open();
-  /// False if another process holds it.
+  /// Returns false if another process holds the lock.
   bool try_lock();
   [[nodiscard]] bool is_the_one_of_that_name() const;
   [[noreturn]] void refuse() const;

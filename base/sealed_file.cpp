@@ -26,7 +26,7 @@ struct Hash {
   [[nodiscard]] std::uint64_t value() const { return XXH3_64bits_digest(state.get()); }
 };
 
-/// A file as it is read. An error of the disk is told as such, and is no damage of the file.
+/// Buffered reader of a file. A disk error throws InputError; a file that is too short throws Unusable.
 class Input {
  public:
   explicit Input(const std::filesystem::path& file) : file_(file), buffer_(std::size_t{1} << 16) {
@@ -70,7 +70,7 @@ class Input {
   int fd_ = -1;
 };
 
-/// Before anybody takes the content, so that nobody meets what was not written.
+/// Verifies magic bytes and checksum before the content is used. Throws Unusable if they are wrong.
 void require_seal(Input& in, std::uint64_t length, const SealedKind& kind) {
   std::string magic(std::strlen(kind.magic), '\0');
   if (length < magic.size()) throw Unusable{"it ends too early"};
@@ -92,7 +92,7 @@ void require_seal(Input& in, std::uint64_t length, const SealedKind& kind) {
   in.rewind();
 }
 
-/// The file from its magic bytes to its last array; throws Unusable where it is not what a writer makes.
+/// Reads the file from its magic bytes to its last array. Throws Unusable if its structure is invalid.
 void read_all(Input& in, std::uint64_t length, const SealedKind& kind,
               const std::function<void(const json&, std::size_t)>& start, const PlaceArray& place) {
   const auto get_size = [&] {

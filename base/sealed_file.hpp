@@ -1,6 +1,6 @@
 #pragma once
-// A JSON header and raw single-precision arrays in one file, sealed with a checksum. Written under a
-// temporary name, flushed and renamed, so that the last good file survives a kill at any moment.
+// Files with a checksum: a JSON header and raw single-precision arrays, written atomically, so that the last
+// valid file survives a kill at any moment.
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -10,24 +10,25 @@
 
 namespace swingbank {
 
-/// What a file is called in messages, its first bytes, and what to do when it is damaged.
+/// Kind of a file: its name in messages, its first bytes, and the remedy if it is damaged.
 struct SealedKind {
   const char *what, *magic, *remedy;
 };
 
-/// Thrown by whoever takes a file's content: why it cannot be used.
+/// Exception of a consumer that cannot use a file's content, with the reason.
 struct Unusable {
   std::string why;
 };
 
-/// Throws InputError if the file cannot be written; nothing is left behind then.
+/// Writes a file atomically. Throws InputError and leaves no temporary file if it cannot be written.
 void write_sealed(const SealedKind& kind, const std::filesystem::path& file, const nlohmann::json& header,
                   const std::vector<std::span<const float>>& arrays);
 
-/// Gives the place for array i of `size` values. May throw Unusable.
+/// Returns the destination of array i, which has `size` values. May throw Unusable.
 using PlaceArray = std::function<std::span<float>(std::size_t i, std::size_t size)>;
-/// Reads into the places given, after `start` has seen the header and the number of arrays (which may throw
-/// Unusable too). False if there is no such file. Throws InputError if the file is damaged or refused.
+/// Verifies the checksum, calls `start` with the header and the number of arrays, then reads each array into
+/// its `place`. `start` may throw Unusable. Returns false if there is no such file. Throws InputError if the
+/// file is damaged or Unusable was thrown.
 bool read_sealed(const SealedKind& kind, const std::filesystem::path& file,
                  const std::function<void(const nlohmann::json&, std::size_t arrays)>& start,
                  const PlaceArray& place);

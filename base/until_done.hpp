@@ -1,5 +1,5 @@
 #pragma once
-// Calls of the system made again where a signal or a file system's server interrupted them.
+// Retry of system calls that a signal or a file server has interrupted.
 #include <unistd.h>
 
 #include <cerrno>
@@ -7,7 +7,7 @@
 
 namespace swingbank {
 
-/// Result of the first call that does not end with EINTR.
+/// Repeats `call` until it does not fail with EINTR. Returns its result.
 template <class Call>
 auto until_done(const Call& call) {
   auto result = call();
@@ -15,7 +15,7 @@ auto until_done(const Call& call) {
   return result;
 }
 
-/// Writes all of `bytes`, or sets errno and returns false.
+/// Writes all of `bytes`. Returns false with errno set on failure.
 inline bool write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = until_done([&] { return ::write(fd, bytes.data(), bytes.size()); });

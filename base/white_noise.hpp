@@ -1,13 +1,13 @@
 #pragma once
-// How large white noise is, whatever slow course it lies on.
+// Variance of white noise on a slowly varying signal.
 #include <algorithm>
 #include <cstddef>
 #include <span>
 
 namespace swingbank {
 
-/// Variance by second differences x[k-1] - 2 x[k] + x[k+1], which have six times that of x; a straight course
-/// adds nothing. 0 of fewer than three values.
+/// Returns the noise variance from second differences \f$ d_k = x_{k-1} - 2 x_k + x_{k+1} \f$, whose variance
+/// is \f$ 6 \sigma^2 \f$. A linear trend cancels. Returns 0 for fewer than three values.
 inline double white_variance(std::span<const double> x) {
   double sum = 0;
   for (std::size_t k = 1; k + 1 < x.size(); ++k) {

@@ -1,5 +1,5 @@
-// swingbank add: adds a physical effect (or law) to a plant model, fits it and shows before and after on
-// every event; with --retrain also what the effect does to a trained network.
+// swingbank add: adds a physical effect (or user-defined model) to a plant model, fits it, and shows every
+// event before and after. With --retrain, also shows the effect's influence on a trained network.
 #include <fmt/format.h>
 
 #include <optional>
@@ -27,13 +27,13 @@ struct Arguments {
   jobs::AnalysisOptions of{"added"};
   std::string effect, truth, command;
   bool until_adequate = false, retrain = false;
-  nlohmann::json told;  ///< what was done to read the records
+  nlohmann::json told;  ///< metadata of the records
   add::AddOptions options;
   retrain::RetrainOptions training;
-  std::optional<fit::Fit> fitted;  ///< once the fit has ended
+  std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
 };
 
-/// The events of the model as it was and with what was added.
+/// Plays the events with the submitted and with the completed model.
 std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
@@ -44,7 +44,7 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
           compare::play_and_judge("completed", after, shown, options, a.of.judging.by)};
 }
 
-/// What a page says of one addition.
+/// Adds parameters, unseen events and evidence of one addition to a page.
 void say_on(compare::CommandPage& page, const add::Addition& added) {
   const auto rows = jobs::page_parameters(added.parameters, added.model.plant);
   page.parameters.assign(rows.begin(), rows.end());
@@ -113,7 +113,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   a.of.judging.print(page_file);
 }
 
-/// What is wrong with options that belong together, before anything is computed.
+/// Throws InputError if options contradict each other; called before any computation.
 void check_options(const Arguments& a) {
   Problems problems;
   if (a.effect.empty() != a.until_adequate)
@@ -129,7 +129,8 @@ void check_options(const Arguments& a) {
   problems.raise();
 }
 
-/// Two networks made (or found made), asked and compared. Empty if a signal stopped the making.
+/// Trains the two networks unless they exist, and compares their estimates. Returns nothing if a signal
+/// stopped the training.
 std::optional<retrain::Retrained> retrain(const Arguments& a, const jobs::RetrainPrograms& programs,
                                           const plant::PlantModel& before, const add::Addition& added,
                                           const std::vector<record::Record>& records) {

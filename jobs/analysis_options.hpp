@@ -1,6 +1,5 @@
 #pragma once
-// The options that compare, calibrate, diagnose and add share, declared in one place: each means the same in
-// all of them.
+// Options shared by compare, calibrate, diagnose and add, with the same meaning in all of them.
 #include <omp.h>
 
 #include <algorithm>
@@ -20,22 +19,22 @@
 
 namespace swingbank::jobs {
 
-/// What the user asks of one of these commands, beside its own options.
+/// Values of the shared options.
 struct AnalysisOptions {
   explicit AnalysisOptions(std::string folder) : out(std::move(folder)) {}
   std::string model, out;
   std::vector<std::string> records, law_files, held_out;
   bool json = false, verbose = false, measured_states = true;
-  int threads = -1;  ///< 0: one per core; -1: not given
+  int threads = -1;  ///< 0: one per core; -1: option absent
   double jump_threshold = validate::playin::kJumpThreshold;
   double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
   double spread = validate::thresholds::parameters.spread;          ///< prior standard deviation, relative
   Reading reading;
   Judging judging;
-  std::vector<std::pair<std::string, const sim::Effect*>> laws;  ///< effects of `law_files`
+  std::vector<std::pair<std::string, const sim::Effect*>> laws;  ///< user-defined models, by file
 
-  /// Declares all of them. `files`: what --out holds. Returns those that describe the records and the fit of
-  /// one plant, which a command that takes a grid or a fleet instead does not use.
+  /// Declares the options. `files`: the content of --out, for the help. Returns the options of a single
+  /// plant's records and fit, which do not apply to a command on a grid or a fleet.
   std::vector<Option> declare(CommandLine& line, const std::string& files) {
     std::vector<Option> of_one_plant;
     const auto keep = [&](const Option& option) { of_one_plant.push_back(option); };
@@ -73,37 +72,38 @@ struct AnalysisOptions {
     line.add("--threads", threads, "processor cores to use; 0: all (default)").between(0, 4096);
     return of_one_plant;
   }
-  /// Declares what commands that fit parameters share.
+  /// Declares the options of commands that fit parameters.
   std::vector<Option> declare_fit(CommandLine& line) {
     line.group("Expert");
     return {line.add("--spread", spread, "prior standard deviation of the model's parameters, relative")
                 .shows_default()
                 .between(0.001, 2.0)};
   }
-  /// Declares the choice of events that judge a fit.
+  /// Declares --hold-out, the events on which a fit is judged.
   void declare_hold_out(CommandLine& line) {
     line.group("Events");
     line.add("--hold-out", held_out,
              "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
   }
 
-  /// Once all inputs are read, before the work: opens the folder of the results. `names`: files that the
-  /// command may write in it. Throws InputError where one of them is an input.
+  /// Locks the output folder; call it after all inputs are read and before the work. `names`: files that the
+  /// command may write into it. Throws InputError if one of them is an input.
   void open_results(const std::string& command, const std::vector<std::string>& names) {
     interruption_point();
     folder_ = std::make_shared<OutputFolder>(out, command, names, judging.outputs());
   }
-  /// The folder, to write the results: from now on a stop signal does not end the command.
+  /// Returns the folder for writing the results. From this call on, a stop signal no longer ends the command.
   [[nodiscard]] OutputFolder& results() const {
     catch_stop_signals();
     return *folder_;
   }
 
-  /// Limits the cores of all that follows in this process.
+  /// Limits the number of threads of this process to --threads.
   void limit_threads() const {
     if (threads > 0) omp_set_num_threads(threads);
   }
-  /// The model with the user-defined models of --law known to it. Throws InputError.
+  /// Returns the plant model with the user-defined models of --law in its library. With `to_fit`, a
+  /// calibrated model is reset to its values before the calibration. Throws InputError if a file is invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
     plant::PlantModel loaded = plant::load_plant_model(
@@ -117,7 +117,7 @@ struct AnalysisOptions {
       fmt::print(stderr, "note: started from the values before that calibration\n");
     return plant::as_submitted(std::move(loaded));
   }
-  /// Notes in the model which files of --law its effects come from.
+  /// Adds to the model the files of --law whose user-defined models it uses.
   void keep_laws(validate::plant::PlantModel& of) const {
     for (const auto& [file, effect] : laws)
       for (const auto& block : of.plant.controls)
@@ -137,7 +137,7 @@ struct AnalysisOptions {
     options.play_in.pre_event = pre_event;
     return options;
   }
-  /// The records without the channels that --power-only ignores.
+  /// Returns the records without the channels that --power-only ignores.
   [[nodiscard]] std::vector<validate::record::Record> compared(
       std::vector<validate::record::Record> all) const {
     return measured_states ? std::move(all) : validate::compare::power_only(std::move(all));

@@ -1,4 +1,4 @@
-// swingbank blind-test: makes records in which an effect is hidden, and scores what a diagnosis said of them.
+// swingbank blind-test: generates records with a hidden effect, diagnoses them and scores the verdicts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,15 +29,16 @@ struct Options {
   std::uint64_t seed = 1;
   double size = 0;
   bool diagnose = false, score = false;
-  double limit = 7200.0;  ///< of one case [s]; 0: none
+  double limit = 7200.0;  ///< time limit of one case [s]; 0: none
 };
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Whether an item was done by this run, by an earlier one, or not at all, and what to say of it.
+/// Outcome of an item: done by this run, done by an earlier run, or failed.
 enum class Fate { done, was_there, failed };
+/// Returns an outcome with its text, as a message to rank 0.
 std::string packed(Fate fate, const std::string& text) {
   return std::to_string(static_cast<int>(fate)) + text;
 }
@@ -46,7 +47,7 @@ struct Counts {
   int done = 0, there = 0, failed = 0;
 };
 
-/// Works through the cases of this part, each on the rank that is free. Exit code, the same on all ranks.
+/// Distributes the cases of this part over the ranks. Returns the exit code, the same on all ranks.
 int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
                 const std::function<std::string(std::size_t)>& work, Counts& counts) {
   const auto [part, parts] = blind::cases::read_part(o.part);
@@ -70,7 +71,7 @@ int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t co
   return ranks.from_first(counts.failed == 0 ? 0 : 1);
 }
 
-/// One case of the plan. What cannot be drawn does not stop a long run.
+/// Generates one case of the plan. Returns an exception as a failed case, so that a long run continues.
 std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
                      const blind::cases::BlindSpec& spec, const std::string& name) {
   const fs::path folder = fs::path(o.out) / "cases" / name;
@@ -114,7 +115,7 @@ std::size_t count_cases(const fs::path& run) {
   return n;
 }
 
-/// Judges the k-th of all cases.
+/// Judges case k of `count`.
 std::string judge_one(const fs::path& run, const blind::score::BlindJudge& asked, std::size_t k,
                       std::size_t count) {
   std::string said;
@@ -183,8 +184,8 @@ int blind_test(const mpi::ranks::Ranks& ranks, const Options& o) {
   return std::max(code, ranks.rank() == 0 ? score(o) : 0);
 }
 
-/// Under mpirun every rank comes here. What one of them throws ends all; it is told once where all throw the
-/// same.
+/// Runs the command on all ranks, with MPI if a launcher started it. Errors are agreed between the ranks, and
+/// rank 0 prints them.
 int on_ranks(int argc, char** argv, const Options& o) {
   std::optional<mpi::ranks::MpiSession> session;
   if (mpi::ranks::MpiSession::launched()) session.emplace(&argc, &argv);

@@ -1,5 +1,5 @@
-// swingbank calibrate: fits the parameters of a plant model to records of several events, by our own search,
-// by plain curve fitting, or both side by side.
+// swingbank calibrate: fits the parameters of a plant model to records of several events, by a multistart fit
+// with priors, by plain curve fitting, or by both side by side.
 #include <fmt/format.h>
 
 #include <optional>
@@ -31,7 +31,7 @@ struct Arguments {
   std::string method = "fit", truth, network, start, command;
   bool fewest = false;
   calibrate::CalibrateOptions options;
-  std::optional<fit::Fit> fitted;  ///< once the fit has ended
+  std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
 };
 
 calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& model,
@@ -44,7 +44,7 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
   return calibrate::curve_fit(model, std::move(records), options);
 }
 
-/// The events of the model as it was and as it is now.
+/// Plays the events with the submitted and with the calibrated model.
 std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
@@ -56,7 +56,7 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
           compare::play_and_judge("calibrated", after, shown, options, a.of.judging.by)};
 }
 
-/// Names of the records that were held out.
+/// Returns the names of the held-out records.
 std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& events) {
   std::vector<std::string> names;
   for (const auto& e : events)
@@ -64,8 +64,8 @@ std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& eve
   return names;
 }
 
-/// Writes the model under a name that says whether it holds, and the records of one that does. Returns the
-/// lines for the terminal.
+/// Writes the model to `kModel` with its .dyr records, or to `kBentModel` if it is not adequate (`holds` is
+/// false). Returns the lines for the terminal.
 std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool holds,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
@@ -89,7 +89,7 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   return fmt::format("model: {}\n{}", file.string(), dyr.line);
 }
 
-/// The page, whose figures are the result's.
+/// Writes the page report.html; `result` is embedded as JSON.
 void write_page(const Arguments& a, const plant::PlantModel& model, compare::CommandPage page,
                 const nlohmann::json& result) {
   page.title = "Calibration: " + model.name;
@@ -146,7 +146,8 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   return played.back().fitness.exit_code(f.adequate);
 }
 
-/// The network's estimate from the events that are fitted, by `swingbank predict` or as it was given.
+/// Returns the network's estimate from the fitted events, by `swingbank predict` or from --start; nothing
+/// without a network.
 std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
                                                       const std::vector<record::Record>& records) {
   const auto out = calibrate::held_out_events(records, a.options.held_out);
@@ -172,7 +173,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
   return calibrate::read_estimate(file);
 }
 
-/// Names the parameters that must change, and writes the model with these changed.
+/// Runs the sparse parameter selection (--fewest) and writes the model with the selected parameters changed.
 int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
                const nlohmann::json& told) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);

@@ -14,7 +14,7 @@
 namespace swingbank::jobs {
 namespace {
 
-/// CLI11's own bounds would print the largest number there is.
+/// Returns a validator for a one-sided range. CLI11's own would print the largest double as the other bound.
 CLI::Validator number_that(bool (*holds)(double), const std::string& name, const std::string& wanted) {
   return {[holds, wanted](std::string& text) {
             double value = 0;
@@ -28,7 +28,7 @@ int exit_code(const CLI::App& app, const CLI::ParseError& why) { return app.exit
 
 constexpr std::size_t kHelpWidth = 110, kNameWidth = 30;  // columns
 
-/// `text` in lines of the help's right column.
+/// Returns `text` wrapped to the width of the help's right column.
 std::string wrapped(const std::string& text) {
   std::istringstream words(text);
   std::string word, lines;
@@ -47,8 +47,7 @@ std::string wrapped(const std::string& text) {
   return lines;
 }
 
-/// Help with the groups of options in the order in which they were declared, but those that few people need
-/// last.
+/// Help formatter: groups of options in order of declaration, with "Output", "Expert" and "Help" last.
 class GroupedHelp : public CLI::Formatter {
  public:
   GroupedHelp() { column_width(kNameWidth); }
@@ -66,7 +65,7 @@ class GroupedHelp : public CLI::Formatter {
     }
     return text + "\n" + make_footer(app);
   }
-  /// Omits the options that it excludes, which may be many; the error message names those given.
+  /// Omits the list of excluded options, which may be long; the error message names those given.
   std::string make_option_opts(const CLI::Option* option) const override {
     const std::string text = CLI::Formatter::make_option_opts(option);
     return text.substr(0, text.find(" Excludes:"));
@@ -83,7 +82,7 @@ struct CommandLine::Parser {
   std::optional<CLI::ParseError> ended = std::nullopt;
   std::string group = "Options", text = {}, examples = {};
 
-  /// Every name by which an option can be given.
+  /// Returns all names of all options.
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const CLI::Option* option : app.get_options()) {
@@ -92,8 +91,8 @@ struct CommandLine::Parser {
     }
     return all;
   }
-  /// A sentence for each word that is no option and no value of one, in the order given. The words behind an
-  /// unknown option are its values.
+  /// Returns an error for each argument that is neither an option nor a value of one, in the order given.
+  /// Arguments after an unknown option count as its values.
   [[nodiscard]] std::vector<std::string> not_expected() const {
     std::vector<std::string> sentences;
     bool value = false;

@@ -1,4 +1,4 @@
-// swingbank compare: plays records into a plant model and sets measured beside modelled P and Q.
+// swingbank compare: plays records into a plant model and compares measured with modelled P and Q.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string playback_name(const std::string& record) {
   return "playback-" + std::filesystem::path(record).stem().string() + ".csv";
 }
 
-/// A whole grid at several terminals.
+/// Compares a whole grid with records of several terminals.
 int run_system(Arguments& a) {
   const system::SystemCase system = system::load_system(a.system);
   std::vector<std::string> names = {kPage, kResult, kInterrupted};
@@ -52,7 +52,7 @@ int run_system(Arguments& a) {
   return compared.adequacy.adequate ? 0 : thresholds::kNotAdequate;
 }
 
-/// The events that were compared before a signal, without a verdict.
+/// Writes the events that were compared before a stop signal, without a verdict.
 int write_interrupted(Arguments& a, std::size_t asked, const std::vector<compare::EventComparison>& events) {
   OutputFolder& results = a.of.results();
   const std::string sentence =

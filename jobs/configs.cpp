@@ -1,4 +1,4 @@
-// swingbank configs: where the example configs lie.
+// swingbank configs: prints the folder of the example configs.
 #include <fmt/format.h>
 
 #include "base/input_file.hpp"

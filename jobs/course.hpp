@@ -1,7 +1,6 @@
 #pragma once
-// What commands that take minutes say of their work: in the person's words, with the share done and the time
-// left. The shares are those that the stages took of the example's time; another plant's differ, so the time
-// left is told as "about".
+// Progress text of long commands: phase, share done and time left. Each phase's share of the time was
+// measured on the example; other plants differ, so the text gives "about" as the time left.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@ namespace swingbank::jobs {
 
 using validate::event::Phase;
 
-/// Returns a phase as a user reads it.
+/// Returns the user's words for a phase.
 inline std::string_view phase_words(Phase phase) {
   switch (phase) {
     case Phase::playing:
@@ -77,16 +76,17 @@ inline std::string_view phase_words(Phase phase) {
   return "";
 }
 
-/// One stage of a course.
+/// Time interval of one phase of a command.
 struct CourseStage {
   Phase phase;
-  double from, to;      ///< share of the whole time at its begin and end
-  bool beyond = false;  ///< comes only where the rest did not do, and may take longer than it
+  double from, to;      ///< share of the total time at the phase's begin and end
+  bool beyond = false;  ///< optional phase after an unsuccessful search; may take longer than all others
 };
+/// Sequence of a command's phases.
 using Course = std::vector<CourseStage>;
 
-/// Measured on two shared cores with the four events of configs/records/record-example (28 s, of which 6 s
-/// beyond the usual course).
+/// Phases of `diagnose`, measured on two shared cores with the four events of configs/records/record-example
+/// (28 s, including 6 s of optional phases).
 inline const Course kDiagnoseCourse = {
     {Phase::base, 0, 0.01},
     {Phase::every_parameter, 0.01, 0.015},
@@ -107,13 +107,13 @@ inline const Course kDiagnoseCourse = {
     {Phase::pair_unseen_events, 0.95, 0.97, true},
     {Phase::playing, 0.97, 1},
 };
-/// With two events of the same (5 s each).
+/// Phases of `calibrate`, measured with two of these events (5 s each).
 inline const Course kCalibrateCourse = {
     {Phase::model_as_it_is, 0, 0.15},  {Phase::parameter_sets, 0.15, 0.2}, {Phase::starts, 0.2, 0.62},
     {Phase::voltage_noise, 0.62, 0.8}, {Phase::fitted_model, 0.8, 0.82},   {Phase::sensitivities, 0.82, 0.95},
     {Phase::playing, 0.95, 1},
 };
-/// With the four events of the same (4 s).
+/// Phases of `add`, measured with the four events (4 s).
 inline const Course kAddCourse = {
     {Phase::model_as_it_is, 0, 0.06},    {Phase::missing_input, 0.06, 0.23},
     {Phase::quick_fits, 0.23, 0.26},     {Phase::screening, 0.23, 0.26},
@@ -121,7 +121,8 @@ inline const Course kAddCourse = {
     {Phase::effect_left_out, 0.42, 0.5}, {Phase::effect_added, 0.5, 0.52},
     {Phase::sensitivities, 0.52, 0.8},   {Phase::playing, 0.8, 1},
 };
-/// Of calibrate --fewest, with twelve events of a unit with four controls behind its transformer (480 s).
+/// Phases of `calibrate --fewest`, measured with twelve events of a unit with four controls behind its
+/// transformer (480 s).
 inline const Course kFewestCourse = {
     {Phase::every_parameter, 0, 0.12},
     {Phase::parameter_subsets, 0.12, 0.75},
@@ -129,12 +130,13 @@ inline const Course kFewestCourse = {
     {Phase::playing, 0.98, 1},
 };
 
-/// Progress through a course. Neither the share done nor the time left that it prints ever goes back.
+/// Progress of a command through its phases. The printed share never decreases, and the estimated total time
+/// never increases.
 class CourseProgress {
  public:
   explicit CourseProgress(Course course) : course_(std::move(course)) {}
-  /// "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)". A phase that the course does not have
-  /// is printed without a share. A phase that begins again is counted: "round 2".
+  /// Returns "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)" after `seconds` [s]. Omits the
+  /// share for a phase that the course does not contain. Adds "round 2" to a phase that begins again.
   std::string line(Phase phase, const std::string& item, int done, int total, double seconds) {
     const int round = round_of(phase, done);
     const std::string what =
@@ -154,15 +156,15 @@ class CourseProgress {
   struct Seen {
     int done = 0, rounds = 1;
   };
-  /// How often the phase was begun: its counter starts again where the work repeats it.
+  /// Returns how often the phase has begun; a counter that restarts marks a new round.
   int round_of(Phase phase, int done) {
     const auto [seen, first] = seen_.try_emplace(phase);
     if (!first && done <= seen->second.done && done <= 1 && seen->second.done > 1) ++seen->second.rounds;
     seen->second.done = done;
     return seen->second.rounds;
   }
-  /// ", about 1 min 20 s left"; nothing where the work takes longer than was said before, because a time that
-  /// grows helps nobody.
+  /// Returns ", about 1 min 20 s left"; empty if the total time exceeds an earlier estimate by more than
+  /// `kMayGrow`, because a growing estimate is useless.
   std::string time_left(double seconds) {
     if (beyond_ || share_ < kLeastDone || share_ >= 1) return "";
     const double end = seconds / share_;
@@ -172,12 +174,12 @@ class CourseProgress {
     return left > 0 ? fmt::format(", about {} left", duration_text(left)) : "";
   }
 
-  static constexpr double kLeastDone = 0.02;  ///< below it, the rate so far predicts nothing
-  static constexpr double kMayGrow = 1.2;     ///< of the duration first estimated
+  static constexpr double kLeastDone = 0.02;  ///< smallest share done for an estimate
+  static constexpr double kMayGrow = 1.2;     ///< largest ratio of an estimate to the shortest earlier one
   Course course_;
   std::map<Phase, Seen> seen_;
   double share_ = 0;
-  double end_ = std::numeric_limits<double>::infinity();  ///< estimated duration of the whole [s]
+  double end_ = std::numeric_limits<double>::infinity();  ///< shortest estimate of the total time [s]
   bool beyond_ = false;
 };
 

@@ -1,5 +1,5 @@
-// swingbank cross-validate: leave one generator out (Tables V and VI). Several processes started by mpirun or
-// srun share the folds; a Slurm array task takes one with --fold.
+// swingbank cross-validate: leave-one-generator-out cross-validation (Tables V and VI). Processes started by
+// mpirun or srun share the folds; a Slurm array task takes one with --fold.
 #include "train/run/cross_validate.hpp"
 
 #include "jobs/training_options.hpp"
@@ -19,7 +19,7 @@ std::vector<std::int32_t> folds_of(const std::string& text, const train::loop::E
        "give one of these bus numbers, or all"});
 }
 
-/// Folds of one process; errors become its exit code.
+/// Trains the folds of one process. Prints errors and returns the exit code.
 int train_folds(const train::data::ShardStream& stream, train::run::RunRequest request,
                 const std::vector<std::int32_t>& folds, int threads) {
   try {
@@ -33,7 +33,7 @@ int train_folds(const train::data::ShardStream& stream, train::run::RunRequest r
     return 1;
   }
 }
-/// The same, judged on others than the generators left out.
+/// Trains the folds with the scores on other generators than the one left out (--judge-on).
 int train_nested(const train::data::ShardStream& stream, train::run::RunRequest request,
                  const std::vector<std::int32_t>& folds, const std::string& judged, int threads) {
   for (const std::int32_t fold : folds)

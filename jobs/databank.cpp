@@ -1,5 +1,5 @@
-// swingbank databank: draws the points of a dataset's databank and writes them, with the shares of what was
-// refused.
+// swingbank databank: draws the points of a dataset's databank, writes them, and prints the shares of
+// rejected candidates by reason.
 #include "mpi/draw/databank.hpp"
 
 #include <fmt/format.h>

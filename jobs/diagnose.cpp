@@ -1,4 +1,4 @@
-// swingbank diagnose: which physical effect does the model of a plant lack?
+// swingbank diagnose: names the physical effect that a plant model lacks.
 #include <fmt/format.h>
 
 #include "base/json.hpp"
@@ -17,7 +17,7 @@ using namespace swingbank::validate;
 
 constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
 
-/// The user-defined model that was found, as a file; its path, empty where none was.
+/// Writes the user-defined model that was found. Returns its path; empty if none was found.
 std::filesystem::path write_law(const diagnose::Diagnosis& d, OutputFolder& folder) {
   const laws::LawFinding* law = d.laws.found();
   if (!law) return {};
@@ -26,7 +26,7 @@ std::filesystem::path write_law(const diagnose::Diagnosis& d, OutputFolder& fold
   return file;
 }
 
-/// What a person may ask for.
+/// Arguments of the command.
 struct Command {
   jobs::AnalysisOptions of{"diagnosis"};
   std::string plant, line;

@@ -1,5 +1,5 @@
 #pragma once
-// What `swingbank effects --coverage` prints: how much of .dyr files the effects cover.
+// Output of `swingbank effects --coverage`: the share of .dyr records that the effects cover.
 #include <fmt/format.h>
 
 #include <string>
@@ -45,7 +45,7 @@ inline void print_coverage_json(const sim::grid::Coverage& coverage) {
   fmt::print("{}\n", j.dump(1));
 }
 
-/// Returns the exit code.
+/// Prints the coverage of the files as text or JSON. Returns the exit code.
 inline int print_coverage(const std::vector<std::string>& dyr_files, bool json) {
   const auto coverage = sim::grid::take_coverage({dyr_files.begin(), dyr_files.end()});
   json ? print_coverage_json(coverage) : print_coverage_text(coverage);

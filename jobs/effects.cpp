@@ -1,4 +1,4 @@
-// swingbank effects [NAME...]: what the library holds, from the effects' own records.
+// swingbank effects [NAME...]: lists the effects of the library with equations, parameters and sources.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ void print_list(const library::EffectLibrary& library) {
 
 std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:g}", value); }
 
-/// Rows as columns wide enough for their cells; the last column runs free.
+/// Prints rows in columns of equal width, except for the last column.
 void print_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> width(rows[0].size(), 0);
   for (const auto& row : rows)
@@ -65,10 +65,10 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-/// Where the values of an effect come from, numbered as they come up.
+/// Sources of an effect's values, numbered in order of first use.
 class Footnotes {
  public:
-  /// "1", or "1 2" where the bounds have another source than the standard value.
+  /// Returns the source numbers of a parameter: "1", or "1 2" if default and bounds have different sources.
   std::string marks(const Parameter& p) {
     const auto standard = number_of(p.standard_from), bounds = number_of(p.bounds_from);
     return standard == bounds ? fmt::format("{}", standard) : fmt::format("{} {}", standard, bounds);
@@ -159,8 +159,7 @@ Json as_json(const Effect& e) {
   return j;
 }
 
-/// Fewest letters to change, add, drop or swap with the next to make one of the other, whatever their case
-/// (optimal string alignment).
+/// Returns the case-insensitive edit distance of two words (optimal string alignment).
 std::size_t letters_apart(std::string_view a, std::string_view b) {
   const auto same = [&](std::size_t i, std::size_t j) {
     return std::toupper(static_cast<unsigned char>(a[i - 1])) ==
@@ -180,7 +179,7 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// The five names most like `name`, nearest first.
+/// Returns the five names nearest to `name`, nearest first.
 std::string nearest_names(const library::EffectLibrary& library, const std::string& name) {
   std::vector<std::pair<std::size_t, std::string_view>> list;
   for (const Effect* e : library.all()) list.emplace_back(letters_apart(name, e->name), e->name);
@@ -197,14 +196,14 @@ std::string in_capitals(std::string name) {
   return name;
 }
 
-/// Models of inverters, wind and storage by the beginnings of their names.
+/// Returns whether a name begins like a model of inverters, wind or storage.
 bool is_inverter(const std::string& name) {
   constexpr std::string_view kBeginnings[] = {"REGC", "REEC", "REPC", "WT1",  "WT2", "WT3",  "WT4",
                                               "WTDT", "WTAR", "WTPT", "WTTQ", "PVG", "PVEU", "DERA"};
   return std::ranges::any_of(kBeginnings, [&](std::string_view b) { return name.starts_with(b); });
 }
 
-/// A block of a plant file with the standard values.
+/// Prints the effect's block of a plant file with default values.
 void print_toml(const Effect& e) {
   const std::string slot(kind_name(e));
   fmt::print("{}\n", is_shared(e.slot) ? "[[" + slot + "]]" : "[" + slot + "]");

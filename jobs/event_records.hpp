@@ -1,6 +1,6 @@
 #pragma once
-// What commands that work on several records share: reading them all before anything is said, progress, and
-// what is said when it cannot be done.
+// Shared code of commands that work on several records: options for reading them, checks of all records
+// together, progress and error messages.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -28,18 +28,18 @@
 
 namespace swingbank::jobs {
 
-/// --quiet: no progress and no notes on stderr, errors only.
+/// Value of --quiet: standard error shows errors only, no progress and no notes.
 inline bool quiet = false;
 
-/// How a command's records are read, beside what the plant file says.
+/// Options for reading a command's records; they supplement the plant file.
 struct Reading {
   std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
   std::optional<double> from, until;
-  std::string component = "plant";    ///< what of the plant is tried
+  std::string component = "plant";    ///< part of the plant that is tested
   std::string point;                  ///< file of the point that several units share; empty: the plant's own
-  std::vector<std::string> switches;  ///< "event4.csv=2.08"
+  std::vector<std::string> switches;  ///< switching times given by the user, "event4.csv=2.08"
 
-  /// Adds the options that say what of the files is read, and as what.
+  /// Adds the options for columns, time range, component and measured point.
   std::vector<Option> add_to(CommandLine& line) {
     return {add_columns(line), add_from(line), add_until(line), add_component(line), add_point(line)};
   }
@@ -55,14 +55,14 @@ struct Reading {
   }
   Option add_from(CommandLine& line) { return line.add("--from", from, "leave out what comes before [s]"); }
   Option add_until(CommandLine& line) { return line.add("--until", until, "leave out what comes later [s]"); }
-  /// Adds the point that several units share.
+  /// Adds --point, the measured point that several units share.
   Option add_point(CommandLine& line) {
     return line.add(
         "--point", point,
         "file of the measured point where several units or a collector stand behind it: the others, whose models "
         "are believed, are taken off the record (configs/plants/README.md)");
   }
-  /// Adds the instants of switchings that are known.
+  /// Adds --switch, the switching times given by the user.
   Option add_switch(CommandLine& line) {
     return line
         .add("--switch", switches,
@@ -70,7 +70,7 @@ struct Reading {
              "default: found by the voltage's jumps and fitted")
         .one_value_a_mention();
   }
-  /// Adds what of the plant is tried.
+  /// Adds --component, the part of the plant that is tested.
   Option add_component(CommandLine& line) {
     return line
         .add(
@@ -82,7 +82,7 @@ struct Reading {
         .shows_default()
         .one_of({"plant", "exciter", "governor", "machine"});
   }
-  /// The same for another command.
+  /// Returns these options as arguments for another command.
   [[nodiscard]] std::vector<std::string> words() const {
     std::vector<std::string> all;
     for (const auto& column : columns) all.insert(all.end(), {"--columns", column});
@@ -91,7 +91,9 @@ struct Reading {
     if (!point.empty()) all.insert(all.end(), {"--point", point});
     return all;
   }
-  /// Puts them into the model; what is done to each of the records before it is checked. Throws InputError.
+  /// Applies the options to the model. Returns a function that prepares each record before its checks: it
+  /// sets the switching times and subtracts other units behind a shared point. Throws InputError if an option
+  /// is invalid.
   validate::check::Preparing apply(validate::plant::PlantModel& model,
                                    const std::vector<std::string>& records) const {
     Problems problems;
@@ -127,7 +129,8 @@ struct Reading {
   }
 };
 
-/// Says which staged events belong to none of these records: of another test, or its name is mistyped.
+/// Prints a note for each staged event that belongs to none of these records; it belongs to another test, or
+/// its name is misspelled.
 inline void tell_events_elsewhere(const std::vector<std::string>& files,
                                   const std::vector<validate::record::StagedEvent>& staged) {
   if (quiet) return;
@@ -138,14 +141,14 @@ inline void tell_events_elsewhere(const std::vector<std::string>& files,
                  validate::record::staged_name(e.kind), e.record);
 }
 
-/// Reads and checks every record, so that all faults of all files are told at once; findings that do not
-/// refuse go to stderr.
+/// Reads and checks all records. Throws InputError with the problems of all files together. Prints warnings
+/// to standard error.
 inline validate::check::RecordSet read_events(const std::vector<std::string>& files,
                                               const validate::plant::PlantModel& model,
                                               const validate::check::Preparing& prepare = {}) {
   Problems problems;
   validate::check::RecordSet set = validate::check::read_records(files, model, problems, prepare);
-  std::vector<std::pair<std::string, std::string>> notes;  // each once, with its records
+  std::vector<std::pair<std::string, std::string>> notes;  // warning and the records that it concerns
   for (std::size_t k = 0; k < set.records.size(); ++k)
     for (const auto& warning : set.warnings[k]) {
       const auto known = std::ranges::find(notes, warning, &std::pair<std::string, std::string>::first);
@@ -161,7 +164,7 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
   return set;
 }
 
-/// What is known of the records beside their values: when they begin, and what was done to read them.
+/// Returns the records' metadata: name, time of the first sample, and notes from reading them.
 inline nlohmann::json records_json(const validate::check::RecordSet& set) {
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t k = 0; k < set.records.size(); ++k)
@@ -171,7 +174,7 @@ inline nlohmann::json records_json(const validate::check::RecordSet& set) {
   return all;
 }
 
-/// Says on stderr what looks wrong in a model and what of it is no plant's own.
+/// Prints a model's warnings and its default values to standard error.
 inline void tell(const validate::plant::PlantModel& model) {
   if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
@@ -179,8 +182,8 @@ inline void tell(const validate::plant::PlantModel& model) {
     fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
 }
 
-/// Writes where the course stands over itself where stderr is a terminal, elsewhere as a line every ten
-/// seconds; nothing with --quiet.
+/// Returns a progress callback. It updates one line if standard error is a terminal, and prints a line every
+/// ten seconds otherwise. With --quiet, returns an empty function.
 inline validate::event::Progress progress_line(const Course& course = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
@@ -204,13 +207,14 @@ inline validate::event::Progress progress_line(const Course& course = {}) {
   };
 }
 
+/// Returns the command line "swingbank <command> <arguments>", for the provenance of results.
 inline std::string command_line(const std::string& command, int argc, char** argv) {
   std::string line = "swingbank " + command;
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
   return line;
 }
 
-/// The problems of an input, one a line; those that differ only in their place share a line.
+/// Returns the problems of an input, one a line; problems that differ only in their place share a line.
 inline std::string problems_text(const InputError& error) {
   std::vector<Problem> lines;
   for (const Problem& p : error.problems()) {
@@ -226,7 +230,8 @@ inline std::string problems_text(const InputError& error) {
   return text;
 }
 
-/// Runs it; bad input and failures become a message and exit code 1, a stop before any result exit code 2.
+/// Runs `action` and returns its exit code. Prints exceptions as messages: code 1 for invalid input and
+/// failures, code 2 for a stop signal before any result.
 template <class F>
 int guarded(const std::string& command, F action) {
   try {

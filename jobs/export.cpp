@@ -1,4 +1,4 @@
-// swingbank export: a plant file as the .dyr or .dyd records that are handed in.
+// swingbank export: converts a plant file to .dyr or .dyd records for submission.
 #include <fmt/format.h>
 
 #include "base/inputs_kept.hpp"

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace validate;
 
-constexpr double kLongerThanItsProgram = 60.0;  ///< [s] a rank that does not end its plant's program hangs
+constexpr double kLongerThanItsProgram = 60.0;  ///< time from a plant's limit to that of its rank [s]
 
 std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
   make_folder(folder);
@@ -36,7 +36,7 @@ std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
       std::chrono::milliseconds(0));
 }
 
-/// What run_fleet_plant printed; a failed row if it ended otherwise.
+/// Runs run_fleet_plant in a child process. Returns its output, or a failed row if it has none.
 std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
   const auto failed = [&](const std::string& why) {
     return nlohmann::json{{"was_there", false}, {"row", fleet::row_json(fleet::failed_row(plant.name, why))}}
@@ -83,9 +83,9 @@ int tell(const jobs::FleetCommand& c, const fleet::Fleet& fleet, const std::vect
 }  // namespace
 
 int run_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed with its rank: the next run must not find it still writing
-  catch_stop_signals();                // no interruption
-  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // a soft stop lets it finish
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it cannot write during the next run
+  catch_stop_signals();                // switches interruption points off
+  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // finishes in a graceful stop
   const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
   const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);
   if (plant == fleet.plants.end())

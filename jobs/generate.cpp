@@ -1,4 +1,4 @@
-// swingbank generate: simulates a dataset, on one rank or many, and continues where an earlier run ended.
+// swingbank generate: simulates a dataset on one or more ranks, and continues an earlier run.
 #include "mpi/ranks/generate.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ using namespace swingbank;
 
 struct Command {
   std::string config, part, again;
-  int mode = 0;  ///< place in Progress::words()
+  int mode = 0;  ///< index into Progress::words()
   mpi::draw::Overrides overrides;
   mpi::ranks::GenerateOptions options;
 };
@@ -87,7 +87,7 @@ int describe_to(bool first, const std::filesystem::path& folder, const char* mor
   return complete || !first ? 0 : kSubmitAgain;
 }
 
-/// Of "k/n"; empty text: all shards.
+/// Parses "k/n"; an empty text means all shards. Throws InputError if it is invalid.
 mpi::store::Part part_of(const std::string& text) {
   mpi::store::Part part;
   if (text.empty()) return part;
@@ -101,7 +101,7 @@ mpi::store::Part part_of(const std::string& text) {
   return part;
 }
 
-/// The files of a card, for as long as they are needed; each rank has its own.
+/// Temporary folder with the files of a card, one for each rank.
 class Unpacked {
  public:
   explicit Unpacked(const mpi::draw::Card& card) {
@@ -122,7 +122,7 @@ class Unpacked {
   std::filesystem::path folder_;
 };
 
-/// What a card says must come out again: the same config under the same kernel.
+/// Throws InputError unless config hash and kernel equal those of the card, so that the dataset is the same.
 void require_card_kept(const mpi::draw::Card& card, const mpi::draw::DatasetConfig& config) {
   const std::string kernel = mpi::draw::kernel_variant(mpi::draw::load_study(config));
   if (mpi::draw::config_hash(config, kernel) == card.config_hash) return;
@@ -167,8 +167,8 @@ int run(const Command& c, bool first) {
   return code;
 }
 
-/// What the command line asks for instead of work: help, or an error. The same on all ranks, though each may
-/// have been started with words of its own.
+/// Parses the command line on all ranks, whose arguments may differ. Returns the exit code, the same on all
+/// ranks, if any rank was asked for help or has an invalid option; nothing otherwise.
 std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
                          const mpi::ranks::MpiSession& session) {
   const bool works = line.parse(argc, argv);

@@ -1,5 +1,5 @@
-// swingbank inventory: the units of a PSS/E or PSLF case, which of them are wholly covered, and what is not,
-// by model.
+// swingbank inventory: lists the units of a PSS/E or PSLF case, those wholly covered, and the models that are
+// not.
 #include "sim/grid/inventory.hpp"
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ void print_models(const Inventory& inventory) {
   }
 }
 
-/// Equal sentences but for their place and numbers count as one.
+/// Prints the problems; those that differ only in place and numbers form one group.
 void print_faults(const char* title, const std::vector<std::string>& faults) {
   std::map<std::string, std::pair<int, std::string>> groups;
   for (const auto& fault : faults) {

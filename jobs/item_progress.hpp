@@ -1,6 +1,6 @@
 #pragma once
-// What commands that work through items of many seconds each share: one line per item on stderr, with how
-// many are done, the rate and the time left.
+// Progress of commands that process long items: one line per item on standard error, with the number done,
+// the rate and the time left.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -11,11 +11,13 @@
 
 namespace swingbank::jobs {
 
+/// Counter of finished items.
 class ItemProgress {
  public:
   /// `unit`: "plants".
   ItemProgress(std::string unit, std::size_t total) : unit_(std::move(unit)), total_(total) {}
-  /// One more is done. One that an earlier run had done is no part of the rate.
+  /// Counts one finished item and prints a line. With `was_there`, an earlier run had finished it, and it
+  /// does not count in the rate.
   void line(const std::string& text, bool was_there) {
     ++done_;
     if (!was_there) ++made_;

@@ -1,6 +1,6 @@
 #pragma once
-// An experiment as it is now: its file and every file that it names, copied into a folder, so that an edit of
-// the originals changes no job that waits.
+// Snapshot of an experiment: its file and every file that it names, copied into a folder, so that later edits
+// of the originals do not affect waiting jobs.
 #include <filesystem>
 #include <string>
 
@@ -11,14 +11,14 @@
 
 namespace swingbank::jobs {
 
-/// Returns the copy's place. A dataset drawn from the copy is the one of the original: its hash is of values
-/// and contents, not of names. Throws InputError with what is wrong in a config of a dataset, and if a file
-/// cannot be read or written.
+/// Copies an experiment into `folder`. Returns the path of the copy. A dataset generated from the copy equals
+/// that of the original, because the config hash covers values and contents, not names. Throws InputError if
+/// a dataset config is invalid, or a file cannot be read or written.
 inline std::filesystem::path keep_experiment(const std::filesystem::path& file,
                                              const std::filesystem::path& folder) {
   std::string text = read_text(file);
   Config c(file);
-  std::string first;  // both may be one file
+  std::string first;  // both keys may name the same file
   for (const char* key : {"dataset", "training_dataset"}) {
     if (!c.has(key)) continue;
     const auto written = c.require<std::string>(key);

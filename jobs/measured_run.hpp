@@ -1,5 +1,5 @@
 #pragma once
-// What simulate does where a run passes instruments before it is written.
+// Simulation of instruments: a run measured by transducers and PMUs before `simulate` writes it.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -10,12 +10,12 @@
 
 namespace swingbank::sim {
 
-/// A run as it is written; `frequency` is empty unless the run was measured.
+/// Run as written to the file; `frequency` is empty unless instruments measured the run.
 struct MeasuredRun : reference::ReferenceRun {
-  std::vector<std::vector<double>> frequency;  ///< [plant][sample], as the instruments report it [Hz]
+  std::vector<std::vector<double>> frequency;  ///< [plant][sample], reported by the instruments [Hz]
 };
 
-/// Every factor-th sample of a run, of some of its channels.
+/// Returns every `factor`-th sample of some channels of a run.
 inline MeasuredRun thinned(const MeasuredRun& run, int factor, const std::vector<Channel>& channels) {
   MeasuredRun thin = run;
   thin.rate = run.rate / factor;
@@ -44,7 +44,7 @@ inline MeasuredRun thinned(const MeasuredRun& run, int factor, const std::vector
   return thin;
 }
 
-/// The instruments of a run: those of the plants and those of the command line, which all plants share.
+/// Instruments of a run: those of each plant, followed by those of --measure, which all plants share.
 class Instruments {
  public:
   Instruments(const std::vector<std::string>& texts, const library::EffectLibrary& library,
@@ -55,8 +55,9 @@ class Instruments {
         chain_.push_back(std::move(*block));
   }
 
-  /// Plays by `play(rate factor, channels)` -> ReferenceRun, measures, and keeps the channels asked for. A
-  /// chain with a memory sees the run at several times the rate, so that its windows are resolved.
+  /// Simulates by `play(rate factor, channels)` -> ReferenceRun, measures the run, and returns the requested
+  /// channels. A chain with memory (a window or filter) measures the run at `kFiner` times the rate, so that
+  /// its windows are resolved.
   template <class Play>
   MeasuredRun run(const grid::Grid& grid, const std::vector<int>& plants,
                   const std::vector<Channel>& channels, const Play& play) const {

@@ -1,4 +1,4 @@
-// swingbank merge: joins datasets that hold some of the shards each, made where no common disk was.
+// swingbank merge: joins datasets with some of the shards each, generated without a common disk.
 #include "mpi/store/merge.hpp"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
-// swingbank night-plan EXPERIMENT...: what a preset costs by measured rates, and the preset made as large as
-// some hours allow.
+// swingbank night-plan EXPERIMENT...: computes the cost of a preset from measured rates, and scales the
+// preset to a number of hours.
 //
-// Events and epochs of every network grow alike, each with the root of the work, so that gradient samples
-// grow with the work. Least sizes hold (a fold needs rows to judge), so a budget of minutes may be exceeded;
-// the plan says so.
+// Events and epochs of every network each grow with the square root of the work, so that the number of
+// gradient samples is proportional to the work. Sizes have lower limits (a fold needs rows for its score), so
+// a budget of minutes may be exceeded; the plan then prints this.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Options {
 struct Plan {
   std::vector<train::loop::Experiment> experiments;
   Rates rates;
-  int seeds = 1;  // of the training
+  int seeds = 1;  // number of trainings with different seeds
   [[nodiscard]] std::vector<Part> parts(const train::loop::Experiment& e, const std::string& preset,
                                         const Scale& to) const {
     std::vector<Part> all = work_of(e, scaled(e.preset(preset), to), rates);
@@ -46,7 +46,7 @@ struct Plan {
       for (const auto& part : parts(e, preset, {preset, work})) sum += part.core_seconds;
     return sum;
   }
-  /// The work at which the preset takes `core_seconds`, or the least that there is.
+  /// Returns the factor of work at which the preset takes `wanted` core-seconds, by bisection; at least 1e-8.
   [[nodiscard]] double work_for(const std::string& preset, double wanted) const {
     double low = 1e-8, high = 1e6;
     for (int i = 0; i < 100; ++i) {
@@ -61,7 +61,7 @@ std::string shown(double seconds) {
   return seconds < 7200 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// Prints a line per part; returns the sum [core-s].
+/// Prints a line per part. Returns the total time [core-s].
 double print(const Plan& plan, const std::string& preset, const Scale& to) {
   double sum = 0.0;
   fmt::print("| table | part | runs | rows of a run | epochs | core time |\n|---|---|---:|---:|---:|---:|\n");

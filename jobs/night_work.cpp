@@ -15,13 +15,12 @@
 namespace swingbank::jobs {
 namespace {
 
-/// Keys that grow with the root of the work, and what no run goes below. Events: ten generators, a dozen rows
-/// each; fewer would leave a fold nothing to judge.
+/// Keys that grow with the square root of the work, and their lower limits. 120 draws are a dozen rows for
+/// each of ten generators; fewer would leave a fold without test rows.
 const std::map<std::string, std::uint64_t> kLeast = {
     {"draws", 120}, {"training_draws", 120}, {"epochs", 1}, {"patience", 1}, {"test_rows", 10}};
-constexpr double kOnlyJudged =
-    0.25;  ///< share of what a run takes whatever its size, where it fits and trains nothing
-constexpr double kNoiseDrawn = 1.5;  ///< a training sample whose noise is drawn anew, over one that is kept
+constexpr double kOnlyJudged = 0.25;  ///< fixed time of a run without training, relative to one with training
+constexpr double kNoiseDrawn = 1.5;   ///< time of a training sample with new noise, relative to fixed noise
 constexpr double kSplitTrain = 0.6, kSplitTest = 0.2;
 
 std::uint64_t times(std::uint64_t value, double work, std::uint64_t least) {
@@ -29,11 +28,11 @@ std::uint64_t times(std::uint64_t value, double work, std::uint64_t least) {
   return std::max(static_cast<std::uint64_t>(wanted), std::min(value, least));
 }
 
-/// What of a dataset's config decides the work.
+/// Properties of a dataset's config that determine the cost.
 struct Events {
-  double rate = 0.0;            // samples/s
-  double rows_per_event = 1.0;  // that are kept
-  double seconds = 0.0;         // of a core, per event
+  double rate = 0.0;            // sampling rate [1/s]
+  double rows_per_event = 1.0;  // stable rows per event
+  double seconds = 0.0;         // core time per event [s]
 };
 Events events_of(const std::filesystem::path& file, const Rates& rates) {
   Config c(file);
@@ -86,10 +85,10 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
   const auto row = [](const NetworkRate& of, double noise) { return noise > 0 ? of.noisy_row : of.row; };
   Part part;
   part.what = network;
-  double of_rows = 0.0;  // what training takes of one run
+  double of_rows = 0.0;  // training time of one run [core-s]
   for (const double noise : judged.noise) {
     if (network == "floor" && noise == 0.0) continue;
-    const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network serves all levels
+    const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network for all levels
     double seconds = cost.run * (trains ? 1.0 : kOnlyJudged);
     if (cost.sample > 0) {
       const double longer = cost.length > 0 ? series_length(p.input.at(network), rate) / cost.length : 1.0;
@@ -103,7 +102,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
     }
     part.runs += static_cast<std::size_t>(rows.folds);
     part.core_seconds += rows.folds * seconds;
-    if (!t.corrects.empty())  // of all rows, once for all folds
+    if (!t.corrects.empty())  // the estimator that it corrects: all rows, once for all folds
       part.core_seconds += rows.all(t) * row(rate_of(rates, t.corrects), noise);
   }
   if (part.epochs > 0)

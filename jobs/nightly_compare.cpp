@@ -1,15 +1,14 @@
-// swingbank nightly-compare FOLDER: what moved since the nights before, beyond its noise.
+// swingbank nightly-compare FOLDER: reports scores that differ from earlier nights by more than their noise.
 //
-// FOLDER holds one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/formats.md of train's
-// results). A cell is one (table, network, noise level, generator) at one preset and dataset config; its
-// score is s = ln(MSE / baseline), the mean over the night's seeds. Every night trains with other seeds, so
-// the nights before show how much a score moves by itself:
-//   residual of a night = s - median of the cell's nights before
-//   noise of a table, network and level = 1.4826 * median |residual| * sqrt(n / (n - 1)), pooled over its
-//   cells,
-//                                  because one cell has too few nights; at least 1 %
-//   moved: |s tonight - median| > 3 noise sqrt(1 + 1.57 / n)      (1.57 / n: the variance of a median of n)
-// With fewer than three nights before, the change is printed and no verdict given.
+// FOLDER contains one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/formats.md). A cell is
+// one (table, network, noise level, generator) at one preset and dataset config. Its score is s = ln(MSE /
+// baseline), the mean over the night's seeds. Every night trains with other seeds, so the earlier nights show
+// the random variation of a score:
+//   residual of a night = s - median of the cell's earlier nights
+//   noise of a table, network and level = 1.4826 * median(|residual| * sqrt(n / (n - 1)))
+//     pooled over its cells, because one cell has too few nights; at least 1 %
+//   moved: |s - median| > 3 noise sqrt(1 + 1.57 / n)      (1.57 / n: the variance of a median of n)
+// With fewer than three earlier nights, the change is printed without a verdict.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,15 +35,14 @@ using swingbank::Problem;
 using swingbank::Problems;
 
 constexpr std::size_t kNightsNeeded = 3;
-constexpr double kLeastRelativeNoise =
-    0.01;  // a change of less than 3 % is of no interest even if the nights agree exactly
+constexpr double kLeastRelativeNoise = 0.01;  // a change of less than 3 % is irrelevant even without noise
 
 struct Cell {
   std::string table, network, noise, generator, preset, config;
   auto operator<=>(const Cell&) const = default;
 };
 struct Score {
-  double sum = 0;  // of ln(MSE / baseline)
+  double sum = 0;  // sum of ln(MSE / baseline)
   std::size_t seeds = 0;
   std::set<std::string> makers = {};  // software and kernels
   [[nodiscard]] double mean() const { return sum / static_cast<double>(seeds); }
@@ -56,7 +54,7 @@ struct Change {
   Cell cell;
   double tonight = 0, before = 0, noise = 0;
   std::size_t nights = 0;
-  bool other_maker = false;  // than the last night before
+  bool other_maker = false;  // other software or kernels than in the last night
   [[nodiscard]] double limit() const {
     return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(nights));
   }
@@ -118,10 +116,10 @@ Nights read_nights(const fs::path& folder) {
   return nights;
 }
 
-/// Changes of one night against all nights before it, in the order of the cells.
+/// Returns the changes of one night against all earlier nights, in the order of the cells.
 std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
   std::map<Cell, std::vector<double>> before;
-  std::map<Cell, std::set<std::string>> makers;  // of the last night
+  std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last night
   for (const auto& [when, night] : nights) {
     if (when >= date) break;
     for (const auto& [cell, score] : night) {

@@ -1,4 +1,4 @@
-// swingbank plant: one unit of a PSS/E or PSLF case as a plant file, read from its own records alone.
+// swingbank plant: extracts one unit of a PSS/E or PSLF case as a plant file, from its own records only.
 #include <fmt/format.h>
 
 #include <optional>
@@ -49,7 +49,7 @@ int run(Arguments& a) {
       fmt::print(stderr, "note: {}\n", note);
       head.push_back(note);
     }
-  if (model.record_base.kv <= 0)  // not into the file, where it would stay once base_kv is filled in
+  if (model.record_base.kv <= 0)  // not into the file, where the note would remain after base_kv is filled in
     fmt::print(stderr,
                "note: the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
                "base_kv, line to line, under [record]\n",

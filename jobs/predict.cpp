@@ -1,4 +1,4 @@
-// swingbank predict: a trained network's estimate of a plant's parameters from measured records.
+// swingbank predict: estimates a plant's parameters from measured records with a trained network.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void require_same_machine(const train::run::NetworkInfo& network, const plant::P
                       "give a network of the plant's machine model"});
 }
 
-/// Every record, read and checked, so that all faults of all files are told at once.
+/// Reads and checks all records. Throws InputError with the problems of all files together.
 std::vector<Estimated> read_all(const std::vector<std::string>& files, const plant::PlantModel& model,
                                 const check::Preparing& preparing) {
   std::vector<Estimated> all;
@@ -53,7 +53,7 @@ std::vector<Estimated> read_all(const std::vector<std::string>& files, const pla
   return all;
 }
 
-/// Mean over the records, and their standard deviation about it (0 for one record).
+/// Returns mean and standard deviation over the records; the latter is 0 for one record.
 std::pair<double, double> over_records(const std::vector<Estimated>& all, std::size_t parameter) {
   double mean = 0.0, square = 0.0;
   for (const auto& e : all) mean += e.estimate.values[parameter] / static_cast<double>(all.size());
@@ -61,8 +61,8 @@ std::pair<double, double> over_records(const std::vector<Estimated>& all, std::s
   return {mean, all.size() > 1 ? std::sqrt(square / static_cast<double>(all.size() - 1)) : 0.0};
 }
 
-/// Of each parameter 5 %, 50 % and 95 % of what is believed, null for those that are held; empty where the
-/// network has no posterior.
+/// Returns the 5 %, 50 % and 95 % quantiles of the posterior of each parameter, null for fixed ones; empty if
+/// the network has no posterior.
 ordered_json intervals_json(const train::run::Estimate& e) {
   ordered_json all = ordered_json::array();
   if (std::ranges::none_of(e.intervals, [](const auto& i) { return i.has_value(); })) return all;
@@ -71,13 +71,13 @@ ordered_json intervals_json(const train::run::Estimate& e) {
   return all;
 }
 
-/// A network answers whatever it is shown; this is how one sees that it was never shown anything like it. A
-/// generator that was left out may well swing somewhat more than those it was judged on.
+/// Returns whether a record is outside the training distribution, for which the network's estimate is
+/// meaningless. The margin allows for held-out generators that swing more than the training set.
 bool unlike_training(const train::run::NetworkInfo& n, const Estimated& e) {
   constexpr double kStrange = 1.5;
   return e.estimate.input_rms > kStrange * n.input_rms_seen;
 }
-/// Stands before any estimate.
+/// Returns the warnings for such records, printed before the estimates.
 std::string strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   std::string text;
   for (const auto& e : all)
@@ -147,7 +147,7 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
          "records\n";
 }
 
-/// Intervals that hold a parameter with 90 %, record by record.
+/// Returns the 90 % credible intervals of the parameters for each record.
 std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   std::string text;
   for (const auto& e : all)

@@ -1,5 +1,5 @@
 #pragma once
-// --pdf: a page printed by headless Chromium, where the machine has it.
+// PDF output (--pdf): an HTML page printed by headless Chromium, if it is installed.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -15,7 +15,7 @@
 
 namespace swingbank::jobs {
 
-/// Path of Chromium or of a browser of its kind; empty where PATH has none.
+/// Returns the path of Chromium or Google Chrome; empty if PATH has none.
 inline std::filesystem::path browser() {
   const char* path = std::getenv("PATH");
   for (const char* name : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {
@@ -27,7 +27,7 @@ inline std::filesystem::path browser() {
   return {};
 }
 
-/// Notes a problem where a PDF cannot be made, before there is work to lose.
+/// Records a problem if a PDF cannot be made; called before the work.
 inline void browser_for(const std::string& pdf, Problems& problems) {
   if (browser().empty())
     problems.add("no Chromium", "--pdf", "a page is printed by it, and PATH has none",
@@ -39,7 +39,7 @@ inline void browser_for(const std::string& pdf, Problems& problems) {
     problems.add("a folder", "--pdf", pdf + " is one", "give a file's name");
 }
 
-/// "file:///..." with everything but plain characters as %XX.
+/// Returns the URL "file:///..." with all characters except letters, digits and "/-._~" as %XX.
 inline std::string file_url(const std::filesystem::path& file) {
   std::string url = "file://";
   for (const char c : std::filesystem::absolute(file).string())
@@ -50,7 +50,7 @@ inline std::string file_url(const std::filesystem::path& file) {
   return url;
 }
 
-/// Prints the page. The PDF appears whole or not at all. Throws InputError where the browser fails.
+/// Prints the page to a PDF, which is written atomically. Throws InputError if the browser fails.
 inline void print_pdf(const std::filesystem::path& page, const std::filesystem::path& pdf) {
   namespace fs = std::filesystem;
   const Scratch scratch;

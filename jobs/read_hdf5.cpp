@@ -1,8 +1,7 @@
-// swingbank-read-hdf5: what base/read_apart starts to read files that the libraries may crash on. It answers
-// in bytes.
-//   swingbank-read-hdf5 hdf5 FILE NAME...      arrays and attributes (mpi/store/hdf5_apart.hpp)
-//   swingbank-read-hdf5 mat FILE [TIME]        a MATLAB file as text in columns
-//   (validate/record/mat_text.hpp)
+// swingbank-read-hdf5: reader of untrusted files, started by base/read_apart because HDF5 and libmatio may
+// crash on them. It writes the content to standard output.
+//   swingbank-read-hdf5 hdf5 FILE NAME...  arrays and attributes (mpi/store/hdf5_apart.hpp)
+//   swingbank-read-hdf5 mat FILE [TIME]    MATLAB file as text in columns (validate/record/mat_text.hpp)
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -16,13 +15,13 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   std::string kind, file;
   std::vector<std::string> names;
-  if (argc < 3) {  // with a file the words are taken as they stand: names of files may begin with a dash
+  if (argc < 3) {  // with a file, arguments are not parsed: names of files may begin with a dash
     jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank read-hdf5");
     line.add("KIND", kind, "what the file is").required().one_of({"hdf5", "mat"});
     line.add("FILE", file, "what is read; the answer is bytes, or a list of problems with exit code 3")
         .required();
     line.add("NAMES", names, "of hdf5: arrays (/records) and attributes (@format); of mat: the time column");
-    (void)line.parse(argc, argv);  // there is no file
+    (void)line.parse(argc, argv);  // always an error or help, because there is no file
     return line.end();
   }
   kind = argv[1];

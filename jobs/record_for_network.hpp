@@ -1,5 +1,6 @@
 #pragma once
-// A measured record as the dataset's records are that a network was trained on.
+// Conversion of a measured record to a network's input: event time, base, rate and channels of the training
+// dataset.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,16 +14,17 @@
 
 namespace swingbank {
 
-/// Channels x samples, and where they come from.
+/// Input of a network.
 struct NetworkInput {
-  std::vector<float> values;
-  double event_s = 0.0;  ///< the record's time of the event [s]
-  double held_s = 0.0;   ///< length before the record begins, where the steady values stand [s]
+  std::vector<float> values;  ///< channels x samples
+  double event_s = 0.0;       ///< time of the event in the record [s]
+  double held_s = 0.0;        ///< length before the record's start, filled with steady-state values [s]
 };
 
 namespace record_detail {
 
-/// The record's series of a dataset's channel on the machine's base; empty if it was not measured.
+/// Returns the record's time series of a dataset's channel on the machine's base; empty if it was not
+/// measured.
 inline std::vector<double> series_of(const std::string& channel, const validate::record::Record& r,
                                      const validate::plant::PlantModel& model,
                                      const train::run::NetworkInfo& network) {
@@ -43,7 +45,7 @@ inline std::vector<double> series_of(const std::string& channel, const validate:
   return x;
 }
 
-/// Straight line between neighbouring samples; `at` is inside the record.
+/// Returns the linear interpolation of `x` at time `at` [s], which must lie inside the record.
 inline double between(const validate::record::Record& r, const std::vector<double>& x, double at) {
   const double place = (at - r.t.front()) / r.step();
   const auto left = std::min(static_cast<std::size_t>(std::max(0.0, place + 1e-9)), x.size() - 2);
@@ -53,17 +55,17 @@ inline double between(const validate::record::Record& r, const std::vector<doubl
 
 }  // namespace record_detail
 
-/// Puts the record's event where the network's records have theirs and samples it at their rate. The first
-/// sample and what lies before the record's beginning are the medians of the samples before the event, for a
-/// dataset's records begin at rest. Throws InputError: no event found or none before it, a channel that was
-/// not measured, a record that ends too early.
+/// Returns the record shifted to the event time of the network's dataset and resampled at its rate. The first
+/// sample and all samples before the record's start are the medians of the samples before the event, because
+/// a dataset's records begin in steady state. Throws InputError if no event is found, fewer than five samples
+/// precede it, a channel is missing, or the record ends too early.
 inline NetworkInput network_input(const validate::record::Record& record,
                                   const validate::plant::PlantModel& model,
                                   const train::run::NetworkInfo& network, std::optional<double> event_s) {
   Problems problems;
   const validate::check::Signals signals = validate::check::record_signals(record);
   NetworkInput in;
-  std::size_t quiet = signals.onset + 1;  // samples before the event
+  std::size_t quiet = signals.onset + 1;  // number of samples before the event
   in.event_s = event_s.value_or(record.t[signals.onset]);
   if (event_s)
     quiet = static_cast<std::size_t>(

@@ -1,5 +1,5 @@
 #pragma once
-// What calibrate and add do where a signal ends the work: the values that the fit had reached are written.
+// Results of an interrupted calibrate or add: the parameter values that the fit had reached.
 #include <fmt/format.h>
 
 #include <optional>
@@ -15,8 +15,8 @@ namespace swingbank::jobs {
 
 constexpr const char* kInterruptedModel = "model-interrupted.toml";
 
-/// Writes the values that an interrupted fit had reached, under names that say so, and keeps the results of
-/// earlier runs. Returns the exit code.
+/// Writes the values of an interrupted fit to files named "...interrupted" and keeps the results of earlier
+/// runs. Returns the exit code.
 inline int write_interrupted(const AnalysisOptions& of, const std::string& command,
                              const std::string& command_line, const validate::plant::PlantModel& before,
                              const validate::fit::Fit& reached) {
@@ -51,8 +51,8 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
   return kSubmitAgain;
 }
 
-/// Does the work. Where a signal ends it, writes the best values until then: `fitted`, or what the fit at
-/// hand had reached. Before any fit, the signal goes on to the caller.
+/// Runs `work` and returns its exit code. If a signal ends it, writes the best values so far: `fitted`, or
+/// the values of the current fit. Rethrows Interrupted if there is no fit yet.
 template <class Work>
 int keep_reached(const AnalysisOptions& of, const std::string& command, const std::string& command_line,
                  const validate::plant::PlantModel& model, std::optional<validate::fit::Fit>& fitted,

@@ -1,6 +1,6 @@
 #pragma once
-// The programs that make, train and ask the two networks of `swingbank add --retrain`, one after the other.
-// Each goes on where it stopped.
+// Programs of `swingbank add --retrain`: generation, training and evaluation of its two networks. Each
+// program resumes an interrupted run.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,19 +12,21 @@
 
 namespace swingbank::jobs {
 
-constexpr int kStopped = 2;  ///< exit code of generate and train after a signal: run again to go on
+constexpr int kStopped = 2;  ///< exit code of generate and train after a signal: run again to continue
 
+/// Paths of the programs.
 struct RetrainPrograms {
   std::filesystem::path generate, train, predict;
 };
 
-/// Throws InputError where this build cannot train.
+/// Returns the paths of the programs. Throws InputError if this build cannot train.
 inline RetrainPrograms retrain_programs() {
   const std::string remedy = "build with LibTorch (-DSWINGBANK_TRAIN=ON), or add without --retrain";
   return {own_command("generate", remedy), own_command("train", remedy), own_command("predict", remedy)};
 }
 
-/// Dataset and network of one side. False if a signal stopped it. Throws InputError if a step fails.
+/// Generates the dataset of one side (with or without the effect) and trains its network. Returns false if a
+/// signal stopped it. Throws InputError if a step fails.
 inline bool make_network(const RetrainPrograms& programs, const validate::retrain::RetrainSide& side) {
   const auto step = [&](const std::filesystem::path& program, const std::vector<std::string>& words) {
     const int code = run_own(program, words);
@@ -39,7 +41,8 @@ inline bool make_network(const RetrainPrograms& programs, const validate::retrai
                                "retrain", "--out", side.results.string()});
 }
 
-/// What the network of one side says of the records.
+/// Returns the parameter estimate of one side's network from the records. Throws InputError if `predict`
+/// fails.
 inline validate::calibrate::NetworkEstimate ask_network(const RetrainPrograms& programs,
                                                         const validate::retrain::RetrainSide& side,
                                                         const std::string& model,

@@ -1,4 +1,5 @@
-// swingbank simulate: plays one event and writes every recorded quantity as CSV, HDF5 or both, with units.
+// swingbank simulate: simulates one event and writes every recorded quantity with its unit as CSV, HDF5 or
+// both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ struct Options {
   std::filesystem::path changes;
 };
 
-/// The option that a part of an event stands in.
+/// Returns the option for a part of an event, with its value.
 std::string event_option(grid::EventPart part, const std::string& text) {
   constexpr const char* kOptions[] = {"--fault",     "--trip",      "--trip-generator", "--load-step",
                                       "--vref-step", "--pref-step", "--fault-type",     "--z0"};
@@ -144,7 +145,7 @@ reference::ReferenceRun play(const Options& o, int finer, const grid::Grid& grid
   return run;
 }
 
-/// A number of a CSV cell after its comma; a sample that is missing leaves the cell empty.
+/// Appends a comma and a number to a CSV line; NaN, a missing sample, gives an empty cell.
 void put_cell(std::string& text, double value) {
   text += ',';
   if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.12g}", value);
@@ -287,7 +288,7 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   return all;
 }
 
-/// Everything that was done to the case, a line for every place.
+/// Writes all changes made to the case, one line for each place.
 void write_changes(const std::filesystem::path& file, const network::Network& network) {
   std::string text;
   for (const network::Remark& remark : network.remarks) {
@@ -319,7 +320,7 @@ int simulate(const Options& o) {
   for (const auto& text : o.attached) grid::attach(grid, text, "--attach " + text, problems);
   if (o.load_model == "raw") grid::loads_as_composed(grid, problems);
   for (const auto& text : o.loads) grid::choose_load(grid, text, "--load " + text, problems);
-  grid::settle_limits(grid, o.widen_limits);  // events may ask for the operating point
+  grid::settle_limits(grid, o.widen_limits);  // before the events, which may depend on the operating point
   const network::Event event = grid::read_event(o.event, grid, o.t_end, event_option, problems);
   const auto plants = parse_plants(o, grid, problems);
   const auto channels = parse_channels(o, problems);

@@ -1,5 +1,5 @@
-// swingbank <command> [arguments]: runs swingbank-<command> from this program's own folder, so that each
-// command links only the libraries it uses.
+// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, so that each command
+// links only the libraries that it uses.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -35,7 +35,7 @@ constexpr std::string_view kPrefix = "swingbank-";
 
 fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
-/// Commands that can be run: declared and present first, then any further swingbank-* program in the folder.
+/// Returns the available commands: declared ones first, then any other swingbank-* program in the folder.
 std::vector<Command> found_commands(const fs::path& folder) {
   std::map<std::string, bool> present;
   std::error_code ignored;
@@ -67,7 +67,7 @@ void print_help(const std::vector<Command>& commands) {
   }
 }
 
-/// Under mpirun or srun every rank runs this program; only the first one speaks.
+/// Returns whether this process prints messages: under mpirun or srun, only rank 0 does.
 bool speaks() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
     if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;
@@ -88,7 +88,7 @@ int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Co
   return 1;
 }
 
-/// Levels of instruction sets that a build may bring beside the common one, widest first.
+/// Instruction-set level (x86-64 psABI) that a build may contain in addition to the common one.
 struct Level {
   std::string_view name;
   bool supported;
@@ -102,9 +102,9 @@ std::vector<Level> levels() {
   return {{"x86-64-v4", v4}, {"x86-64-v3", v3}};
 }
 
-/// The program in the folder of the widest level that this processor has, else the common one.
-/// SWINGBANK_LEVEL asks for another: a name of levels(), or "common". Empty if it asks for what this
-/// processor or build has not.
+/// Returns the program for the highest level that this processor supports, or the common one. The environment
+/// variable SWINGBANK_LEVEL selects another: a name of levels(), or "common". Returns an empty path if
+/// processor or build do not support the selected level.
 fs::path program_for_this_processor(const fs::path& folder, const std::string& name) {
   const fs::path file = std::string(kPrefix) + name;
   const char* asked = std::getenv("SWINGBANK_LEVEL");

@@ -1,4 +1,5 @@
-// swingbank tables: results of training runs as the thesis's Tables IV, V and VI, in Markdown, CSV and HTML.
+// swingbank tables: writes results of training runs as the thesis's Tables IV, V and VI, in Markdown, CSV and
+// HTML.
 #include "validate/report/tables.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Instants of switchings that a person knows (--switch), by the record to which they belong.
+// Switching times given by the user (--switch), by record.
 #include <algorithm>
 #include <charconv>
 #include <map>
@@ -11,8 +11,9 @@
 
 namespace swingbank::jobs {
 
-/// "2.0" holds for the only record, "event.csv=2.0" for the record of that name. Each record's instants come
-/// in order [s]. `files`: the words of --records. Throws InputError with every word that is wrong.
+/// Returns the switching times [s] of each record, in ascending order. `words`: values of --switch, "2.0" for
+/// the only record or "event.csv=2.0" for a named one; `files`: values of --records. Throws InputError with
+/// every invalid word.
 inline std::map<std::string, std::vector<double>> told_instants(const std::vector<std::string>& words,
                                                                 const std::vector<std::string>& files) {
   std::vector<std::string> records;

@@ -1,4 +1,4 @@
-// swingbank train: one network on a dataset split 60/20/20 by databank point (Table IV).
+// swingbank train: trains one network on a dataset split 60/20/20 by databank point (Table IV).
 #include "jobs/training_options.hpp"
 
 int main(int argc, char** argv) {

@@ -1,5 +1,5 @@
 #pragma once
-// Options that `swingbank train` and `swingbank cross-validate` share.
+// Options shared by `swingbank train` and `swingbank cross-validate`.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +16,7 @@
 
 namespace swingbank {
 
+/// Values of the shared options.
 struct TrainingOptions {
   std::string dataset, training_rows, experiment, preset = "quick", network, out, print, keep;
   std::uint64_t seed = 1;
@@ -69,7 +70,8 @@ struct TrainingOptions {
              "copy's place and end");
   }
 
-  /// Throws InputError if an option that a run needs is missing.
+  /// Returns the training run that the options describe. Throws InputError if an option is missing or
+  /// invalid.
   [[nodiscard]] train::run::RunRequest request() const {
     Problems problems;
     if (dataset.empty() && simulate.empty())
@@ -106,7 +108,8 @@ struct TrainingOptions {
     check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
   }
-  /// A run with other rows than its experiment says would bear the name of the right one.
+  /// Throws InputError unless --training-rows is given exactly when the experiment uses such rows: a run on
+  /// other rows would otherwise have the same name as the correct one.
   void check_training_rows(bool wanted, const std::string& of) const {
     if (wanted == !training_rows.empty()) return;
     throw InputError({wanted ? "no rows that only train" : "rows that only train", "--training-rows",
@@ -114,6 +117,7 @@ struct TrainingOptions {
                                   wanted ? "trains on" : "does not train on"),
                       wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});
   }
+  /// Returns the stream of the dataset's shards, from disk or simulated in memory.
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
     const train::data::StreamOptions stream{
@@ -134,8 +138,8 @@ inline int exit_code(train::run::RunOutcome outcome) {
   return outcome == train::run::RunOutcome::stopped ? kSubmitAgain : 0;
 }
 
-/// What both programs do around their work: options, printing, signals, errors. `check` throws InputError
-/// where the request cannot be met, before the BLAS kernels and threads are measured.
+/// Main function of both programs: options, --print, --keep, signals, errors. `check` throws InputError if
+/// the request cannot be fulfilled; it runs before the measurement of BLAS kernels and threads.
 template <class Check, class Work>
 int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOptions& options,
                   const Check& check, const Work& work) {

@@ -1,6 +1,5 @@
 #pragma once
-// What the commands that judge a model share: the limits by which it is fit for its purpose, who signs, and
-// where the figures of a page come from.
+// Shared code of the commands that judge a model: acceptance limits, signature and provenance of a page.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +22,7 @@
 
 namespace swingbank::jobs {
 
-/// By which limits a model is judged fit for purpose, who signs the page, and whether it is printed.
+/// Options of a judgement: acceptance limits, signature and PDF output.
 struct Judging {
   std::string accept, signed_by, pdf;
   validate::thresholds::Acceptance by;
@@ -39,7 +38,7 @@ struct Judging {
                     fmt::join(validate::thresholds::acceptance_presets(), " or "),
                     validate::thresholds::acceptance_presets().front()));
   }
-  /// Before the work. Throws InputError.
+  /// Reads the limits and checks --pdf; call it before the work. Throws InputError.
   void read() {
     Problems problems;
     try {
@@ -50,17 +49,18 @@ struct Judging {
     if (!pdf.empty()) browser_for(pdf, problems);
     problems.raise();
   }
-  /// Outputs beside those of the command's folder.
+  /// Returns the outputs outside of the command's folder.
   [[nodiscard]] std::vector<Output> outputs() const {
     return pdf.empty() ? std::vector<Output>{} : std::vector<Output>{{pdf, "--pdf"}};
   }
-  /// Once the page is there.
+  /// Prints the finished page to --pdf, if given.
   void print(const std::filesystem::path& page) const {
     if (!pdf.empty()) print_pdf(page, pdf);
   }
 };
 
-/// The files that a word of --records stands for: "A+B", "FILE#TERMINAL", and a .cfg's .dat.
+/// Returns the files of one value of --records: "A+B" names two, "FILE#TERMINAL" one, and a .cfg file
+/// includes its .dat file.
 inline std::vector<std::filesystem::path> files_of(const std::string& word) {
   namespace fs = std::filesystem;
   std::vector<fs::path> files;
@@ -78,7 +78,7 @@ inline std::vector<std::filesystem::path> files_of(const std::string& word) {
   return files;
 }
 
-/// Who, when and with what: added to the provenance of a page.
+/// Adds signer, date, commit, limits and the SHA-256 hashes of all inputs to the provenance of a page.
 inline void sign(validate::report::Provenance& rows, const Judging& judging, const std::string& model,
                  const std::vector<std::string>& records) {
   if (!judging.signed_by.empty()) rows.insert(rows.begin(), {"signed by", judging.signed_by});
@@ -94,7 +94,7 @@ inline void sign(validate::report::Provenance& rows, const Judging& judging, con
       rows.emplace_back("SHA-256", hash + "  " + file.string());
 }
 
-/// Fitted parameters by their symbols.
+/// Returns the fitted parameters as rows of a page, with their textbook symbols.
 template <class Fitted>
 std::vector<validate::compare::PageParameter> page_parameters(const std::vector<Fitted>& fitted,
                                                               const sim::plant::Plant& plant) {

@@ -1,5 +1,4 @@
-// swingbank verify: reads every shard of a dataset and compares it with journal and header, on all cores and
-// without MPI.
+// swingbank verify: compares every shard of a dataset with journal and header, on all cores, without MPI.
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kCardFormat = "swingbank-card-1";
 
-/// The files that a config names, as it names them, with the places that were read.
+/// Returns the files that a config names: name in the config and path.
 std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& config) {
   Config c(config.file);
   std::vector<std::pair<std::string, fs::path>> files = {{c.require<std::string>("raw"), config.raw},
@@ -27,8 +27,7 @@ std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& c
   return files;
 }
 
-/// Case files may hold bytes that are no UTF-8, which JSON cannot: such a text is written byte by byte, each
-/// as the character of its number.
+/// Returns a file as JSON. A text that is not UTF-8, which JSON cannot represent, is converted from Latin-1.
 ordered_json json_of(const CardFile& f) {
   try {
     (void)nlohmann::json(f.text).dump();

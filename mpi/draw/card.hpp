@@ -1,36 +1,40 @@
 #pragma once
-// card.json: all that is needed to make a dataset again, whatever has become of the files it was made from:
-// the config, the files it names, what the command line replaced, and what made it.
+// Dataset card (card.json): everything needed to generate a dataset again without its original input files:
+// the config, the files that it names, the command-line overrides, and the software that generated it.
 #include <map>
 
 #include "mpi/draw/dataset_config.hpp"
 
 namespace swingbank::mpi::draw {
 
+/// Copy of an input file.
 struct CardFile {
-  std::string name;  ///< below the folder of the config, as the card's config names it
+  std::string name;  ///< path relative to the config's folder, as in the card's config
   std::string text;
 };
 
+/// Content of card.json.
 struct Card {
-  std::string name;    ///< of the config's file
-  std::string config;  ///< its text, with names of files as below
+  std::string name;    ///< name of the config's file
+  std::string config;  ///< text of the config, with the file names of `files`
   std::vector<CardFile> files;
   Overrides overrides;
   std::string config_hash, kernel;             ///< as in dataset.json
   std::map<std::string, std::string> made_by;  ///< software, compiler, MPI, HDF5, host, processor: by name
 };
 
-/// Replaces a name of a file wherever it stands between quotes. False if it stands nowhere so.
+/// Replaces every occurrence of a file name in quotes. Returns false if there is none.
 bool replace_name(std::string& text, const std::string& from, const std::string& to);
-/// Throws InputError if a file cannot be read, or if the config names one in a way that this cannot replace.
+/// Returns the card of a config. Throws InputError if a file cannot be read, or if the config writes its name
+/// with escapes, which cannot be replaced.
 Card card_of(const DatasetConfig& config, const std::string& kernel,
              const std::map<std::string, std::string>& made_by);
 /// Writes card.json into the folder.
 void write_card(const std::filesystem::path& folder, const Card& card);
-/// `where`: the file, or a dataset's folder. Throws InputError if it is no card or a byte of it has changed.
+/// Reads a card. `where`: the file, or a dataset's folder. Throws InputError if it is not a card or its
+/// checksum is wrong.
 Card read_card(const std::filesystem::path& where);
-/// Writes the card's files into `folder` and returns the config's place.
+/// Writes the card's files into `folder` and returns the path of the config.
 std::filesystem::path unpack(const Card& card, const std::filesystem::path& folder);
 
 }  // namespace swingbank::mpi::draw

@@ -28,7 +28,7 @@ Neighbours make_neighbours(const DatasetConfig& config) {
   return {low, width, std::max(config.databank.distance, 1e-300)};
 }
 
-/// Candidates that all cores judge at once, between two looks for a signal.
+/// Candidates per batch, after which stop signals are checked, and per parallel task.
 constexpr std::uint64_t kBatch = 8192, kPiece = 256;
 
 std::string reasons(const Databank& bank) {
@@ -37,14 +37,14 @@ std::string reasons(const Databank& bank) {
   return text;
 }
 
-/// One draw, with what can be said of it before the draws of its batch are settled.
+/// Candidate point with its tests that do not depend on other candidates of the batch.
 struct Candidate {
-  std::vector<double> x, measured;  ///< in the parameters' units and in those of distance
-  std::string why;                  ///< it is not admissible
-  bool near = false;                ///< to a point of an earlier batch
+  std::vector<double> x, measured;  ///< in the parameters' units, and in the units of the distance
+  std::string why;                  ///< reason why it is inadmissible; empty if admissible
+  bool near = false;                ///< whether it is too close to a point of an earlier batch
 };
 
-/// A pure function of (seed, number).
+/// Draws candidate `number`, a pure function of (seed, number), and tests its parameters.
 void draw_one(const DatasetConfig& config, std::uint64_t number, BoxedPlant& plant, Candidate& c) {
   Random random(config.seed, Stream::databank, number);
   const std::size_t n = config.box.size();
@@ -60,25 +60,25 @@ void draw_one(const DatasetConfig& config, std::uint64_t number, BoxedPlant& pla
   c.why = objection(config, plant.plant());
 }
 
-/// Gives up where the way behind tells that the rest cannot be reached: of n points, the share of admissible
-/// draws that are far enough from all of them falls as exp(-n/n0), which fits the draws for 15,000 to 240,000
-/// points of the thesis's box at 0.7 to 8 %.
+/// Forecast of the draws for all points, to abort an infeasible request early. With n points, the share of
+/// admissible draws that are far enough from all of them is modelled as \f$ e^{-n/n_0} \f$. This fits the
+/// draws for 15,000 to 240,000 points of the thesis's box at a distance of 0.7 within 8 %.
 class Forecast {
  public:
   Forecast(std::uint64_t points, double patience)
       : points_(static_cast<double>(points)), patience_(patience) {}
-  /// The fewest admissible draws that all points may need, by those so far; nothing while that cannot be
-  /// told.
+  /// Returns a lower estimate of the admissible draws for all points, from those so far; nothing while too
+  /// few candidates were rejected for an estimate.
   [[nodiscard]] std::optional<double> draws(double reached, double admissible) const {
     const double too_close = admissible - reached;
     if (too_close < kEnoughTooClose) return {};
-    // admissible = n0 (exp(reached / n0) - 1)
+    // Solves admissible = n0 (exp(reached / n0) - 1) for n0 by bisection.
     double low = 0.01 * reached, high = 1e3 * reached;
     for (int i = 0; i < 60; ++i) {
       const double n0 = std::sqrt(low * high);
       (n0 * std::expm1(std::min(reached / n0, 500.0)) > admissible ? low : high) = n0;
     }
-    // Three standard errors of the count, and what the law itself is trusted to.
+    // Margins: three standard errors of the count, and the error of the model.
     const double n0 = high * (1.0 + 3.0 / std::sqrt(too_close)) * kTrust;
     return n0 * std::expm1(std::min(points_ / n0, 500.0));
   }
@@ -125,7 +125,7 @@ class Drawer {
                         "ask for fewer draws, or for more faults per point"});
     }
   }
-  /// On all cores: what does not depend on the other draws of the batch.
+  /// Draws and tests the candidates of a batch on all cores.
   void judge_batch() {
     in_parallel(
         kBatch / kPiece,
@@ -139,7 +139,7 @@ class Drawer {
         },
         [](int) {});
   }
-  /// In order, so that the points are those of one draw after the other.
+  /// Accepts candidates in order, so that the points equal those of sequential drawing.
   void settle_batch() {
     const std::uint64_t first = bank_.draws;
     std::vector<const Candidate*> accepted;
@@ -168,7 +168,7 @@ class Drawer {
     const auto reached = static_cast<double>(bank_.points()), admissible = static_cast<double>(admissible_);
     const auto needed = forecast_.draws(reached, admissible);
     const bool hopeless = needed && forecast_.hopeless(*needed);
-    // A policy that hardly any draw can meet must not run for ever either.
+    // Also ends if the policy admits almost no draw.
     if (!hopeless && admissible <= patience_ && static_cast<double>(bank_.draws) <= 1000.0 * patience_)
       return;
     std::string why = fmt::format("{} draws: {}", bank_.draws, reasons(bank_));
@@ -184,10 +184,10 @@ class Drawer {
 
   const DatasetConfig& config_;
   std::uint64_t points_, admissible_ = 0;
-  double patience_;  ///< admissible draws
+  double patience_;  ///< largest number of admissible draws
   Forecast forecast_;
   Databank bank_;
-  Neighbours settled_, newest_;  ///< points of earlier batches, of this one
+  Neighbours settled_, newest_;  ///< points of earlier batches, and of this one
   std::vector<Candidate> batch_;
   std::vector<BoxedPlant> plants_;  ///< one per thread
 };

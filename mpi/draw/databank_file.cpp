@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kFormat = "swingbank-databank-1";
 constexpr const char* kDrawAnew = "run swingbank databank with this config again";
 
-/// Everything the points depend on, besides their number.
+/// Returns the hash of everything that determines the points, except their number.
 std::string databank_hash(const DatasetConfig& c, const sim::plant::Plant& base) {
   std::string text = fmt::format("{} {} {} {:.17g} {}\n", c.model, c.seed,
                                  static_cast<int>(c.databank.policy), c.databank.distance, c.databank.scaled);
@@ -65,7 +65,7 @@ void write_databank(const std::filesystem::path& file, const Databank& bank, con
 
 Databank read_databank(const std::filesystem::path& file, const DatasetConfig& config,
                        const sim::plant::Plant& base, std::uint64_t points) {
-  // Its sums stand within: HDF5 has to read it first.
+  // In a separate process: the checksums are inside the file, so HDF5 reads it unverified.
   const store::h5::File f = store::h5::File::open_apart(
       file, {"f8/parameters", "text@format", "text@databank_hash", "text@values_hash"});
   const auto refuse = [&](const std::string& what, const std::string& why) {

@@ -1,20 +1,20 @@
 #pragma once
-// A databank on the disk: drawn once, read by whoever simulates its points (docs/formats.md).
+// Databank file: drawn once, and read by all programs that simulate its points (docs/formats.md).
 #include <filesystem>
 
 #include "mpi/draw/databank.hpp"
 
 namespace swingbank::mpi::draw {
 
-/// XXH3-64 over the values, 16 hex digits.
+/// Returns the XXH3-64 hash of the values, 16 hex digits.
 std::string values_hash(const Databank& bank);
 
-/// `base`: as for draw_databank. Throws InputError.
+/// Writes a databank. `base`: as for draw_databank. Throws InputError on failure.
 void write_databank(const std::filesystem::path& file, const Databank& bank, const DatasetConfig& config,
                     const sim::plant::Plant& base);
 
-/// The first `points` points. Throws InputError if the file was drawn for a config that draws others, holds
-/// fewer, or is not what was written.
+/// Returns the first `points` points of a file. Throws InputError if the file was drawn for another config,
+/// has too few points, or its checksum is wrong.
 Databank read_databank(const std::filesystem::path& file, const DatasetConfig& config,
                        const sim::plant::Plant& base, std::uint64_t points);
 

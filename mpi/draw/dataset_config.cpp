@@ -22,7 +22,7 @@ const Range kBusNumber{1, 999997, ""};
 const Range kCount{1, 1e10, ""};  // 1e10 rows are 400 TB
 const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""}, kRate{1.0, 1e5, "1/s"};
 const Range kShardSize{0.001, 1e5, "MB"};
-constexpr double kUsualShard = 64.0;  ///< [MB]: a second's work of a core, and what disks write well
+constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], about 1 s of core time
 
 std::string parameter_list(const sim::Effect& e) {
   std::string all;
@@ -31,8 +31,8 @@ std::string parameter_list(const sim::Effect& e) {
   return all.empty() ? "none" : all;
 }
 
-/// A table of boxes: name = [low, high] is sampled, name = value is held. Bounds come from the effect's
-/// records. `owner`: the effect, nullptr for the machine.
+/// Reads a table of boxes: "name = [low, high]" is sampled, "name = value" is fixed. The parameters' records
+/// give the allowed ranges. `owner`: the effect, nullptr for the machine.
 void read_box(Config& c, const std::string& table, const sim::Effect& effect, const sim::Effect* owner,
               std::vector<Box>& box) {
   std::vector<Box> found;
@@ -61,7 +61,7 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
   box.insert(box.end(), found.begin(), found.end());
 }
 
-/// A converter has no rotor, whose angle the records hold.
+/// Returns whether an effect is a machine with a rotor. Records contain rotor angles, which converters lack.
 bool is_machine(const sim::Effect& effect) { return effect.slot == sim::Slot::machine && !effect.converter; }
 
 std::string machines(const sim::library::EffectLibrary& library) {
@@ -71,7 +71,7 @@ std::string machines(const sim::library::EffectLibrary& library) {
   return names;
 }
 
-/// [vary.effects.NAME]: parameters of what stands around the machine.
+/// Reads [vary.effects.NAME]: parameters of effects other than the machine.
 void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, std::vector<Box>& box) {
   std::vector<std::pair<const sim::Effect*, std::string>> tables;
   for (const auto& name : c.keys("vary.effects")) {
@@ -99,7 +99,7 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
   for (const auto& [effect, table] : tables) read_box(c, table, *effect, effect, box);
 }
 
-/// `laws` are read first: what they add may be attached and varied.
+/// Reads `laws` and `attach`. User-defined models come first, because they may be attached and varied.
 void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
     d.laws.push_back((c.name().parent_path() / text).lexically_normal());
@@ -121,7 +121,7 @@ void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
 }
 
-/// Values that stand in a list more than once, each once.
+/// Returns the values that occur more than once in a list, each once.
 template <class T>
 std::vector<T> repeated(std::vector<T> list) {
   std::vector<T> found;
@@ -165,7 +165,7 @@ void read_vary(Config& c, DatasetConfig& d) {
     if (!d.model.empty())
       c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
                 "use one of: " + machines(d.library));
-    c.ignore("vary.box");  // cannot be judged without the model
+    c.ignore("vary.box");  // cannot be checked without the model
     return;
   }
   d.model = effect->name;
@@ -223,7 +223,7 @@ void read_databank(Config& c, DatabankConfig& b) {
       c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
 }
 
-/// [operating_point], if there is one.
+/// Reads [operating_point], if present.
 void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point) {
   if (!c.has("operating_point")) return;
   OperatingPointConfig p;
@@ -295,8 +295,8 @@ std::uint64_t DatasetConfig::points() const {
 }
 
 namespace {
-/// "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a standard value that moves shows in the
-/// hash.
+/// Returns an attachment as "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a changed default
+/// value changes the hash.
 std::string written(const sim::plant::Attachment& a) {
   std::string text = a.plant + ":" + std::string(a.block.effect->name);
   for (std::size_t i = 0; i < a.block.p.size(); ++i)
@@ -310,7 +310,7 @@ std::string DatasetConfig::canonical() const {
   const auto line = [&](std::string_view key, const auto& value) {
     text += fmt::format("{} = {}\n", key, value);
   };
-  // Absent keys leave no line, so that configs without them keep their hash.
+  // Optional keys at their defaults give no line, so that older configs keep their hash.
   if (!models.ignore.empty()) line("ignore_models", models.ignore);
   for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
   if (frequency_hz) line("frequency_hz", *frequency_hz);
@@ -366,7 +366,7 @@ std::string DatasetConfig::canonical() const {
 }
 
 namespace {
-/// The command line may not say what the config may not.
+/// Throws InputError if an override is outside the range of its key in the config.
 void require_in_range(const Overrides& o) {
   Problems problems;
   const auto check = [&](const std::optional<std::uint64_t>& value, const char* option, double high) {
@@ -394,7 +394,8 @@ void require_in_range(const Overrides& o) {
 
 namespace {
 
-/// Either is given, or neither: then a shard has kUsualShard.
+/// Reads the size of a shard: `draws_per_shard`, or `shard_megabytes` (default kUsualShard), which is
+/// returned [MB].
 std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
   if (c.has("draws_per_shard")) {
     d.draws_per_shard = static_cast<std::uint64_t>(c.require<std::int64_t>("draws_per_shard", kShardDraws));
@@ -404,7 +405,7 @@ std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
   return c.optional<double>("shard_megabytes", kUsualShard, kShardSize);
 }
 
-/// Only what was asked for, in the config's order.
+/// Keeps only the requested channels, in the config's order. Throws InputError for an unknown channel.
 void keep_channels(RecordConfig& r, const std::vector<std::string>& asked, const fs::path& file) {
   if (asked.empty()) return;
   Problems problems;

@@ -6,7 +6,7 @@ namespace swingbank::mpi::draw {
 
 namespace {
 
-/// What the machines that vary have outside their boxes.
+/// Sets the header's fixed properties of the varied machines.
 void describe_machines(const Study& study, store::DatasetHeader& h) {
   const auto& records = study.config.effect().parameters;
   const auto boxed = [&](std::size_t i) {

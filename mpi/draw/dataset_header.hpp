@@ -1,11 +1,11 @@
 #pragma once
-// What dataset.json says of a study: all that is common to the shards of its dataset.
+// Header of a dataset (dataset.json) from its study: the properties common to all shards.
 #include "mpi/draw/dataset_config.hpp"
 #include "mpi/store/dataset.hpp"
 
 namespace swingbank::mpi::draw {
 
-/// `a`: as shard_attributes gives them.
+/// Returns the header of a study's dataset. `a`: result of shard_attributes.
 store::DatasetHeader dataset_header(const Study& study, const store::ShardAttributes& a);
 
 }  // namespace swingbank::mpi::draw

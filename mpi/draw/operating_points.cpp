@@ -15,16 +15,17 @@ namespace {
 
 namespace network = sim::network;
 
-/// So many draws in a row that cannot be used mean that the config asks for what the grid cannot do. Also the
-/// number of keys each block has: part of the datasets, never change it.
+/// Largest number of unusable draws in a row; more indicate an infeasible config. It is also the number of
+/// keys per block, which determines the content of datasets: never change it.
 constexpr std::uint64_t kMostDraws = 100;
-/// Voltages at which no grid is run for long [pu]: beyond, a power flow is one of the equations alone.
+/// Range of plausible bus voltages [pu]. No grid operates outside of it for long, although the power flow
+/// equations may have solutions there.
 constexpr double kLowestPlausible = 0.85, kHighestVoltage = 1.15;
-constexpr int kLineTries = 1000;  ///< picks until a line is found that may be missing
+constexpr int kLineTries = 1000;  ///< largest number of lines tried for removal
 
 void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
   for (auto& load : n.loads) {
-    if (load.kind == network::LoadKind::shunt) continue;  // it consumes nothing
+    if (load.kind == network::LoadKind::shunt) continue;  // not a consumer
     const double s = common * random.uniform(1.0 - c.load_spread, 1.0 + c.load_spread);
     load.power *= s;
     load.current *= s;
@@ -32,7 +33,7 @@ void draw_loads(const OperatingPointConfig& c, double common, Random& random, ne
   }
 }
 
-/// Generators at one bus hold one voltage: the first one's counts.
+/// Draws dispatch and voltage setpoints. Generators at one bus share the setpoint of the first one.
 void draw_generators(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
   std::vector<double> held(n.buses.size(), 0.0);
   for (auto& g : n.generators) {
@@ -45,7 +46,7 @@ void draw_generators(const OperatingPointConfig& c, double common, Random& rando
   }
 }
 
-/// Takes lines out of service without cutting the grid apart; false if not so many can be found.
+/// Takes lines out of service without splitting the grid. Returns false if too few such lines are found.
 bool draw_lines(const OperatingPointConfig& c, Random& random, network::Network& n) {
   const auto parts = [&] { return std::ranges::max(network::islands(n)); };
   const int whole = parts();
@@ -63,7 +64,7 @@ bool draw_lines(const OperatingPointConfig& c, Random& random, network::Network&
   return left == 0;
 }
 
-/// Machine bases from what the power flow asks of the machines.
+/// Draws machine bases from the machines' apparent power in the power flow.
 void draw_bases(const OperatingPointConfig& c, Random& random, sim::grid::Grid& grid) {
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const double loading = random.uniform(c.loading_low, c.loading_high);
@@ -83,7 +84,7 @@ bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
   }
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const auto& plant = grid.plants[i];
-    // No generator turns into a motor: the slack balances what is drawn for the others.
+    // No generator may become a motor, in particular the slack, which balances the others.
     if (own.plants[i].generation.real() > 0.0 && plant.generation.real() <= 0.0) return false;
     if (!(plant.mva > 0.0)) return false;
     try {
@@ -96,7 +97,7 @@ bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
   return true;
 }
 
-/// One draw; none, and the reason counted, if it cannot be used.
+/// Draws one operating point. If it is unusable, counts the reason and returns null.
 std::shared_ptr<const sim::grid::Grid> try_once(const Study& study, std::uint64_t key, Redrawn& redrawn) {
   const OperatingPointConfig& c = *study.config.operating_point;
   Random random(study.config.seed, Stream::operating_point, key);

@@ -1,6 +1,7 @@
 #pragma once
-// Operating points drawn at random: loads, dispatch, held voltages, lines out of service and machine bases of
-// a block of draws. A pure function of (config, block): what cannot be used is drawn again with the next key.
+// Random operating points of the grid: loads, dispatch, voltage setpoints, lines out of service and machine
+// bases of a block of draws. A pure function of (config, block). An unusable operating point is drawn again
+// with the next key.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,22 +10,24 @@
 
 namespace swingbank::mpi::draw {
 
-/// How often a block's operating point was drawn again, by reason.
+/// Number of rejected operating points of a block, by reason.
 struct Redrawn {
-  std::uint32_t no_power_flow = 0;  ///< Newton's method found none
-  std::uint32_t implausible = 0;    ///< a voltage or a generator outside of what OperatingPoints allows
+  std::uint32_t no_power_flow = 0;  ///< the power flow did not converge
+  std::uint32_t implausible = 0;    ///< implausible voltage or generator, or too few removable lines
 };
 
+/// Operating point of a block of draws.
 struct OperatingPoint {
   std::shared_ptr<const sim::grid::Grid> grid;
   Redrawn redrawn;
 };
 
+/// Generator of operating points.
 class OperatingPoints {
  public:
   explicit OperatingPoints(const Study& study) : study_(study) {}
-  /// The operating point of a block; the latest one is kept. Throws InputError if too many draws in a row
-  /// cannot be used.
+  /// Returns the operating point of a block; caches the latest one. Throws InputError if 100 draws in a row
+  /// are unusable.
   const OperatingPoint& at(std::uint64_t block);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// From a sample's number to the run to make: which generator varies, its parameters, the fault. A pure
-// function of (config, databank, sample_id).
+// Random draw of a simulation from its sample number: the generator that varies, its parameters and the
+// fault. A pure function of (config, databank, sample_id).
 #include <vector>
 
 #include "mpi/draw/databank.hpp"
@@ -9,22 +9,24 @@
 
 namespace swingbank::mpi::draw {
 
-/// One draw: the job, and which varied generators (positions in Study::plants) it records with which databank
-/// points.
+/// One draw: a simulation job, its recorded generators and their databank points.
 struct Draw {
   sim::lanes::Job job;
-  std::vector<std::size_t> recorded;  ///< positions in Study::plants
-  std::vector<std::size_t> points;    ///< databank point of each
-  Redrawn redrawn;                    ///< of its operating point
+  std::vector<std::size_t> recorded;  ///< recorded generators, as indices into Study::plants
+  std::vector<std::size_t> points;    ///< databank point of each recorded generator
+  Redrawn redrawn;                    ///< rejected operating points of its block
 };
 
+/// Source of the draws of a study.
 class Sampler {
  public:
   Sampler(const Study& study, const Databank& bank) : study_(study), bank_(bank), operating_(study) {}
-  /// Point p = sample_id / faults per point goes to generator p mod G, or with `all` points p G ... p G + G-1
-  /// go to all G generators. Draws in order share the work for their block's operating point.
+  /// Returns the draw of a sample. With p = sample_id / faults per point and G generators, databank point p
+  /// varies generator p mod G, or, if all generators vary, points p G ... p G + G - 1 vary generators 0 ... G
+  /// - 1. Draws in ascending order reuse the operating point of their block.
   [[nodiscard]] Draw draw(std::uint64_t sample_id);
-  /// Why the machines cannot be brought to their operating point with these parameters; empty: they can.
+  /// Returns why the machines cannot be initialised at their operating point with these parameters; empty if
+  /// they can.
   [[nodiscard]] std::string refusal(const Draw& draw) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Simulates a range of draws and lays their records out as rows of a shard.
+// Simulation of a range of draws, with the records as rows of a shard.
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,11 +9,12 @@
 
 namespace swingbank::mpi::draw {
 
+/// Simulator of shards.
 class ShardMaker {
  public:
   ShardMaker(const Study& study, const Databank& bank);
-  /// Simulates draws first ... first+count-1. Rows come in order of (sample_id, generator), attributes unset.
-  /// `tick` is called now and then, with the number of draws finished since the last call.
+  /// Simulates draws first ... first+count-1. Returns the rows in order of (sample_id, generator), without
+  /// attributes. Calls `tick` repeatedly with the number of draws finished since the last call.
   store::ShardData make(std::uint64_t first, std::uint64_t count,
                         const std::function<void(std::uint64_t)>& tick);
 
@@ -29,20 +30,20 @@ class ShardMaker {
   const Study& study_;
   const Databank& bank_;
   Sampler sampler_;
-  std::vector<sim::Channel>
-      simulated_;                  ///< what the kernel records: the config's channels, V and theta if needed
-  std::vector<int> source_;        ///< per channel of the config: position in simulated_, or -1: frequency
-  int voltage_ = -1, angle_ = -1;  ///< positions in simulated_
+  /// Channels that the kernel records: those of the config, and V and theta if needed.
+  std::vector<sim::Channel> simulated_;
+  std::vector<int> source_;        ///< index into simulated_ of each channel of the config; -1: frequency
+  int voltage_ = -1, angle_ = -1;  ///< indices into simulated_
   bool angle_recorded_ = false;
-  std::map<std::size_t, std::unique_ptr<sim::lanes::Batch>>
-      batches_;  ///< by generator; one under 0 if all vary
+  /// Batches by generator; a single one with key 0 if all generators vary.
+  std::map<std::size_t, std::unique_ptr<sim::lanes::Batch>> batches_;
 };
 
-/// The kernel's options for a config; one place, so that its variant is what the config hash says.
+/// Returns the kernel's options for a config. The config hash covers the variant that they select.
 sim::lanes::BatchOptions batch_options(const DatasetConfig& config);
-/// Batch::variant() for a config.
+/// Returns Batch::variant() for a study.
 std::string kernel_variant(const Study& study);
-/// Channel, parameter and other attributes of every shard of a dataset.
+/// Returns the attributes common to all shards of a dataset.
 store::ShardAttributes shard_attributes(const Study& study, const std::string& hash,
                                         const std::string& kernel);
 

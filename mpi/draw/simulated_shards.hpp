@@ -1,6 +1,6 @@
 #pragma once
-// The shards of a dataset from memory: simulated, handed over, forgotten. What is in them is what `generate`
-// would have written, to the last bit.
+// Shards simulated in memory, each released after use. Their content equals the files of `generate` to the
+// last bit.
 #include <deque>
 #include <memory>
 
@@ -12,16 +12,18 @@ namespace swingbank::mpi::draw {
 
 class ShardMaker;
 
+/// Sequence of simulated shards.
 class SimulatedShards {
  public:
-  /// Draws the databank. `threads` shards are made at once. Throws InputError as load_study and draw_databank
-  /// do, and where a signal asked for an end meanwhile.
+  /// Draws the databank. `threads`: number of shards simulated concurrently. Throws the errors of load_study
+  /// and draw_databank, and InputError after a stop signal.
   SimulatedShards(const DatasetConfig& config, int threads);
   ~SimulatedShards();
   SimulatedShards(const SimulatedShards&) = delete;
   SimulatedShards& operator=(const SimulatedShards&) = delete;
   [[nodiscard]] const store::DatasetHeader& header() const { return header_; }
-  /// The next shard, from number 0 on, header().shard_count() in all.
+  /// Returns the next shard, from number 0 to header().shard_count() - 1. Throws InputError after a stop
+  /// signal.
   store::ShardData next();
 
  private:
@@ -32,7 +34,7 @@ class SimulatedShards {
   store::ShardAttributes attributes_;
   store::DatasetHeader header_;
   Databank bank_;
-  std::vector<std::unique_ptr<ShardMaker>> makers_;  ///< one a thread
+  std::vector<std::unique_ptr<ShardMaker>> makers_;  ///< one per thread
   std::deque<store::ShardData> ahead_;
   std::uint64_t made_ = 0;
 };

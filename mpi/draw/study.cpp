@@ -1,5 +1,4 @@
-// What a dataset's config asks for, on its grid: the plants that vary, the buses that are faulted, the hash
-// of it all.
+// Resolution of a dataset's config on its grid: varied plants, faulted buses and config hash.
 #include <fmt/format.h>
 #include <xxhash.h>
 

@@ -31,10 +31,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Ranks from which on rank 0 only leads: while it writes a shard of its own it answers nobody.
+/// Number of ranks from which on rank 0 only schedules, because it cannot answer while it writes a shard.
 constexpr int kLedFrom = 32;
 
-/// Every rank must have read the same config and run the same kernel.
+/// Throws InputError if a rank has another config or another kernel variant than rank 0.
 void require_one_variant(MPI_Comm world, const std::string& hash, const std::string& kernel) {
   int rank;
   MPI_Comm_rank(world, &rank);
@@ -62,7 +62,7 @@ void make_room(std::vector<double>& values, std::size_t count, int rank) {
   }
 }
 
-/// Rank 0 draws or reads; all others get the points. Nothing where a signal asked for an end meanwhile.
+/// Returns the databank, which rank 0 draws or reads and broadcasts; nothing after a stop signal. Collective.
 std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs::path& file,
                                               MPI_Comm world) {
   int rank;
@@ -70,7 +70,7 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
   draw::Databank bank;
   bank.dimensions = study.config.box.size();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
-  agree(world, "databank", [&] {  // before the drawing, which may take long
+  agree(world, "databank", [&] {  // allocated before the drawing, which may take long
     if (rank != 0) make_room(bank.values, study.config.points() * bank.dimensions, rank);
   });
   agree(world, "databank", [&] {
@@ -82,7 +82,7 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
   int whole = rank != 0 || bank.points() >= study.config.points() ? 1 : 0;
   MPI_Bcast(&whole, 1, MPI_INT, 0, world);
   if (whole == 0) return std::nullopt;
-  constexpr std::size_t piece = std::size_t{1} << 26;  // MPI counts in int
+  constexpr std::size_t piece = std::size_t{1} << 26;  // the count of MPI_Bcast is an int
   for (std::size_t at = 0; at < bank.values.size(); at += piece)
     MPI_Bcast(bank.values.data() + at, static_cast<int>(std::min(piece, bank.values.size() - at)), MPI_DOUBLE,
               0, world);
@@ -95,7 +95,7 @@ std::uint64_t draws_in(const std::deque<std::uint64_t>& shards, const draw::Data
   return n;
 }
 
-/// What a leader other than rank 0 does to get a lease.
+/// Sends a report to rank 0 and returns the next lease, for leaders of other groups.
 Shards ask_master(MPI_Comm world, const Report& report, double timeout) {
   const std::string text = pack(report);
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
@@ -109,7 +109,7 @@ Shards ask_master(MPI_Comm world, const Report& report, double timeout) {
   return receive_shards(world, 0);
 }
 
-/// Ranks that work, cut into groups of writers; a rank that only leads has none.
+/// Partition of the working ranks into groups of writers; a dedicated master belongs to none.
 struct Groups {
   MPI_Comm mine = MPI_COMM_NULL;
   int count = 0;
@@ -119,17 +119,17 @@ struct Groups {
     count = (workers + writers - 1) / writers;
     MPI_Comm_split(world, rank < first ? MPI_UNDEFINED : (rank - first) / writers, rank, &mine);
   }
-  ~Groups() {  // collective, so not while this rank alone unwinds from an exception
+  ~Groups() {  // MPI_Comm_free is collective: not while this rank alone unwinds after an exception
     if (mine != MPI_COMM_NULL && std::uncaught_exceptions() == 0) MPI_Comm_free(&mine);
   }
   Groups(const Groups&) = delete;
   Groups& operator=(const Groups&) = delete;
 };
 
-/// Rank 0: leads, and works between two polls unless it is dedicated.
+/// Runs rank 0: the master, and its worker between two polls unless the master is dedicated.
 void lead(Worker* worker, Master& master, Progress& progress) {
   if (worker != nullptr) {
-    std::uint64_t counted = 0;  // of the shard at hand: this rank's own part of its group's draws
+    std::uint64_t counted = 0;  // this rank's draws of the current shard, already displayed
     worker->exchange = [&](const Report& r) {
       for (const auto& line : r.finished) progress.add(line.draws - std::min(counted, line.draws));
       counted = 0;
@@ -161,12 +161,12 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
     hash = draw::config_hash(config, kernel);
     attributes = draw::shard_attributes(*loaded, hash, kernel);
     header = draw::dataset_header(*loaded, attributes);
-    store::header_text(header);  // before the folder is touched
+    store::header_text(header);  // throws on invalid names before the folder is changed
   });
   const draw::Study& study = *loaded;
   require_one_variant(world, hash, kernel);
 
-  FolderLocks locks;  // fall after all else
+  FolderLocks locks;  // declared first, so released last
   std::vector<store::JournalLine> lines;
   bool archive = false;
   agree(world, o.folder.string(), [&] {
@@ -180,14 +180,14 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
           draw::write_card(o.folder, draw::card_of(config, kernel, made_by(o.software)));
       });
     lines = journalled(o);
-    // The manifest of a finished dataset names what there is without a look at each file.
+    // With --trust, the manifest of a complete dataset replaces the check of each file.
     if (o.trust && store::read_manifest(o.folder)) lines.clear();
   });
   const ShardAudit audit = audit_shards(world, o.folder, header, lines, o.repair || !o.trust);
   if (audit.stopped) return kSubmitAgain;
 
   std::optional<store::Journal> journal;
-  std::optional<store::AttemptLog> attempt;  // of rank 0; what ends it unsaid is a failure
+  std::optional<store::AttemptLog> attempt;  // rank 0 only; its destructor logs a failure
   std::deque<std::uint64_t> missing;
   agree(world, o.folder.string(), [&] {
     if (rank != 0) return;
@@ -195,7 +195,7 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
     missing = missing_shards(o, header);
     if (missing.empty() && !archive) finish(o);
     if (missing.empty()) return;
-    journal.emplace(o.folder / o.part.journal_name());  // says why it cannot, in an archive
+    journal.emplace(o.folder / o.part.journal_name());  // throws for an incomplete read-only dataset
     attempt.emplace(o.folder, attempt_of(o, size, lines.size(), audit.bad.size()));
     const auto left = draws_in(missing, config);
     spdlog::info("{}: {} of {} draws to make in {} shards, {} ranks, kernel {}, config {}", o.folder.string(),

@@ -1,5 +1,5 @@
 #pragma once
-// `swingbank generate`: databank, master, workers, dataset folder.
+// Generation of a dataset on all ranks (`swingbank generate`): databank, master, workers, dataset folder.
 #include <mpi.h>
 
 #include "base/progress.hpp"
@@ -8,21 +8,22 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Options of `swingbank generate`.
 struct GenerateOptions {
   std::filesystem::path folder;
-  store::Part part;                ///< of the shards, made beside runs that make the others
-  std::filesystem::path databank;  ///< what `swingbank databank` wrote; empty: drawn
-  int writer_ranks = 1;            ///< ranks that share a shard
-  double lease_timeout = 600.0;    ///< a shard may take that long [s]; 0: for ever
-  bool dedicated_master = false;   ///< rank 0 only leads
-  bool repair = false;             ///< make shards anew that are journalled and bad
-  std::string software = {};       ///< of the card: version and commit
-  bool trust = false;              ///< of journalled shards, look at the length only
+  store::Part part;                ///< subset of the shards that this run generates
+  std::filesystem::path databank;  ///< file of `swingbank databank`; empty: draw the databank
+  int writer_ranks = 1;            ///< number of ranks that write a shard together
+  double lease_timeout = 600.0;    ///< longest time for a lease [s]; 0: unlimited
+  bool dedicated_master = false;   ///< rank 0 does not simulate
+  bool repair = false;             ///< regenerate damaged shards
+  std::string software = {};       ///< version and commit, for the card
+  bool trust = false;              ///< check only the length of existing shards
   Progress::Mode progress = Progress::Mode::automatic;
 };
 
-/// Collective over `world`. Makes the dataset, or what is missing of it or of a part. Returns 0, or 2 after a
-/// soft exit with shards still to make. Throws InputError on all ranks alike.
+/// Generates the missing shards of a dataset, or of one part of it. Collective over `world`. Returns 0, or 2
+/// after a graceful stop with shards missing. Throws the same InputError on all ranks.
 int generate(const draw::DatasetConfig& config, const GenerateOptions& options, MPI_Comm world);
 
 }  // namespace swingbank::mpi::ranks

@@ -22,9 +22,9 @@ namespace {
 
 constexpr int kFinishedTag = 11, kItemTag = 12;
 constexpr std::int64_t kNone = -1;
-constexpr auto kPause = std::chrono::milliseconds(2);  // between two looks; items take seconds
+constexpr auto kPause = std::chrono::milliseconds(2);  // polling interval; items take seconds
 
-/// What a rank tells rank 0: "item stop result"; item -1: none finished yet.
+/// Returns a rank's message to rank 0, "item stop result"; item -1: none finished yet.
 std::string packed(std::int64_t item, const std::string& result) {
   return fmt::format("{} {} {}", item, stop_asked() ? 1 : 0, result);
 }
@@ -38,7 +38,7 @@ Told unpacked(const std::string& text) {
   return {std::stoll(text.substr(0, first)), text[first + 1] == '1', text.substr(second + 1)};
 }
 
-/// The work of rank 0 itself, beside its answering: a thread that takes one item at a time.
+/// Thread of rank 0 that processes one item at a time while rank 0 answers the other ranks.
 class OwnHand {
  public:
   explicit OwnHand(const SharedItems& shared) : thread_([this, &shared] { run(shared); }) {}
@@ -53,7 +53,7 @@ class OwnHand {
     item_ = item;
     state_ = State::working;
   }
-  /// The item it has finished since the last look; throws what the work threw.
+  /// Returns the item finished since the last call, if any. Rethrows an exception of the work.
   std::optional<std::pair<std::size_t, std::string>> finished() {
     if (state_ != State::finished) return {};
     if (failure_) std::rethrow_exception(failure_);
@@ -79,19 +79,19 @@ class OwnHand {
   }
   std::atomic<State> state_ = State::idle;
   std::atomic<bool> end_ = false;
-  std::size_t item_ = 0;  // these belong to whom state_ says
+  std::size_t item_ = 0;  // owner of this and the next two members: the thread while state_ is `working`
   std::string result_;
   std::exception_ptr failure_;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last member, because it uses the others
 };
 
 [[noreturn]] void give_up(const Ranks& ranks, const std::string& why) {
   if (ranks.world != MPI_COMM_NULL) ranks::end_all_ranks(why.c_str());
   fmt::print(stderr, "{}: the run ends; what is finished is safe, run the command again to continue\n", why);
-  std::_Exit(1);  // its thread cannot be ended
+  std::_Exit(1);  // the working thread cannot be stopped
 }
 
-/// Rank 0: gives out items, to the others and to its own hand, until all are done.
+/// Distributor on rank 0: gives items to the other ranks and to its own thread until all are done.
 class Giver {
  public:
   Giver(const Ranks& ranks, const SharedItems& shared)
@@ -119,7 +119,7 @@ class Giver {
     out_[rank] = {item, Clock::now()};
     return static_cast<std::int64_t>(item);
   }
-  /// A rank that hangs gives no sign: only the time tells.
+  /// Ends the run if an item is over its time limit, the only sign of a hanging rank.
   void end_if_overdue() const {
     if (shared_.limit <= 0.0) return;
     for (const auto& [rank, given] : out_) {
@@ -160,13 +160,13 @@ class Giver {
     std::size_t item;
     Clock::time_point since;
   };
-  std::map<int, Given> out_;  ///< by rank
+  std::map<int, Given> out_;  ///< items in progress by rank
   OwnHand hand_;
   std::size_t done_ = 0;
   bool stop_ = false;
 };
 
-/// Every other rank: hands in what is finished, takes the next.
+/// Loop of the other ranks: sends each result and receives the next item, until none is left.
 void take_until_none(const Ranks& ranks, const SharedItems& shared) {
   std::string text = packed(kNone, "");
   for (;;) {
@@ -222,7 +222,7 @@ bool share_items(const Ranks& ranks, const SharedItems& shared) {
     return ranks.from_first(complete ? 1 : 0) != 0;
   } catch (const std::exception& error) {
     if (ranks.size() == 1) throw;
-    end_all_ranks(error.what());  // the others would wait for ever
+    end_all_ranks(error.what());  // the others would wait forever
   }
 }
 

@@ -20,8 +20,9 @@ bool MpiSession::launched() {
 
 namespace {
 
-/// Ranks that a launcher of another MPI has started do not find one another: each takes itself for the only
-/// one, and all would do the same work. So it is with a container whose MPI does not fit the host's launcher.
+/// Ends the process if the launcher started several ranks but MPI has only one. A launcher of another MPI,
+/// such as a host's with a container, starts ranks that each see only themselves and would all do the same
+/// work.
 void require_one_world(int size) {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const char* text = std::getenv(name);
@@ -43,17 +44,17 @@ void require_one_world(int size) {
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
   if (!launched()) {
-    // Started by hand, one rank needs no daemon beside it. Such ranks share one folder of temporary files,
-    // where the first to end removes the others' (OpenMPI 4.1.4): each gets its own.
+    // A process without a launcher needs no OpenMPI daemon. Such processes share one temporary folder, and
+    // the first to end removes the others' files (OpenMPI 4.1.4), so each gets its own.
     ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    ::setenv("OMPI_MCA_pml", "ob1", 0);  // it talks to nobody: looking for fast networks takes 0.2 s
+    ::setenv("OMPI_MCA_pml", "ob1", 0);  // avoids 0.2 s of search for fast networks
     std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();
     if (::mkdtemp(folder.data()) != nullptr) {
       temporary_ = folder;
       ::setenv("OMPI_MCA_orte_tmpdir_base", folder.c_str(), 1);
     }
   }
-  H5dont_atexit();  // ~MpiSession ends it
+  H5dont_atexit();  // ~MpiSession calls H5close
   int provided;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);

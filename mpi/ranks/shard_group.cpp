@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// [s] until a rank that has failed says why, where the others are not there to hear of it: a limit of
-/// somebody else, of a lease say, may end the run meanwhile.
+/// Time after which a failed rank prints its reason while the others have not responded [s]. Short, because
+/// another time limit, such as that of a lease, may end the run first.
 constexpr double kToldAfter = 1.0;
-/// [s] from then until it ends all.
+/// Further time after which it ends all ranks [s].
 constexpr double kOthersMayTake = 19.0;
 
 void share_text(MPI_Comm group, int from, std::string& text) {
@@ -31,7 +31,7 @@ void share_text(MPI_Comm group, int from, std::string& text) {
   MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, from, group);
 }
 
-/// What the arrays of all ranks will take on the disk, and room for HDF5's own few kilobytes.
+/// Returns the size of the arrays of all ranks on disk, plus HDF5's metadata [bytes].
 std::uint64_t size_on_disk(const store::ShardData& part, std::uint64_t rows, std::uint64_t draws) {
   const std::uint64_t fixed =
       sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (store::kFaultColumns + 2);
@@ -53,7 +53,8 @@ std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
   return all;
 }
 
-/// One rank alone needs no MPI-IO; the bytes are the same.
+/// Returns the file-access property list for MPI-IO; the default one for a single rank. The file's bytes are
+/// the same.
 store::h5::Handle access_list(MPI_Comm group, int size) {
   if (size == 1) return {};
   store::h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -61,14 +62,14 @@ store::h5::Handle access_list(MPI_Comm group, int size) {
   return list;
 }
 
-/// What OpenMPI's MPI-IO leaves behind where it is kept from removing the file by which it finds out about
-/// locks (sharedfp/lockedfile names it so).
+/// Removes the file with which OpenMPI's MPI-IO tests file locks (sharedfp/lockedfile), if OpenMPI could not
+/// remove it.
 void remove_lock_test(const fs::path& opened, int rank) {
   std::error_code ignored;
   fs::remove(opened.string() + ".locktest." + std::to_string(rank), ignored);
 }
 
-/// Problems of the first rank that has any; the same on all.
+/// Runs `work` and returns the problems of the first rank that has any, the same on all ranks.
 std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
                                      const std::function<void()>& work) {
   int rank, size;
@@ -84,10 +85,10 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
                         "run the command again; if it fails again, report it with this message"});
   }
   int mine = problems.empty() ? size : rank, first = size;
-  MPI_Request request;  // one rank may work for minutes while the others wait
+  MPI_Request request;  // not blocking: one rank may work for minutes while the others wait
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
-  // What failed here may have been a part of something collective (HDF5 writes so), out of which the others
-  // do not come without this rank.
+  // The failure may have occurred within a collective operation (writing by HDF5), in which the others wait
+  // for this rank.
   if (!wait_for(request, problems.empty() ? 0.0 : kToldAfter)) {
     const std::string why = problems.front().sentence();
     std::fprintf(stderr, "failure at rank %d of a group of %d (%s): the others are waited for\n", rank, size,
@@ -105,7 +106,7 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
 
 }  // namespace
 
-/// Without fmt and strings: memory may be what is short.
+/// Does not allocate memory, because a lack of memory may be the cause.
 void end_all_ranks(const char* why) {
   int rank = 0, size = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -143,11 +144,11 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   std::uint64_t rows = part.rows;
   MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_UINT64_T, MPI_SUM, group);
 
-  int in_world;  // by which the user knows it
+  int in_world;  // rank number in messages
   MPI_Comm_rank(MPI_COMM_WORLD, &in_world);
   const fs::path temporary = temporary_name(file);
   std::uint64_t bytes = 0;
-  std::string file_hash;  // on rank 0, which journals it
+  std::string file_hash;  // on rank 0 only
   std::vector<std::uint64_t> own_hashes;
   const auto together = [&](const char* step, const std::function<void()>& work) {
     agree(group, file.string(), [&] {
@@ -158,7 +159,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   };
   store::h5::File f;
   try {
-    // MPI-IO tells little about why it fails, so the system is asked first.
+    // Reserves the space first, because MPI-IO does not report the system's reason of a failure.
     agree(group, file.string(), [&] {
       if (rank == 0) reserve(file, size_on_disk(part, rows, ids.size()));
     });
@@ -168,9 +169,9 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     together("fill", [&] { store::fill_shard(f, part, before[0], before[1]); });
     together("close", [&] { f.close(); });
     if (size > 1) remove_lock_test(temporary, rank);
-    if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node what it wrote
+    if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node flushes its data
     agree(group, file.string(), [&] {
-      // While the disk works, the processor hashes.
+      // Computes the hashes while the disk flushes.
       auto hashing = std::async(std::launch::async, [&part] { return store::row_hashes(part); });
       if (rank == 0) {
         file_hash = publish_hashed(file);
@@ -187,7 +188,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     }
     throw;
   }
-  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // the new name may not be seen on other nodes yet (NFS)
+  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // on NFS, other nodes may not see the new name yet
   const auto hashes = gather(group, own_hashes, size);
   return {rows, ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn), file_hash};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Writing one shard by a group of ranks through HDF5's MPI-IO driver.
+// Parallel writing of a shard by a group of ranks through HDF5's MPI-IO driver.
 #include <mpi.h>
 
 #include <functional>
@@ -9,31 +9,30 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Counts and hashes of a written shard.
 struct ShardReceipt {
   std::uint64_t rows = 0, draws = 0, bytes = 0, hash = 0;
-  std::string file_hash;  ///< of the file's bytes, on rank 0 of the group only
+  std::string file_hash;  ///< hash of the file's bytes, on rank 0 of the group only
 };
 
-/// An error that every rank of a group throws alike. Any other exception is one rank's own, and the others do
-/// not know of it: they would wait for that rank for ever (end_all_ranks).
+/// Error that every rank of a group throws. Any other exception concerns one rank only, for which the others
+/// would wait forever; see end_all_ranks.
 class AgreedError : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// Prints "failure at rank 1 of 3 (<why>): ..." and ends all ranks. For an exception that was not agreed
-/// upon.
+/// Prints "failure at rank 1 of 3 (<why>): ..." and ends all ranks. For exceptions other than AgreedError.
 [[noreturn]] void end_all_ranks(const char* why);
 
-/// Runs `work` on every rank of the group, then all agree: if it threw on any, all throw the problems of the
-/// first such rank as an AgreedError. `where` stands for the place in messages of exceptions that are no
-/// InputError.
+/// Runs `work` on every rank of the group. If it throws on any rank, all ranks throw the problems of the
+/// first such rank as an AgreedError. `where` is the place in messages of exceptions other than InputError.
+/// Collective.
 void agree(MPI_Comm group, const std::string& where, const std::function<void()>& work);
 
-/// Collective over `group`: each rank brings consecutive rows and draws, in order of rank; attributes and
-/// shapes are the same on all. Temporary name, close, fsync, rename, fsync of the folder, all before it
-/// returns. On failure every rank throws AgreedError with the reason of the rank that failed, and the
-/// temporary file is gone.
+/// Writes a shard atomically. Collective over `group`: each rank provides consecutive rows and draws, in
+/// order of rank; attributes and shapes are the same on all. On failure, removes the temporary file, and
+/// every rank throws an AgreedError with the problems of the failed rank.
 ShardReceipt write_shard(const std::filesystem::path& file, const store::ShardData& part, MPI_Comm group);
 
 }  // namespace swingbank::mpi::ranks

@@ -23,8 +23,8 @@ constexpr const char* kAttemptsFile = "attempts.jsonl";
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
-/// One write, so that lines of several runs do not mix; begun with a line feed, so that a torn line before it
-/// spoils nothing.
+/// Appends a line with a single write(2), so that lines of several runs do not mix. It begins with a line
+/// feed, which separates it from an incomplete line of a killed run.
 void append_attempt(const fs::path& file, const nlohmann::ordered_json& line) {
   const std::string text = "\n" + sealed_text(json_text(line));
   const int fd =
@@ -66,7 +66,7 @@ AttemptLog::~AttemptLog() {
   if (ended_) return;
   try {
     end("failed");
-  } catch (const std::exception&) {  // a full disk may be why it failed
+  } catch (const std::exception&) {  // a full disk may be the cause of the failure
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// attempts.jsonl: what became of each run that worked on a dataset. Every run appends its own lines, several
-// may do so at once; a run whose last line is no end was killed.
+// Log of the runs on a dataset (attempts.jsonl) with their outcomes. Each run appends its own lines, and
+// several runs may append concurrently. A run without an end line was killed or is still active.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -11,20 +11,21 @@ namespace swingbank::mpi::store {
 
 /// One run on a dataset.
 struct Attempt {
-  std::string started, ended;               ///< UTC, "2026-11-24T22:14:09Z"; no end: it was killed
-  std::string outcome;                      ///< "made", "stopped", "failed: <why>"; empty: it was killed
-  std::map<std::string, std::string> told;  ///< host, process, ranks, software, what it found: by name
+  std::string started, ended;               ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty if killed
+  std::string outcome;                      ///< "made", "stopped" or "failed"; empty if killed
+  std::map<std::string, std::string> told;  ///< host, process, ranks, software, shards found: by name
 };
 
-/// Appends the lines of one run.
+/// Writer of one run's lines.
 class AttemptLog {
  public:
-  /// Appends the line of a beginning. `told`: of the run and of what it found.
+  /// Appends the line of a start. `told`: properties of the run and the shards that it found.
   AttemptLog(const std::filesystem::path& folder, const std::map<std::string, std::string>& told);
-  /// Where no end was told, it failed, unless the process is gone: then there is no line.
+  /// Appends the outcome "failed" unless end() was called.
   ~AttemptLog();
   AttemptLog(const AttemptLog&) = delete;
   AttemptLog& operator=(const AttemptLog&) = delete;
+  /// Appends another property of the run.
   void tell(const std::string& name, const std::string& value);
   void end(const std::string& outcome);
 
@@ -34,7 +35,7 @@ class AttemptLog {
   bool ended_ = false;
 };
 
-/// In order of beginning. Lines that were torn by a kill are left out.
+/// Returns the runs in order of their start. Skips incomplete lines of killed runs.
 std::vector<Attempt> read_attempts(const std::filesystem::path& folder);
 
 }  // namespace swingbank::mpi::store

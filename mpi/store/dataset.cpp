@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDatasetFormat = "swingbank-dataset-2";
-constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< older readers would take codes for values
+constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< a format that older readers reject
 constexpr const char* kRestoreHeader =
     "restore the file from a copy, or make the dataset again in an empty folder";
 constexpr const char* kRemake =
@@ -60,7 +60,7 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
   return j;
 }
 
-/// What is said of the generators must be said of each.
+/// Throws std::runtime_error unless every generator has its fixed parameters and base.
 void require_agreement(const DatasetHeader& h) {
   const std::size_t n = h.generators.size();
   const bool values =
@@ -123,7 +123,7 @@ std::string text_of(const std::map<std::string, std::uint64_t>& outcomes) {
   return text.empty() ? "none" : text;
 }
 
-/// Whether the file is as long as was journalled. Nothing: it is.
+/// Returns the problem of a file whose length differs from the journal's; nothing if it agrees.
 std::optional<Problem> fault_of_length(const fs::path& file, std::uint64_t bytes) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
@@ -144,7 +144,7 @@ void require_length(const ShardInfo& s) {
   if (const auto p = fault_of_length(s.path, s.bytes)) throw InputError(*p);
 }
 
-/// Which files stand in the folders of shards: a list of each folder, no look at each file.
+/// Cached listing of the folders of shards, which avoids a system call for each file.
 class Listing {
  public:
   explicit Listing(fs::path folder) : folder_(std::move(folder)) {}
@@ -283,7 +283,7 @@ ShardData read_checked(const ShardInfo& s) {
     throw InputError({what, s.path.string(), why, kRepairDataset});
   };
   require_length(s);
-  // First, because HDF5 1.10 may crash on a file that is damaged.
+  // Before HDF5 opens the file, because HDF5 1.10 may crash on a damaged one.
   if (const std::string bytes = hash_of_file(s.path); bytes != s.file_hash)
     fail("changed shard", "the hash of its bytes is " + bytes + ", the journal says " + s.file_hash);
   ShardData data = read_shard(s.path, {}, &s.shape);

@@ -1,5 +1,6 @@
 #pragma once
-// A dataset folder: dataset.json, journals, shards/ (docs/formats.md). Readers trust the journals alone.
+// Dataset folder: dataset.json, journals, shards/ (docs/formats.md). Readers use only the shards that the
+// journals list.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,88 +14,95 @@
 
 namespace swingbank::mpi::store {
 
-/// What dataset.json says; written before the first shard.
+/// Content of dataset.json, which is written before the first shard.
 struct DatasetHeader {
-  std::string name = {};  ///< of the config's file: "ieee39_genrou"; empty in older datasets
+  std::string name = {};  ///< name of the config's file, "ieee39_genrou"; empty in older datasets
   std::string config_hash, kernel, software, machine_model;
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
-  double rate = 0.0;          ///< [1/s]
-  std::uint64_t samples = 0;  ///< per channel and row
+  double rate = 0.0;          ///< sampling rate [1/s]
+  std::uint64_t samples = 0;  ///< samples per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
-  std::vector<std::string> parameter_effects = {};    ///< whose they are; empty: all the machine's
-  double frequency = 0.0;                             ///< of the system [Hz]; 0 in older datasets
-  std::vector<std::int32_t> generators = {};   ///< bus numbers of those that vary; empty in older datasets
-  std::vector<double> machine_base = {};       ///< theirs [MVA]; empty where each row has its own
-  std::vector<std::string> held_names = {};    ///< parameters of the machine that are not among the above
-  std::vector<std::vector<double>> held = {};  ///< their values, generator by generator
-  bool int16 = false;                          ///< records are stored as quantise.hpp says
+  std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
+  double frequency = 0.0;                             ///< nominal frequency [Hz]; 0 in older datasets
+  std::vector<std::int32_t> generators = {};   ///< bus numbers of the varied generators; empty if older
+  std::vector<double> machine_base = {};       ///< their bases [MVA]; empty if each row has its own
+  std::vector<std::string> held_names = {};    ///< fixed machine parameters outside of parameter_names
+  std::vector<std::vector<double>> held = {};  ///< values of the fixed parameters of each generator
+  bool int16 = false;                          ///< storage as 16-bit integers (quantise.hpp)
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
 };
 
+/// Shard of a dataset according to header and journal.
 struct ShardInfo {
   std::filesystem::path path;
   std::uint64_t shard = 0;  ///< number in the dataset
   std::uint64_t rows = 0;
-  std::uint64_t first_row = 0;  ///< of this shard, counted over the dataset
+  std::uint64_t first_row = 0;  ///< index of its first row in the dataset
   std::uint64_t bytes = 0;
   std::string hash;  ///< shard hash, 16 hex digits
   std::string config_hash;
-  ShardShape shape;  ///< by header and journal
+  ShardShape shape;
   std::uint64_t draws = 0;
   std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
-  std::string file_hash;                          ///< of the file's bytes
+  std::string file_hash;                          ///< hash of the file's bytes
 };
 
+/// Dataset with its shards.
 struct Dataset : DatasetHeader {
   std::filesystem::path path;
   std::string hash;               ///< XXH3-64 over the shard hashes in order of shard number, 16 hex digits
   std::vector<ShardInfo> shards;  ///< in order of shard number
   std::uint64_t rows = 0;
   std::map<std::string, std::uint64_t> outcomes;          ///< draws by outcome
-  std::map<std::string, std::uint64_t> operating_points;  ///< as in the journal, over all shards
-  bool complete = false;                                  ///< every shard of the header is in the journal
+  std::map<std::string, std::uint64_t> operating_points;  ///< sum of the journal's counts over all shards
+  bool complete = false;                                  ///< whether the journals list every shard
 };
 
-/// XXH3-64 over the shard hashes in order of shard number, 16 hex digits.
+/// Returns XXH3-64 over the shard hashes in order of shard number, 16 hex digits.
 std::string dataset_hash(const std::vector<ShardInfo>& shards);
-/// What there is to say of a shard that stands in memory, and not on the disk: no path, bytes or file hash.
+/// Returns the properties of a shard in memory; `bytes` and `file_hash` are unset, and `path` is a
+/// description.
 ShardInfo info_of(const DatasetHeader& header, const ShardData& data, std::uint64_t first_row);
 
-/// Opens a dataset. Throws InputError naming file and remedy if there is none, or, unless `allow_incomplete`,
-/// if shards are still to be made. By the manifest where there is one, which names what there is without a
-/// look at each file; else by the journals and the names in the folders. Whoever reads a shard looks at its
-/// length and bytes.
+/// Opens a dataset. Takes the list of shards from the manifest if there is one, which avoids any access to
+/// the shards; otherwise from the journals, and checks that the files exist. The functions that read a shard
+/// check its length and bytes. Throws InputError if there is no dataset or, unless `allow_incomplete`, if
+/// shards are missing.
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
-/// A journalled shard that cannot be trusted, and why.
+/// Shard that differs from its journal line, and the problem.
 struct BadShard {
   std::uint64_t shard;
   Problem problem;
 };
-/// What is wrong with a journalled shard of `folder`: missing, of another length, and, if `deep`, not as
-/// read_checked wants it. Reads the file if `deep`.
+/// Returns the problem of a shard of `folder`, if any: missing file, wrong length and, with `deep`, any
+/// difference that read_checked detects. Reads the file only with `deep`.
 std::optional<Problem> fault_of(const std::filesystem::path& folder, const JournalLine& line,
                                 const DatasetHeader& header, bool deep);
 /// Reads a whole shard and compares it with header and journal: config, shapes, rows, draws, outcomes, hash.
-/// Throws InputError naming the file; the remedy is --repair.
+/// Throws InputError with the remedy --repair if it differs.
 ShardData read_checked(const ShardInfo& shard);
-/// Rows first ... first+count-1 of one shard. Checks length, config and shapes, not the hash.
+/// Reads rows first ... first+count-1 of a shard. Checks length, config and shapes, but not the hash. Throws
+/// InputError if they differ.
 void read_rows(const ShardInfo& shard, std::uint64_t first, std::uint64_t count, RowBlock& out,
                const ShardFields& fields = {});
 
-/// Numbers of a line "key = 1" or "key = [1, 2]" of a dataset's config; empty if it has no such line.
+/// Returns the numbers of a line "key = 1" or "key = [1, 2]" of a dataset's config; empty if there is no such
+/// line.
 std::vector<double> config_numbers(const DatasetHeader& header, const std::string& key);
-/// What stands behind "key = " in a dataset's config; empty if it has no such line.
+/// Returns the text after "key = " in a dataset's config; empty if there is no such line.
 std::string config_text(const DatasetHeader& header, const std::string& key);
 
-/// Throws InputError if the header says neither frequency nor what its machines hold fixed: older datasets.
+/// Throws InputError if the header lacks the frequency and the fixed parameters, as in older datasets.
 void require_machines(const DatasetHeader& header, const std::filesystem::path& folder);
 
-/// What dataset.json holds. Throws InputError if a text of the header is no UTF-8, which JSON cannot hold.
+/// Returns the text of dataset.json. Throws InputError if a text of the header is not UTF-8, which JSON
+/// cannot represent.
 std::string header_text(const DatasetHeader& header);
-/// Writes dataset.json under a temporary name, flushes and renames.
+/// Writes dataset.json atomically.
 void write_header(const std::filesystem::path& folder, const DatasetHeader& header);
+/// Reads dataset.json. Throws InputError if it is missing, damaged or of another version.
 DatasetHeader read_header(const std::filesystem::path& folder);
 
 }  // namespace swingbank::mpi::store

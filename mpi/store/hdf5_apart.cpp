@@ -43,7 +43,7 @@ std::optional<std::size_t> width(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Whether an array has as many bytes as it says.
+/// Returns whether the length of an array's bytes agrees with its kind and shape.
 bool fits(const Contents::Array& a) {
   const auto bytes = width(a.kind);
   if (!bytes) return false;

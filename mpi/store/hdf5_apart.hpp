@@ -1,5 +1,5 @@
 #pragma once
-// What a process of its own read of an HDF5 file, on its way through a pipe.
+// Content of an HDF5 file that a separate process has read, as bytes for a pipe (CBOR).
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -10,25 +10,24 @@
 
 namespace swingbank::mpi::store::h5 {
 
-/// In that process: reads what is asked for and is there, and returns it as bytes. A name is that of an
-/// array,
-/// "/records", with the type to convert to before it if not its own, "f8/time"; or that of an attribute of
-/// the root group with what it is: "text@format", "real@rate", "integer@seed". Throws InputError.
+/// Reader's side: returns the requested objects that exist, as bytes. A name denotes an array, "/records",
+/// optionally with a type for conversion, "f8/time"; or an attribute of the root group with its kind,
+/// "text@format", "real@rate", "integer@seed". Throws InputError if the file cannot be read.
 std::string read_asked(const std::filesystem::path& file, const std::vector<std::string>& names);
 
-/// In the one that asked: those bytes.
+/// Caller's side: the objects in these bytes.
 class Contents {
  public:
   struct Array {
     std::string kind;  ///< "f4", "f8", "u8", "i4", "i2" or "u1": Type<T>::kKind
     std::vector<std::uint64_t> shape;
-    std::string bytes;  ///< as many as kind and shape say
+    std::string bytes;  ///< values; their length agrees with kind and shape
   };
   using Value = std::variant<Array, std::vector<std::string>, std::vector<double>, std::uint64_t>;
-  /// Throws InputError naming `file` where a process gone astray wrote something else.
+  /// Parses the bytes. Throws InputError with `file` if they are invalid because the reader failed.
   static Contents parse(std::string_view bytes, const std::filesystem::path& file);
 
-  /// What stands under the name ("/records", "@format"); null: nothing.
+  /// Returns the object of a name ("/records", "@format"), or null.
   [[nodiscard]] const Value* find(const std::string& name) const {
     const auto at = values_.find(name);
     return at == values_.end() ? nullptr : &at->second;

@@ -1,6 +1,6 @@
 #pragma once
-// HDF5's C API with handles that close themselves and errors that name file and object. HDF5's own printing
-// is off. Files it creates carry no times, so equal content makes equal bytes.
+// C++ wrapper of HDF5's C API: owning handles, and errors with file and object. HDF5's own error output is
+// off. Created files contain no time stamps, so equal content gives equal bytes.
 #include <hdf5.h>
 
 #include <atomic>
@@ -15,17 +15,19 @@
 
 namespace swingbank::mpi::store::h5 {
 
-/// HDF5 is not thread-safe: whoever uses it holds this lock.
+/// Returns the mutex that every user of HDF5 must hold, because HDF5 is not thread-safe.
 std::recursive_mutex& lock();
 
-/// Something could not be closed (full disk), or was left open. HDF5 1.10 then crashes or hangs in H5close,
-/// which MPI's end and exit() call too.
+/// Set when an object could not be closed (full disk) or was left open. HDF5 1.10 then crashes or hangs in
+/// H5close, which MPI_Finalize and exit() also call.
 inline std::atomic<bool> close_failed = false;
-/// Keeps the reason of the first such failure, which HDF5 forgets with its next call.
+/// Stores the reason of the first failed close, because HDF5 discards it at its next call.
 void note_failed_close();
-/// That reason, if nobody has been told of it yet: of an array, say, that was closed where nothing may throw.
+/// Returns this reason once; empty if it was already returned. A destructor that closes an array cannot
+/// throw.
 std::string untold_failed_close();
 
+/// Owner of an HDF5 identifier.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -38,13 +40,13 @@ class Handle {
     return *this;
   }
   ~Handle() { reset(); }
-  /// Closes now; false if HDF5 could not.
+  /// Closes the object. Returns false if HDF5 fails to close it.
   bool reset() {
     if (id_ < 0 || close_(std::exchange(id_, -1)) >= 0) return true;
     note_failed_close();
     return false;
   }
-  /// Leaves it open until the process ends without H5close.
+  /// Releases the identifier without closing it; the process must then end without H5close.
   void abandon() {
     if (std::exchange(id_, -1) >= 0) close_failed = true;
   }
@@ -56,8 +58,9 @@ class Handle {
   Close close_ = nullptr;
 };
 
+/// HDF5 types of T: native in memory, little-endian in the file.
 template <class T>
-struct Type;  // native type in memory, fixed little-endian type in the file
+struct Type;
 template <>
 struct Type<float> {
   static constexpr const char* kKind = "f4";
@@ -99,25 +102,26 @@ using Shape = std::vector<hsize_t>;
 
 class Contents;
 
+/// HDF5 file. All members throw InputError on failure.
 class File {
  public:
-  /// Of a file whose sum was compared: HDF5 1.10 may crash on a damaged one.
+  /// Opens a file whose checksum was verified; HDF5 1.10 may crash on a damaged file.
   static File open(const std::filesystem::path& file);
-  /// Of a file that others made, or that nobody has compared: a process of its own reads the arrays
-  /// ("/records") and attributes ("@format") of these names, where they are there; nothing else is seen of
-  /// the file.
+  /// Reads the named arrays ("/records") and attributes ("@format") of an untrusted file in a separate
+  /// process. The other objects of the file are not accessible.
   static File open_apart(const std::filesystem::path& file, const std::vector<std::string>& names);
-  /// `access`: a file-access property list (MPI-IO), or -1 for the default driver.
+  /// Creates a file. `access`: a file-access property list (MPI-IO), or -1 for the default driver.
   static File create(const std::filesystem::path& file, hid_t access = -1);
-  /// Closes; throws if buffered data could not be written, now or when an array of any file was closed.
+  /// Closes the file. Throws if buffered data could not be written, now or at the closing of any earlier
+  /// object.
   void close();
-  /// Once a rank of several has failed: HDF5 closes a file by all of them together, and waits for ever where
-  /// they do not hold the same.
+  /// Leaves the file open after the failure of one rank: HDF5 closes a file collectively and waits forever if
+  /// the ranks' states differ.
   void abandon() { file_.abandon(); }
 
   [[nodiscard]] bool has(const std::string& object) const;
   [[nodiscard]] Shape shape(const std::string& object) const;
-  /// Type<T>::kKind of the type it is stored in; empty: none of those.
+  /// Returns Type<T>::kKind of an array's type in the file; empty if there is no such T. Not for open_apart.
   [[nodiscard]] std::string kind(const std::string& object) const;
   void create_group(const std::string& name);
   void create(const std::string& object, hid_t file_type, const Shape& shape);
@@ -126,16 +130,16 @@ class File {
     create(object, Type<T>::file(), shape);
   }
 
-  /// What another file brings to a virtual array: its `count` rows.
+  /// Source of a virtual array: an array of another file with `count` rows.
   struct Part {
-    std::string file, object;  ///< the file's name as seen from this file's folder
+    std::string file, object;  ///< file name relative to this file's folder
     hsize_t count;
   };
-  /// An array of the rows of other files, one file's after the other's; type and shape of a row are those of
-  /// the same object of `example`.
+  /// Creates a virtual array: the rows of other files, concatenated. Type and row shape are those of the same
+  /// object of `example`.
   void create_virtual(const std::string& object, const File& example, const std::vector<Part>& parts);
 
-  /// Rows first ... first+count-1 of the leading dimension; `values` is resized.
+  /// Reads rows first ... first+count-1 of the leading dimension; resizes `values`.
   template <class T>
   void read(const std::string& object, hsize_t first, hsize_t count, std::vector<T>& values) const {
     if (contents_) {
@@ -166,7 +170,8 @@ class File {
   void attribute(const std::string& name, std::uint64_t value, const std::string& object = "/");
   void attribute(const std::string& name, double value, const std::string& object = "/");
   void attribute(const std::string& name, const std::vector<double>& value, const std::string& object = "/");
-  [[nodiscard]] bool has_attribute(const std::string& name) const;  ///< of the root group
+  /// Attributes of the root group.
+  [[nodiscard]] bool has_attribute(const std::string& name) const;
   [[nodiscard]] std::string text_attribute(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> texts_attribute(const std::string& name) const;
   [[nodiscard]] std::uint64_t integer_attribute(const std::string& name) const;
@@ -180,12 +185,13 @@ class File {
   static hsize_t row_size(const Shape& shape);
 
  private:
-  /// Values in `count` rows. Throws InputError where the file cannot hold so many.
+  /// Returns the number of values in `count` rows. Throws InputError if the file is too small for them.
   [[nodiscard]] std::size_t values_in(const std::string& object, hsize_t count, std::size_t bytes) const;
   [[noreturn]] void too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const;
   void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
                 const void* out) const;
-  /// Of what was read apart: values in these rows, if they are there and of this kind; throws InputError.
+  /// Returns the number of values in rows of an array from open_apart. Throws InputError if the rows do not
+  /// exist or have another type.
   [[nodiscard]] std::size_t values_apart(const std::string& object, hsize_t first, hsize_t count,
                                          const char* kind) const;
   void copy_apart(const std::string& object, hsize_t first, hsize_t count, void* to) const;
@@ -197,7 +203,7 @@ class File {
 
   std::filesystem::path name_;
   Handle file_;
-  std::shared_ptr<const Contents> contents_;  ///< where it was read apart
+  std::shared_ptr<const Contents> contents_;  ///< content from open_apart
 };
 
 }  // namespace swingbank::mpi::store::h5

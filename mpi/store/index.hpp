@@ -1,11 +1,11 @@
 #pragma once
-// What is made of a dataset once it is whole: the manifest for our readers, dataset.h5 for everybody's.
+// Index of a complete dataset: the manifest for Swingbank's readers, and dataset.h5 for other programs.
 #include <filesystem>
 
 namespace swingbank::mpi::store {
 
-/// Writes what is not there yet; nothing where shards are still to be made. Whoever calls it holds a lock on
-/// the folder.
+/// Writes the missing index files of a complete dataset; does nothing if shards are missing. The caller must
+/// hold a lock on the folder.
 void index_dataset(const std::filesystem::path& folder);
 
 }  // namespace swingbank::mpi::store

@@ -49,7 +49,7 @@ JournalLine parse_journal_line(const std::string& text) {
 
 namespace {
 
-/// Length of the part that ends with a line feed.
+/// Returns the length of the text up to its last line feed.
 std::size_t whole_lines(const std::string& text) {
   return text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
 }
@@ -57,11 +57,11 @@ std::size_t whole_lines(const std::string& text) {
 struct Placed {
   JournalLine line;
   std::filesystem::path file;
-  int number;             ///< from 1
-  bool doubtful = false;  ///< another line says something else of its shard
+  int number;             ///< line number from 1
+  bool doubtful = false;  ///< whether another entry of its shard contradicts it
 };
 
-/// Whether a file's name is that of a journal.
+/// Returns whether a file has the name of a journal.
 bool is_journal(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   return name.starts_with("journal") && name.ends_with(".jsonl");
@@ -90,10 +90,10 @@ std::vector<Placed> read_lines(const std::filesystem::path& file, Problems& dama
   return lines;
 }
 
-/// One line per shard; where two say different things, neither counts.
+/// Returns one entry per shard; omits contradictory entries.
 std::vector<Placed> read_placed(const std::filesystem::path& folder, Problems& damaged) {
   std::vector<Placed> all;
-  std::map<std::uint64_t, std::size_t> seen;  // place in `all`
+  std::map<std::uint64_t, std::size_t> seen;  // index into `all` by shard
   for (const auto& file : journals_of(folder)) {
     for (Placed& line : read_lines(file, damaged)) {
       const auto [first, is_new] = seen.try_emplace(line.line.shard, all.size());
@@ -162,7 +162,7 @@ Journal::~Journal() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-/// Writes and flushes; the system's error number, or 0.
+/// Writes and flushes a text. Returns 0, or errno on failure.
 int Journal::add(std::string_view text) const {
   const bool safe = write_all(fd_, text) && until_done([&] { return ::fsync(fd_); }) == 0;
   return safe ? 0 : errno;

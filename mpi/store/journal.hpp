@@ -1,6 +1,6 @@
 #pragma once
-// journal.jsonl: one line per finished shard, appended and flushed after the shard has its final name. Runs
-// that make a part of a dataset each have a journal of their own.
+// Journal of a dataset (journal.jsonl): one line per finished shard, appended and flushed after the shard has
+// its final name. Runs that generate a part of a dataset have a journal each.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,54 +12,56 @@
 
 namespace swingbank::mpi::store {
 
+/// Entry of a finished shard.
 struct JournalLine {
   std::uint64_t shard = 0;
   std::string file;  ///< relative to the dataset folder
   std::uint64_t draws = 0, rows = 0, bytes = 0;
-  std::string hash;       ///< shard hash, 16 hex digits
-  std::string file_hash;  ///< of the file's bytes (durable.hpp)
-  std::map<std::string, std::uint64_t> outcomes;
-  /// Of blocks that begin in the shard: "used", and "no_power_flow" and "implausible", which were drawn
-  /// again.
+  std::string hash;                               ///< shard hash, 16 hex digits
+  std::string file_hash;                          ///< hash of the file's bytes (durable.hpp)
+  std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
+  /// Operating points of the blocks that begin in the shard: "used", and the rejected ones, "no_power_flow"
+  /// and "implausible".
   std::map<std::string, std::uint64_t> operating_points = {};
   bool operator==(const JournalLine&) const = default;
 };
 
-/// A line as it stands in the file, line feed included, and back. Throws std::exception if the text is no
-/// line.
+/// Returns the text of an entry, including its checksum and line feed.
 std::string journal_text(const JournalLine& line);
+/// Parses an entry. Throws std::exception if it is damaged.
 JournalLine parse_journal_line(const std::string& text);
 
-/// Which shards a run makes: all, or every n-th, so that a job array makes a dataset without a launcher.
+/// Subset of the shards that a run generates: all, or every n-th, so that a job array can generate a dataset
+/// without MPI.
 struct Part {
   std::uint64_t number = 1, of = 1;  ///< counted from 1
   [[nodiscard]] bool all() const { return of == 1; }
   [[nodiscard]] bool has(std::uint64_t shard) const { return shard % of == number - 1; }
-  /// "journal.jsonl", of a part "journal-3-of-16.jsonl": one file, one writer.
+  /// Returns "journal.jsonl" or, for a part, "journal-3-of-16.jsonl", so that each file has one writer.
   [[nodiscard]] std::string journal_name() const;
 };
 
-/// The journals of a dataset folder, in order of name.
+/// Returns the journal files of a dataset folder, in order of name.
 std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder);
 
-/// All journals of a dataset folder. A last line without its line feed (the process died in the middle of it)
-/// is left out, and a line that stands there twice counts once. Anything else that is no line, and a shard of
-/// which two lines say different things, throws InputError with files and line numbers; where `damaged` is
-/// given, such lines are left out and told there. No journal: no lines.
+/// Returns the entries of all journals of a dataset folder. Ignores a last line without line feed, which a
+/// killed process leaves, and counts identical entries once. Other damaged lines, and contradictory entries
+/// of a shard, are errors: they are omitted and added to `damaged`, or throw InputError if `damaged` is null.
 std::vector<JournalLine> read_journals(const std::filesystem::path& folder, Problems* damaged = nullptr);
 
-/// Writes the journals anew without these shards and without damaged lines: each whole or not at all. The
-/// manifest goes first.
+/// Rewrites the journals atomically without these shards and without damaged lines. Removes the manifest
+/// first.
 void strike_lines(const std::filesystem::path& folder, const std::vector<std::uint64_t>& shards);
 
-/// Appends lines; all are on the disk when `append` returns, with one flush. Cuts off a half-written last
-/// line when it opens. Whoever opens it holds the dataset's lock (run_lock.hpp).
+/// Open journal. The constructor removes an incomplete last line. The caller must hold the dataset's lock
+/// (run_lock.hpp).
 class Journal {
  public:
   explicit Journal(std::filesystem::path file);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
+  /// Appends entries durably, with one flush. On failure, removes them and throws InputError.
   void append(std::span<const JournalLine> lines);
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kManifestFormat = "swingbank-manifest-1\n", kManifestSum = "sum ";
 
-/// Names and lengths of the journals, one a line: few files, whatever the number of shards.
+/// Returns names and lengths of the journals, one a line. There are few journals for any number of shards.
 std::string journals_now(const fs::path& folder) {
   std::string text;
   for (const auto& file : journals_of(folder))
@@ -33,7 +33,7 @@ std::string counts_text(const std::map<std::string, std::uint64_t>& counts) {
   return text.empty() ? "-" : text;
 }
 
-/// Cuts words off a text.
+/// Splitter of a text into words.
 class ManifestWords {
  public:
   explicit ManifestWords(std::string_view text) : left_(text) {}
@@ -91,7 +91,7 @@ JournalLine manifest_line(std::string_view text) {
                     "delete the file: the journals say the same, and generate writes it again"});
 }
 
-/// The text before the sum, if that is its sum.
+/// Returns the text between format line and checksum. Throws InputError if the checksum is wrong.
 std::string_view unsealed(const fs::path& file, std::string_view text) {
   const auto at = text.rfind(kManifestSum);
   if (at == std::string_view::npos) damaged_manifest(file, "it has no sum");

@@ -1,6 +1,6 @@
 #pragma once
-// manifest.txt: what the journals of a finished dataset say, in one file that is read fast. Where it stands,
-// a dataset is opened without a look at each of its files.
+// Manifest of a complete dataset (manifest.txt): the journals' entries in one file that is fast to read. With
+// it, a dataset opens without access to each shard.
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -11,10 +11,10 @@ namespace swingbank::mpi::store {
 
 constexpr const char* kManifestFile = "manifest.txt";
 
-/// Writes the manifest of the lines, which are all that the journals of `folder` hold.
+/// Writes the manifest of `lines`, which must be all entries of the folder's journals.
 void write_manifest(const std::filesystem::path& folder, const std::vector<JournalLine>& lines);
-/// Nothing where there is none, or where the journals are no longer those that it was made of (their names
-/// and lengths). Throws InputError if it is damaged.
+/// Returns the manifest's entries; nothing if there is no manifest, or if names or lengths of the journals
+/// have changed since. Throws InputError if it is damaged.
 std::optional<std::vector<JournalLine>> read_manifest(const std::filesystem::path& folder);
 
 }  // namespace swingbank::mpi::store

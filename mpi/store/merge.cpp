@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The header of all; every folder that has another one is told.
+/// Returns the header common to all folders. Throws InputError for each folder with another config.
 DatasetHeader common_header(const std::vector<fs::path>& folders) {
   const DatasetHeader first = read_header(folders.front());
   Problems problems;
@@ -32,7 +32,7 @@ DatasetHeader common_header(const std::vector<fs::path>& folders) {
   return first;
 }
 
-/// Whole or not at all.
+/// Copies a shard atomically and verifies the copy.
 void copy_shard(const fs::path& from, const JournalLine& line, const fs::path& to) {
   const fs::path temporary = temporary_name(to);
   std::error_code error;

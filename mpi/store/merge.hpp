@@ -1,6 +1,6 @@
 #pragma once
-// Joins datasets of one config, each with some of the shards, into one: where parts were made on machines
-// that share no disk.
+// Merging of datasets of one config that have some of the shards each, generated on machines without a common
+// disk.
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace swingbank::mpi::store {
 
-/// Copies what `into` lacks; each copy is compared with its journal line, flushed, and then journalled, so
-/// that a merge that was killed goes on. `done` is called for each shard looked at. Throws InputError naming
-/// the folder of another config, two journals that say different things of a shard, and every file that is
-/// not as its journal says; what is whole is copied all the same.
+/// Copies the shards that `into` lacks. Each copy is compared with its journal entry, flushed and then
+/// journalled, so that an interrupted merge can continue. Calls `done` for each shard. Throws InputError for
+/// a folder of another config; and, after all valid shards are copied, for contradictory entries and for
+/// every file that differs from its entry.
 void merge_datasets(const std::vector<std::filesystem::path>& from, const std::filesystem::path& into,
                     const std::function<void()>& done);
 

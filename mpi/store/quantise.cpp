@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLargestCode = 32767.0;
 
-/// One channel of one row. `scale`: offset, step.
+/// Quantises one channel of one row. `scale`: offset, step.
 void encode_channel(const float* values, std::size_t count, float* scale, std::int16_t* codes) {
   const auto [low, high] = std::minmax_element(values, values + count);
   scale[0] = *low == *high ? *low : static_cast<float>(0.5 * (double{*low} + double{*high}));

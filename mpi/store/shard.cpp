@@ -56,7 +56,7 @@ void require_array(const h5::File& f, const fs::path& file, const char* name, co
               "it is " + text_of(found) + ", not " + text_of(expected));
 }
 
-/// Shapes of a shard's arrays must agree with one another, and with what the dataset says of them.
+/// Reads the shape of a shard. Throws InputError if its arrays disagree with each other or with the dataset.
 void read_shape(const h5::File& f, const fs::path& file, const ShardShape* dataset, RowBlock& out) {
   const auto records = f.shape("/records"), parameters = f.shape("/parameters");
   if (records.size() != 3 || parameters.size() != 2 || parameters[0] != records[0])
@@ -157,7 +157,7 @@ ShardData read_shard_apart(const fs::path& file, const ShardFields& fields, cons
                                  "real@rate",          "text@machine_model",   "text@channel_names",
                                  "text@channel_units", "text@parameter_names", "text@parameter_units",
                                  "real@parameter_low", "real@parameter_high",  "text@parameter_effects"};
-  // Shapes come with the arrays; each is read in the type that a shard has it in.
+  // Arrays with their types in a shard; shapes are included.
   for (const char* array : {"/records", "f4/record_scale", "f8/parameters", "u8/sample_id", "i4/generator",
                             "f8/fault", "f8/largest_spread", "u1/angle_valid", "f8/machine_base"})
     names.emplace_back(array);

@@ -22,10 +22,10 @@ namespace {
 struct Reader {
   pid_t process = -1;
   int pipe = -1;
-  std::string text;  ///< of a line that has not ended
+  std::string text;  ///< incomplete last line
 };
 
-/// A line per shard: empty where it is whole.
+/// Returns the line of a shard, empty if it is valid.
 std::string line_of(const JournalLine& shard, const std::optional<Problem>& p) {
   return p ? bad_shard_text({shard.shard, *p}) : "\n";
 }
@@ -75,7 +75,7 @@ Reader start_reader(const std::function<int(int)>& work) {
   return {child, ends[0], {}};
 }
 
-/// Takes what any of them has to say, until all have ended.
+/// Reads the lines of all child processes until they have ended.
 void listen(std::vector<Reader>& readers, std::vector<BadShard>& bad, const std::function<void()>& done) {
   for (std::size_t open = readers.size(); open > 0;) {
     std::vector<pollfd> waits;

@@ -1,6 +1,6 @@
 #pragma once
-// Reads the shards of a dataset on several cores and says which cannot be trusted. Needs no MPI: HDF5 lets
-// one thread in at a time, so processes of this program read them.
+// Verification of a dataset's shards on several cores, without MPI. HDF5 allows one thread at a time, so
+// child processes read the shards.
 #include <functional>
 #include <string>
 
@@ -8,17 +8,19 @@
 
 namespace swingbank::mpi::store {
 
-/// A bad shard as a line of text that another process can read, and back.
+/// Returns a damaged shard as a line of text, for another process.
 std::string bad_shard_text(const BadShard& bad);
+/// Parses such a line.
 BadShard parse_bad_shard(const std::string& text);
 
-/// Looks at each shard of the journal with fault_of, in `processes` processes (1: here). `done` is called
-/// after each. Returns the bad ones in order of shard number. No thread may have been started before.
+/// Checks the shards of `lines` with fault_of in `processes` child processes; 1: in this process. Calls
+/// `done` after each shard. Returns the damaged shards in order of number. No thread may have been started
+/// before, because of fork.
 std::vector<BadShard> bad_shards(
     const std::filesystem::path& folder, const DatasetHeader& header, const std::vector<JournalLine>& lines,
     int processes, const std::function<void()>& done = [] {});
 
-/// The same with one process. Throws InputError with every shard at fault.
+/// Checks all shards in this process. Throws InputError with every damaged shard.
 void verify_dataset(const Dataset& dataset);
 
 }  // namespace swingbank::mpi::store

@@ -1,15 +1,15 @@
 #pragma once
-// What a dataset holds, for people.
+// Summary of a dataset as text.
 #include <string>
 
 #include "mpi/store/dataset.hpp"
 
 namespace swingbank::mpi::store {
 
-/// Rows, draws by outcome, size on disk, hash.
-/// What became of the runs that made it; empty where none was written down.
+/// Returns the runs on a dataset with their outcomes; empty if there is no log.
 std::string describe_attempts(const std::filesystem::path& folder);
 
+/// Returns rows, size on disk, draws by outcome and hash of a dataset.
 std::string describe(const Dataset& dataset);
 
 }  // namespace swingbank::mpi::store

@@ -18,7 +18,7 @@ constexpr std::array kOfRows = {"/records", "/record_scale",   "/parameters",  "
                                 "/fault",   "/largest_spread", "/angle_valid", "/machine_base"};
 constexpr std::array kOfDraws = {"/draws/sample_id", "/draws/outcome", "/draws/redrawn"};
 
-/// The parts of one array, a part for each shard that has any of it.
+/// Returns the sources of one array, one for each shard with rows or draws.
 std::vector<h5::File::Part> parts_of(const Dataset& d, const char* array, bool of_draws) {
   std::vector<h5::File::Part> parts;
   for (const ShardInfo& s : d.shards)

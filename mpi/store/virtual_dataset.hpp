@@ -1,5 +1,6 @@
 #pragma once
-// dataset.h5: an HDF5 virtual dataset over all shards of a finished dataset, for whoever reads it with h5py.
+// Virtual dataset (dataset.h5): all shards of a complete dataset as one HDF5 file, for h5py and other
+// readers.
 #include <filesystem>
 
 #include "mpi/store/dataset.hpp"
@@ -7,11 +8,12 @@
 namespace swingbank::mpi::store {
 
 constexpr const char* kVirtualFile = "dataset.h5";
-/// Beyond so many shards it would take a minute to describe them all (docs/performance.md), and none is made.
+/// Largest number of shards for which the file is written; for more it would take over a minute
+/// (docs/performance.md).
 constexpr std::uint64_t kMostVirtual = 100000;
 
-/// Writes it: the arrays of the shards one after the other, in order of shard number, by names below the
-/// folder, so that it moves with it. False where the dataset has no rows or more shards than kMostVirtual.
+/// Writes the file: the arrays of all shards, concatenated in order of shard number, with relative paths, so
+/// that the folder can be moved. Returns false if the dataset has no rows or more shards than kMostVirtual.
 bool write_virtual_dataset(const Dataset& dataset);
 
 }  // namespace swingbank::mpi::store

@@ -10,11 +10,11 @@
 namespace swingbank::mpi::draw {
 
 namespace {
-constexpr std::size_t kAxes = 4;     ///< gridded at most: 3^4 cells are visited
-constexpr double kWorthwhile = 3.0;  ///< an axis shorter than this many distances does not separate
-constexpr unsigned kBits = 16;       ///< of a cell number per axis
-constexpr int kPointsAtOnce = 8;     ///< points of a block
-constexpr std::size_t kTell = 4;     ///< axes after which most blocks are known to be far
+constexpr std::size_t kAxes = 4;     ///< largest number of axes with cells; a search visits up to 3^4 cells
+constexpr double kWorthwhile = 3.0;  ///< smallest width of an axis with cells, in distances
+constexpr unsigned kBits = 16;       ///< bits of a cell number per axis
+constexpr int kPointsAtOnce = 8;     ///< points per block
+constexpr std::size_t kTell = 4;     ///< axes after which a block is tested for early rejection
 using Block = sim::Pack<kPointsAtOnce>;
 
 bool any_below(Block sums, double limit) { return any_positive(Block(limit) - sums); }
@@ -34,7 +34,7 @@ std::vector<double> Neighbours::ordered(const double* x) const {
   return y;
 }
 
-/// Cell numbers start at 1, so that the neighbour below the first has a number too.
+/// Returns the cell number on an axis, from 1, so that the cell below the first also has a number.
 std::uint64_t Neighbours::cell(const double* x, std::size_t axis) const {
   return 1 + static_cast<std::uint64_t>(std::min((x[axis] - low_[order_[axis]]) / distance_, 60000.0));
 }
@@ -59,7 +59,7 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
 
 bool Neighbours::near_along(std::size_t axis, std::uint64_t key, const double* x, double gap) const {
   if (axis == gridded_) return near_in(key, x);
-  constexpr double reach = 1.0 + 1e-9;  // cells farther off than the distance hold no neighbour
+  constexpr double reach = 1.0 + 1e-9;  // cells beyond the distance contain no neighbour
   const std::uint64_t c = cell(x, axis);
   const double below = (x[axis] - low_[order_[axis]]) / distance_ - static_cast<double>(c - 1),
                above = 1.0 - below;

@@ -1,5 +1,5 @@
 #pragma once
-// Where a databank's point goes in a plant: each entry of the box has its place in one of the plant's blocks.
+// Assignment of a databank point to the blocks of a plant.
 #include <string>
 #include <vector>
 
@@ -8,28 +8,30 @@
 
 namespace swingbank::mpi::draw {
 
-/// How often an effect stands in a plant, as its step-up transformer or a control.
+/// Returns the number of occurrences of an effect in a plant, other than its machine and instruments.
 int times_in(const sim::plant::Plant& plant, const sim::Effect& effect);
 
-/// Why the plant's machine and the effects of the box may not have the values they have, or empty: "singular:
-/// ..." always, under the physical policy also "not Xd > X'd".
+/// Returns why the parameters of the machine or of the box's effects are inadmissible; empty if they are
+/// admissible. Always checks for singular equations ("singular: ..."); under the physical policy also for the
+/// order of reactances and the like ("not Xd > X'd").
 std::string objection(const DatasetConfig& config, const sim::plant::Plant& plant);
 
-/// A plant whose boxed parameters are set point by point. Every effect of the box must stand in it once.
+/// Plant whose parameters in the box are set to databank points. It must contain every effect of the box
+/// exactly once.
 class BoxedPlant {
  public:
   BoxedPlant(const DatasetConfig& config, const sim::plant::Plant& plant);
 
   [[nodiscard]] const sim::plant::Plant& plant() const { return plant_; }
-  /// x: a value per entry of the box.
+  /// Sets the parameters; `x` has one value per parameter of the box.
   void set(const double* x);
-  /// The blocks the box changes, as a job has them; `index` is the plant's.
+  /// Adds the changed blocks to a job; `index`: index of the plant.
   void put_into(sim::lanes::Job& job, int index) const;
 
  private:
   sim::plant::Plant plant_;
-  std::vector<sim::plant::ParameterId> boxed_;              ///< per entry of the box
-  std::vector<int> changed_ = {sim::plant::kMachineBlock};  ///< blocks that a job sets
+  std::vector<sim::plant::ParameterId> boxed_;              ///< parameters of the box
+  std::vector<int> changed_ = {sim::plant::kMachineBlock};  ///< blocks with such parameters
 };
 
 }  // namespace swingbank::mpi::draw

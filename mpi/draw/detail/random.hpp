@@ -1,16 +1,17 @@
 #pragma once
-// Counter-based random numbers: the n-th number of (seed, stream, id) is a pure function of the four, so a
-// sample's draws do not depend on who makes it or when. Philox4x32-10, J. Salmon et al., "Parallel random
-// numbers: as easy as 1, 2, 3", SC'11.
+// Counter-based random numbers: the n-th number is a pure function of (seed, stream, id, n), so a sample's
+// draws depend neither on the process nor on the order of execution. Generator: Philox4x32-10 (J. Salmon et
+// al., "Parallel random numbers: as easy as 1, 2, 3", SC'11).
 #include <Random123/philox.h>
 
 #include <cstdint>
 
 namespace swingbank::mpi::draw {
 
-/// What a sequence of random numbers is for. The numbers are part of the datasets: never renumber.
+/// Use of a sequence of random numbers. The values determine the content of datasets: never renumber.
 enum class Stream : std::uint32_t { databank = 1, fault = 2, operating_point = 3 };
 
+/// Sequence of random numbers.
 class Random {
  public:
   Random(std::uint64_t seed, Stream stream, std::uint64_t id)
@@ -18,7 +19,7 @@ class Random {
         counter_{{static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32), 0,
                   static_cast<std::uint32_t>(stream)}} {}
 
-  /// Uniform in [0, 1), 53 bits.
+  /// Returns a uniform number in [0, 1) with 53 random bits.
   double uniform() {
     if (half_ == 0) {
       block_ = r123::Philox4x32()(counter_, key_);
@@ -29,7 +30,7 @@ class Random {
     return static_cast<double>(((high << 32) | low) >> 11) * 0x1p-53;
   }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Uniform in 0 ... n-1; the bias is below n 2^-53.
+  /// Returns a uniform integer in 0 ... n-1; the bias is below \f$ n\,2^{-53} \f$.
   std::uint64_t below(std::uint64_t n) {
     return static_cast<std::uint64_t>(uniform() * static_cast<double>(n));
   }

@@ -1,6 +1,6 @@
 #pragma once
-// Journals what is finished on a thread of its own: one flush of the disk for all lines that wait, so that a
-// master answers at once, however slow the disk is.
+// Asynchronous writer of the journal: a thread writes all pending lines with one flush, so that the master
+// never waits for the disk.
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -13,26 +13,27 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Thread that writes journal lines.
 class JournalKeeper {
  public:
-  /// Writes lines so that they are on the disk when it returns, or throws InputError.
+  /// Writes lines durably, or throws InputError.
   using Append = std::function<void(std::span<const store::JournalLine>)>;
   explicit JournalKeeper(Append append);
   ~JournalKeeper();
   JournalKeeper(const JournalKeeper&) = delete;
   JournalKeeper& operator=(const JournalKeeper&) = delete;
 
-  /// Never waits for the disk.
+  /// Queues lines; never waits for the disk.
   void put(std::vector<store::JournalLine> lines);
-  /// Waits until all lines are on the disk, or cannot be brought there.
+  /// Waits until all lines are on the disk or writing has failed.
   void finish();
-  /// Why lines could not be written; no later line is tried then.
+  /// Returns the problems of writing. After a failure, later lines are discarded.
   [[nodiscard]] std::vector<Problem> problems() const;
 
  private:
   void run();
   Append append_;
-  mutable std::mutex mutex_;  ///< guards all below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   std::vector<store::JournalLine> waiting_;
   std::vector<Problem> problems_;

@@ -6,9 +6,9 @@
 namespace swingbank::mpi::ranks {
 
 namespace {
-constexpr double kNewest = 0.2;  ///< weight of the newest lease in the cost of a shard
-/// A lease takes at most this share of a group's part of what is left, so that all groups end at about one
-/// time.
+constexpr double kNewest = 0.2;  ///< weight of the newest lease in the smoothed time per shard
+/// Largest size of a lease, as a share of the missing shards per group, so that all groups end at about the
+/// same time.
 constexpr double kShareOfRest = 0.25;
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
-// Which shards are still to be made and who makes them: several at once where they are short, so that a
-// master hears of each group about every ten seconds, however many groups there are.
+// Assignment of missing shards to groups of ranks. A lease has as many shards as take about ten seconds,
+// which limits the rate of messages to the master.
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -10,21 +10,23 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Missing shards and current leases.
 class Leases {
  public:
   using Clock = std::chrono::steady_clock;
+  /// Shards that a group generates.
   struct Lease {
     std::vector<std::uint64_t> shards;
     Clock::time_point since;
     bool warned = false;
   };
 
-  /// `lasting`: what a lease shall take [s]; `groups`: that ask for leases.
+  /// `missing`: shards to generate; `lasting`: intended duration of a lease [s]; `groups`: number of groups.
   Leases(std::deque<std::uint64_t> missing, double lasting, int groups);
 
-  /// The next shards for a group, at least one as long as there are any. `alone`: one at most.
+  /// Returns the next shards for a group; empty if none are missing. `alone`: at most one shard.
   std::vector<std::uint64_t> give(int group, bool alone, Clock::time_point now);
-  /// A group hands in its lease, `made` shards of it in `seconds`; the others are missing again.
+  /// Ends a group's lease after `seconds` [s] with the shards `made`; its other shards are missing again.
   void take_back(int group, const std::vector<std::uint64_t>& made, double seconds);
 
   [[nodiscard]] std::map<int, Lease>& out() { return out_; }
@@ -35,8 +37,8 @@ class Leases {
   std::deque<std::uint64_t> missing_;
   double lasting_;
   int groups_;
-  std::optional<double> cost_;  ///< of a shard [s], smoothed
-  std::map<int, Lease> out_;    ///< by group
+  std::optional<double> cost_;  ///< smoothed time per shard [s]
+  std::map<int, Lease> out_;    ///< current leases by group
 };
 
 }  // namespace swingbank::mpi::ranks

@@ -14,10 +14,10 @@
 namespace swingbank::mpi::ranks {
 
 namespace {
-constexpr double kWarnAfter = 120.0;  ///< [s]
-/// [s] of work in a lease: 10,000 groups then ask a thousand times a second.
+constexpr double kWarnAfter = 120.0;  ///< age of a lease at the first warning [s]
+/// Intended duration of a lease [s]; 10,000 groups then send a thousand requests per second.
 constexpr double kLeaseLasts = 10.0;
-/// A lease fills no more than this share of the time after which it is overdue.
+/// Largest intended duration of a lease, as a share of its timeout.
 constexpr double kShareOfTimeout = 0.25;
 
 double lease_lasts(double timeout) {
@@ -44,7 +44,7 @@ Master::~Master() {
   watcher_.join();
 }
 
-/// Its own thread, so that it also sees a group the master itself is waiting in.
+/// Checks the age of all leases, in a separate thread, because the master may itself wait in its own group.
 void Master::watch() {
   std::unique_lock guard(mutex_);
   while (!wake_.wait_for(guard, std::chrono::milliseconds(500), [this] { return ending_; })) {
@@ -57,7 +57,7 @@ void Master::watch() {
                    "finished shards are safe, run the command again to continue, with a larger "
                    "--lease-timeout if shards take that long\n",
                    lease.shards.front(), leader, age, timeout_);
-        std::_Exit(1);  // mpirun and srun then end the other ranks
+        std::_Exit(1);  // makes mpirun and srun end the other ranks
       }
       if (!lease.warned && age > kWarnAfter) {
         spdlog::warn("shard {} is overdue at rank {}: leased {:.0f} s ago", lease.shards.front(), leader,
@@ -72,7 +72,7 @@ Shards Master::exchange(const Report& report, int rank) {
   std::vector<std::uint64_t> made;
   for (const auto& line : report.finished) {
     made.push_back(line.shard);
-    if (rank != 0) progress_.add(line.draws);  // rank 0 counts draw by draw
+    if (rank != 0) progress_.add(line.draws);  // draws of rank 0 are counted one by one
   }
   const std::lock_guard guard(mutex_);
   leases_.take_back(rank, made, report.seconds);
@@ -97,7 +97,7 @@ void Master::poll() try {
     if (lease.empty()) --waiting_leaders_;
   }
 } catch (const std::exception& e) {
-  end_all_ranks(e.what());  // whoever asked would wait for ever
+  end_all_ranks(e.what());  // the group would wait for its answer forever
 }
 
 void Master::serve_to_the_end() {

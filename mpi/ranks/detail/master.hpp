@@ -1,5 +1,5 @@
 #pragma once
-// The master, on rank 0: leases shards to groups of ranks, journals what comes back, watches that it does.
+// Master on rank 0: leases shards to groups of ranks, journals finished ones and detects overdue leases.
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -13,21 +13,22 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Scheduler of a dataset's shards.
 class Master {
  public:
-  /// `missing`: shards to make. `leaders`: ranks that ask by message (not rank 0 itself). A lease older than
-  /// `timeout` seconds ends the program (0: only warns).
+  /// `missing`: shards to generate; `leaders`: number of groups led by other ranks than 0. A lease older than
+  /// `timeout` [s] ends the program; 0: warning only.
   Master(MPI_Comm world, JournalKeeper& journal, Progress& progress, std::deque<std::uint64_t> missing,
          int leaders, double timeout);
   ~Master();
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Answers whoever has asked; never waits. To be called often.
+  /// Answers all pending requests without waiting. The caller must call it frequently.
   void poll();
-  /// Takes a group's report and gives it the next lease; the master's own group gets one shard at a time.
+  /// Processes a group's report and returns its next lease; the master's own group gets one shard at a time.
   Shards exchange(const Report& report, int rank = 0);
-  /// Serves the other groups until each was told that there is no more.
+  /// Answers the other groups until each has received an empty lease, then completes the journal.
   void serve_to_the_end();
 
   [[nodiscard]] const Problems& problems() const { return problems_; }

@@ -1,6 +1,5 @@
 #pragma once
-// What a group's leader tells the master each time it asks for shards, and how ranks wait without using a
-// core.
+// Messages between group leaders and master, and waiting for them without busy polling.
 #include <mpi.h>
 
 #include <cstdint>
@@ -14,31 +13,32 @@ namespace swingbank::mpi::ranks {
 
 constexpr int kReportTag = 1, kLeaseTag = 2, kAuditTag = 3;
 
+/// Report of a group leader, with which it requests the next lease.
 struct Report {
-  std::vector<store::JournalLine> finished;  ///< shards that it was leased, durable
-  double seconds = 0.0;                      ///< that these took
-  std::vector<Problem> problems;             ///< why it could not make the others
-  bool stop = false;                         ///< a signal asked for a soft exit
+  std::vector<store::JournalLine> finished;  ///< finished shards of the lease, already on disk
+  double seconds = 0.0;                      ///< time for these shards [s]
+  std::vector<Problem> problems;             ///< reasons why others failed
+  bool stop = false;                         ///< whether the group has received a stop signal
 };
-/// A byte that is no UTF-8 (a path may have some) arrives as U+FFFD.
+/// Returns a report as text. Bytes that are not UTF-8 (a path may contain some) become U+FFFD.
 std::string pack(const Report& report);
 Report unpack(const std::string& text);
 
 void send_text(MPI_Comm world, int to, int tag, const std::string& text);
-/// Waits for it without using the core.
+/// Waits for a text without busy polling and returns it.
 std::string receive_text(MPI_Comm world, int from, int tag);
 
-/// Waits for a message without using the core. Gives up after `timeout` seconds (0: never); false then.
+/// Waits for a message, sleeping between polls. Returns false after `timeout` [s]; 0: no timeout.
 bool wait_for(MPI_Comm world, int from, int tag, double timeout);
-/// Until the operation is complete: at full load for the first 200 microseconds, then asleep between looks.
-/// Gives up after `timeout` seconds (0: never); false then.
+/// Waits until the operation is complete: polls continuously for 200 microseconds, then sleeps between polls.
+/// Returns false after `timeout` [s]; 0: no timeout.
 bool wait_for(MPI_Request request, double timeout = 0);
 
-/// Shards of a lease, none where there is no more.
+/// Shards of a lease; empty if none are missing.
 using Shards = std::vector<std::uint64_t>;
 void send_shards(MPI_Comm world, int to, const Shards& shards);
 Shards receive_shards(MPI_Comm world, int from);
-/// From rank 0 of the group to all others.
+/// Broadcasts the lease from rank 0 of the group.
 void share_shards(MPI_Comm group, Shards& shards);
 
 }  // namespace swingbank::mpi::ranks

@@ -1,5 +1,5 @@
 #pragma once
-// Who makes a dataset: what its card and its list of attempts say of the software and the machine.
+// Provenance of a dataset: software and machine, for its card and its list of attempts.
 #include <map>
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace swingbank::mpi::ranks {
 
-/// Software, compiler, MPI, HDF5, host, processor, system: by name.
+/// Returns software, compiler, MPI, HDF5, host, processor and operating system, by name.
 std::map<std::string, std::string> made_by(const std::string& software);
-/// What a run says of itself when it begins: host, process, ranks, part, job, and what it found.
+/// Returns the description of a run at its start: host, process, ranks, part, job, and the shards found.
 std::map<std::string, std::string> attempt_of(const GenerateOptions& options, int ranks,
                                               std::size_t journalled, std::size_t bad);
 

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLockFile = ".lock";    ///< alone, or shared by runs that make a part each
-constexpr const char* kClaimFile = ".claim";  ///< while a folder is looked at and its header made
+constexpr const char* kLockFile = ".lock";    ///< lock of a run, exclusive or shared by runs of parts
+constexpr const char* kClaimFile = ".claim";  ///< lock while a run checks the folder and writes its header
 
 FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
   make_folder(folder);
@@ -33,7 +33,7 @@ FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
                fmt::format("part {} of {} in use", part.number, part.of), RunLock::Kind::alone)};
 }
 
-/// Runs that make a part each start at the same time: one after the other looks at the folder.
+/// Exclusive access of one of several concurrent parts to the folder, while it checks or completes it.
 class Claim {
  public:
   Claim(const fs::path& folder, const store::Part& part) {
@@ -52,7 +52,7 @@ class Claim {
   std::unique_ptr<RunLock> lock_;
 };
 
-/// Whether a folder holds nothing but what a run leaves that was killed before its header stood.
+/// Returns whether a folder is empty except for files of runs that were killed before they wrote the header.
 bool is_unclaimed(const fs::path& folder) {
   const fs::path header = temporary_name(folder / "dataset.json");
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -82,7 +82,8 @@ bool is_archive(const fs::path& folder) {
 
 namespace {
 
-/// A folder is new, or it belongs to this very config. Under the lock.
+/// Writes the header of a new folder, or checks that an existing dataset has the same config. The caller
+/// holds the locks. Throws InputError for any other folder.
 void claim_folder(const fs::path& folder, const store::DatasetHeader& header, FolderLocks& locks) {
   if (fs::exists(folder / "dataset.json")) return require_same_config(folder, header);
   if (!is_unclaimed(folder)) {
@@ -93,13 +94,13 @@ void claim_folder(const fs::path& folder, const store::DatasetHeader& header, Fo
   store::write_header(folder, header);
 }
 
-/// The folder for shards, without temporary files of a run that was killed.
+/// Creates the folder for shards and removes temporary files of killed runs from it.
 void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint64_t shards) {
   make_folder(folder / "shards");
   if (part.all()) {
     std::vector<fs::path> leftovers;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "shards")) {
-      // The folder may be a link to another: only what is ours.
+      // Only files of this name pattern, because the folder may be a link to another.
       const std::string name = entry.path().filename().string();
       if (name.starts_with(".shard-") && name.ends_with(".h5.part")) leftovers.push_back(entry.path());
     }
@@ -110,7 +111,7 @@ void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint6
     fs::remove(temporary_name(folder / store::shard_file_name(shard, shards)));
 }
 
-/// Parts are of one number: 2 of 3 and 2 of 4 would make the same shards.
+/// Throws InputError if the folder has parts of another number of parts: 2 of 3 and 2 of 4 overlap.
 void require_same_cut(const fs::path& folder, const store::Part& part) {
   if (part.all()) return;
   const std::string ending = fmt::format("-of-{}.jsonl", part.of);
@@ -132,7 +133,7 @@ FolderLocks enter(const GenerateOptions& o, const store::DatasetHeader& header,
   claim_folder(o.folder, header, locks);
   require_same_cut(o.folder, o.part);
   furnish();
-  store::Journal begun(o.folder / o.part.journal_name());  // before another part looks
+  store::Journal begun(o.folder / o.part.journal_name());  // created before another part checks the folder
   clear_leftovers(o.folder, o.part, header.shard_count());
   return locks;
 }
@@ -158,7 +159,7 @@ void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, boo
 }
 
 void finish(const GenerateOptions& o) {
-  const Claim claim(o.folder, o.part);  // two parts may end at once
+  const Claim claim(o.folder, o.part);  // two parts may end concurrently
   store::index_dataset(o.folder);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The folder of a dataset before a run makes shards: whose it is, what an earlier run left, what is missing.
+// Preparation of a dataset folder: locks, header, remains of earlier runs and missing shards.
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -11,32 +11,34 @@
 
 namespace swingbank::mpi::ranks {
 
-/// What a run holds until it ends: the folder, alone or shared with other parts, and its own part.
+/// Locks that a run holds until it ends: on the folder, exclusive or shared with other parts, and on its own
+/// part.
 struct FolderLocks {
   std::unique_ptr<RunLock> folder, part;
-  /// In a folder that is refused.
+  /// Removes the lock files from a folder that is refused.
   void withdraw() {
     folder->withdraw();
     if (part) part->withdraw();
   }
 };
 
-/// Locks the folder, makes it this run's, with its header and what `furnish` adds while no other part looks,
-/// and removes what a killed run left. Throws InputError where it is in use or another's.
+/// Locks the folder, writes its header if it is new, calls `furnish` while other parts wait, and removes
+/// temporary files of killed runs. Throws InputError if the folder is in use or contains anything else.
 FolderLocks enter(const GenerateOptions& options, const store::DatasetHeader& header,
                   const std::function<void()>& furnish);
 
-/// Whether the folder holds a dataset and cannot be written to. What is complete need not be.
+/// Returns whether the folder contains a dataset and is read-only. A complete dataset may be.
 bool is_archive(const std::filesystem::path& folder);
+/// Throws InputError if the folder's dataset has another config hash.
 void require_same_config(const std::filesystem::path& folder, const store::DatasetHeader& header);
 
-/// Shards that an earlier run made, of this run's part.
+/// Returns the existing shards of this run's part.
 std::vector<store::JournalLine> journalled(const GenerateOptions& options);
-/// Bad shards are taken out of the journal, or refused.
+/// Removes damaged shards from the journal with `repair`; otherwise throws InputError if there are any.
 void settle(const std::filesystem::path& folder, const std::vector<store::BadShard>& bad, bool repair);
-/// Writes what is made of a whole dataset (index.hpp), if it is whole.
+/// Writes the index of a complete dataset (index.hpp).
 void finish(const GenerateOptions& options);
-/// Shards still to make.
+/// Returns the missing shards of this run's part.
 std::deque<std::uint64_t> missing_shards(const GenerateOptions& options, const store::DatasetHeader& header);
 
 }  // namespace swingbank::mpi::ranks

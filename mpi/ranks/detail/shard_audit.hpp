@@ -1,18 +1,19 @@
 #pragma once
-// Whether the shards of a journal can be trusted, asked by all ranks together: reading them is what costs.
+// Verification of existing shards, distributed over all ranks because reading dominates its cost.
 #include <mpi.h>
 
 #include "mpi/store/dataset.hpp"
 
 namespace swingbank::mpi::ranks {
 
+/// Result of the verification.
 struct ShardAudit {
-  std::vector<store::BadShard> bad;  ///< on rank 0, in order of shard number
-  bool stopped = false;              ///< a signal ended it early; the same on all ranks
+  std::vector<store::BadShard> bad;  ///< damaged shards in order of number, on rank 0 only
+  bool stopped = false;              ///< whether a stop signal ended it early; the same on all ranks
 };
 
-/// Collective. Rank 0 gives each rank its part of `lines`, which counts there only; each looks at its shards
-/// with fault_of. Throws InputError on all ranks alike.
+/// Checks the shards of `lines` with fault_of, each rank a part of them. `lines` matters on rank 0 only.
+/// Collective; throws the same InputError on all ranks.
 ShardAudit audit_shards(MPI_Comm world, const std::filesystem::path& folder,
                         const store::DatasetHeader& header, const std::vector<store::JournalLine>& lines,
                         bool deep);

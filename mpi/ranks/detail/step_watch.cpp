@@ -19,7 +19,7 @@ void tell(int rank, const std::string& step, const std::string& where, std::chro
 
 StepWatch::StepWatch(int rank, std::string step, std::string where, std::chrono::milliseconds told_after) {
   errno = 0;
-  // The watched thread's own errno. It writes no more of it while it hangs.
+  // Address of the watched thread's errno, which that thread does not change while it hangs.
   thread_ =
       std::thread([this, rank, step = std::move(step), where = std::move(where), told_after, last = &errno] {
         std::unique_lock guard(mutex_);

@@ -1,6 +1,6 @@
 #pragma once
-// A rank that hangs in MPI-IO says where: OpenMPI does not return where one rank of a group cannot open a
-// file, so nobody else can tell why.
+// Watchdog of MPI-IO calls: prints where a rank hangs. OpenMPI does not return if one rank of a group cannot
+// open a file, so no other code can report the cause.
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -9,11 +9,11 @@
 
 namespace swingbank::mpi::ranks {
 
-/// While it lives, the step is watched; after a time it is told on standard error, with the last error that
-/// the system gave this thread since the step began.
+/// Watches a step from construction to destruction. After a time, prints the step with the last errno value
+/// that this thread has received since its start.
 class StepWatch {
  public:
-  /// `step` and `where` as in "create" and "shards/0.h5".
+  /// `step`: "create"; `where`: "shards/0.h5"; `told_after`: time until the message.
   StepWatch(int rank, std::string step, std::string where,
             std::chrono::milliseconds told_after = std::chrono::seconds(10));
   ~StepWatch();
@@ -24,7 +24,7 @@ class StepWatch {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ended_ = false;
-  std::thread thread_;  ///< the last member: it reads the others
+  std::thread thread_;  ///< last member, because it uses the others
 };
 
 }  // namespace swingbank::mpi::ranks

@@ -13,7 +13,7 @@
 namespace swingbank::mpi::ranks {
 
 namespace {
-/// Of the first shard in it: the folder's name is to be on the disk before the journal tells of the shard.
+/// Creates a folder and flushes its name to the disk, before the journal lists a shard in it.
 void make_durable_folder(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder)) return;
   make_folder(folder);
@@ -53,7 +53,8 @@ store::JournalLine Worker::make(std::uint64_t shard) {
   return line;
 }
 
-/// Of blocks whose first draw is in the shard, so that each counts once however shards and ranks cut them.
+/// Counts a block in the shard with its first draw, so that each block counts once for any division into
+/// shards and ranks.
 std::map<std::string, std::uint64_t> Worker::count_operating_points(const store::ShardData& part) const {
   const auto& point = study.config.operating_point;
   if (!point) return {};
@@ -74,7 +75,7 @@ Report Worker::work_off(const Shards& lease) {
   for (const std::uint64_t shard : lease) {
     try {
       report.finished.push_back(make(shard));
-    } catch (const AgreedError& e) {  // of the group
+    } catch (const AgreedError& e) {  // the same on all ranks of the group
       report.problems = e.problems();
     }
     int ends = stop_asked() || !report.problems.empty() ? 1 : 0, any = ends;

@@ -1,6 +1,6 @@
 #pragma once
-// A worker: a group of ranks that makes one leased shard after the other. Each rank simulates a part of the
-// shard's draws; all write it together through the MPI-IO driver.
+// Worker: a group of ranks that generates its leased shards one after the other. Each rank simulates a part
+// of a shard's draws, and all ranks write the shard together through the MPI-IO driver.
 #include <functional>
 
 #include "mpi/draw/shard_maker.hpp"
@@ -8,24 +8,25 @@
 
 namespace swingbank::mpi::ranks {
 
+/// Rank of a worker group.
 struct Worker {
   const draw::Study& study;
   draw::ShardMaker& maker;
   store::ShardAttributes attributes;
   std::filesystem::path folder;
-  MPI_Comm group;  ///< rank 0 of it is the leader
-  /// Leader only: hands in a report, returns the next lease.
+  MPI_Comm group;  ///< communicator of the group; its rank 0 is the leader
+  /// Sends a report and returns the next lease; called by the leader only.
   std::function<Shards(const Report&)> exchange;
-  /// Called now and then with the number of draws finished since.
+  /// Called repeatedly with the number of draws finished since the last call.
   std::function<void(std::uint64_t)> tick;
 
-  /// Works until there is no more.
+  /// Generates leased shards until an empty lease.
   void run();
-  /// Makes the shards of a lease until all are made, one cannot be made, or a signal asks for an end.
+  /// Generates the shards of a lease until all are done, one fails, or a stop signal arrives.
   Report work_off(const Shards& lease);
-  /// Makes one shard. Collective over the group; throws InputError on all its ranks alike.
+  /// Generates one shard. Collective over the group; throws the same InputError on all its ranks.
   store::JournalLine make(std::uint64_t shard);
-  /// Of one shard, for the journal. Collective over the group.
+  /// Returns the counts of a shard's operating points, for the journal. Collective over the group.
   [[nodiscard]] std::map<std::string, std::uint64_t> count_operating_points(
       const store::ShardData& part) const;
 };
