@@ -1,5 +1,5 @@
 #pragma once
-// What the values are that a record of a .dyr lacks at its end.
+// Values used for those missing at the end of a .dyr record.
 
 namespace swingbank::sim::grid {
 
