@@ -43,9 +43,8 @@ struct RawOptions {
 /// - header, bus, load, fixed shunt, generator, branch;
 /// - system switching device (a closed one is a line with its X);
 /// - transformer with two windings, and with three (a new bus, numbered above every bus of the file, is the
-/// star
-///   point, and each winding is a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance correction tables at
-///   the present tap or angle;
+///   star point, and each winding is a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance correction
+///   tables at the present tap or angle;
 /// - switched shunt (BINIT as a fixed shunt, with its steps and band if MODSW is 1, with a remark for other
 ///   control modes);
 /// - remote regulation (IREG, RMPCT).
