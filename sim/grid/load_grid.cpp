@@ -38,7 +38,7 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
     });
     if (g == network.generators.end()) continue;  // make_grid drops the record with a remark
     g->zr = machine->second.resistance;
-    g->zx = machine->second.reactance.value_or(0);  // 0: nothing to compare with
+    g->zx = machine->second.reactance.value_or(0);  // 0: no value to compare with
     if (machine->second.mva == g->mva || !(machine->second.mva > 0)) continue;
     network.remark("machine bases of the .dyd count where those of the network are others",
                    fmt::format("'{}' at bus {}: {:g} MVA, not {:g} ({})", record.id, record.bus,
