@@ -1,5 +1,5 @@
 #pragma once
-// MATPOWER cases (.m, version 2).
+// Reader of MATPOWER cases (.m, version 2).
 #include <filesystem>
 #include <optional>
 #include <string>

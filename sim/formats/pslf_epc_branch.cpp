@@ -80,7 +80,7 @@ Impedance pair_impedance(Fields& f, std::size_t column, const char* r, const cha
   return z;
 }
 
-/// A pi section as a two-port; series() combines it with the section that follows.
+/// A pi section as a two-port; then() combines it with the following section in series.
 struct TwoPort {
   Complex y11, y12, y22;
   static TwoPort of(const network::Branch& b) {

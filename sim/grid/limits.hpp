@@ -4,9 +4,9 @@
 
 namespace swingbank::sim::grid {
 
-/// Initialises every plant at its operating point. Throws one InputError that lists every infeasible plant.
-/// `widen`: if only limits prevent the operating point, the limits of the plant's controls are moved as far
-/// as it requires and no further, each with a remark and a warning.
+/// Checks that every plant can hold its operating point. Throws one InputError that lists all infeasible
+/// plants. `widen`: if only limits prevent the operating point, the limits of the plant's controls are moved
+/// as far as it requires and no further, each with a remark and a warning.
 void settle_limits(Grid& grid, bool widen);
 
 }  // namespace swingbank::sim::grid

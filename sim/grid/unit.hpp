@@ -27,7 +27,7 @@ struct UnitChoice {
   std::optional<int> measured_at = {};  ///< measured bus beyond the unit's transformer
   /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).
   Lacking complete_records = Lacking::refused;
-  bool dyd = false;  ///< `dyr` is a .dyd of PSLF (formats::survey_dyd), whatever its name
+  bool dyd = false;  ///< true if `dyr` is a PSLF .dyd (formats::survey_dyd) with any extension
 };
 
 /// Power and voltage of a unit in its case, at the measured bus.

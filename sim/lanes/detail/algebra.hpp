@@ -18,7 +18,7 @@ inline const T* Lanes<T>::source_impedance(const Constants& k, int source) const
   return l.equations.impedance(&k.c[static_cast<std::size_t>(l.c)]);
 }
 
-/// Returns a machine's impedance without its step-up transformer.
+/// Returns a source's impedance without its step-up transformer [pu on its own base].
 template <class T>
 inline const T* Lanes<T>::own_impedance(const Constants& k, int source) const {
   if (source >= n_) return source_impedance(k, source);

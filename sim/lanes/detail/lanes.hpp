@@ -1,6 +1,6 @@
 #pragma once
-// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See batch.hpp
-// for the interface.
+// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See
+// batch.hpp for the interface.
 #include <cmath>
 #include <limits>
 #include <map>

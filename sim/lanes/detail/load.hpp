@@ -394,7 +394,8 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   run.theta.assign(recorded_.size(), 0.0);
 }
 
-/// Completes a run and passes its record to `done`. A run that ended early repeats its last sample to the end.
+/// Completes a run and passes its record to `done`. A run that ended early repeats its last sample to the
+/// end.
 template <class T>
 void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];

@@ -19,8 +19,8 @@ struct LowRank {
   }
 };
 
-/// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining entry
-/// is at rounding level. Returns none if this needs more than `most` products.
+/// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining
+/// entry is at rounding level. Returns none if this needs more than `most` products.
 std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMatrix& from, int most);
 
 struct ImpedanceChange {
@@ -32,7 +32,8 @@ struct ByRowsAndColumns {
   std::function<Eigen::VectorXcd(int)> row, column;
 };
 /// Adds to `products` the update of M = matrix + products by changed impedances of the sources C (Woodbury):
-/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of machines.
+/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of
+/// machines.
 void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
                     const std::vector<ImpedanceChange>& changes);
 void add_impedances(LowRank& products, const InternalMatrix& matrix,

@@ -1,6 +1,6 @@
 #pragma once
-// Lanes: recording. The states at the sample times are interpolated lane by lane and buffered. The outputs are
-// evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one event. This
+// Lanes: recording. The states at the sample times are interpolated lane by lane and buffered. The outputs
+// are evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one event. This
 // occupies every lane, independent of the step sizes, and writes each channel in whole cache lines.
 #include <algorithm>
 #include <array>
@@ -51,8 +51,8 @@ void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, c
 }
 
 /// Interpolates the states at the due samples, state by state, because one state's values of all lanes are
-/// adjacent. The buffer is ordered by pack, so that the states of a pack are written to consecutive lines. New
-/// samples that do not start at a pack boundary are split between two packs.
+/// adjacent. The buffer is ordered by pack, so that the states of a pack are written to consecutive lines.
+/// New samples that do not start at a pack boundary are split between two packs.
 template <class T>
 void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
   using Of = LaneTraits<Flat>;
@@ -143,7 +143,8 @@ void Lanes<T>::spread_constants(int lane) {
   for (int source : nonlinear_) row(source);
 }
 
-/// Returns the states of the pack of buffered samples that starts at `first`, in the buffer or copied to `room`.
+/// Returns the states of the pack of buffered samples that starts at `first`, in the buffer or copied to
+/// `room`.
 template <class T>
 const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector<int>& states,
                                 T* room) const {

@@ -1,6 +1,6 @@
 #pragma once
-// Network solution for grids of many sources, I = (M + sum_k u_k w_k^T) E, with one matrix for all lanes. M is
-// the grid's own matrix, stored densely or as sparse factors of the whole network. The few outer products
+// Network solution for grids of many sources, I = (M + sum_k u_k w_k^T) E, with one matrix for all lanes. M
+// is the grid's own matrix, stored densely or as sparse factors of the whole network. The few outer products
 // represent a lane's switching and machines. A matrix per lane would not fit into the caches. The bits of a
 // lane do not depend on other lanes, because products of other lanes add zero.
 #include <algorithm>
