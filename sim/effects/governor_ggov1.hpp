@@ -1,11 +1,10 @@
 #pragma once
 // GGOV1: gas turbine or engine under a PID governor, with load (temperature) and acceleration limiter.
 //
-// PSS/E computes the acceleration limiter's output as the stroke of the previous step plus
-// Ka (Aset - acceleration) dt, so that the stroke rises no faster than Ka (Aset - acceleration). Here the
-// state `accel` imposes this rate independent of the step size. It follows the other two outputs at a
-// distance kAbove with the time constant kFollow, so that a stroke slower than kAbove/kFollow never reaches
-// it.
+// PSS/E computes the acceleration limiter's output as the stroke of the previous step plus Ka (Aset -
+// acceleration) dt. The stroke thus rises no faster than Ka (Aset - acceleration). Here the state `accel`
+// imposes this rate independent of the step size. It follows the other two outputs at a distance kAbove with
+// the time constant kFollow, so that a stroke slower than kAbove/kFollow never reaches it.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

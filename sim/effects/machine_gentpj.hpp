@@ -2,9 +2,9 @@
 // GENTPJ: synchronous machine with two rotor circuits in each axis. All inductances except the leakage
 // saturate with the air-gap flux and the stator current.
 //
-// The factor Se depends on the air-gap flux, the flux on the stator current, and the current on the
-// subtransient reactances divided by the saturation factors. current() solves this loop by Newton's method
-// for Se.
+// The factor Se depends on the air-gap flux, and the flux on the stator current. The current depends on the
+// subtransient reactances, which Se reduces. The function current() solves this loop for Se by Newton's
+// method.
 //
 // Conventions. Assumed as for GENROU; no available record verifies them.
 #include <fmt/format.h>

@@ -16,15 +16,18 @@ namespace swingbank::sim::formats {
 /// values"; '/' at the end of a line continues it on the next; '#' and '@' begin comments. A section must
 /// have the announced number of records.
 ///
-/// Read: bus; branch (line sections in series are combined); transformer with two windings, and with three (a
-/// star point at the file's internal bus, else at a new bus, numbered above all others); the ratio of a
-/// primary winding is tapp + tapfp - 1; shunt, at a bus or at an end of a branch; svd (at g + jb, with its
-/// steps and band for type 1); generator, which regulates its bus to vsched; load. Converters of dc lines
-/// become the power that they draw at the file's voltages. Ignored, because they do not affect the equations:
-/// areas, zones, owners, interfaces, transactions, balancing authorities, substations, injection groups,
-/// ratings, dates, tap controls (taps are fixed). Impedance correction, motors and every other non-empty
-/// section are dropped with a remark. Refused: a line in ohms or with a transformer inside. A case has no
-/// frequency: the caller gives RawOptions::frequency_hz.
+/// Read:
+/// - bus; load; branch (line sections in series are combined);
+/// - transformer with two windings, and with three (a star point at the file's internal bus, else at a new
+///   bus, numbered above all others); the ratio of a primary winding is tapp + tapfp - 1;
+/// - shunt, at a bus or at an end of a branch; svd (at g + jb, with its steps and band for type 1);
+/// - generator, which regulates its bus to vsched;
+/// - converter of a dc line, which becomes its power at the file's voltages.
+///
+/// Ignored, because they do not affect the equations: areas, zones, owners, interfaces, transactions,
+/// balancing authorities, substations, injection groups, ratings, dates, tap controls (taps are fixed).
+/// Impedance correction, motors and every other non-empty section are dropped with a remark. Refused: a line
+/// in ohms or with a transformer inside. A case has no frequency: the caller gives RawOptions::frequency_hz.
 ///
 /// Sources: headers and records of public files written by PSLF (InterPSS, a case of 18 buses), by PowerWorld
 /// (GridDyn, IEEE test cases) and by BPA's power flow (ext_geb*.f), and the columns of version 15 as listed

@@ -49,16 +49,22 @@ struct RawOptions {
 ///   control modes);
 /// - remote regulation (IREG, RMPCT).
 ///
-/// Changed, with a remark: branches without impedance get one (raise_impedance); dc lines, FACTS and GNE
-/// devices and induction machines become the power that they draw at the file's voltages; VMSTAR <= 0 becomes
-/// 1; SBASE1-2 <= 0 becomes SBASE if CZ = 1; IREG and SWREG of a missing bus become the own bus; distributed
-/// generation inside a load is subtracted from its P and Q; and the changes of settle_generators and
-/// settle_islands. Ignored, because they do not affect the equations: lines that begin with '@!', text after
-/// '#' or '!' in place of a field, system-wide data, names of areas, zones and owners, inter-area transfer,
-/// multi-section line groupings, ratings, names of branches, vector groups, voltage limits, tap and load-flow
-/// controls (taps are fixed), substations without split buses. Refused, with section and line: buses that a
-/// substation's open switches split. Out-of-service loads and shunts are dropped. Equipment at an isolated
-/// bus (type 4) is out of service, as in PSS/E.
+/// Changed, with a remark:
+/// - branches without impedance get one (raise_impedance);
+/// - dc lines, FACTS and GNE devices and induction machines become their power at the file's voltages;
+/// - VMSTAR <= 0 becomes 1; SBASE1-2 <= 0 becomes SBASE if CZ = 1;
+/// - IREG and SWREG of a missing bus become the own bus;
+/// - distributed generation inside a load is subtracted from its P and Q;
+/// - the changes of settle_generators and settle_islands.
+///
+/// Ignored, because they do not affect the equations:
+/// - lines that begin with '@!', text after '#' or '!' in place of a field;
+/// - system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line groupings;
+/// - ratings, names of branches, vector groups, voltage limits;
+/// - tap and load-flow controls (taps are fixed), substations without split buses.
+///
+/// Refused, with section and line: buses that a substation's open switches split. Out-of-service loads and
+/// shunts are dropped. Equipment at an isolated bus (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for empty fields: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
@@ -87,8 +93,8 @@ RawSurvey parse_raw_survey(const std::string& text, const std::string& name, con
 void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::path& dyr);
 
 /// Writes version 32, 33, 34 or 35. Reading it restores all values bit by bit (except `origin`). Lines
-/// precede transformers. Throws InputError if the file cannot be written or a branch has no .raw form: a tap
-/// or phase shift on a branch that is not a transformer, charging or a far-end shunt on a transformer.
+/// precede transformers. Throws InputError if the file cannot be written or a branch has no .raw form. Such
+/// branches are lines with a tap or phase shift, and transformers with charging or a far-end shunt.
 void write_raw(const network::Network& network, const std::filesystem::path& file, int version = 33);
 /// Returns the text that write_raw writes; `name` replaces the file name in messages.
 std::string raw_text(const network::Network& network, int version, const std::string& name);
@@ -135,7 +141,7 @@ DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 /// `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file.
 ///
 /// Non-numeric parameters are faults of the record. All other errors are thrown together as an InputError,
-/// with line numbers; an ignored or mapped name that does not occur in the file is an error too.
+/// with line numbers. An ignored or mapped name that does not occur in the file is an error too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
 /// The same from a text; `name` replaces the file name in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,

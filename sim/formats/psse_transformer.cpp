@@ -43,7 +43,7 @@ long double turns(int cw, long double kv, Fields& f, const char* name, Problems&
 }
 
 /// Returns the series impedance between one pair of windings ("1-2") in per unit of the system base and bus
-/// voltages; its fields R, X, SBASE begin at `first`.
+/// voltages. Its fields R, X, SBASE begin at `first`.
 Impedance series(int cz, long double base, Fields& f, std::size_t first, const std::string& pair,
                  network::Network& network, Problems& problems, long double& mva) {
   long double r = f.number(first, ("R" + pair).c_str(), 0.0L), x = f.number(first + 1, ("X" + pair).c_str());

@@ -5,8 +5,8 @@
 namespace swingbank::sim::grid {
 
 /// Checks that every plant can hold its operating point. Throws one InputError that lists all infeasible
-/// plants. `widen`: if only limits prevent the operating point, the limits of the plant's controls are moved
-/// as far as it requires and no further, each with a remark and a warning.
+/// plants. `widen`: if only limits of the plant's controls prevent the operating point, they are moved no
+/// further than required, each with a remark and a warning.
 void settle_limits(Grid& grid, bool widen);
 
 }  // namespace swingbank::sim::grid

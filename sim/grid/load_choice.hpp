@@ -12,7 +12,7 @@ namespace swingbank::sim::grid {
 /// admittances need no model. A load whose components cancel to P = 0 or Q = 0 is a problem.
 void loads_as_composed(Grid& grid, Problems& problems);
 
-/// Returns true for the frequency-dependent load of PSS/E: its fractions of constant power and current (Pp,
+/// Returns true for the frequency-dependent load of PSS/E. Its fractions of constant power and current (Pp,
 /// Pi, Qp, Qi) come from the .raw if its .dyr record has none.
 bool is_composed(const Effect& effect);
 /// Sets these fractions from the load's components in the .raw. A load whose components cancel to P = 0 or

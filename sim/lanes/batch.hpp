@@ -54,8 +54,8 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 
 class Batch {
  public:
-  /// Throws InputError if the number of lanes is not available in this build, if sources or laws of the grid
-  /// cannot run in single precision, or if a load model regulates another bus than its own.
+  /// Throws InputError if the number of lanes is not available, if a load model regulates a bus other than
+  /// its own, or if sources or laws of the grid cannot run in the requested single precision.
   Batch(const grid::Grid& grid, BatchOptions options);
   ~Batch();
   /// Runs jobs until `next` returns false. Calls `done` once per job, in the order of completion; the

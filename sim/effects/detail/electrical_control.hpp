@@ -146,9 +146,9 @@ struct ElectricalControl {
   struct Limits {
     T most_p, least_p, most_q;
   };
-  /// Computes both commands: s.Tm (active) and s.Efd (reactive). Functions of a Model: `total` adds the
-  /// ride-through contribution to the reactive current, `active` maps the ordered to the active current,
-  /// `held` maps the remaining current limit to the limit of the active current.
+  /// Computes both commands: s.Tm (active) and s.Efd (reactive). A Model passes three functions. `total` adds
+  /// the ride-through contribution to the reactive current. `active` maps the ordered to the active current.
+  /// `held` maps the remaining limit to that of the active current.
   template <class T, class Total, class Active, class Held>
   static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                        const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,

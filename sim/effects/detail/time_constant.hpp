@@ -1,8 +1,8 @@
 #pragma once
 // Common rule of all effects for a time constant of zero. A lag or lead-lag with T = 0 passes its input
 // (sim/core/blocks.hpp). Any other block, such as a washout or a rate feedback, requires T > 0 if it acts. A
-// block with zero gain or an unused output is off and requires only T >= 0: prepare() then takes inverse(T),
-// which is 0 for T = 0, so that its state keeps its steady value.
+// block with zero gain or an unused output is off and requires only T >= 0. Its state then keeps the steady
+// value, because prepare() takes inverse(T), which is 0 for T = 0.
 #include <fmt/format.h>
 
 #include <string>

@@ -72,8 +72,8 @@ class RawReader {
   /// Reads a section. Returns false at the end of the file ('Q' or no more lines); missing lines are a fault
   /// unless only optional sections are missing.
   bool section(const Section& section, bool may_be_missing);
-  /// Returns true if the file has no such section: some programs write version 34 without the section of
-  /// switching devices, as the text of the line after the branches shows.
+  /// Returns true if the file has no such section. Some programs write version 34 without switching devices;
+  /// the text of the line after the branches shows it.
   [[nodiscard]] bool left_out(const Section& section) const;
   /// Returns true if the text of the line that ended a section announces the same section again.
   [[nodiscard]] bool again(const Section& section) const;

@@ -22,8 +22,8 @@ struct StepUp {
 /// Returns the shortest path through transformers in service, without stages if there is none. `first`:
 /// impedance and ratio in series with it at the machine.
 StepUp step_up(const network::Network& network, int machine, int far, const StepUp& first);
-/// Returns a description of equipment at a bus of the path, other than `way`, that may carry current, or "":
-/// a generator, a load, a shunt, or a branch in service that leads elsewhere.
+/// Returns a description of other equipment at a bus of the path that may carry current, or "". This is a
+/// generator, a load, a shunt, or a branch in service that leads elsewhere.
 std::string joins_on_the_way(const network::Network& network, const StepUp& way, int bus);
 
 }  // namespace swingbank::sim::grid

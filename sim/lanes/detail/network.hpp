@@ -6,8 +6,8 @@
 namespace swingbank::sim::lanes {
 
 /// Decides whether the lanes share the grid's own matrix, and sets it up. They do in grids of many sources,
-/// except with sensitivities (derivatives differ by lane in every entry), with nonlinear sources (Newton's
-/// method reads the lanes' matrices), and with a single lane.
+/// with three exceptions. With sensitivities every entry differs by lane. With nonlinear sources Newton's
+/// method reads the lanes' matrices. A single lane has nothing to share.
 template <class T>
 void Lanes<T>::share() {
   shares_ = Traits::directions == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
@@ -112,8 +112,8 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
   return products;
 }
 
-/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:], and
-/// those of the rows of remote measurements, with their own entry k in place of M[:,k].
+/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. The
+/// rows of remote measurements have their own entry k in place of M[:,k].
 template <class T>
 void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);

@@ -10,7 +10,7 @@
 namespace swingbank::sim::laws {
 
 /// Coefficients of a law: [0] system frequency, then the parameters, values at the operating point, unknowns
-/// that steady() solves for, constants, and all fixed values computed from these.
+/// of steady(), constants, and fixed values computed from these.
 constexpr int kFrequency = 0, kFirstParameter = 1;
 
 struct Requirement {
@@ -37,8 +37,8 @@ struct Definition {
       finite;  ///< coefficients that depend on parameters only, with their text; they must be finite
   Compiled code;
 
-  /// Returns true if the operating point prescribes the output: the machine's Efd or Tm (zero for a law that
-  /// adds to them), and zero for dVref and dPref.
+  /// Returns true if the operating point prescribes the output. It is the machine's Efd or Tm, and zero for
+  /// dVref, dPref and a law that adds to Efd or Tm.
   [[nodiscard]] bool must_meet() const;
   [[nodiscard]] std::string_view output_name() const {
     return kSignals[static_cast<std::size_t>(output)].name;
