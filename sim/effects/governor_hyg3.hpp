@@ -14,7 +14,7 @@
 
 namespace swingbank::sim::effects::governor_hyg3 {
 
-/// Leakage flow of the closed gate at nominal head [pu]: head = (flow/pgv)^2 is undefined for pgv = 0.
+/// Lower bound of the flow at nominal head, a leakage [pu]: head = (flow/pgv)^2 is undefined for pgv = 0.
 constexpr double kShut = 0.01;
 
 struct Model {

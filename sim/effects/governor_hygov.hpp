@@ -8,7 +8,7 @@
 
 namespace swingbank::sim::effects::governor_hygov {
 
-/// Leakage opening of the closed gate [pu]: head = (flow/gate)^2 is undefined for gate = 0.
+/// Lower bound of the gate's opening, a leakage [pu]: head = (flow/gate)^2 is undefined for gate = 0.
 constexpr double kLeak = 0.01;
 
 struct Model {

@@ -17,6 +17,7 @@ struct DydMachine {
   std::optional<double> reactance = {};  ///< X'd of a classical machine [pu]
 };
 
+/// The readable records of a .dyd, and the errors of the other text.
 struct DydSurvey {
   /// Records in .dyr form. A model without a counterpart keeps its values unchanged and has a fault.
   DyrSurvey dyr;

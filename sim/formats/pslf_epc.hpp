@@ -38,6 +38,7 @@ network::Network parse_epc(const std::string& text, const std::string& name, con
 
 /// Reads an .epc, but continues after faults, as survey_raw does.
 RawSurvey survey_epc(const std::filesystem::path& file, const RawOptions& options);
+/// The same from a text; `name` replaces the file name in messages.
 RawSurvey parse_epc_survey(const std::string& text, const std::string& name, const RawOptions& options);
 
 /// Returns true if the file name has the extension .epc.

@@ -12,6 +12,7 @@
 
 namespace swingbank::sim::formats::psse {
 
+/// One field of a record.
 struct Field {
   std::string text;  ///< without quotes, and without blanks at both ends
   bool quoted = false;

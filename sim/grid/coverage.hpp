@@ -19,10 +19,12 @@ struct ModelCoverage {
   [[nodiscard]] int covered() const { return effect.empty() ? 0 : records - refused; }
 };
 
+/// Coverage of several .dyr files.
 struct Coverage {
   std::vector<ModelCoverage> models;  ///< most records first
   int files = 0, records = 0, covered = 0;
   std::vector<std::string> faults = {};  ///< sentences on text that is not a record
+  /// Returns the percentage of covered records; 100 without records.
   [[nodiscard]] double percent() const { return records == 0 ? 100.0 : 100.0 * covered / records; }
 };
 

@@ -14,6 +14,7 @@
 
 namespace swingbank::sim::grid {
 
+/// A network with its power flow, plants, dynamic loads and the library of their effects.
 struct Grid {
   network::Network network;
   network::PowerFlow flow;

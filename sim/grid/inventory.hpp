@@ -18,6 +18,7 @@ struct ModelCount {
   [[nodiscard]] int uncovered() const { return kind.empty() ? records : faulty; }
 };
 
+/// A unit of the case and its models.
 struct UnitCount {
   int bus = 0;
   std::string id, bus_name;
@@ -31,6 +32,7 @@ struct UnitCount {
   [[nodiscard]] bool covered() const { return machine && uncovered.empty(); }
 };
 
+/// Units and models of a case.
 struct Inventory {
   std::vector<UnitCount> units;     ///< in the order of the .raw
   std::vector<ModelCount> models;   ///< most records first

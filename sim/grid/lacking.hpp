@@ -3,6 +3,7 @@
 
 namespace swingbank::sim::grid {
 
+/// `refused`: the record is an error; `zero`: zeros; `standard`: the effect's defaults.
 enum class Lacking { refused, zero, standard };
 
 }  // namespace swingbank::sim::grid

@@ -14,6 +14,7 @@
 
 namespace swingbank::sim::lanes {
 
+/// Options of a batch; `t_end` in seconds, `rate` in samples per second.
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;
   double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
@@ -52,6 +53,7 @@ struct Job {
 /// Returns the plants whose parameters a job changes, by index. `grid`: the batch's grid.
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job);
 
+/// Integrates jobs on one grid in SIMD lanes. One Batch runs in one thread.
 class Batch {
  public:
   /// Throws InputError if the number of lanes is not available, if a load model regulates a bus other than

@@ -19,6 +19,7 @@ enum class Use {
   reactance,  ///< impedance of the machine, which PSS/E keeps in the .raw
 };
 
+/// A column of a .dyd model.
 struct Column {
   std::string_view name;  ///< in lower case
   Use use = Use::value;
@@ -27,6 +28,7 @@ struct Column {
   std::string_view idle = {};  ///< with Use::off: any value is accepted if this column is 0
 };
 
+/// A model of a .dyd and its counterpart in a .dyr.
 struct Model {
   std::string_view dyd, dyr;
   std::string_view base;  ///< "mva" of a machine, "mwcap" of a turbine, empty: none
@@ -38,6 +40,7 @@ struct Model {
       {};  ///< columns of the .dyr without counterpart in the .dyd, with their values
 };
 
+/// Returns all models with a counterpart.
 std::span<const Model> models();
 /// Returns true for models that share a unit's bus and id but do not belong to the unit: meters, loads,
 /// relays.

@@ -21,6 +21,7 @@ struct Row {
   std::vector<std::size_t> starts;  ///< per continuation line: number of `says` fields before it
 };
 
+/// Reads one .epc; each object reads once.
 class EpcReader {
  public:
   /// `name` replaces the file name in messages.

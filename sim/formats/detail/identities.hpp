@@ -11,6 +11,7 @@
 
 namespace swingbank::sim::formats {
 
+/// Registry of the identities of a file's equipment.
 class Identities {
  public:
   /// All three arguments must outlive the object.

@@ -8,6 +8,7 @@
 
 namespace swingbank::sim::formats::matpower {
 
+/// One row of a matrix.
 struct Row {
   int line;  ///< line of the file, from 1
   std::vector<long double> values;

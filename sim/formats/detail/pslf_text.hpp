@@ -9,6 +9,7 @@
 
 namespace swingbank::sim::formats::pslf {
 
+/// A word, a quoted text or ':'.
 struct Token {
   std::string text;
   bool quoted = false;

@@ -40,6 +40,7 @@ constexpr Columns columns(int version) {
   return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 7, kNoColumn};
 }
 
+/// Reads one .raw or .rawx; each object reads once.
 class RawReader {
  public:
   /// `name` replaces the file name in messages.

@@ -73,6 +73,7 @@ void take_from_raw(plant::Block& block, const network::Generator& g);
 /// .dyr that contradicts ZX takes precedence; the warning on it is returned, or "".
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
+/// Sorts the plant's controls by slot, the order of their evaluation.
 void sort_controls(plant::Plant& plant);
 /// Returns a warning on features that a block's values request and its equations omit, or "".
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);

@@ -8,6 +8,7 @@
 
 namespace swingbank::sim::lanes {
 
+/// LDU factors of a bus admittance matrix in the elimination order.
 class BusFactors {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;

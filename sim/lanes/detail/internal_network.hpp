@@ -52,6 +52,7 @@ struct InternalMatrix : Terminals {
   }
 };
 
+/// Computes and caches the internal matrices of a grid per topology.
 class InternalNetwork {
  public:
   explicit InternalNetwork(const grid::Grid& grid);

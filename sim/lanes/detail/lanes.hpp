@@ -19,6 +19,7 @@
 
 namespace swingbank::sim::lanes {
 
+/// Integrator for LaneTraits<T>::lanes events at once.
 template <class T>
 class Lanes {
  public:

@@ -8,6 +8,7 @@
 
 namespace swingbank::sim::lanes {
 
+/// Network and initial states of a grid at its operating point.
 struct OperatingState {
   /// The grid must outlive this object.
   explicit OperatingState(const grid::Grid& at);

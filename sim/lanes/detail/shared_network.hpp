@@ -14,6 +14,7 @@
 
 namespace swingbank::sim::lanes {
 
+/// The shared matrix M and the updates of all lanes.
 template <class T>
 class SharedNetwork {
  public:

@@ -13,6 +13,7 @@ struct Feed {
   Complex source, own;
 };
 
+/// Factorised network of a grid, for the low-rank updates of switchings.
 class SwitchedNetwork {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;

@@ -13,12 +13,14 @@ namespace swingbank::sim::laws {
 /// of steady(), constants, and fixed values computed from these.
 constexpr int kFrequency = 0, kFirstParameter = 1;
 
+/// A condition on the parameters, checked by Effect::check.
 struct Requirement {
   Op op;  ///< less or less_equal
   int left, right;
   std::string text, where;
 };
 
+/// Metadata and program of a law.
 struct Definition {
   std::string text;  ///< unmodified text of the file
   std::string name, title, source, description;

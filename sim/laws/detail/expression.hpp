@@ -11,6 +11,7 @@
 
 namespace swingbank::sim::laws {
 
+/// Operation of a node.
 enum class Op : std::uint8_t {
   number,
   name,
@@ -37,6 +38,7 @@ enum class Op : std::uint8_t {
 
 struct Node;
 using Tree = std::shared_ptr<const Node>;
+/// Node of the syntax tree; the fields used depend on `op`.
 struct Node {
   Op op;
   double value = 0.0;  ///< number, power

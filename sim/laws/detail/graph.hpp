@@ -68,6 +68,7 @@ enum class Act : std::uint8_t {
   select_less_equal,  ///< a <= b ? c : d
   store               ///< in programs only: writes a value
 };
+/// A vertex of the graph: an operation and its operands.
 struct Vertex {
   Act act;
   int index = -1;  ///< coefficient, state, signal
@@ -79,6 +80,8 @@ struct Vertex {
 /// Thrown when a law exceeds the maximum size.
 struct TooLarge {};
 
+/// Directed acyclic graph of a law's expressions. Methods that add a vertex return its index; an existing
+/// equal vertex is reused.
 class Graph {
  public:
   static constexpr std::size_t kMost = 4000;  ///< maximum number of vertices

@@ -9,6 +9,7 @@
 
 namespace swingbank::sim::laws {
 
+/// One instruction: registers of the result and of the operands, and an index.
 struct Instruction {
   Act act;
   std::uint8_t to = 0;
@@ -109,6 +110,7 @@ class Registers {
   alignas(64) std::byte room_[sizeof(T) * kRegisters];
 };
 
+/// Compiled graph.
 struct Compiled {
   Code fixed;                                     ///< computes coefficients
   Code loop;                                      ///< computes derivatives, and the output as the last value

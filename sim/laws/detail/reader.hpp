@@ -15,6 +15,7 @@ struct Expression {
   Tree tree;
 };
 
+/// Reads one law file.
 class Reader {
  public:
   Reader(const std::string& text, const std::filesystem::path& name);
