@@ -1,5 +1,5 @@
 #pragma once
-// WTARA1: aerodynamics of a wind turbine, linear in the blades' angle.
+// WTARA1: aerodynamics of a wind turbine, linear in the pitch angle.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"

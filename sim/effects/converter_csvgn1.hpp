@@ -1,5 +1,5 @@
 #pragma once
-// CSVGN1: static var compensator, a capacitor beside a reactor that a thyristor controls.
+// CSVGN1: static var compensator, a capacitor in parallel with a thyristor-controlled reactor.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// DERA1: many small generators or batteries of a distribution grid, as one converter with its controls and
-// with the protection that takes a part of them off.
+// DERA1: distributed generation or batteries, aggregated into one converter with its controls and with
+// protection that trips a fraction of the units.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace swingbank::sim::effects::converter_dera1 {
 
 struct Model : shared::ControlledCurrent<Model> {
-  using Core = renewable::ElectricalControl;  // for what its check() asks
+  using Core = renewable::ElectricalControl;  // for its checks
   static constexpr std::string_view
       name = "DERA1",
       title = "aggregated distributed generation, type A",
@@ -162,8 +162,8 @@ struct Model : shared::ControlledCurrent<Model> {
     for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
     return list;
   }();
-  static constexpr double kRateLag = 0.01;        ///< in which the limit of the reference's rate sets in [s]
-  static constexpr double kFrequencyBand = 1e-5;  ///< beyond fl and fh, where a trip is full [pu]
+  static constexpr double kRateLag = 0.01;        ///< time constant of the reference's rate limiter [s]
+  static constexpr double kFrequencyBand = 1e-5;  ///< width beyond fl and fh over which a trip sets in [pu]
   /// The first coefficients are the parameters themselves; Vref0 becomes the reference.
   enum C {
     iTrv = parameter_count,
@@ -177,12 +177,12 @@ struct Model : shared::ControlledCurrent<Model> {
     kig,       ///< Kig at freqFlag 1
     per_low,   ///< 1/(Vl1 - Vl0)
     per_high,  ///< 1/(Vh0 - Vh1)
-    f_under,   ///< deviations at which frequency trips [pu]
+    f_under,   ///< frequency deviations that cause a trip [pu]
     f_over,
     none,
     pref,
-    qref,     ///< at pfFlag 0
-    tangent,  ///< of the power factor's angle
+    qref,     ///< for pfFlag 0
+    tangent,  ///< tangent of the power factor angle
     start_p,  ///< both commands at the operating point
     start_q,
     coefficients
@@ -295,7 +295,7 @@ struct Model : shared::ControlledCurrent<Model> {
   static std::string steady(const T*, T* c, Signals<T>& s, T* x);
 
  private:
-  /// The ordered power as its own regulator and the power factor measure it.
+  /// Returns the measured ordered power, input of its regulator and of the power factor control [pu].
   template <class T>
   static T measured(const T* c, const T* x, T& dx) {
     return lag(c[iTp], x[Pf], select(c[iTpord] > T(0.0), x[Pord], clamp(x[Pset], c[Pmin], c[Pmax])), dx);
@@ -308,7 +308,7 @@ struct Model : shared::ControlledCurrent<Model> {
     const T regulated = renewable::regulator(c[Kpg], c[kig], clamp(error, c[femin], c[femax]), c[Pmin],
                                              c[Pmax], T(1.0), x[PI], dx[PI]);
     const T wanted = select(c[freqFlag] > T(0.5), regulated, reference);
-    // What changes slower than the limit passes as it is.
+    // A reference that moves slower than the rate limit passes unchanged.
     dx[Pset] = clamp((wanted - x[Pset]) * T(1.0 / kRateLag), c[dPmin], c[dPmax]);
     const T set = x[Pset] + T(kRateLag) * dx[Pset];
     dx[Pord] = (set - x[Pord]) * c[iTpord];
@@ -323,7 +323,8 @@ struct Model : shared::ControlledCurrent<Model> {
   static T of_voltage(const T* c, const T& V, const T& moved) {
     return clamp(c[Kqv] * renewable::dead_zone(c[Vref0] + moved - V, c[dbd1], c[dbd2]), c[Iql1], c[Iqh1]);
   }
-  /// The share that neither voltage nor frequency has taken off; V: measured, `at_once`: as it is.
+  /// Returns the fraction of units that neither voltage nor frequency has tripped. V: measured voltage,
+  /// `at_once`: unfiltered voltage.
   template <class T>
   static T stays_on(const T* c, const T* x, const T& V, const T& at_once, const T& f, T* dx) {
     const T zero(0.0), one(1.0), per_band(1.0 / renewable::kDipBand), per_follow(1.0 / renewable::kFollow);

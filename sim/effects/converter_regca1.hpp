@@ -1,5 +1,5 @@
 #pragma once
-// REGCA1: the converter of a wind or photovoltaic plant or a battery, as a current that follows its commands.
+// REGCA1: converter of a wind or photovoltaic plant or a battery, a controlled current.
 #include <fmt/format.h>
 
 #include <vector>
@@ -70,13 +70,13 @@ struct Model : shared::ControlledCurrent<Model> {
       kTfreq};
   static constexpr int dyr_columns[] = {Lvplsw, Tg,    Rrpwr, Brkpt, Zerox,  Lvpl1,  Volim, Lvpnt1,
                                         Lvpnt0, Iolim, Tfltr, Khv,   Iqrmax, Iqrmin, Accel};
-  static constexpr double kFollow = 2e-3;  ///< in which Ip follows an LVPL that falls below it [s]
+  static constexpr double kFollow = 2e-3;  ///< time constant with which Ip follows an LVPL below it [s]
   enum C {
     iTg,
     rise,
-    rest,   ///< kNoLimit where LVPL is switched off, else 0
+    rest,   ///< kNoLimit if LVPL is switched off, else 0
     most,   ///< Lvpl1
-    slope,  ///< of LVPL
+    slope,  ///< slope of LVPL
     zerox,
     volim,
     gain_from,  ///< Lvpnt0
@@ -148,7 +148,7 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {
-    // Up with power, down with the power a battery draws.
+    // The rate limit applies to an increase of the magnitude: upward if it delivers, downward if it draws.
     const T wanted = (s.Tm - x[Ip]) * c[iTg], none(renewable::kNoLimit);
     const auto draws = x[Ip] < T(0.0);
     const T moves =

@@ -1,6 +1,6 @@
 #pragma once
-// REGCB1: the converter of a wind or photovoltaic plant or a battery, as a voltage behind its impedance that
-// drives the current commanded.
+// REGCB1: converter of a wind or photovoltaic plant or a battery, a voltage behind an impedance that drives
+// the commanded current.
 #include <string>
 
 #include "sim/core/effect.hpp"
@@ -121,7 +121,7 @@ struct Model : shared::BehindImpedance<Model> {
   }
 
  private:
-  /// The inner voltage that drives the lagged currents.
+  /// Computes the inner voltage that drives the lagged currents [pu].
   template <class T>
   static void inner_voltage(const T* c, const T* x, const T& V, T& d, T& q) {
     d = V;

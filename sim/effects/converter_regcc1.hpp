@@ -1,6 +1,6 @@
 #pragma once
-// REGCC1: the converter of a wind or photovoltaic plant or a battery, as a voltage behind its impedance with
-// its phase-locked loop and the inner control of its current.
+// REGCC1: converter of a wind or photovoltaic plant or a battery, a voltage behind an impedance with a
+// phase-locked loop and an inner current control.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -121,7 +121,7 @@ struct Model : shared::BehindImpedance<Model> {
     per_angle,
     coefficients
   };
-  // phi: the reference takes a state named delta for a rotor's angle.
+  // Named phi because the reference integrator treats a state named delta as a rotor angle.
   enum X { Ip, Iq, Vf, Sp, Sq, Ed, Eq, phi, w, Vrlag, Vilag };
   static constexpr State states[] = {
       {"Ip", "pu", "active current, or the power for rateFlag 1"},
@@ -135,7 +135,7 @@ struct Model : shared::BehindImpedance<Model> {
       {.name = "w",
        .unit = "rad/s",
        .meaning = "integral of the phase-locked loop",
-       .weight = 0.1,  // it acts through the angle, within the loop's tenth of a second
+       .weight = 0.1,  // acts through the angle, within the loop's time of about 0.1 s
        .bends = true},
       kVrlag,
       kVilag};
@@ -209,7 +209,7 @@ struct Model : shared::BehindImpedance<Model> {
   }
 
  private:
-  /// The axes of the phase-locked loop.
+  /// Reference frame of the phase-locked loop.
   template <class T>
   struct Frame {
     T sine, cosine;
@@ -217,7 +217,7 @@ struct Model : shared::BehindImpedance<Model> {
     [[nodiscard]] T along(const T& re, const T& im) const { return re * cosine + im * sine; }
     [[nodiscard]] T across(const T& re, const T& im) const { return im * cosine - re * sine; }
   };
-  /// Turns the loop's angle until the voltage `across` it is none.
+  /// Computes the derivatives of the phase-locked loop, which drives the voltage component `across` to zero.
   template <class T>
   static void lock(const T* c, const T* x, const T& V, const T& across, T* dx) {
     const T zero(0.0), one(1.0), per_band(1.0 / renewable::kDipBand);
@@ -225,8 +225,8 @@ struct Model : shared::BehindImpedance<Model> {
     dx[phi] =
         runs * renewable::regulator(c[kppll], c[kipll], across, c[w_least], c[w_most], runs, x[w], dx[w]);
   }
-  /// The currents up, uq that the inner voltage is to drive, from the errors of the active and the reactive
-  /// one.
+  /// Computes the currents up, uq that the inner voltage is to drive, from the errors of the active and
+  /// reactive current [pu].
   template <class T>
   static void control(const T* c, const T* x, const T& error_p, const T& error_q, T& up, T& uq, T* dx) {
     const T zero(0.0), one(1.0);

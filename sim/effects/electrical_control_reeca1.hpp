@@ -134,11 +134,11 @@ struct Model {
     of_q = Core::coefficients,
     of_p = of_q + renewable::kByVoltage<>,
     turns = of_p + renewable::kByVoltage<>,  ///< PFLAG
-    frozen,                                  ///< Iqfrz where Thld > 0
-    goes_on,                                 ///< 1 where Thld < 0
+    frozen,                                  ///< Iqfrz if Thld > 0
+    goes_on,                                 ///< 1 if Thld < 0
     hold,                                    ///< |Thld|
     hold_p,
-    follows,  ///< 1/kFollow, 0 where nothing is to be kept
+    follows,  ///< 1/kFollow, 0 if no value is to be kept
     none,
     coefficients
   };

@@ -121,8 +121,8 @@ struct Model {
   enum C {
     of_q = Core::coefficients,
     of_p = of_q + renewable::kByVoltage<>,
-    delivers = of_p + renewable::kByVoltage<>,  ///< 0 where the battery is empty
-    draws,                                      ///< -1, or 0 where it is full
+    delivers = of_p + renewable::kByVoltage<>,  ///< 1, or 0 if the battery is empty
+    draws,                                      ///< -1, or 0 if the battery is full
     coefficients
   };
   static constexpr auto states = Core::states;

@@ -163,11 +163,11 @@ struct Model {
     vblkl,
     vblkh,
     tblk,
-    frozen,  ///< Iqfrz where Thld < 0
-    keeps,   ///< 1 where Thld > 0
+    frozen,  ///< Iqfrz if Thld < 0
+    keeps,   ///< 1 if Thld > 0
     hold,    ///< |Thld|
     hold_p,
-    follows_q,  ///< 1/kFollow, 0 where nothing is to be kept
+    follows_q,  ///< 1/kFollow, 0 if no value is to be kept
     follows_p,
     none,
     coefficients
@@ -233,7 +233,7 @@ struct Model {
   static T turning(const T* c, const Signals<T>& s) {
     return T(1.0) + c[turns] * s.wg;
   }
-  /// The voltage that is held, before its measurement.
+  /// Returns the regulated voltage before its measurement [pu].
   template <class T>
   static T compensated(const T* c, const Signals<T>& s) {
     using std::sqrt;

@@ -158,7 +158,7 @@ struct Model : shared::Alternator<Model> {
     c[iTH] = inverse(p[TH]);
     c[tj] = p[TJ];
   }
-  /// What the field limiter takes away before its lead-lag.
+  /// Returns the field current limiter's signal before its lead-lag [pu].
   template <class T>
   static T taken(const T* c, const T& Vfe) {
     return clamp(c[kh] * (Vfe - c[vfelim]), T(0.0), c[vhmax]);

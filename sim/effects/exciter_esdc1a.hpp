@@ -1,5 +1,5 @@
 #pragma once
-// ESDC1A: rotating direct-current exciter whose field voltage ends at zero.
+// ESDC1A: rotating direct-current exciter with a lower limit of zero for the field voltage.
 #include "sim/effects/detail/dc_type_one.hpp"
 
 namespace swingbank::sim::effects::exciter_esdc1a {

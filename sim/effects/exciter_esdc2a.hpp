@@ -1,5 +1,5 @@
 #pragma once
-// ESDC2A: EXDC2 with a field voltage that ends at zero.
+// ESDC2A: EXDC2 with a lower limit of zero for the field voltage.
 #include "sim/effects/exciter_exdc2.hpp"
 
 namespace swingbank::sim::effects::exciter_esdc2a {

@@ -94,7 +94,7 @@ struct Model {
     iTF,
     klr,
     ilr,
-    behind,  ///< 1: the stabiliser enters behind the regulator
+    behind,  ///< 1 if the stabiliser acts after the regulator
     Vref,
     coefficients
   };
@@ -155,7 +155,7 @@ struct Model {
     c[ilr] = p[ILR];
     c[behind] = p[VOS] - T(1.0);
   }
-  /// What is added to the regulator's output.
+  /// Returns the signal added to the regulator's output [pu].
   template <class T>
   static T beside(const T* c, const Signals<T>& s) {
     return c[behind] * s.Vs - positive_part(c[klr] * (s.Ifd - c[ilr]));
@@ -164,7 +164,7 @@ struct Model {
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
     const T other = beside(c, s);
-    // Without a lag the regulator's output is not known yet; the rate feedback is off then.
+    // Without a lag the regulator's output is not available here, but the rate feedback is then off.
     const T fed = c[feedback] * washout(c[iTF], x[rate], x[Va] + other, dx[rate]);
     const T error = c[Vref] + s.dVref - measured + (T(1.0) - c[behind]) * s.Vs + s.Vlimiter - fed;
     const T limited = clamp(error, c[vimin], c[vimax]);

@@ -147,13 +147,14 @@ struct Model {
       c[to] = inverse(p[from]);
     shared::CompoundSource::prepare<T>({p[KP], p[KI], p[XL], p[THETAP], p[KC], p[VBMAX]}, c + source_first);
   }
-  /// What the inner loop gets back.
+  /// Returns the feedback of the inner loop [pu].
   template <class T>
   static T feedback(const T* c, const T& Efd) {
     const T back = c[kg] * Efd;
     return select(back < c[vgmax], back, c[vgmax]);
   }
-  /// Output of an inner loop without a lag: with its feedback within VGMAX, or with VGMAX.
+  /// Returns the output of an inner loop without a lag: its closed solution if the feedback is below VGMAX,
+  /// else the output with feedback VGMAX.
   template <class T>
   static T at_once(const T* c, const T& vr, const T& VB) {
     const T within = c[inner] * vr / (T(1.0) + c[inner] * c[kg] * VB), beyond = c[inner] * (vr - c[vgmax]);

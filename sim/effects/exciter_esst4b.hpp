@@ -72,7 +72,7 @@ struct Model {
     Vref = source_first + shared::CompoundSource::size,
     coefficients
   };
-  /// Efd is VB, about 10 pu, times what the states say, without another lag.
+  /// Efd is VB, about 10 pu, times the output of the states, without another lag.
   static constexpr double kSourceWeight = 10.0;
   enum X { Vm, xr, Va, xm };
   static constexpr State states[] = {{"Vm", "pu", "measured voltage", kSourceWeight},
@@ -138,7 +138,7 @@ struct Model {
     dx[xr] = shared::non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
     const T va = lag(c[iTA], x[Va], clamp(outer, c[vrmin], c[vrmax]), dx[Va]);
     const T VB = shared::CompoundSource::voltage(c + source_first, s);
-    // The loop Vmr = KPM (Va - KG VB Vmr) + xm, solved; its limits are those of the solution.
+    // Closed solution of the loop Vmr = KPM (Va - KG VB Vmr) + xm; the limits apply to the solution.
     const T inner = (c[kpm] * va + x[xm]) / (one + c[kpm] * c[kg] * VB);
     s.Efd = VB * clamp(inner, c[vmmin], c[vmmax]);
     dx[xm] = shared::non_windup(c[kim] * (va - c[kg] * s.Efd), inner, c[vmmin], c[vmmax]);

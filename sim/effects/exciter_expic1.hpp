@@ -1,6 +1,6 @@
 #pragma once
-// EXPIC1: PI regulator before a bridge that voltage and current of the terminal feed, and an exciter if there
-// is one.
+// EXPIC1: excitation system with a PI regulator, a bridge fed by terminal voltage and current, and an
+// optional exciter.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -110,7 +110,7 @@ struct Model {
     iTE,
     satA,
     satB,
-    fed,  ///< 0 where KP = KI = 0
+    fed,  ///< 0 if KP = KI = 0
     source_first,
     Vref = source_first + Feed::size,
     coefficients
@@ -159,10 +159,10 @@ struct Model {
     c[iTR] = inverse(p[TR]);
     c[proportional] = p[KA] * p[TA1];
     c[integral_gain] = p[KA];
-    // A lead needs a lag: TA4's, or where there is none TA2's.
+    // A lead needs a lag: TA4, or TA2 if TA4 is zero.
     c[lead1] = select(p[TA4] > zero, zero, p[TA3]);
     c[lead2] = p[TA3];
-    // Where only the second of the two is given it is the first.
+    // If only the second of the two is given, it replaces the first.
     const auto first = p[TF1] > zero;
     c[iTF1] = inverse(select(first, p[TF1], p[TF2]));
     c[iTF2] = inverse(select(first, p[TF2], zero));
@@ -183,12 +183,12 @@ struct Model {
     c[fed] = select(p[KP] + p[KI] > zero, one, zero);
     Feed::prepare<T>({p[KP], p[KI], zero, zero, p[KC], far}, c + source_first);
   }
-  /// What the bridge is fed with.
+  /// Returns the supply voltage of the bridge [pu].
   template <class T>
   static T supply(const T* c, const Signals<T>& s) {
     return select(c[fed] > T(0.5), Feed::voltage(c + source_first, s), T(1.0));
   }
-  /// The input that holds the exciter at `Efd`.
+  /// Returns the exciter's input for a steady `field` voltage [pu].
   template <class T>
   static T held_by(const T* c, const T& field) {
     return select(c[iTE] > T(0.0), c[self] * field + Quadratic<T>{c[satA], c[satB]}(field), field);
@@ -196,7 +196,7 @@ struct Model {
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
-    // Where Vr feeds back at once, check() has seen to it that Vr does not depend on the error at once.
+    // If Vr feeds back without a lag, check() ensures that Vr has no direct path from the error.
     T unused;
     const auto regulated = [&](const T& va, T& d1, T& d2) {
       const T u = lead_lag(c[lead1], c[iTA2], x[lag1], va, d1);

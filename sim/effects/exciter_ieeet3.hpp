@@ -1,5 +1,5 @@
 #pragma once
-// IEEET3: exciter that voltage and current of the terminal feed beside its regulator.
+// IEEET3: exciter fed by its regulator and by terminal voltage and current.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -10,8 +10,8 @@
 
 namespace swingbank::sim::effects::exciter_ieeet3 {
 
-/// A field current of which the source leaves less than this share of VE^2 takes the exciter's voltage away,
-/// that far over which it fades: at once, it would have no solution.
+/// Band over which the exciter's voltage fades to zero, as a fraction of VE^2: the exciter has no voltage
+/// when the field current consumes the source. A step in place of the band would leave no solution.
 constexpr double kLastShare = 0.01;
 
 struct Model {
@@ -109,7 +109,7 @@ struct Model {
     c[self] = p[KE];
     Feed::prepare<T>({p[KP], p[KI], zero, zero, zero, far}, c + source_first);
   }
-  /// What the source adds to Vr, and the share of VBMAX that it leaves.
+  /// Returns the source's contribution to Vr [pu]. Sets `share` to the fraction of the voltage that remains.
   template <class T>
   static T supply(const T* c, const Signals<T>& s, T& share) {
     using std::sqrt;

@@ -1,5 +1,5 @@
 #pragma once
-// REXS: rotating exciter with a voltage regulator and a regulator of its field current, general purpose.
+// REXS: general-purpose rotating excitation system with a voltage regulator and a field current regulator.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -206,8 +206,8 @@ struct Model : shared::Alternator<Model> {
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
-  /// Of a REXSYS of PSS/E: OpenIPSL has its limits in multiples of the field that 1 pu needs, PowerWorld and
-  /// InterPSS in pu.
+  /// Returns a remark on PSS/E's REXSYS: OpenIPSL scales its limits by the field at 1 pu voltage, PowerWorld
+  /// and InterPSS state them in pu.
   static std::string remark(const double* p) {
     const double field = p[KE] + p[KD];
     return std::abs(field - 1.0) < 0.01
@@ -257,7 +257,7 @@ struct Model : shared::Alternator<Model> {
             fmax = factor * c[vfmax];
     const T ve = positive_part(x[Ve]), Vfe = field(c, ve, s.Ifd);
     s.Efd = rectified(ve, c[commutation] * s.Ifd);
-    // With FBF = 0 there is a lag TA, so its state is the output.
+    // With FBF = 0 the lag TA exists, so that its state is the output.
     const T fed = c[of_regulator] * clamp(x[Vr], rmin, rmax) + c[of_current] * Vfe + c[of_voltage] * s.Efd;
     const T slope = c[feedback] * washout(c[iTF], x[rate], fed, dx[rate]);
     const T Vf = lead_lag(c[lead_feedback], c[iTF2], x[rate_lag], slope, dx[rate_lag]);

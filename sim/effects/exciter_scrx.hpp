@@ -1,5 +1,5 @@
 #pragma once
-// SCRX: static exciter fed from the terminal or from a source of its own.
+// SCRX: static exciter fed from the terminal or from an independent source.
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/simplified_exciter.hpp"
 
@@ -54,7 +54,7 @@ struct Model : shared::SimplifiedExciter<Model> {
     c[solid] = p[CSWITCH];
     c[ratio] = p[RATIO];
   }
-  /// What E is multiplied with.
+  /// Returns the factor of E: the supply voltage [pu].
   template <class T>
   static T supply(const T* c, const Signals<T>& s) {
     return c[solid] + (T(1.0) - c[solid]) * s.V;

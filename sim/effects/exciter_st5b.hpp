@@ -1,5 +1,5 @@
 #pragma once
-// ST5B: static excitation with two lead-lags whose limits are those of the bridge.
+// ST5B: static excitation system with two lead-lags limited by the bridge.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

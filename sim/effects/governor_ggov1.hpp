@@ -1,10 +1,10 @@
 #pragma once
 // GGOV1: gas turbine or engine under a PID governor, with load (temperature) and acceleration limiter.
 //
-// PSS/E computes the acceleration limiter's output as the stroke of the step before plus
-// Ka (Aset - acceleration) dt, that is: the stroke may rise no faster than Ka (Aset - acceleration). Here the
-// state `accel` does that without a step size; it follows the other two outputs from kAbove over them with
-// the time constant kFollow, so that what moves slower than kAbove/kFollow never meets it.
+// PSS/E computes the acceleration limiter's output as the stroke of the previous step plus Ka (Aset -
+// acceleration) dt. The stroke thus rises no faster than Ka (Aset - acceleration). Here the state `accel`
+// imposes this rate independent of the step size. It follows the other two outputs at a distance kAbove with
+// the time constant kFollow, so that a stroke slower than kAbove/kFollow never reaches it.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -123,7 +123,7 @@ struct Model {
                                         Ka,      Ta,     Trate,  db,     Tsa,    Tsb,    Rup,    Rdown};
   static constexpr double kAbove = 0.002;   ///< [pu of stroke]
   static constexpr double kFollow = 0.002;  ///< [s]
-  static constexpr double kFullLoad = 1.0;  ///< the load limiter's output ends here [pu of stroke]
+  static constexpr double kFullLoad = 1.0;  ///< upper limit of the load limiter's output [pu of stroke]
   enum C {
     droop,
     droop_power,
@@ -160,7 +160,7 @@ struct Model {
     aset,
     ka,
     iTa,
-    base,  ///< machine base over turbine rating
+    base,  ///< machine base divided by the turbine rating
     band,
     tsa,
     iTsb,
@@ -214,7 +214,7 @@ struct Model {
     c[kpload] = p[Kpload];
     c[kiload] = p[Kiload];
     c[limit] = p[Ldref] / p[Kturb] + p[Wfnl];
-    c[loss] = select(p[Dm] < zero, zero, p[Dm]);  // a fit that starts at 0 goes to that side
+    c[loss] = select(p[Dm] < zero, zero, p[Dm]);  // Dm = 0 has the derivative of this side
     c[exponent] = select(p[Dm] < zero, p[Dm], zero);
     c[fuel_speed] = p[Flag];
     c[ropen] = p[Ropen];
@@ -252,11 +252,11 @@ struct Model {
   static T exhaust_temperature(const T* c, const T* x, const T& fuel, const T& turning, T* dx) {
     using std::exp;
     using std::log;
-    const T rising = select(turning > T(0.01), turning, T(0.01));  // a machine at rest has no exponent
+    const T rising = select(turning > T(0.01), turning, T(0.01));  // the logarithm needs a speed > 0
     const T hot = fuel * exp(c[exponent] * log(rising));
     return lag(c[iTfload], x[exhaust], lead_lag(c[tsa], c[iTsb], x[heat], hot, dx[heat]), dx[exhaust]);
   }
-  /// The stroke that the lowest of the three controllers asks for; `texm`: measured exhaust temperature.
+  /// Returns the lowest stroke of the three controllers [pu]. `texm`: measured exhaust temperature.
   template <class T>
   static T requested(const T* c, const T* x, const T& position, const T& texm, const Signals<T>& s, T* dx) {
     const T measured = lag(c[iTpelec], x[power], s.P * c[base], dx[power]);
@@ -266,8 +266,8 @@ struct Model {
     const T hotter = c[limit] - texm;
     dx[load] = clamp(c[kiload] * hotter, c[rdown], c[rup]);
     const T fsrt = lower(clamp(x[load], c[low], c[full]) + c[kpload] * hotter, c[full]);
-    // With the droop of the stroke itself, stroke = gain error(asked - droop stroke) + rest has one solution;
-    // where another controller has the stroke, the droop is that of the stroke there is.
+    // With droop on the stroke, stroke = gain error(asked - droop stroke) + rest has one solution. If another
+    // controller determines the stroke, the droop acts on that stroke.
     const T gain = c[kp] + c[kd], rest = clamp(x[integral], c[low], c[high]) - c[kd] * x[rate];
     const T free =
         clamp(dead_band(asked - c[droop_stroke] * rest, c[band]) * c[inverse_loop], c[least], c[most]);

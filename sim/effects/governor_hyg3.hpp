@@ -14,7 +14,7 @@
 
 namespace swingbank::sim::effects::governor_hyg3 {
 
-/// Below this flow at nominal head the gate leaks: head = (flow/pgv)^2 has no value at a shut gate [pu].
+/// Lower bound of the flow at nominal head, a leakage [pu]: head = (flow/pgv)^2 is undefined for pgv = 0.
 constexpr double kShut = 0.01;
 
 struct Model {
@@ -159,7 +159,7 @@ struct Model {
     iTW,
     gain,
     damping,
-    base,  ///< machine's base over turbine's
+    base,  ///< machine base divided by the turbine base
     ref,
     curve,
     coefficients = curve + Curve::size
@@ -187,7 +187,7 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return ""; }
 
-  /// The curve's points with its ends, openings and then powers; all 0 behind the last.
+  /// Returns the curve's points with its ends, openings and then powers; zero after the last one.
   template <class T>
   static std::array<T, 16> points(const T* p) {
     std::array<T, 16> q;
@@ -239,12 +239,12 @@ struct Model {
     const auto q = points(p);
     Curve::prepare(q.data(), openings, powers, c + curve);
   }
-  /// The governor's output before its limits, by the double derivative.
+  /// Returns the output of the double-derivative governor before its limits [pu].
   template <class T>
   static T double_derivative(const T* c, const T* x, const T& u, const T& speed, T* dx) {
     const T felt = lag(c[Pid::iTD], x[Pid::filtered], speed, dx[Pid::filtered]);
     dx[Pid::lagged] = (felt - x[Pid::lagged]) * c[Pid::iTF];
-    const T slope = dx[Pid::lagged];  // of what is felt, lagged by Tf
+    const T slope = dx[Pid::lagged];  // derivative of the input, lagged by Tf
     dx[second] = (slope - x[second]) * c[Pid::iTF];
     const T y = c[Pid::kd] * (felt - x[Pid::lagged]) + c[Pid::kp] * dx[second];
     dx[Pid::integral] = c[Pid::ki] * (u - c[by_gate] * x[Pid::integral] - y);

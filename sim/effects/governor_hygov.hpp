@@ -8,7 +8,7 @@
 
 namespace swingbank::sim::effects::governor_hygov {
 
-/// Below this opening the gate leaks: head = (flow/gate)^2 has no value at a shut gate [pu].
+/// Lower bound of the gate's opening, a leakage [pu]: head = (flow/gate)^2 is undefined for gate = 0.
 constexpr double kLeak = 0.01;
 
 struct Model {

@@ -108,7 +108,7 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_as(name, p, where, problems);
   }
-  /// The same of another model with these parameters first.
+  /// Checks another model that begins with the same parameters; `model`: its name.
   static void check_as(std::string_view model, const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -132,14 +132,14 @@ struct Model {
     c[share7] = p[K7];
     c[band] = p[db];
   }
-  /// Moves the valve by what is asked for less `position`, the valve as the governor sees it.
+  /// Computes the valve's rate from the request minus `position`, the governor's feedback of the valve [pu].
   template <class T>
   static void move_valve(const T* c, const T* x, const T& position, const Signals<T>& s, T* dx) {
     const T speed = lead_lag(c[lead], c[iT1], x[governor], dead_band(s.speed, c[band]), dx[governor]);
     const T error = c[Pref] + s.dPref + s.dGref - c[gain] * speed - position;
     dx[valve] = clamp(error * c[iT3], c[closing], c[opening]);
   }
-  /// The torque of the stages behind the valve.
+  /// Returns the torque of the turbine stages after the valve [pu].
   template <class T>
   static T stages(const T* c, const T* x, const T& steam, T* dx) {
     const T x4 = lag(c[iT4], x[bowl], steam, dx[bowl]);

@@ -23,7 +23,7 @@ struct Model {
                                           Pref + dPref --(+)     gate: PMIN to PMAX
 )";
   enum P { K, T1, T2, T3, PMAX, PMIN, T4 };
-  /// CIM's are those of a steam turbine's governor; with a water column they would be unstable.
+  /// CIM's values are those of a steam turbine's governor and would be unstable with a water column.
   static constexpr Source standards_from =
       literature::own("a dashpot of 5 s: T2 = TR, T1 = TR delta/sigma, droops of 5 and 50 %");
   static constexpr Source bounds_from = shared::kNoCases;

@@ -1,5 +1,5 @@
 #pragma once
-// IEESGO: the IEEE's standard steam or hydro governor of 1973, as three lags and their shares.
+// IEESGO: IEEE standard steam or hydro governor of 1973, three lags with power fractions.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

@@ -111,7 +111,7 @@ struct Model {
       {.name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true},
       {"water", "pu", "state of the water column", 1.0, -1, -1, {water_lag}}};
   static constexpr int kOpenings[] = {0, 1, 2, 3}, kAtOpenings[] = {4, 5, 6, 7};
-  /// The curve's openings, then its powers.
+  /// Returns the curve's openings, then its powers.
   template <class T>
   static std::array<T, 8> points(const T* p) {
     return {p[G0], p[G1], p[G2], T(1.0), T(0.0), p[P1], p[P2], p[P3]};
@@ -191,7 +191,7 @@ struct Model {
     x[water] = s.Tm;
     x[gate] = x[asked] = x[first] = Curve::opening(c + curve, s.Tm);
     x[integral] = select(integrates, x[gate], zero);
-    // Without an integral the gate is held by an error.
+    // Without an integral gain a steady error holds the gate.
     const T e = select(integrates, zero, x[gate] / select(integrates, one, p[KP]));
     x[drooped] = x[derivative] = e;
     c[ref] = fed_back(c, x[gate], s) + e / select(p[RPERM] > zero, p[RPERM], one);

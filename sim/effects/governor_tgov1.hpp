@@ -1,5 +1,5 @@
 #pragma once
-// TGOV1: steam turbine with droop, one reheater.
+// TGOV1: steam turbine with one reheater, and governor with droop.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

@@ -123,7 +123,7 @@ struct Model {
     follow,
     water_lead,
     water_lag,
-    base,  ///< machine's base over turbine's
+    base,  ///< machine base divided by the turbine base
     ref,
     curve,
     coefficients = curve + Curve::size

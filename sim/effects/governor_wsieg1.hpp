@@ -1,5 +1,5 @@
 #pragma once
-// WSIEG1: IEEEG1 with a curve of the valve, a backlash and limits at the operating point.
+// WSIEG1: IEEEG1 with a valve curve, a backlash and limits set at the operating point.
 #include "sim/effects/detail/gate_power.hpp"
 #include "sim/effects/governor_ieeeg1.hpp"
 
@@ -27,7 +27,7 @@ struct Model {
   IBLOCK: 1 no closing, 2 no opening, 3 neither below and above the operating point, where PMIN, PMAX are 0
   One shaft only: JBUS, M and the shares K2, K4, K6, K8 of a second generator are zero.
 )";
-  /// Parameters are IEEEG1's with its dead-band, then these.
+  /// The parameters of IEEEG1 with its dead-band, then these.
   enum P {
     ERR = B::db + 1,
     DB2,
@@ -121,7 +121,7 @@ struct Model {
     const auto text = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     std::array<double, parameter_count> q;
     std::copy(p, p + parameter_count, q.begin());
-    if (p[IBLOCK] >= 2 && p[B::PMAX] == 0.0) q[B::PMAX] = p[B::PMIN] + 1.0;  // found at the operating point
+    if (p[IBLOCK] >= 2 && p[B::PMAX] == 0.0) q[B::PMAX] = p[B::PMIN] + 1.0;  // set at the operating point
     B::check_as(name, q.data(), where, problems);
     if (p[ERR] != 0.0 && p[ERR] != p[B::db])
       problems.add(text(ERR) + " with " + text(B::db), where,

@@ -1,6 +1,6 @@
 #pragma once
 // MAXEX1: over-excitation limiter of the field voltage with inverse time. It differs from MAXEX2 with M = 0
-// by its last block, a gain in the integrator's place.
+// in its last block, a gain instead of an integrator.
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/inverse_time.hpp"

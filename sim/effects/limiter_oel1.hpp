@@ -1,5 +1,5 @@
 #pragma once
-// OEL1: over-excitation limiter that runs the voltage regulator's reference back.
+// OEL1: over-excitation limiter that lowers the voltage regulator's reference.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -65,7 +65,8 @@ struct Model {
   enum X { timer, Voel };
   static constexpr State states[] = {
       {"timer", "-", "how far the pickup has come (1: operated)", 1.0, zero, top}, {"Voel", "pu", "output"}};
-  static constexpr double kOperatedReset = -20.0;  ///< of the timer itself, once i is what may last [1/s]
+  static constexpr double kOperatedReset =
+      -20.0;  ///< reset rate of the timer below the permanent limit [1/s]
 
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return {}; }
@@ -103,7 +104,7 @@ struct Model {
                            select(lasts, none, c[ramp]));
     dx[Voel] = select(operated, moved, none);
   }
-  /// The timer runs out; until then the pickup is passed; and at any time what may last.
+  /// Guards: the timer's expiry, the pickup before it, and the permanent limit at any time.
   static constexpr int guards = 3;
   template <class T>
   static void guard(const T* c, const T* x, const Signals<T>& s, T* g) {

@@ -92,7 +92,7 @@ struct Model {
     c[distance_max] = p[VUCMAX];
     Regulator::prepare(p, c);
   }
-  /// How far the operating point lies outside the circle, over V [pu].
+  /// Returns the distance of the operating point outside the circle, divided by V [pu].
   template <class T>
   static T outside(const T* c, const Signals<T>& s) {
     using std::sqrt;

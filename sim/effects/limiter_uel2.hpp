@@ -115,7 +115,7 @@ struct Model {
     return all;
   }();
   enum C {
-    none_1,  ///< of P: 1 where K1 is 0, then the same for 1 and 2
+    none_1,  ///< voltage exponent of P: 1 if K1 = 0; next two: 1 if K1 = 1, if K1 = 2
     linear_1,
     square_1,
     none_2,
@@ -135,7 +135,7 @@ struct Model {
     it4,
     top,
     bottom,
-    last,  ///< P' of the last point
+    last,  ///< P' of the last point [pu]
     lines,
     coefficients = lines + Lines::size
   };
@@ -167,7 +167,7 @@ struct Model {
     }
     Lines::prepare(p, power, reactive, c + lines);
   }
-  /// What is missing in Q [pu], at the voltage behind its lag; Pf and Qf in dx.
+  /// Returns the deficit of Q [pu] at the lagged voltage v, and sets the derivatives of Pf and Qf in dx.
   template <class T>
   static T missing(const T* c, const T* x, const Signals<T>& s, const T& v, T* dx) {
     const T over = power_of(c + none_1, renewable::at_least_small(v));

@@ -1,7 +1,7 @@
 #pragma once
-// CIM5: induction motor with one or two cages; the reactive power that the load draws beyond the motor's is a
-// shunt. Stator transients are neglected; fluxes in the network's frame, so that the rotor turns them by the
-// slip alone.
+// CIM5: induction motor with one or two cages. A shunt draws the load's reactive power in excess of the
+// motor's. Stator transients are neglected. Fluxes are in the network's frame, where the rotor turns them at
+// slip speed.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace swingbank::sim::effects::load_cim5 {
 
-/// A phasor of any scalar.
+/// A phasor of scalars T.
 template <class T>
 struct Phasor {
   T r, i;
@@ -119,7 +119,7 @@ struct Model {
   static constexpr int dyr_columns[] = {IT, Ra, Xa,    Xm,    R1, X1, R2, X2, E1, S1,
                                         E2, S2, Mbase, Pmult, H,  VI, TI, TB, E,  Tnom};
   enum X { psi1r, psi1i, psi2r, psi2i, slip };
-  /// Power follows the slip a hundredfold and the fluxes by 1/X''.
+  /// The gains from the states to the power are about 100 for the slip and 1/X'' for the fluxes.
   static constexpr State states[] = {{"psi1r", "pu", "first cage's flux, real", 5.0},
                                      {"psi1i", "pu", "first cage's flux, imaginary", 5.0},
                                      {"psi2r", "pu", "second cage's flux, real", 5.0},
@@ -147,8 +147,8 @@ struct Model {
     td,
     te,
     T0,
-    scale,  ///< motor base over the load's base
-    shunt,  ///< susceptance that draws Q
+    scale,  ///< motor base divided by the load's base
+    shunt,  ///< susceptance of the shunt [pu]
     coefficients
   };
 
@@ -162,7 +162,7 @@ struct Model {
   static void prepare(const T* p, const Conventions& conventions, T* c) {
     const T zero(0.0), one(1.0);
     const auto second = p[X2] > zero;
-    // Inductances of the cages without the stator's share: psi = M i + Xm I.
+    // Inductances M of the cages without the stator's contribution: psi = M i + Xm I.
     const bool ladder = value_of(p[IT]) == 2.0;
     const T m11 = p[Xm] + p[X1], m12 = ladder ? m11 : p[Xm];
     const T m22 = ladder ? m11 + p[X2] : p[Xm] + p[X2];
@@ -188,14 +188,14 @@ struct Model {
     c[tc] = p[C0];
     c[td] = p[D];
     c[te] = p[E];
-    c[scale] = p[Mbase] / T(conventions.mva);  // 0: set by steady
+    c[scale] = p[Mbase] / T(conventions.mva);  // 0: set by steady()
   }
 
   template <class T>
   static Phasor<T> flux(const T* c, const T* x) {
     return {c[a1] * x[psi1r] + c[a2] * x[psi2r], c[a1] * x[psi1i] + c[a2] * x[psi2i]};
   }
-  /// Stator current into the motor, on its base.
+  /// Returns the stator current into the motor [pu on its base].
   template <class T>
   static Phasor<T> stator(const T* c, const T* x, const Phasor<T>& v) {
     return (v - flux(c, x).turned()) / Phasor<T>{c[ra], c[xs]};
@@ -205,7 +205,7 @@ struct Model {
     const Phasor<T> f = flux(c, x);
     return f.r * i.i - f.i * i.r;
   }
-  /// TL/T0 at slip s.
+  /// Returns TL/T0 at slip s.
   template <class T>
   static T load_torque(const T* c, const T& s) {
     using std::exp;
@@ -213,7 +213,7 @@ struct Model {
     const T w = T(1.0) - s, turning = select(w > T(1e-6), w, T(1e-6));
     return (c[ta] * turning + c[tb]) * turning + c[tc] + c[td] * exp(c[te] * log(turning));
   }
-  /// Derivatives of the fluxes with the stator current i.
+  /// Computes the derivatives of the fluxes for the stator current i.
   template <class T>
   static void rotor(const T* c, const T* x, const Phasor<T>& i, T* dx) {
     using std::sqrt;
@@ -240,11 +240,11 @@ struct Model {
     const Phasor<T> i = stator(c, x, {s.Vr, s.Vi});
     rotor(c, x, i, dx);
     const T braking = (c[T0] * load_torque(c, x[slip]) - torque(c, x, i)) * c[i2H];
-    // A motor that has come to rest is not driven backwards by its load.
+    // The load torque cannot drive a motor at rest backwards.
     dx[slip] = select(x[slip] < T(1.0), braking, T(0.0) - positive_part(T(0.0) - braking));
   }
 
-  /// Current and fluxes of the unsaturated motor at slip s.
+  /// Computes current and fluxes of the unsaturated motor at slip s.
   template <class T>
   static Phasor<T> circuit(const T* p, const Phasor<T>& v, const T& s, T* x) {
     const T zero(0.0), one(1.0);
@@ -276,10 +276,10 @@ struct Model {
     x[slip] = s;
     return i;
   }
-  /// Newton's method for fluxes and slip with saturation: `x` begins at the unsaturated ones.
+  /// Solves for fluxes and slip with saturation by Newton's method; `x`: unsaturated values as the start.
   template <class T>
   static void saturate(const T* c, const Phasor<T>& v, const T& power, T* x) {
-    constexpr int n = 5, steps = 12;  // from a few per cent off, squared each time; duals trail by one
+    constexpr int n = 5, steps = 12;  // initial error of a few per cent, quadratic convergence; +1 for duals
     constexpr double nudge = 1e-7;
     const auto rest = [&](const T* at, T* f) {
       const Phasor<T> i = stator(c, at, v);
@@ -325,7 +325,7 @@ struct Model {
       const Phasor<T> i = circuit(p, v, slip_, x);
       return v.r * i.r + v.i * i.i;
     };
-    // The smallest slip at which the motor draws the power: stable as long as the power rises with the slip.
+    // The smallest slip with the required power; it is stable because the power rises with the slip there.
     constexpr double first = 1e-5, growth = 1.1;
     constexpr int rungs = 122, halvings = 40;  // up to a slip of 1
     T low(0.0), high(0.0);

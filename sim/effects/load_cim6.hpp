@@ -1,5 +1,5 @@
 #pragma once
-// CIM6: the motor of CIM5 with its load torque given in full by the .dyr.
+// CIM6: the motor of CIM5 with the load torque polynomial from the .dyr.
 #include "sim/effects/load_cim5.hpp"
 
 namespace swingbank::sim::effects::load_cim6 {

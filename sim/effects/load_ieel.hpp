@@ -55,13 +55,13 @@ struct Model {
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
   enum X { xr, xi };
-  /// An error of x counts in P by a7/(2 pi f0 Tf), a tenth or so.
+  /// The gain from an error of x to P is a7/(2 pi f0 Tf), about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C {
-    part,                ///< six parts, those of P then those of Q, as conductance and susceptance at 1 pu
-    power = part + 6,    ///< six exponents less 2
-    lowest = power + 6,  ///< six voltages below which the term is an impedance
+    part,                ///< six components, first P then Q, as conductance and susceptance at 1 pu
+    power = part + 6,    ///< six exponents minus 2
+    lowest = power + 6,  ///< six voltages below which the term is a constant impedance [pu]
     kp = lowest + 6,
     kq,
     iTf,
@@ -89,7 +89,7 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
 
-  /// V^n.
+  /// Returns V^n.
   template <class T>
   static T to_the_power(const T& v, const T& n) {
     using std::exp;
@@ -108,11 +108,11 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
-  /// As an admittance, so that nothing is divided by V.
+  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
+    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
     const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny), v = sqrt(squared);
     T y[2] = {T(0.0), T(0.0)};
     for (int k = 0; k < 6; ++k) {

@@ -1,5 +1,6 @@
 #pragma once
-// LDFR: a load of constant power, current and impedance parts whose first two follow powers of the frequency.
+// LDFR: load with components of constant power, current and impedance; powers of the frequency scale the
+// first two.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -51,7 +52,7 @@ struct Model {
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {m, n, r, s};
   enum X { xr, xi };
-  /// An error of x counts in P by m/(2 pi f0 Tf), a tenth or so.
+  /// The gain from an error of x to P is m/(2 pi f0 Tf), about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, slope, coefficients };
@@ -89,17 +90,17 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
-  /// As an admittance, so that nothing is divided by V.
+  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& signal) {
     using std::exp;
     using std::log;
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
+    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
     const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi + T(tiny), v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
     const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[slope]);
-    const T least(1e-3);  // a frequency, not what an exponent may be taken of while a step is tried
+    const T least(1e-3);  // lower bound of the frequency [pu]: a trial step may reach values <= 0
     const T f = log(select(df > least - T(1.0), T(1.0) + df, least));
     const T g = c[g0] + c[gi] * amps * exp(c[er] * f) + c[gp] * power * exp(c[em] * f);
     const T b = c[b0] + c[bi] * amps * exp(c[es] * f) + c[bp] * power * exp(c[en] * f);

@@ -1,6 +1,6 @@
 #pragma once
-// SVSMO1: static var compensator at a switched shunt, reactors and capacitors that thyristors control
-// smoothly.
+// SVSMO1: static var compensator at a switched shunt, with continuous thyristor control of reactors and
+// capacitors.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -96,8 +96,8 @@ struct Model {
     Vrefmax,
     parameter_count
   };
-  /// Two flags, and eight mechanically switched shunts that are not modelled. With an id: InterPSS,
-  /// PsseSvsmo1t2ModelTest.
+  /// The record has two flags, and eight mechanically switched shunts that are not modelled. Source of the
+  /// form with an id: InterPSS, PsseSvsmo1t2ModelTest.
   static constexpr ShuntRecord at_shunt = {"SVSMO1T2", "SVSMO1T3", RemoteBus, 3, 8};
   static constexpr Source standards_from =
       literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
@@ -191,7 +191,7 @@ struct Model {
     iTb2,
     iT2,
     iPLL,
-    banded,  ///< 1 where there is a dead-band
+    banded,  ///< 1 if there is a dead-band
     Vref,
     conductance,
     coefficients
@@ -205,7 +205,7 @@ struct Model {
       return State{.name = symbol, .unit = "pu", .meaning = meaning, .weight = weight, .bends = true};
     };
     return std::array{
-        of_gain("Vm", "measured voltage", 20.0),  // Kpv stands behind it
+        of_gain("Vm", "measured voltage", 20.0),  // followed by the gain Kpv
         of_gain("e", "state of the transient gain reduction", 20.0),
         of_gain("PI", "integral of the regulator", 1.0),
         of_gain("B", "susceptance", 1.0),
@@ -255,15 +255,16 @@ struct Model {
   template <class T>
   static T magnitude(const T& r, const T& i) {
     using std::sqrt;
-    return sqrt(r * r + i * i + T(1e-24));  // a dual needs a slope at V = 0
+    return sqrt(r * r + i * i + T(1e-24));  // keeps the derivative finite at V = 0
   }
-  /// 1 where `much` is beyond the band in which a threshold of voltage sets in.
+  /// Returns 1 if a voltage exceeds its threshold by `much` > kDipBand, rising linearly from 0 within the
+  /// band.
   template <class T>
   static T beyond(const T& much) {
     return clamp(much * T(1.0 / renewable::kDipBand), T(0.0), T(1.0));
   }
-  /// Whether it acts on its error: 0 within the dead-band. The band's own edges are those of voltages, only
-  /// narrower.
+  /// Returns 1 if the regulator acts on its error, 0 within the dead-band. The edges of the dead-band are
+  /// smooth over kWakingBand, narrower than those of voltage thresholds.
   template <class T>
   static T awake(const T* c, const T& error, const T& x, T& dx) {
     const T zero(0.0), one(1.0), size = renewable::larger(error, zero - error), per_edge(1.0 / kWakingBand);
@@ -274,7 +275,7 @@ struct Model {
     dx = c[banded] * (inside * clamp(T(2.0) - past, zero, one) - falls * x * T(1.0 / renewable::kFollow));
     return one - c[banded] * asleep;
   }
-  /// The upper limit of what the regulator asks for.
+  /// Returns the upper limit of the regulator's output [pu].
   template <class T>
   static T top(const T* c, const T* x, const T& V, const T& asked, T* dx) {
     const T zero(0.0), one(1.0);
@@ -286,7 +287,7 @@ struct Model {
     const T share = clamp(x[held] * T(1.0 / kWakingBand), zero, one);
     return renewable::larger(c[Bmin], usual - share * positive_part(usual - c[UVSBmax]));
   }
-  /// 1 until it trips.
+  /// Returns 1 until a trip, then 0.
   template <class T>
   static T on(const T* c, const T* x, const T& V, T* dx) {
     const T one(1.0);
@@ -295,8 +296,7 @@ struct Model {
            (one - shared::passed(beyond(V - c[OV2]), c[OVtm2], x[over2], dx[over2]));
   }
 
-  static constexpr double kWakingBand =
-      1e-4;  ///< of the dead-band [pu], and of what `held` counts as nothing
+  static constexpr double kWakingBand = 1e-4;  ///< transition width of the dead-band [pu] and of `held`
 };
 
 template <class T>
@@ -316,7 +316,7 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
   x[Vm] = V;
   c[Vref] = V + p[Xc1] * magnitude(s.Vr, s.Vi) * x[B];
   x[e] = x[low] = x[held] = x[above] = x[under] = x[over1] = x[over2] = zero;
-  x[calm] = p[Tdbd] + T(2.0 * renewable::kFading);  // it sleeps
+  x[calm] = p[Tdbd] + T(2.0 * renewable::kFading);  // inactive within the dead-band
   return {};
 }
 
@@ -343,7 +343,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
                  "give Vemax >= 0 >= Vemin");
 }
 
-/// What the record asks for and the equations leave out.
+/// Returns a remark on features that the record requests and the equations omit, or "".
 inline std::string Model::remark(const double* p) {
   std::string text;
   const auto add = [&](bool asked, const std::string& what) {

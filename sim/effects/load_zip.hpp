@@ -49,7 +49,7 @@ struct Model {
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   enum X { xr, xi };
-  /// An error of x counts in P by Kpf/(2 pi f0 Tf), a tenth or so.
+  /// The gain from an error of x to P is Kpf/(2 pi f0 Tf), about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, slope, coefficients };
@@ -83,11 +83,11 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[slope] = frequency_slope(c[iTf], conventions.frequency);
   }
-  /// As an admittance, so that nothing is divided by V.
+  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] a dual needs a slope at V = 0
+    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
     const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny);
     const T v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);

@@ -1,9 +1,9 @@
 #pragma once
-// GENQEC: GENROU's rotor circuits, every inductance but the leakage saturates alike, and the field current is
-// corrected by the stator current.
+// GENQEC: synchronous machine with the rotor circuits of GENROU. All inductances except the leakage saturate
+// equally, and the stator current corrects the field current.
 //
-// As in GENTPJ the saturation depends on the current and the current on the saturation; GENTPJ's search of
-// both is used, with one factor for both axes.
+// As in GENTPJ, saturation and current depend on each other; the solution of GENTPJ is used, with one factor
+// for both axes.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -101,10 +101,10 @@ struct Model {
                                      {"psi1d", "pu", "d-axis damper flux", J::kFluxWeight},
                                      {"psi2q", "pu", "second q-axis damper flux", J::kFluxWeight}};
   static constexpr int raw_resistance = -1, raw_reactance = -1;
-  /// GENTPJ's, as its search reads them, then those of the rotor circuits.
+  /// The coefficients of GENTPJ, as its solution requires, then those of the rotor circuits.
   enum C { gd, gq, xdl, xql, dXd, dXq, kd, kq, kw, last };
   static constexpr int own = J::coefficients, coefficients = own + last;
-  /// GENTPJ's scratch, whose kd is the factor of both axes; then psi''d, psi''q, td.
+  /// The scratch of GENTPJ, with kd as the factor of both axes; then psi''d, psi''q, td.
   enum M { pd = J::scratch, pq, td, scratch };
   static constexpr double kMostCorrection = 0.4;
 
@@ -155,7 +155,7 @@ struct Model {
   static void current(const T* c, const T* x, T* m, Signals<T>& s) {
     J::current(c, x, m, s);
   }
-  /// Xad Ifd for a resting or moving machine: `lagging` is td.
+  /// Returns Xad Ifd [pu]; `lagging`: td.
   template <class T>
   static T field(const T* c, const T& k, const T& eqp, const T& id, const T& lagging) {
     const T* const mine = c + own;
@@ -192,11 +192,11 @@ struct Model {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     using std::atan2;
-    // The air-gap flux is known from the terminal, so Se is known before the angle is.
+    // The terminal determines the air-gap flux, and thus Se, before the angle is known.
     T unused;
     const T zero(0.0),
         se = J::saturation(c, J::magnetisation(c, zero - s.Vi, s.Vr, zero - s.Ii, s.Ir, zero, zero,
-                                               unused));  // any axes do
+                                               unused));  // independent of the axes
     const T k = T(1.0) + se, xqs = p[Xl] + (p[Xq] - p[Xl]) / k;
     x[delta] = atan2(s.Vi + p[Ra] * s.Ii + xqs * s.Ir, s.Vr + p[Ra] * s.Ir - xqs * s.Ii);
     x[speed] = zero;
@@ -204,7 +204,7 @@ struct Model {
     sincos(x[delta], sd, cd);
     const T id = s.Ir * sd - s.Ii * cd, iq = s.Ir * cd + s.Ii * sd;
     const T vd = s.Vr * sd - s.Vi * cd, vq = s.Vr * cd + s.Vi * sd;
-    x[psi1d] = vq + p[Ra] * iq + p[Xl] * id;  // psi''d less (X''d - Xl) Id/k
+    x[psi1d] = vq + p[Ra] * iq + p[Xl] * id;  // psi''d - (X''d - Xl) Id/k
     x[Eqp] = x[psi1d] + (p[Xdp] - p[Xl]) * id / k;
     x[Edp] = (p[Xq] - p[Xqp]) * iq / k;
     x[psi2q] = zero - x[Edp] - (p[Xqp] - p[Xl]) * iq / k;

@@ -1,9 +1,9 @@
 #pragma once
 // GENROE: round-rotor machine, one field and three damper circuits, exponential saturation.
 //
-// Conventions. As GENROU. With PSS/E's own steps its records psse_powersimulationsdynamics/GENROE agree to
-// 0.0002 degrees without damping, though their .dyr says D = 0.05, with which they miss by 0.002: no record
-// at hand shows the damping. With speed voltage they miss by 0.009, with torque by 0.047.
+// Conventions. As GENROU. With PSS/E's own steps, its records psse_powersimulationsdynamics/GENROE agree to
+// 0.0002 degrees without damping. Their .dyr has D = 0.05, which gives an error of 0.002 degrees, so that no
+// available record verifies the damping. The error is 0.009 with speed voltage and 0.047 with torque.
 #include "sim/effects/detail/round_rotor.hpp"
 
 namespace swingbank::sim::effects::machine_genroe {

@@ -1,9 +1,10 @@
 #pragma once
 // GENROU: round-rotor machine, one field and three damper circuits.
 //
-// Conventions. PSS/E sets power, Pm and D w both divided by speed, Te is not; no speed voltage. With its own
-// steps its records psse/GENROU agree to 0.0002 degrees; with speed voltage they miss by 0.009, with torque
-// by 0.045, without damping by 0.002. ANDES takes torques, no speed voltage (tests/reference/andes).
+// Conventions. PSS/E sets the mechanical power: it divides Pm and D w by speed, but not Te; there is no speed
+// voltage. With PSS/E's own steps, its records psse/GENROU agree to 0.0002 degrees. The error is 0.009
+// degrees with speed voltage, 0.045 with torque and 0.002 without damping. ANDES uses torques and no speed
+// voltage (tests/reference/andes).
 #include "sim/direct/round_rotor.hpp"
 #include "sim/effects/detail/round_rotor.hpp"
 

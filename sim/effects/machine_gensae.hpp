@@ -1,9 +1,9 @@
 #pragma once
 // GENSAE: salient-pole machine, one field and one damper circuit in each axis, exponential saturation.
 //
-// Conventions. As GENROU. With PSS/E's own steps its record psse_powersimulationsdynamics/GENSAE agrees to
-// 0.0001 degrees over 10 s, with speed voltage to 0.0016, with torque to 0.016. It has D = 0: no record at
-// hand shows the damping.
+// Conventions. As GENROU. With PSS/E's own steps, its record psse_powersimulationsdynamics/GENSAE agrees to
+// 0.0001 degrees over 10 s, with speed voltage to 0.0016, with torque to 0.016. It has D = 0, so that no
+// available record verifies the damping.
 #include "sim/effects/detail/salient_pole.hpp"
 
 namespace swingbank::sim::effects::machine_gensae {
@@ -41,7 +41,7 @@ struct Model : shared::SalientPole {
     c[s10] = p[S10];
     c[exponent] = saturation_exponent(p[S10], p[S12]);
   }
-  /// Saturation factor of the subtransient flux: the field needs psi''d Se more current.
+  /// Returns the saturation factor Se of the subtransient flux; it raises the field current by psi''d Se.
   template <class T>
   static T saturated(const T* c, const T& d, const T& q) {
     return exponential_saturation(c[s10], c[exponent], d * d + q * q);
@@ -59,7 +59,7 @@ struct Model : shared::SalientPole {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     using std::atan2;
-    // The voltage behind X'' has the magnitude of psi'', so Se is known before the angle is.
+    // The voltage behind X'' has the magnitude of psi'', which determines Se before the angle is known.
     const T er = s.Vr + p[Ra] * s.Ir - p[Xdpp] * s.Ii, ei = s.Vi + p[Ra] * s.Ii + p[Xdpp] * s.Ir;
     const T se = saturated(c, er, ei);
     const T k = c[dXq] / (T(1.0) + c[ks] * se);  // the q axis lies along E'' + jk I

@@ -1,8 +1,8 @@
 #pragma once
 // GENSAL: salient-pole machine, one field and one damper circuit in each axis.
 //
-// Conventions. As GENROU. With PSS/E's own steps its record psse/EXST1 (D = 4) agrees to 0.03 % of swing in
-// voltages and speed; with speed voltage it misses by 3, with torque by 1.8, without damping by 15 %. The
+// Conventions. As GENROU. With PSS/E's own steps, its record psse/EXST1 (D = 4) agrees to 0.03 % of swing in
+// voltages and speed. The error is 3 % with speed voltage, 1.8 % with torque and 15 % without damping. The
 // angle of psse_powersimulationsdynamics/GENSAL (D = 0) agrees to 0.0002 degrees over 10 s, with speed
 // voltage to 0.0009, with torque to 0.017.
 #include "sim/effects/detail/salient_pole.hpp"
@@ -36,7 +36,7 @@ struct Model : shared::SalientPole {
     prepare_circuits(p, conventions, c);
     quadratic_saturation(p[S10], p[S12], c[A], c[B]);
   }
-  /// E'q Se(E'q)
+  /// Returns E'q Se(E'q).
   template <class T>
   static T saturated(const T* c, const T& e) {
     return c[B] * square(positive_part(e - c[A]));
@@ -53,7 +53,7 @@ struct Model : shared::SalientPole {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     using std::atan2;
-    // Without saturation in the q axis it lies along V + (Ra + jXq) I.
+    // The unsaturated q axis lies along V + (Ra + jXq) I.
     x[delta] = atan2(s.Vi + p[Ra] * s.Ii + p[Xq] * s.Ir, s.Vr + p[Ra] * s.Ir - p[Xq] * s.Ii);
     x[speed] = T(0.0);
     T sd, cd;

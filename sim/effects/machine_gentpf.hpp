@@ -1,5 +1,5 @@
 #pragma once
-// GENTPF: GENTPJ whose saturation does not see the stator current.
+// GENTPF: GENTPJ with saturation independent of the stator current.
 #include "sim/effects/machine_gentpj.hpp"
 
 namespace swingbank::sim::effects::machine_gentpf {
@@ -17,7 +17,7 @@ struct Model {
   static constexpr std::string_view description = R"(
   GENTPJ with Kis = 0: u, the flux that saturation depends on, is that of the air gap alone.
 )";
-  /// Parameters are GENTPJ's without Kis.
+  /// The parameters of GENTPJ without Kis.
   static constexpr int kWithoutKis = B::Ra;
   static constexpr auto kParameters = [] {
     std::array<Parameter, kWithoutKis> all{};

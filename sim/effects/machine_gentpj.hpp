@@ -1,11 +1,12 @@
 #pragma once
-// GENTPJ: two rotor circuits in each axis, every inductance but the leakage saturates, with the air-gap flux
-// and with the stator current.
+// GENTPJ: synchronous machine with two rotor circuits in each axis. All inductances except the leakage
+// saturate with the air-gap flux and the stator current.
 //
-// The factor Se depends on the air-gap flux, the flux on the stator current, and the current on the
-// subtransient reactances that Se divides: current() solves that by Newton's method in the one unknown Se.
+// The factor Se depends on the air-gap flux, and the flux on the stator current. The current depends on the
+// subtransient reactances, which Se reduces. The function current() solves this loop for Se by Newton's
+// method.
 //
-// Conventions. Taken as GENROU's: no record at hand shows them.
+// Conventions. Assumed as for GENROU; no available record verifies them.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -69,7 +70,7 @@ struct Model {
        literature::own("not 0, so that the current acts on the saturation; CIM has 0"),
        literature::own("half of the current as flux")},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected}};
-  /// Where saturation is steep a flux error counts tenfold in the field current, as in GENROU.
+  /// With steep saturation the gain from a flux error to the field current is about 10, as in GENROU.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psid, psiq };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -148,12 +149,13 @@ struct Model {
     x = p[Xdpp];
   }
 
-  /// What Se follows: air-gap flux and Kis |I|, with their slopes where the current has slopes did, diq.
+  /// Returns the argument of Se: air-gap flux plus Kis |I|, and its derivative for current derivatives did,
+  /// diq.
   template <class T>
   static T magnetisation(const T* c, const T& vd, const T& vq, const T& id, const T& iq, const T& did,
                          const T& diq, T& slope) {
     using std::sqrt;
-    const T tiny(1e-30);  // [pu^2] a dual needs a slope at 0
+    const T tiny(1e-30);  // [pu^2] keeps the derivative finite at 0
     const T fd = vd + c[ra] * id - c[xl] * iq, fq = vq + c[ra] * iq + c[xl] * id;
     const T flux = sqrt(fd * fd + fq * fq + tiny), amps = sqrt(id * id + iq * iq + tiny);
     slope = (fd * (c[ra] * did - c[xl] * diq) + fq * (c[ra] * diq + c[xl] * did)) / flux +
@@ -164,7 +166,7 @@ struct Model {
   static T saturation(const T* c, const T& u) {
     return c[B] * square(positive_part(u - c[A])) / u;
   }
-  /// Stator equations with Se = sigma: Id, Iq and their slopes by sigma.
+  /// Solves the stator equations for Se = sigma: Id, Iq and their derivatives with respect to sigma.
   template <class T>
   static void stator(const T* c, const T& sigma, const T& a, const T& b, T& id, T& iq, T& did, T& diq) {
     const T d = T(1.0) / (T(1.0) + sigma), q = T(1.0) / (T(1.0) + c[ratio] * sigma);
@@ -188,9 +190,10 @@ struct Model {
   }
   template <class T>
   static void current(const T* c, const T* /*x*/, T* m, Signals<T>& s) {
-    // Each step squares the error: four or five leave rounding, S1.2 = 1.2 takes seven, one more for duals.
+    // Quadratic convergence: four or five steps reach rounding level, S1.2 = 1.2 needs seven, duals one more.
     constexpr int kNewtonSteps = 8;
-    constexpr double kFlattest = 0.1;  // where saturation feeds itself a step must not run away
+    constexpr double kFlattest =
+        0.1;  // smallest derivative: bounds the step if saturation feeds back on itself
     constexpr double kResidual = 1e-9;
     const T vd = s.Vr * m[sn] - s.Vi * m[cs], vq = s.Vr * m[cs] + s.Vi * m[sn];
     const T a = m[ed] - vd, b = m[eq] - vq;
@@ -206,7 +209,7 @@ struct Model {
       sigma = positive_part(sigma - rest / safe);
     }
     stator(c, sigma, a, b, id, iq, did, diq);
-    // Not found, or not a number: the integrator must not take this for a current.
+    // Not converged: NaN prevents the integrator from accepting this current.
     const T none(std::numeric_limits<double>::quiet_NaN());
     id = select(rest * rest < T(kResidual * kResidual), id, none);
     s.Ir = id * m[sn] + iq * m[cs];
@@ -239,10 +242,10 @@ struct Model {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     using std::atan2;
-    // The air-gap flux is known from the terminal, so Se is known before the angle is.
+    // The terminal determines the air-gap flux, and thus Se, before the angle is known.
     T unused;
     const T zero(0.0), se = saturation(c, magnetisation(c, zero - s.Vi, s.Vr, zero - s.Ii, s.Ir, zero, zero,
-                                                        unused));  // any axes do
+                                                        unused));  // independent of the axes
     const T kd0 = T(1.0) + se, kq0 = T(1.0) + c[ratio] * se;
     const T xqs = p[Xl] + (p[Xq] - p[Xl]) / kq0;  // the q axis lies along V + (Ra + jXqs) I
     x[delta] = atan2(s.Vi + p[Ra] * s.Ii + xqs * s.Ir, s.Vr + p[Ra] * s.Ir - xqs * s.Ii);

@@ -1,5 +1,5 @@
 #pragma once
-// PMUFREQ: how an instrument derives frequency from the voltage's angle.
+// PMUFREQ: frequency measurement of an instrument, from the voltage angle.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -47,7 +47,7 @@ struct Model {
           phasors.df, window_weights([](double) { return 1.0; }, 0.5 * p[smoothing], 1.0 / phasors.rate));
   }
 
-  /// `length` of the difference in samples.
+  /// Computes the frequency as a difference quotient of the angle; `length`: number of samples.
   static void difference(double length, Phasors& phasors) {
     const std::vector<double> angles = continuous_angles(phasors.V);
     const SampledCurve<double> theta(angles);

@@ -1,5 +1,5 @@
 #pragma once
-// GAPS: samples that never arrived.
+// GAPS: missing samples.
 #include <fmt/format.h>
 
 #include <limits>
@@ -39,7 +39,7 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
 
-  static constexpr std::uint32_t kStream = 11;  ///< none of NOISE's
+  static constexpr std::uint32_t kStream = 11;  ///< random-number stream, distinct from those of NOISE
 
   static void measure(const double* p, std::uint64_t seed, Phasors& phasors) {
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();

@@ -40,7 +40,7 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
 
-  /// Streams of random numbers, so that switching one kind of noise on leaves the others as they were.
+  /// Random-number streams, separate so that one kind of noise does not affect the others.
   enum Stream : std::uint32_t { of_V = 1, of_I, onto_V, onto_I, of_frequency };
 
   static void measure(const double* p, std::uint64_t seed, Phasors& phasors) {

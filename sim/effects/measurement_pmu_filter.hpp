@@ -64,10 +64,11 @@ struct Model {
     const pmu_window::MClass* row = pmu_window::find(hz, p[reports]);
     return row ? p[scale] * row->half(hz) : 0.0;
   }
-  /// At whichever of 50 and 60 Hz the window is longer.
+  /// Returns the half length of the window [s], the larger of its values at 50 and 60 Hz.
   static double memory(const double* p) { return std::max(half_length(p, 50.0), half_length(p, 60.0)); }
 
-  /// Throws InputError where class M has no window for these reports at the system's frequency.
+  /// Applies the filter. Throws InputError if class M has no window for this reporting rate and system
+  /// frequency.
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {
     if (p[scale] == 0.0) return;
     const double f0 = phasors.frequency, half = half_length(p, f0);

@@ -1,5 +1,5 @@
 #pragma once
-// QUANTISE: the smallest steps in which an instrument or its protocol counts.
+// QUANTISE: quantisation by an instrument or its protocol.
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// SKEW: the current channel is late against the voltage channel.
+// SKEW: delay of the current channel relative to the voltage channel.
 #include "sim/core/effect.hpp"
 #include "sim/core/sampled.hpp"
 #include "sim/effects/detail/sources.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// WTPTA1: control of the angle of a wind turbine's blades.
+// WTPTA1: pitch control of a wind turbine.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// REPCA1: control of a whole wind, photovoltaic or storage plant.
+// REPCA1: plant controller of a wind, photovoltaic or storage plant.
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
@@ -205,7 +205,7 @@ struct Model {
     c[iTp] = inverse(p[Tp]);
     c[iTg] = inverse(p[Tg]);
   }
-  /// What it measures: where its parameters say, or at the terminal.
+  /// Measured quantities, at the place that the parameters name or at the terminal.
   template <class T>
   struct Measured {
     T Vr, Vi, V, Ir, Ii, P, Q;

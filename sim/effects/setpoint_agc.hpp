@@ -1,5 +1,5 @@
 #pragma once
-// AGCMOVES: what automatic generation control does to one unit.
+// AGCMOVES: set-point moves of one unit by automatic generation control.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,7 +80,8 @@ struct Model {
   }
 
  private:
-  /// By additions only: a product would be contracted with the sum, and the jump miss its instant by a bit.
+  /// Returns the start time of move k [s]. It uses additions only: a product could be contracted with the
+  /// sum, and the step would miss its switching time by one bit.
   template <class T>
   static T begin(const T* p, int k) {
     T t = p[start];

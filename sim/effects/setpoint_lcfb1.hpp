@@ -1,5 +1,5 @@
 #pragma once
-// LCFB1: slow controller that keeps a turbine's power by its governor's reference.
+// LCFB1: slow controller of a turbine's power that acts on the governor's reference.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -18,7 +18,7 @@ struct Model {
           "blocks, columns; PSS/E LCFB1",
       dyr_name = "LCFB1";
   static constexpr Slot slot = Slot::setpoint;
-  /// Like those moves it is slower than a record's event: no search for what a plant lacks tries either.
+  /// Like those moves it is slower than a recorded event; the search for a missing effect tries neither.
   static constexpr std::string_view variant_of = "AGCMOVES";
   static constexpr std::string_view description = R"(
   e = PBF (Pset - P/(1 + s Tpelec)) - FBF Fb w          Pset: the power at the operating point

@@ -1,5 +1,5 @@
 #pragma once
-// FASTVALVE: fast valving, a turbine's intercept valves closed for a moment.
+// FASTVALVE: fast valving, a temporary closure of the turbine's intercept valves.
 #include <fmt/format.h>
 
 #include <algorithm>

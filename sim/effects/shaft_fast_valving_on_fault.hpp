@@ -1,5 +1,5 @@
 #pragma once
-// FVFAULT: fast valving that a fault sets off.
+// FVFAULT: fast valving triggered by a fault.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// FORCEDOSC: an oscillation forced upon the shaft.
+// FORCEDOSC: forced oscillation of the mechanical torque.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// IEEEST: the IEEE (1981) power system stabiliser.
+// IEEEST: power system stabiliser of the IEEE (1981).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -99,8 +99,8 @@ struct Model {
     coefficients
   };
   enum X { y, ydot, w, wdot, lead1, lead2, washed, xr, xi };
-  // The slopes' own errors are gone within a filter's time constant: they weigh that many seconds. A
-  // numerator passes the filter's errors on that many times larger (sharp).
+  // Errors of the derivative states decay within a filter's time constant, which is therefore their weight. A
+  // numerator amplifies the filter's errors by the coefficient `sharp`.
   static constexpr State states[] = {
       {.name = "y",
        .unit = "pu",
@@ -144,7 +144,7 @@ struct Model {
     shared::check_time_constant(name, "Tf", p[Tf], p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
                                 "ICS other than 2 and 6 or KS = 0", where, problems);
     bad(!std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]), "a time constant", "give a number");
-    // Speed and powers are the machine's own, whatever bus stands there.
+    // Speed and powers are those of the machine itself, whatever the bus number.
     bad(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, fmt::format("IB = {:g}", p[IB]),
         "IEEEST reads its own machine only", "give IB = 0");
     for (int i : {A1, A2, A3, A4})
@@ -161,7 +161,7 @@ struct Model {
     bad(!(p[LSMAX] >= p[LSMIN]), fmt::format("LSMAX = {:g} pu with LSMIN = {:g} pu", p[LSMAX], p[LSMIN]),
         "the limits cross", "give LSMAX >= LSMIN");
   }
-  /// A cut-off inside the band of normal voltages switches the stabiliser on and off without end.
+  /// A cut-off within the band of normal voltages would switch the stabiliser on and off continually.
   static std::string_view unphysical(const double* p) {
     if (p[VCU] > 0.0 && p[VCU] < 1.1) return "VCU >= 1.1";
     if (p[VCL] > 0.9) return "VCL <= 0.9";
@@ -198,7 +198,7 @@ struct Model {
     c[vcu] = select(p[VCU] > zero, p[VCU], T(1e9));
     c[vcl] = select(zero < p[VCL] * p[VCL], p[VCL], T(-1e9));
   }
-  /// The second-order filter: either denominator may be of order 2, 1 or 0.
+  /// Evaluates the filter; each denominator may be of order 2, 1 or 0.
   template <class T>
   static T filter(const T* c, const T* x, const T& u, T* dx) {
     if (!any_positive(c[ia1] + c[ia2] + c[ia3] + c[ia4])) {
@@ -248,7 +248,7 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    x[xr] = c[w2] * s.Vr + c[w6] * s.V;  // zero and without a slope where nothing reads them
+    x[xr] = c[w2] * s.Vr + c[w6] * s.V;  // zero, with zero derivative, if unused
     x[xi] = c[w2] * s.Vi;
     x[y] = x[w] = x[lead1] = x[lead2] = x[washed] = input(c, x, s);
     x[ydot] = x[wdot] = T(0.0);

@@ -22,7 +22,7 @@ struct Model {
      the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 switches all off, KS2 = 0 the second input;
      what is off needs no Tw1, Tw3 and T9.
 )";
-  /// Parameters are PSS2B's up to T4, then the output's limits.
+  /// The parameters of PSS2B up to T4, then the output limits.
   static constexpr int kShared = B::T4 + 1, VSTMAX = kShared, VSTMIN = kShared + 1, kCount = kShared + 2;
   static constexpr auto kParameters = [] {
     std::array<Parameter, kCount> list{};
@@ -42,7 +42,7 @@ struct Model {
   static constexpr int coefficients = B::coefficients;
   static constexpr std::span<const State> states{B::states};
 
-  /// The same stabiliser as a PSS2B: the third lead-lag bypassed, inputs without effective limits.
+  /// Returns the parameters of the equivalent PSS2B: third lead-lag bypassed, inactive input limits.
   template <class T>
   static std::array<T, B::parameter_count> as_pss2b(const T* p) {
     std::array<T, B::parameter_count> q;

@@ -108,7 +108,7 @@ struct Model {
   static constexpr int dyr_columns[] = {IC1, REM1, IC2, REM2,   M,      N,      TW1,    TW2,    T6,    TW3,
                                         TW4, T7,   KS2, KS3,    T8,     T9,     KS1,    T1,     T2,    T3,
                                         T4,  T10,  T11, VS1MAX, VS1MIN, VS2MAX, VS2MIN, VSTMAX, VSTMIN};
-  static constexpr int kRampLags = 8;  ///< first-order lags the ramp-tracking filter may have
+  static constexpr int kRampLags = 8;  ///< maximum number of first-order lags of the ramp-tracking filter
   enum C {
     a1,  // weights of speed, P, Tm - P, V in the first input
     a2 = a1 + 4,
@@ -138,7 +138,7 @@ struct Model {
     coefficients = slow + kRampLags
   };
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kRampLags, lead2, lead3 };
-  /// Behind every state stand KS1 and the leads, some tens together, and an exciter's gain.
+  /// Every state is followed by KS1 and the leads, a gain of some tens in total, and by an exciter's gain.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {
       {"w1", "pu", "first washout of the first input", kGainWeight, -1, -1, {iTw1}},
@@ -162,7 +162,7 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_as(name, p, where, problems);
   }
-  /// For PSS2A, too: `who` stands in the sentences.
+  /// Checks the parameters, also for PSS2A; `who`: model name for messages.
   static void check_as(std::string_view who, const double* p, const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
@@ -174,7 +174,7 @@ struct Model {
                       "frequency (2) and voltage slope (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
-    for (int i : {REM1, REM2})  // the input code stands before it; only voltage is another's elsewhere
+    for (int i : {REM1, REM2})  // preceded by the input code; only a voltage can be remote
       bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} reads its own machine only", who),
           fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})
@@ -225,13 +225,14 @@ struct Model {
       c[to] = p[from];
     ramp_tracking(p, c);
   }
-  /// Weights of speed, electrical power, accelerating power and voltage for an input code.
+  /// Sets the weights of speed, electrical power, accelerating power and voltage for an input code.
   template <class T>
   static void weights(const T& code, T* w) {
     const double codes[] = {1.0, 3.0, 4.0, 5.0};
     for (int i = 0; i < 4; ++i) w[i] = select(square(code - T(codes[i])) < T(0.25), T(1.0), T(0.0));
   }
-  /// N stages of M lags each in a row of kRampLags; the first of a stage has the lead, the others pass it on.
+  /// Distributes N stages of M lags to kRampLags lags in series; the first lag of a stage has the lead, and
+  /// unused ones pass their input.
   template <class T>
   static void ramp_tracking(const T* p, T* c) {
     const T zero(0.0);
@@ -242,7 +243,7 @@ struct Model {
         c[lead + k] = select(square(p[M] * T(stage) - T(k)) < T(0.25), p[T8], c[lead + k]);
     }
   }
-  /// sT/(1 + sT); T = 0 passes.
+  /// Washout sT/(1 + sT); T = 0 passes the input.
   template <class T>
   static T washout_or_pass(const T& inverse_T, const T& x, const T& u, T& dx) {
     dx = (u - x) * inverse_T;

@@ -1,8 +1,8 @@
 #pragma once
-// PSS2C: PSS2B with a fourth lead-lag and an output that the machine's power switches.
+// PSS2C: PSS2B with a fourth lead-lag and an output switched by the machine's power.
 //
-// The record psse_powersimulationsdynamics/PSS2C, whose power crosses both thresholds, is met within 0.16 %
-// of swing with exact integration.
+// The simulation agrees with the record psse_powersimulationsdynamics/PSS2C, whose power crosses both
+// thresholds, within 0.16 % of swing with exact integration.
 #include "sim/effects/stabiliser_pss2b.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2c {
@@ -23,7 +23,7 @@ struct Model {
      always 1 where PSSON = 0. In 5 ms, and whole from 1e-5 pu beyond on, so that it can be integrated.
   T13 = 0: no fourth lead-lag. Compensated frequency (input code 7) is not modelled; Xcomp and Tcomp are its.
 )";
-  /// Parameters are PSS2B's, then these.
+  /// The parameters of PSS2B, then these.
   enum P { T12 = B::parameter_count, T13, PSSON, PSSOFF, Xcomp, Tcomp, kCount };
   static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
   static constexpr auto kParameters = [] {
@@ -50,7 +50,7 @@ struct Model {
   enum C { t12 = B::coefficients, iT13, low, high, on, off, coefficients };
   static constexpr int lead4 = static_cast<int>(std::size(B::states)), output = lead4 + 1;
   static constexpr double kSwitchRate = 200.0;  ///< [1/s]
-  static constexpr double kPerPower = 1e5;      ///< [1/pu] the switch begins and is complete within 1e-5 pu
+  static constexpr double kPerPower = 1e5;      ///< [1/pu] the switch is complete within 1e-5 pu
   static constexpr auto kStates = [] {
     std::array<State, output + 1> list{};
     for (int i = 0; i < lead4; ++i) list[static_cast<std::size_t>(i)] = B::states[i];
@@ -70,7 +70,7 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
 
-  /// PSS2B's part leaves the limits of the output to the fourth lead-lag.
+  /// Returns the parameters of the PSS2B part without output limits, which act after the fourth lead-lag.
   template <class T>
   static std::array<T, B::parameter_count> without_limits(const T* p) {
     std::array<T, B::parameter_count> q;

@@ -1,5 +1,5 @@
 #pragma once
-// ST2CUT: stabiliser of two inputs with a cut-off by voltage.
+// ST2CUT: dual-input stabiliser with a voltage cut-off.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -84,7 +84,7 @@ struct Model {
     iT2,
     wash,
     iT4,
-    passes,  ///< 1: a lag in the washout's place
+    passes,  ///< 1 if a lag replaces the washout
     t5,
     iT6,
     t7,
@@ -126,7 +126,7 @@ struct Model {
     const bool elsewhere = (p[BUSR] != 0.0 && p[MODE] == 5.0) || (p[BUSR2] != 0.0 && p[MODE2] == 5.0);
     return elsewhere ? "a remote bus is not measured at: the machine sees its own" : "";
   }
-  /// A cut-off inside the band of normal voltages switches the stabiliser on and off without end.
+  /// A cut-off within the band of normal voltages would switch the stabiliser on and off continually.
   static std::string_view unphysical(const double* p) {
     if (p[VCU] > 0.0 && p[VCU] < 1.1) return "VCU >= 1.1";
     if (p[VCL] > 0.9) return "VCL <= 0.9";

@@ -1,5 +1,5 @@
 #pragma once
-// STAB2A: the power-sensitive stabiliser of ASEA.
+// STAB2A: power-sensitive stabiliser of ASEA.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// WTTQA1: torque control of a wind turbine: the power it asks for by its speed.
+// WTTQA1: torque control of a wind turbine, which sets the power reference from the speed.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -55,7 +55,7 @@ struct Model {
     most,
     least,
     curve,
-    base = curve + renewable::kByVoltage<>,  ///< converter's base over the turbine's rating
+    base = curve + renewable::kByVoltage<>,  ///< converter base divided by the turbine rating
     pext0,
     pref,
     coefficients

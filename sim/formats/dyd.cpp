@@ -52,7 +52,7 @@ class DydReader {
     }
   }
 
-  /// Bus and id of a record of a unit: model, bus, name, kV, id.
+  /// Returns bus and id of a unit's record: model, bus, name, kV, id.
   [[nodiscard]] static std::optional<Key> key_of(const Line& line) {
     if (!line.colon || line.head.size() < 5) return std::nullopt;
     const auto bus = psse::parse_number(line.head[1].text);
@@ -60,7 +60,7 @@ class DydReader {
     const std::string id = trimmed(line.head[4].text);
     return Key{static_cast<int>(*bus), id.empty() ? "1" : id};
   }
-  /// The value of "mva=" or "mwcap=".
+  /// Returns the value of "mva=" or "mwcap=" [MVA, MW].
   [[nodiscard]] static std::optional<double> base_of(const Line& line) {
     for (const Token& token : line.tail)
       if (const auto cut = token.text.find('='); !token.quoted && cut != std::string::npos)
@@ -85,7 +85,7 @@ class DydReader {
       return;
     }
     const auto key = key_of(line);
-    if (!key) {  // a word that divides the file, or a record between two buses
+    if (!key) {  // a section keyword, or a record between two buses
       if (model)
         problems_.add("a record that cannot be told", where(line.number),
                       "it is: model bus \"name\" kV \"id\" : values",
@@ -98,7 +98,7 @@ class DydReader {
       for (const Token& token : line.tail)
         if (const auto v = psse::parse_number(token.text); v && !token.quoted)
           out.values.push_back(static_cast<double>(*v));
-      // A model of PSS/E by the same name may have other columns, or the same in another order.
+      // PSS/E's model of the same name may have other columns or another order of columns.
       out.faults.add(
           fmt::format("PSLF's model {}", name), where(line.number),
           "no public description of its columns is known; known are " + dyd_models_text(),
@@ -112,7 +112,7 @@ class DydReader {
     out_.dyr.records.push_back(std::move(out));
   }
 
-  /// The values of the columns in the model's order; NaN where one is not given.
+  /// Returns the values in the model's column order; NaN for missing ones.
   std::vector<double> values_of(const dyd::Model& model, const Line& line, Problems& faults) const {
     std::vector<double> values(model.in.size(), std::nan(""));
     std::size_t next = 0;
@@ -190,7 +190,7 @@ class DydReader {
     }
   }
 
-  /// The turbine's rating over the machine's base.
+  /// Returns the turbine's rating divided by the machine's base.
   double share_of(const dyd::Model& model, const Line& line, std::optional<double> rating, DyrRecord& out) {
     if (model.base != "mwcap" || !rating) return 1.0;
     if (std::ranges::any_of(model.fixed, [](const auto& c) { return c.use == dyd::Use::rating; })) return 1.0;
@@ -293,7 +293,7 @@ std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string
     for (const auto& [from, to] : options.map)
       if (is(from)) {
         chosen.back().model = capitals(to);
-        if (!model_of(lower(names[1]))) chosen.back().faults = {};  // it is known now
+        if (!model_of(lower(names[1]))) chosen.back().faults = {};  // the replacement is known
       }
   }
   Problems problems;

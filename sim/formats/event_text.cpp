@@ -39,7 +39,7 @@ double instant(const std::string& text, double t_end, const std::string& where, 
   return t;
 }
 
-/// The fields of `text`, or none with a problem if their number is not `least` to `most`.
+/// Returns the fields of `text`; none, with a problem, if their number is not in `least` to `most`.
 std::vector<std::string> fields(const std::string& text, std::size_t least, std::size_t most,
                                 const std::string& form, const std::string& where, Problems& problems) {
   auto part = fields(text);
@@ -48,8 +48,9 @@ std::vector<std::string> fields(const std::string& text, std::size_t least, std:
   return {};
 }
 
-/// Branches between two buses with this circuit, or the winding at the first of them of a transformer that
-/// joins both; of three buses every winding in service of the transformer between them.
+/// Returns the branches between two buses with this circuit, or the winding at the first bus of a
+/// three-winding transformer that connects both. For three buses: every winding in service of the transformer
+/// between them.
 std::vector<int> branches_named(const std::vector<std::string>& ends, const std::string& circuit,
                                 const network::Network& network) {
   const auto bus_of = [&](int index) -> const network::Bus& {

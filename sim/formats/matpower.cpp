@@ -200,7 +200,7 @@ class CaseReader {
     generator_where_.push_back(where(row));
     network_.generators.push_back(std::move(g));
   }
-  /// Reactive limits may be infinite: 1e4 times the base, more than any machine delivers.
+  /// Returns a reactive limit [pu]; an infinite one becomes 1e4 pu, more than any machine can supply.
   double limit(const Row& row, std::size_t column, const char* name) {
     const long double value = row.values[column];
     if (std::isinf(value)) return std::copysign(1e4, static_cast<double>(value));

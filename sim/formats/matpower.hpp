@@ -1,5 +1,5 @@
 #pragma once
-// MATPOWER cases (.m, version 2).
+// Reader of MATPOWER cases (.m, version 2).
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,22 +11,23 @@ namespace swingbank::sim::formats {
 
 /// Reads a MATPOWER case. Throws InputError with every fault of the file, each with its line number.
 ///
-/// Read: baseMVA, bus, gen, branch. Loads are constant power; Gs + jBs is the shunt's consumption and
-/// injection in MW and Mvar at 1 pu, as in MATPOWER; a branch with a ratio or an angle is a transformer,
-/// ratio 0 stands for 1. Parallel branches and several generators at a bus are numbered from '1'. A
-/// generator's machine base is mBase. A case knows no machine impedance, so zr = zx = 0: a model that takes
-/// its X'd from there (GENCLS) is refused later. Passed over: limits, costs, areas, names and every other
-/// field but dcline, whose lines in service are refused. Statements that compute something are refused. A
-/// case has no frequency: `frequency_hz` > 0 is the caller's. Source: MATPOWER User's Manual, appendix B
-/// "Data File Format".
+/// Read: baseMVA, bus, gen, branch. Loads are constant power. Gs + jBs is the shunt's consumption and
+/// injection in MW and Mvar at 1 pu, as in MATPOWER. A branch with a ratio or an angle is a transformer;
+/// ratio 0 means 1. Parallel branches and several generators at a bus are numbered from '1'. A generator's
+/// machine base is mBase. A case has no machine impedance, so zr = zx = 0; a model that takes its X'd from
+/// there (GENCLS) is refused later.
+///
+/// Ignored: limits, costs, areas, names and every other field. Refused: lines of dcline in service, and
+/// statements that compute values. A case has no frequency: the caller gives `frequency_hz` > 0. Source:
+/// MATPOWER User's Manual, appendix B "Data File Format".
 network::Network read_matpower(const std::filesystem::path& file, double frequency_hz);
-/// The same from a text; `name` stands for the file in messages.
+/// The same from a text; `name` replaces the file name in messages.
 network::Network parse_matpower(const std::string& text, const std::string& name, double frequency_hz);
 
-/// A .m by read_matpower, an .epc by read_epc, anything else by read_raw. The frequency is needed for a .m
-/// and an .epc; for a .raw that has its own it must be absent or the same.
+/// Reads a network: a .m by read_matpower, an .epc by read_epc, any other file by read_raw. A .m and an .epc
+/// require the frequency; for a .raw with its own frequency it must be absent or equal.
 network::Network read_network(const std::filesystem::path& file, const RawOptions& options = {});
-/// The same with what of a .raw cannot be read; a .m is read whole or not at all.
+/// The same, but returns the errors of a .raw or .epc. Throws InputError on any error of a .m.
 RawSurvey survey_network(const std::filesystem::path& file, const RawOptions& options = {});
 
 }  // namespace swingbank::sim::formats

@@ -29,7 +29,8 @@ RawSurvey parse_epc_survey(const std::string& text, const std::string& name, con
 namespace epc {
 namespace {
 
-/// "bus data  [  9]   ty ...": the name and how many records it announces; no name where it is no such line.
+/// Parses a section header "bus data  [  9]   ty ...". Returns name and announced number of records; an empty
+/// name for other lines.
 std::pair<std::string, int> header_of(const std::string& line) {
   constexpr std::string_view word = " data";
   const std::string text = pslf::lower(pslf::trimmed(line));
@@ -69,9 +70,9 @@ void EpcReader::solution_parameters(const std::vector<std::string>& block, std::
   }
 }
 
-/// Finds the sections; what they hold is read in an order of its own.
+/// Locates the sections of the file; read_sections() reads them in its own order.
 void EpcReader::divide() {
-  constexpr std::string_view mark = "\xEF\xBB\xBF";  // some editors begin a file with it
+  constexpr std::string_view mark = "\xEF\xBB\xBF";  // byte order mark of some editors
   if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
   bool ended = false;
   std::size_t at = 0;
@@ -104,7 +105,7 @@ void EpcReader::divide() {
       }
       ++at;
     }
-    if (problems_.list().size() > 3) problems_.raise();  // it is another kind of file
+    if (problems_.list().size() > 3) problems_.raise();  // another kind of file
   }
   if (std::ranges::none_of(sections_, [](const Section& s) { return s.name == "bus"; }))
     problems_.add("no 'bus data' section", file_, "a network has buses", "give a complete .epc");
@@ -117,7 +118,7 @@ void EpcReader::divide() {
   if (options_.needs_frequency && !(options_.frequency_hz.value_or(0) > 0))
     problems_.add("no frequency", file_, "an .epc has none of its own",
                   "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz");
-  problems_.raise();  // without these nothing below can be read
+  problems_.raise();  // the rest requires these values
   network_.base_mva = static_cast<double>(base_);
   network_.frequency = options_.frequency_hz.value_or(1.0);
 }
@@ -168,7 +169,7 @@ void EpcReader::read_sections() {
   tell_left_out();
 }
 
-/// Sections that are not empty and of which nothing is read.
+/// Adds remarks on non-empty sections that are not read.
 void EpcReader::tell_left_out() {
   constexpr std::array known = {"bus",   "branch", "transformer",  "generator",   "load",
                                 "shunt", "svd",    "dc converter", "vs converter"};

@@ -1,5 +1,5 @@
 #pragma once
-// PSLF .epc files: the network of a PSLF case.
+// PSLF .epc files: reader of the network of a PSLF case.
 #include <filesystem>
 #include <string>
 
@@ -8,37 +8,40 @@
 
 namespace swingbank::sim::formats {
 
-/// Reads an .epc. Throws InputError with every fault of the file, each with its line number; what is done
-/// beyond reading it stands in Network::remarks.
+/// Reads an .epc. Throws InputError with every fault of the file, each with its line number. Changes to the
+/// data are recorded in Network::remarks.
 ///
-/// The file is text in sections: "title", "comments" and "solution parameters" (of which sbase counts), each
-/// up to a line '!', then "bus data [count] ..." and so on up to "end". A record is "what it is of : values";
-/// a '/' at the end of a line goes on with the next; '#' and '@' begin comments. A section must have as many
-/// records as it announces.
+/// The file is text in sections. "title", "comments" and "solution parameters" (only sbase is used) each end
+/// at a line '!'. The sections "bus data [count] ..." and so on follow up to "end". A record is "equipment :
+/// values"; '/' at the end of a line continues it on the next; '#' and '@' begin comments. A section must
+/// have the announced number of records.
 ///
-/// Read: bus, branch (sections of one line in series become one), transformer with two windings, and with
-/// three (a star point, at the internal bus where the file has it, else at a bus of its own, numbered above
-/// all), the whole ratio of the primary winding being tapp + tapfp - 1; shunt, at a bus or at an end of a
-/// branch; svd (at g + jb, with its steps and band where its type is 1); generator, which holds vsched of its
-/// regulated bus; load. Converters of dc lines become the power that the file's voltages say they draw.
-/// Passed over, because they change nothing in the equations: areas, zones, owners, interfaces, transactions,
-/// balancing authorities, substations, injection groups, ratings, dates, controls of taps (they stay).
-/// Impedance correction, motors and every other section that is not empty is left out with a remark. Refused:
-/// a line in ohms or with a transformer inside. A case has no frequency: it is the caller's
-/// (RawOptions::frequency_hz).
+/// Read:
+/// - bus; load; branch (line sections in series are combined);
+/// - transformer with two windings, and with three (a star point at the file's internal bus, else at a new
+///   bus, numbered above all others); the ratio of a primary winding is tapp + tapfp - 1;
+/// - shunt, at a bus or at an end of a branch; svd (at g + jb, with its steps and band for type 1);
+/// - generator, which regulates its bus to vsched;
+/// - converter of a dc line, which becomes its power at the file's voltages.
+///
+/// Ignored, because they do not affect the equations: areas, zones, owners, interfaces, transactions,
+/// balancing authorities, substations, injection groups, ratings, dates, tap controls (taps are fixed).
+/// Impedance correction, motors and every other non-empty section are dropped with a remark. Refused: a line
+/// in ohms or with a transformer inside. A case has no frequency: the caller gives RawOptions::frequency_hz.
 ///
 /// Sources: headers and records of public files written by PSLF (InterPSS, a case of 18 buses), by PowerWorld
 /// (GridDyn, IEEE test cases) and by BPA's power flow (ext_geb*.f), and the columns of version 15 as listed
 /// in InterPSS's readers. configs/networks/README.md has the table.
 network::Network read_epc(const std::filesystem::path& file, const RawOptions& options);
-/// The same from a text; `name` stands for the file in messages.
+/// The same from a text; `name` replaces the file name in messages.
 network::Network parse_epc(const std::string& text, const std::string& name, const RawOptions& options);
 
-/// Reads what read_epc does, but goes on past faults, as survey_raw does.
+/// Reads an .epc, but continues after faults, as survey_raw does.
 RawSurvey survey_epc(const std::filesystem::path& file, const RawOptions& options);
+/// The same from a text; `name` replaces the file name in messages.
 RawSurvey parse_epc_survey(const std::string& text, const std::string& name, const RawOptions& options);
 
-/// Whether a file's name says it is an .epc.
+/// Returns true if the file name has the extension .epc.
 bool is_epc(const std::filesystem::path& file);
 
 }  // namespace swingbank::sim::formats

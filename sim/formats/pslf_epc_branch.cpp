@@ -1,6 +1,6 @@
-// Branches and transformers of an .epc. The sections of a line stand in series without buses between them. A
-// transformer's impedances are per unit of tbase and of the windings' nominal voltages. In per unit on bus
-// voltages a winding is an ideal ratio: nominal voltage over the bus's, times its tap.
+// Reader of branches and transformers of an .epc. The sections of a line are in series, without buses between
+// them. A transformer's impedances are per unit of tbase and of the windings' nominal voltages. In per unit
+// of bus voltages a winding is an ideal ratio: nominal voltage divided by the bus voltage, times its tap.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using Impedance = std::complex<long double>;
 
-/// Columns of a transformer's record behind the ':', its lines joined.
+/// Columns of a transformer's record after the ':', with its lines joined.
 enum Column : std::size_t {
   kInternal = 6,
   kTertiary = 9,
@@ -46,7 +46,7 @@ double angle(Fields& f, std::size_t column, const char* name) {
   return static_cast<double>(f.number(column, name, 0.0L) / psse::kDegrees);
 }
 
-/// Nominal over bus voltage; 1 where the file does not give both.
+/// Returns the nominal voltage divided by the bus voltage, or 1 if the file does not have both.
 long double nominal(Fields& f, std::size_t column, const char* name, double kv) {
   const long double v = f.number(column, name, 0.0L);
   return v > 0 && kv > 0 ? v / static_cast<long double>(kv) : 1.0L;
@@ -62,14 +62,14 @@ long double primary(Fields& f, double kv, Problems& problems) {
   const long double tap = f.number(kTap, "tapp", 1.0L) + f.number(kFixedP, "tapfp", 1.0L) - 1.0L;
   return ratio(nominal(f, kVnomP, "vnomp", kv) * tap, "primary", f, problems);
 }
-/// PSLF writes 0 for the fixed tap of a winding that has none.
+/// Returns the ratio of the secondary or tertiary winding. PSLF writes 0 for a missing fixed tap.
 long double other(Fields& f, std::size_t volt, std::size_t fixed, double kv, const char* winding,
                   Problems& problems) {
   const long double tap = f.number(fixed, "fixed tap", 1.0L);
   return ratio(nominal(f, volt, "nominal voltage", kv) * (tap == 0 ? 1.0L : tap), winding, f, problems);
 }
 
-/// The impedance of one pair of windings, its R and X at `column`, per unit of the system's base.
+/// Returns the impedance of one pair of windings, with R and X at `column` [pu on the system base].
 Impedance pair_impedance(Fields& f, std::size_t column, const char* r, const char* x, long double mva,
                          long double base, Problems& problems) {
   const Impedance z{f.number(column, r, 0.0L), f.number(column + 1, x, 0.0L)};
@@ -80,7 +80,7 @@ Impedance pair_impedance(Fields& f, std::size_t column, const char* r, const cha
   return z;
 }
 
-/// A pi section as its two-port; `series` with another that begins where it ends.
+/// A pi section as a two-port; then() combines it with the following section in series.
 struct TwoPort {
   Complex y11, y12, y22;
   static TwoPort of(const network::Branch& b) {
@@ -136,7 +136,7 @@ void EpcReader::branch(const Row& row) {
   parts_[key].push_back({std::move(b), section, of.line()});
 }
 
-/// Sections of a line in series: their charging becomes shunts at its ends.
+/// Combines the sections of a line in series; their charging becomes shunts at its ends.
 void EpcReader::join_sections() {
   for (const auto& key : order_) {
     std::vector<Part>& parts = parts_[key];
@@ -160,7 +160,7 @@ void EpcReader::join_sections() {
   }
 }
 
-/// The magnetising admittance at the primary's bus.
+/// Returns the magnetising admittance at the bus of the primary winding [pu].
 Complex EpcReader::magnetising(Fields& f, int bus) {
   const long double mva = f.number(kTbase, "tbase"), v = nominal(f, kVnomP, "vnomp", at(bus).kv);
   const long double scale = mva > 0 ? mva / base_ / (v * v) : 0.0L;
@@ -177,7 +177,7 @@ void EpcReader::transformer(const Row& row) {
   const bool on = status(f);
   std::string identity = "transformer " + ends_text(from, to);
   if (tertiary > 0) identity += "-" + std::to_string(tertiary);
-  if (tertiary <= 0)  // lines and transformers of two windings share their circuits
+  if (tertiary <= 0)  // lines and two-winding transformers have common circuit ids
     identity = "branch " + ends_text(std::min(from, to), std::max(from, to));
   network::Duplicate itself{network::Duplicate::Kind::branch, {from, to}};
   if (tertiary > 0) itself.buses.push_back(tertiary);
@@ -225,7 +225,7 @@ int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const st
   star.name = "STAR " + ends_text(at(ends[0]).number, at(ends[1]).number) + "-" +
               std::to_string(at(ends[2]).number) + " " + circuit;
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
+  star.kv = 0.0;  // windings of three voltages meet here: no nominal voltage
   star.type = on ? network::BusType::load : network::BusType::isolated;
   star.vm = at(ends[0]).vm;
   star.va = at(ends[0]).va;
@@ -256,7 +256,7 @@ void EpcReader::three_windings(const std::string& circuit, Fields& f, const std:
     b.to = star;
     b.circuit = circuit;
     b.in_service = on;
-    // Less than the rounding of the three values it is the difference of is zero.
+    // An impedance below the rounding error of the three values that it is computed from is zero.
     const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(ps) + std::abs(pt) + std::abs(ts));
     b.r = none ? 0.0 : static_cast<double>(z[i].real());
     b.x = none ? 0.0 : static_cast<double>(z[i].imag());

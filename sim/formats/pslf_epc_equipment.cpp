@@ -1,4 +1,4 @@
-// The records of an .epc that stand at one bus: buses, loads, shunts, generators, converters.
+// Reader of the .epc records at a single bus: buses, loads, shunts, generators, converters.
 #include <algorithm>
 #include <cmath>
 
@@ -79,7 +79,7 @@ void EpcReader::shunt(const Row& row) {
   const int far = of.size() > 6 ? of.integer(4, "far bus", 0) : 0;
   const std::string at_branch =
       far > 0 ? " of the branch to bus " + std::to_string(far) + " circuit '" + id_of(of, 7) + "'" : "";
-  if (far > 0) {  // its id names its end of the branch, so there is no other for it
+  if (far > 0) {  // the id identifies the end of the branch and cannot be replaced
     if (!identities_.once("shunt '" + id_of(of, 3) + "' at bus " + std::to_string(number) + at_branch, of))
       return;
   } else if (const auto id = identities_.id({network::Duplicate::Kind::shunt, {number}}, "shunt",
@@ -95,8 +95,8 @@ void EpcReader::shunt(const Row& row) {
     network_.shunts.push_back(std::move(s));
 }
 
-/// A shunt of a branch is switched with it. 'f...' stands at the first bus that the record names, 't...' at
-/// the second.
+/// Reads a shunt of a branch, which is switched with the branch. Id 'f...' is at the first bus of the record,
+/// 't...' at the second.
 void EpcReader::line_shunt(Fields& of, Fields& f, Complex y) {
   const int from = find_bus(of.integer(0, "bus number"), of), to = find_bus(of.integer(4, "far bus"), of);
   const std::string id = id_of(of, 3), circuit = id_of(of, 7);
@@ -142,8 +142,8 @@ void EpcReader::svd(const Row& row) {
   network_.shunts.push_back(std::move(s));
 }
 
-/// Type 1 steps to hold vsched of its regulated bus within vband of it: numbers of steps and their size stand
-/// in pairs on the second line, reactors and capacitors apart.
+/// Reads the steps of an svd. Type 1 regulates its bus to vsched within vband. The second line has pairs of
+/// number and size of steps; reactors and capacitors accumulate separately.
 void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regulated, Fields& f) {
   constexpr std::size_t columns = 26, blocks = 10;
   const std::size_t first = row.starts.empty() ? columns : row.starts[0];
@@ -160,14 +160,14 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
   for (std::size_t k = 0; k < blocks; ++k) {
     const int steps = f.integer(first + 2 * k, "n", 0);
     const double each = static_cast<double>(f.number(first + 2 * k + 1, "b of a step", 0.0L));
-    constexpr int most = 1000;  // of a block; more is no bank
+    constexpr int most = 1000;  // maximum steps of a block; more is an error
     if (steps < 0 || steps > most)
       problems_.add("a block of " + std::to_string(steps) + " steps", f.where(), "a bank has 0 to 1000",
                     "correct the number");
     for (int i = 0; i < std::min(steps, most) && each != 0.0; ++i)
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
   }
-  if (s.steps.size() == 1) return;  // there is nothing to switch
+  if (s.steps.size() == 1) return;  // no steps to switch
   const double held = vsched_[static_cast<std::size_t>(held_bus)];
   s.least = held - band;
   s.most = held + band;
@@ -231,7 +231,7 @@ void EpcReader::generator(const Row& row) {
   network_.generators.push_back(std::move(g));
 }
 
-/// A converter of a dc line: its first bus is the one of the ac network.
+/// Reads a converter of a dc line; its first bus is the ac bus.
 void EpcReader::converter(const Row& row) {
   Fields of(row.of, file_, problems_), f(row.says, file_, problems_);
   const int number = of.integer(0, "ac bus number"), bus = find_bus(number, of);

@@ -1,5 +1,5 @@
-// Equipment of a .raw that has no model here: dc lines, FACTS and GNE devices, induction machines. Only where
-// they stand is read; what they draw is taken from the file's solved voltages.
+// Reader of .raw equipment without a model: dc lines, FACTS and GNE devices, induction machines. Only their
+// buses are read; their power follows from the file's solved voltages.
 #include <algorithm>
 #include <cmath>
 
@@ -43,8 +43,9 @@ void RawReader::two_terminal_dc(const Record& first) {
          scheduled(f));
 }
 
-/// Power that a two-terminal dc line is to draw at its rectifier and its inverter. Fields: MDC (1: power,
-/// 2: current), RDC [ohm], SETVL [MW, A], VSCHD [kV]; a SETVL below 0 is the inverter's power.
+/// Returns the scheduled consumption of a two-terminal dc line at its rectifier and its inverter [pu].
+/// Fields: MDC (1: power, 2: current), RDC [ohm], SETVL [MW, A], VSCHD [kV]; SETVL < 0 is the inverter's
+/// power.
 std::vector<double> RawReader::scheduled(Fields& f) const {
   const int mode = f.integer(1, "MDC", 0);
   const long double r = f.number(2, "RDC", 0.0L), set = f.number(3, "SETVL", 0.0L),
@@ -64,7 +65,7 @@ void RawReader::vsc_dc(const Record& first) {
   std::vector<double> powers;
   for (const Record& row : rows) {
     Fields converter(row, file_, problems_);
-    const int type = converter.integer(1, "TYPE", 0);  // 1: holds the dc voltage, 2: delivers DCSET [MW]
+    const int type = converter.integer(1, "TYPE", 0);  // 1: controls the dc voltage, 2: delivers DCSET [MW]
     if (type == 0) continue;
     buses.push_back(converter.integer(0, "IBUS"));
     powers.push_back(type == 2 ? -pu(converter.number(3, "DCSET", 0.0L))
@@ -75,7 +76,7 @@ void RawReader::vsc_dc(const Record& first) {
 
 void RawReader::multi_terminal_dc(const Record& first) {
   Fields f(first, file_, problems_);
-  constexpr int most = 1000;  // of converters, dc buses and lines
+  constexpr int most = 1000;  // maximum of converters, dc buses and lines
   const auto count = [&](std::size_t i, const char* name) {
     return static_cast<std::size_t>(std::clamp(f.integer(i, name, 0), 0, most));
   };
@@ -99,7 +100,7 @@ void RawReader::gne(const Record& first) {
   Fields f(first, file_, problems_);
   constexpr int most = 100;
   const auto terminals = static_cast<std::size_t>(std::clamp(f.integer(2, "NTERM", 1), 1, 2));
-  std::size_t lines = 1;  // its status; then ten values to a line
+  std::size_t lines = 1;  // status line; then ten values per line
   for (std::size_t i = 0; i < 3; ++i)
     lines += static_cast<std::size_t>(
                  std::clamp(f.integer(3 + terminals + i, "NREAL, NINTG, NCHAR", 0), 0, most) + 9) /

@@ -1,4 +1,4 @@
-// The reader of a .dyr: its records one by one, and which models are to be ignored or mapped.
+// Reader of .dyr files, with the options to ignore or to map models.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -13,17 +13,16 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// A line that is a comment as a whole, also between the lines of a record: '//' or '@!' first.
+/// Returns true if the whole line is a comment ('//' or '@!'), also between the lines of a record.
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string::npos &&
          (line.compare(first, 2, "//") == 0 || line.compare(first, 2, "@!") == 0);
 }
-/// Characters that begin a comment where a field could begin: those of hand-made files.
 
-/// Writes repeated values of Fortran's free format out: 3*0.5 is 0.5 0.5 0.5.
+/// Expands repeated values of Fortran's free format: 3*0.5 is 0.5 0.5 0.5.
 void write_out_repeats(std::vector<psse::Field>& fields) {
-  constexpr std::size_t most = 1000;  // no model has as many parameters
+  constexpr std::size_t most = 1000;  // more than any model's parameters
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& text = fields[i].text;
     const auto star = text.find('*');
@@ -39,8 +38,8 @@ void write_out_repeats(std::vector<psse::Field>& fields) {
   }
 }
 
-/// How many codes PSS/E writes before the parameters of a user-written model: IC, IT, NI, NC, NS, NV, and in
-/// a load's record one more.
+/// Returns the number of codes before the parameters of a user-written model: IC, IT, NI, NC, NS, NV, and one
+/// more in a load's record.
 std::size_t codes_of(const std::string& wrapper) {
   constexpr std::size_t of_all = 6;
   return wrapper == "USRLOD" ? of_all + 1 : of_all;
@@ -50,9 +49,9 @@ class DyrReader {
  public:
   DyrReader(std::vector<std::string> lines, std::string name, const DyrOptions& options)
       : lines_(std::move(lines)), name_(std::move(name)) {
-    constexpr std::string_view mark = "\xEF\xBB\xBF";  // some editors begin a file with it
+    constexpr std::string_view mark = "\xEF\xBB\xBF";  // byte order mark of some editors
     if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
-    constexpr char end_of_file = 0x1A;  // Ctrl-Z, as DOS ended text files
+    constexpr char end_of_file = 0x1A;  // Ctrl-Z, the end of a text file in DOS
     for (std::size_t i = 0; i < lines_.size(); ++i)
       if (const auto at = lines_[i].find(end_of_file); at != std::string::npos) {
         lines_[i].erase(at);
@@ -101,12 +100,12 @@ class DyrReader {
     }
     if (!open.fields.empty()) finish(open, true);
   }
-  /// A line with Q alone ends the file, a record of 0 alone too.
+  /// Returns true for the end of the file: a line with Q alone or a record with 0 alone.
   static bool is_end(const psse::Record& line, bool between_records) {
     if (line.fields.size() != 1) return false;
     return psse::ends_file(line) || (between_records && line.ended && psse::ends_section(line));
   }
-  /// Number of the first line from `i` on that holds a field, 0 if there is none.
+  /// Returns the number of the first line from `i` on with a field, or 0.
   [[nodiscard]] int next_content(std::size_t i) const {
     Problems of_the_rest;
     for (; i < lines_.size(); ++i) {
@@ -117,7 +116,8 @@ class DyrReader {
     }
     return 0;
   }
-  /// A whole number and a model's name: no model has a name among its parameters that could be taken for it.
+  /// Returns true if a line begins with an integer and a model's name. No model has parameters that could be
+  /// mistaken for these.
   static bool begins_record(const psse::Record& line) {
     constexpr std::size_t shortest_name = 4;
     if (line.fields.size() < 3 || line.fields[0].quoted || !line.fields[1].quoted) return false;
@@ -132,7 +132,7 @@ class DyrReader {
     psse::Fields fields(record, name_, problems_);
     const std::string model = capitals(fields.text(1, ""));
     const bool user = model.starts_with("USR");
-    // Their name is the last text before the numbers: after the id, or in its place.
+    // The name of a user-written model is the last text before the numbers: after the id, or in its place.
     const bool named_fourth = user && fields.size() > 3 && record.fields[3].quoted;
     const std::string user_name = user ? capitals(fields.text(named_fourth ? 3 : 2, "")) : "";
     if (leave_out(model, user_name, record.line)) return;

@@ -1,4 +1,4 @@
-// The records of a .raw that take one line each: buses, loads, shunts, generators, branches, switches.
+// Reader of the single-line .raw records: buses, loads, shunts, generators, branches, switches.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,15 +38,16 @@ void RawReader::bus(const Record& record) {
   if (version_ < 31 && version_ != 23) bus_shunt(f, 4);
 }
 
-/// Up to version 30 a bus has its shunt in its own record.
+/// Reads the shunt in a bus record, up to version 30.
 void RawReader::bus_shunt(Fields& f, std::size_t first) {
   const Complex y{pu(f.number(first, "GL", 0.0L)), pu(f.number(first + 1, "BL", 0.0L))};
   if (y != Complex{}) network_.shunts.push_back({static_cast<int>(network_.buses.size()) - 1, "1", y});
 }
 
-/// Version 23 has load and shunt in the bus record: I, IDE, PL, QL, GL, BL, AREA, VM, VA, NAME, BASKV, ZONE.
+/// Reads a bus of version 23, whose record contains load and shunt: I, IDE, PL, QL, GL, BL, AREA, VM, VA,
+/// NAME, BASKV, ZONE.
 void RawReader::bus_23(const Record& record) {
-  constexpr std::array<std::size_t, 8> order{0, 9, 10, 1, 6, 11, 7, 8};  // as bus() has them, shunt left out
+  constexpr std::array<std::size_t, 8> order{0, 9, 10, 1, 6, 11, 7, 8};  // order of bus(), without the shunt
   Record turned{record.line, record.ended, {}, record.place};
   for (const std::size_t i : order) {
     if (turned.fields.size() == 6) turned.fields.emplace_back();  // OWNER
@@ -88,7 +89,7 @@ void RawReader::load(const Record& record) {
   l.power = {mw(5, "PL"), mw(6, "QL")};
   l.current = {mw(7, "IP"), mw(8, "IQ")};
   l.admittance = {mw(9, "YP"),
-                  pu(0.0L - f.number(10, "YQ", 0.0L))};  // PSS/E counts YQ as susceptance, not as consumption
+                  pu(0.0L - f.number(10, "YQ", 0.0L))};  // YQ is a susceptance in PSS/E, not a consumption
   if (version_ >= 34 && f.integer(16, "DGENM", 0) != 0 && on) {
     const Complex inside{pu(f.number(14, "DGENP", 0.0L)), pu(f.number(15, "DGENQ", 0.0L))};
     if (inside != Complex{})
@@ -129,12 +130,13 @@ void RawReader::switched_shunt(const Record& record) {
   s.id = id == "1" ? "SW" : "SW" + id;
   while (std::ranges::any_of(network_.shunts,
                              [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
-    s.id += "+";  // a fixed shunt bears this id: both must be writable as fixed shunts
+    s.id += "+";  // a fixed shunt has this id; both must be writable as fixed shunts
   switching(f, s);
-  network_.shunts.push_back(std::move(s));  // at 0 Mvar too: a model may belong to it
+  network_.shunts.push_back(std::move(s));  // also at 0 Mvar, because a model may refer to it
 }
 
-/// Mode, band and steps: MODSW 1 steps through its blocks in their order, reactors and capacitors apart.
+/// Reads mode, band and steps of a switched shunt. With MODSW 1 the blocks are switched in their order;
+/// reactors and capacitors accumulate separately.
 void RawReader::switching(Fields& f, const network::Shunt& shunt) {
   const int mode = f.integer(1 + columns_.switched_id, "MODSW", 1);
   const std::string place = "bus " + std::to_string(at(shunt.bus).number);
@@ -170,7 +172,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
     const bool on = stride == 2 || f.integer(first, "S", 1) != 0;
     const int steps = f.integer(first + stride - 2, "N", 0);
     const double each = pu(f.number(first + stride - 1, "B", 0.0L));
-    constexpr int most = 1000;  // of a block; more is no bank
+    constexpr int most = 1000;  // maximum steps of a block; more is an error
     if (steps < 0 || steps > most)
       problems_.add(place + ": a block of " + std::to_string(steps) + " steps", f.where(),
                     "a bank has 0 to 1000", "correct N");
@@ -178,7 +180,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
   }
   std::ranges::sort(s.steps);
-  if (s.steps.size() == 1 || s.regulated < 0) return;  // there is nothing to switch
+  if (s.steps.size() == 1 || s.regulated < 0) return;  // no steps to switch
   network_.switched.push_back(std::move(s));
 }
 
@@ -244,7 +246,7 @@ void RawReader::hold_own(network::Generator& g, const char* what, const std::str
 void RawReader::branch(const Record& record) {
   Fields f(record, file_, problems_);
   network::Branch b{};
-  // A minus sign before the second bus only marks the metered end.
+  // A minus sign before the second bus marks the metered end.
   const int from = f.integer(0, "from bus"), to = std::abs(f.integer(1, "to bus"));
   b.from = find_bus(from, f);
   b.to = find_bus(to, f);
@@ -264,7 +266,7 @@ void RawReader::branch(const Record& record) {
   if (b.from == b.to && b.from >= 0)
     problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
                   "correct the bus numbers");
-  if (version_ < 28) {  // transformers stand among the branches: RATIO (0: none), ANGLE
+  if (version_ < 28) {  // branches include transformers: RATIO (0: none), ANGLE
     const double ratio = value(9, "RATIO", 0.0L);
     b.shift = static_cast<double>(f.number(10, "ANGLE", 0.0L) / kDegrees);
     b.transformer = ratio != 0.0 || b.shift != 0.0;
@@ -279,7 +281,8 @@ void RawReader::raise_impedance(network::Branch& b, const Fields& f) {
     network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
 }
 
-// A closed switch is a line of its reactance; NSTAT, the ratings and the kind of switch change nothing.
+// Reads a switching device; a closed switch is a line with its reactance. NSTAT, ratings and type are
+// ignored.
 void RawReader::switching_device(const Record& record) {
   Fields f(record, file_, problems_);
   network::Branch b{};

@@ -1,4 +1,4 @@
-// Files of another kind or version than they are taken for: one sentence in place of a fault for each line.
+// Detection of files of a wrong kind or version: one sentence in place of a fault per line.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,8 +8,8 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// The first line that holds a field, split; nothing where the file has none or cannot be read, which its
-/// reader tells.
+/// Returns the first line with a field, split. Returns none if there is no such line or the file cannot be
+/// read; the file's reader reports that error.
 std::optional<psse::Record> first_record(const std::filesystem::path& file) {
   try {
     Problems ignored;
@@ -27,12 +27,13 @@ std::optional<psse::Record> first_record(const std::filesystem::path& file) {
   return {};
 }
 bool is_number(const psse::Field& field) { return !field.quoted && psse::parse_number(field.text); }
-/// A bus number, or in quotes the name of equipment, and a model's name in quotes.
+/// Returns true if a record begins as in a .dyr: a bus number or quoted equipment name, and a quoted model
+/// name.
 bool is_of_dyr(const psse::Record& r) {
   return r.fields.size() > 1 && (r.fields[0].quoted || is_number(r.fields[0])) && r.fields[1].quoted &&
          !r.fields[1].text.empty() && std::isalpha(static_cast<unsigned char>(r.fields[1].text[0])) != 0;
 }
-/// IC and SBASE, of a .rawx a brace.
+/// Returns true if a record begins as in a .raw (IC and SBASE) or a .rawx (a brace).
 bool is_of_raw(const psse::Record& r) {
   return r.fields[0].text.starts_with('{') ||
          (r.fields.size() > 1 && is_number(r.fields[0]) && is_number(r.fields[1]));
@@ -79,7 +80,8 @@ std::size_t RawReader::faults_as(int version, std::size_t most) {
 std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
                                      const RawOptions& options, int read_as,
                                      const std::vector<Problem>& faults) {
-  // Fewer faults are told one by one; another version counts if it has so many times fewer.
+  // Fewer faults are reported individually. Another version is accepted if it has kTimesFewer times fewer
+  // faults.
   constexpr std::size_t kToldOneByOne = 3, kTimesFewer = 10;
   if (faults.size() < kToldOneByOne || read_as == 0) return {};
   constexpr std::array kVersions = {33, 34, 35, 32, 31, 30, 29, 28, 27, 26, 25, 24, 23};

@@ -1,5 +1,5 @@
-// The reader of .rawx: the tables of version 35 as JSON. Every row becomes the record that a .raw would have,
-// so that one reader knows the equipment. Source: PSS/E data format manual, "Extensible Power Flow Data
+// Reader of .rawx: the tables of version 35 as JSON. Every row is converted to a record of a .raw, so that
+// both formats have one reader of equipment. Source: PSS/E data format manual, "Extensible Power Flow Data
 // File".
 #include <span>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The fields of a record in the order of a .raw, version 35; nullptr: one that is not read.
+/// Fields of a record in the order of a .raw, version 35; nullptr: not read.
 using Names = std::vector<const char*>;
 const char* const kSkip = nullptr;
 
@@ -48,7 +48,7 @@ class Table {
     for (const Json& field : (*found)["fields"])
       if (field.is_string()) place_.emplace(field.get<std::string>(), i++);
     rows_ = &(*found)["data"];
-    if (!rows_->empty() && !(*rows_)[0].is_array()) {  // a parameter set: one row, not in brackets
+    if (!rows_->empty() && !(*rows_)[0].is_array()) {  // a parameter set: one row without outer brackets
       one_ = Json::array({*rows_});
       rows_ = &one_;
     }
@@ -90,7 +90,7 @@ class Table {
   Json one_;
 };
 
-/// One winding of a transformer as its line of a .raw.
+/// Returns one winding of a transformer as a line of a .raw.
 Record winding(Table& table, std::size_t row, const std::string& number) {
   Record r = table.record(row, {"windv", "nomv", "ang"}, number);
   r.fields.resize(columns(35).winding_table);
@@ -112,7 +112,7 @@ void RawReader::read_json() {
   Table head(net, "caseid", file_, problems_);
   Record header = head.size() ? head.record(0, {"ic", "sbase", "rev", kSkip, kSkip, "basfrq"}) : Record{};
   header.place = file_ + ", caseid";
-  version_ = 35;  // the tables' rows are turned into records of this version
+  version_ = 35;  // version of the converted records
   columns_ = columns(version_);
   Fields f(header, file_, problems_);
   base_ = static_cast<double>(f.number(1, "SBASE", 100.0L));
@@ -164,7 +164,7 @@ void RawReader::json_transformers(const nlohmann::json& net) {
   }
 }
 
-/// Where equipment without a model stands.
+/// Reads the buses of equipment without a model.
 void RawReader::json_devices(const nlohmann::json& net) {
   struct Kind {
     const char *table, *kind, *name, *status;

@@ -1,6 +1,6 @@
-// Substations of versions 34 and 35: the nodes and switches behind the buses. The bus sections above already
-// describe the grid with its closed switches merged, so a substation changes nothing as long as every bus is
-// in one piece. One that its open switches split, or that a closed switch joins to another, is refused.
+// Reader of substations of versions 34 and 35: the nodes and switches within the buses. The bus sections
+// describe the grid with closed switches merged, so that a substation does not affect the equations if every
+// bus is connected. A bus that open switches split, or that a closed switch joins to another bus, is refused.
 // Source: PSS/E data format manual, "Substation Data".
 #include <functional>
 
@@ -10,7 +10,7 @@ namespace swingbank::sim::formats::psse {
 
 struct RawReader::Substation {
   struct Node {
-    int bus, root, line;  ///< root: the node itself at first
+    int bus, root, line;  ///< root: of the union-find forest, initially the node itself
   };
   std::string name;
   std::map<int, Node> nodes;
@@ -21,7 +21,7 @@ struct RawReader::Substation {
   }
 };
 
-/// Rows up to the '0' that ends one of a substation's three blocks; false if the file ends before it.
+/// Reads the rows of one of a substation's three blocks, up to '0'. Returns false if the file ends before it.
 bool RawReader::part_of_substation(const char* name, const std::function<void(const Record&)>& row) {
   while (auto record = next()) {
     if (ends_section(*record)) return true;

@@ -20,8 +20,8 @@ std::string trimmed(const std::string& text) {
 }
 bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Reads a quoted field from its opening quote at `i`; leaves `i` behind the closing one. False if there is
-/// none.
+/// Reads a quoted field from its opening quote at `i` and advances `i` past the closing one. Returns false if
+/// there is no closing quote.
 bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
   const char mark = line[i++];
   field.quoted = true;
@@ -30,9 +30,9 @@ bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
     if (line[i] != mark) {
       field.text += line[i];
     } else if (after == mark) {
-      field.text += line[i++];  // a doubled quote stands for itself
+      field.text += line[i++];  // a doubled quote represents one quote
     } else if (!blank(after) && after != ',' && after != '/' && line.find(mark, i + 1) != std::string::npos) {
-      field.text += line[i];  // an apostrophe inside a name, as PSS/E writes it
+      field.text += line[i];  // an apostrophe inside a name, as written by PSS/E
     } else {
       ++i;
       return true;
@@ -65,8 +65,8 @@ bool ends_file(const Record& record) {
 Record split(const std::string& line, int number, const std::string& file, Problems& problems,
              std::string_view comment_marks) {
   Record record{number, false, {}};
-  constexpr std::size_t names = 4;  // fields at the beginning that may hold a name or an id
-  bool separated = true;  // a comma or the start of the line lies behind: the next comma means an empty field
+  constexpr std::size_t names = 4;  // number of leading fields that may be a name or an id
+  bool separated = true;            // true after a comma or at the start: the next comma means an empty field
   for (std::size_t i = 0; i < line.size();) {
     const char c = line[i];
     if (blank(c)) {
@@ -121,7 +121,7 @@ int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback
   int value = 0;
   auto [stop, error] = std::from_chars(begin, end, value);
   const int most = 999999999;
-  if (error == std::errc{} && stop != end)  // programs that know one kind of number write 1.0 for 1
+  if (error == std::errc{} && stop != end)  // some programs write 1.0 for 1
     if (const auto number = parse_number(f->text);
         number && *number == std::trunc(*number) && std::abs(*number) <= most) {
       value = static_cast<int>(*number);
@@ -158,11 +158,11 @@ std::optional<long double> parse_number(std::string text) {
     if (c == 'd' || c == 'D') c = 'e';
   char* end = nullptr;
   long double value = std::strtold(text.c_str(), &end);
-  // Rounded twice, to extended precision and then to double, one decimal in 2,000 would become the double
-  // beside the nearest.
+  // Double rounding, to extended precision and then to double, would give a double other than the nearest for
+  // one decimal in 2,000.
   if (const double nearest = std::strtod(text.c_str(), nullptr); static_cast<double>(value) != nearest)
     value = std::nextafter(value, static_cast<long double>(nearest));
-  // A value beyond the range of double would turn to infinity later on.
+  // A value beyond the range of double would become infinite later.
   if (*end != '\0' || !std::isfinite(static_cast<double>(value))) return {};
   return value;
 }
@@ -171,7 +171,7 @@ std::string shortest(double value, long double scale) {
   if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";  // in messages
   const long double scaled = scale * static_cast<long double>(value);
   char text[64];
-  // As many digits as stand before the point, so that 100 is not written as 1e+02.
+  // At least the digits before the decimal point, so that 100 is not written as 1e+02.
   const int whole = value == 0.0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(scaled)))) + 1;
   for (int digits = std::clamp(whole, 1, 12); digits <= 21; ++digits) {
     std::snprintf(text, sizeof text, "%.*Lg", digits, scaled);

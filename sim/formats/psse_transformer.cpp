@@ -1,7 +1,7 @@
-// Transformers with two and three windings. In per unit on bus voltages a winding is an ideal ratio t:1. Two
-// windings are t1:1, the impedance, 1:t2; moved to one side: tap = t1/t2 with impedance z t2^2. Three
-// windings meet in a star point of their own: per winding t:1 and its share of the three impedances measured
-// between pairs. Source: PSS/E Program Operation Manual, "Transformer Data".
+// Reader of transformers with two and three windings. In per unit of bus voltages a winding is an ideal ratio
+// t:1. Two windings are t1:1, the impedance, 1:t2; referred to one side: tap = t1/t2 with impedance z t2^2.
+// Three windings meet in a star point: each has t:1 and the star equivalent of the three impedances between
+// pairs. Source: PSS/E Program Operation Manual, "Transformer Data".
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ void unknown_code(const char* name, int value, int last, const Fields& f, Proble
                "the codes are 1 to " + std::to_string(last), "give one of them");
 }
 
-/// Turns ratio of one winding in per unit of its bus voltage. Fields: WINDV, NOMV.
+/// Returns the turns ratio of one winding in per unit of its bus voltage. Fields: WINDV, NOMV.
 long double turns(int cw, long double kv, Fields& f, const char* name, Problems& problems) {
   if (cw != 1 && !(kv > 0)) {
     problems.add("CW = " + std::to_string(cw), f.where(),
@@ -42,8 +42,8 @@ long double turns(int cw, long double kv, Fields& f, const char* name, Problems&
   return winding;
 }
 
-/// Series impedance between one pair of windings ("1-2"), in per unit on the system base and bus voltages;
-/// its fields R, X, SBASE begin at `first`.
+/// Returns the series impedance between one pair of windings ("1-2") in per unit of the system base and bus
+/// voltages. Its fields R, X, SBASE begin at `first`.
 Impedance series(int cz, long double base, Fields& f, std::size_t first, const std::string& pair,
                  network::Network& network, Problems& problems, long double& mva) {
   long double r = f.number(first, ("R" + pair).c_str(), 0.0L), x = f.number(first + 1, ("X" + pair).c_str());
@@ -81,7 +81,7 @@ void RawReader::transformer(const Record& first) {
     auto record = next();
     if (!record) return;  // the section reports the truncation
     if (record->fields.size() == 1 && (ends_section(*record) || ends_file(*record))) {
-      put_back(*record);  // the section's end belongs to the section
+      put_back(*record);  // section() handles the end of the section
       problems_.add("a transformer with " + std::to_string(rows.size()) + " lines", f.where(),
                     k == 0 ? "one with two windings takes 4" : "one with three windings takes 5",
                     "complete the record");
@@ -95,7 +95,7 @@ void RawReader::transformer(const Record& first) {
 void RawReader::transformer_lines(std::span<const Record> rows) {
   Fields f(rows[0], file_, problems_);
   const int k = f.integer(2, "K", 0);
-  // A minus sign before a bus only marks the metered end.
+  // A minus sign before a bus marks the metered end.
   std::array<int, 3> ends{find_bus(std::abs(f.integer(0, "from bus")), f),
                           find_bus(std::abs(f.integer(1, "to bus")), f), -1};
   if (k != 0) ends[2] = find_bus(std::abs(k), f);
@@ -171,15 +171,15 @@ int RawReader::star_point(const std::string& circuit, Fields& impedances, const 
                           bool in_service) {
   const auto number = [&](int i) { return std::to_string(at(ends[static_cast<std::size_t>(i)]).number); };
   network::Bus star{};
-  // Above every number of the file, in order of the transformers.
+  // Numbers above every bus of the file, in the order of the transformers.
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
   star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + circuit;
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // windings of three voltages meet here: there is no nominal one
+  star.kv = 0.0;  // windings of three voltages meet here: no nominal voltage
   star.type = in_service ? network::BusType::load : network::BusType::isolated;
   star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
   star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
-  if (!(star.vm > 0)) {  // it changes only where the power flow starts
+  if (!(star.vm > 0)) {  // affects only the initial guess of the power flow
     network_.remark("voltages of a star point that are not above 0 are taken as 1 pu",
                     star.name + ": VMSTAR = " + shortest(star.vm) + " pu (" + impedances.where() + ")");
     star.vm = 1.0;
@@ -193,7 +193,7 @@ int RawReader::star_point(const std::string& circuit, Fields& impedances, const 
 void RawReader::three_windings(std::span<const Record> rows, const std::array<int, 3>& ends) {
   Fields head(rows[0], file_, problems_), impedances(rows[1], file_, problems_);
   const Codes code = codes(head);
-  const int status = head.integer(11, "STAT", 1);  // 2, 3, 4: winding 2, 3, 1 alone is out
+  const int status = head.integer(11, "STAT", 1);  // 2, 3, 4: only winding 2, 3, 1 is out
   if (status < 0 || status > 4)
     problems_.add("STAT = " + std::to_string(status), head.where(),
                   "with three windings it is 0 (out), 1 (in) or 2, 3, 4 (winding 2, 3 or 1 out)",
@@ -224,7 +224,7 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
     b.to = star;
     b.circuit = *circuit;
     b.in_service = status != 0 && status != out[i];
-    // Less than the rounding of the three values it is the difference of is zero.
+    // An impedance below the rounding error of the three values that it is computed from is zero.
     const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31));
     b.r = none ? 0.0 : static_cast<double>(z[i].real());
     b.x = none ? 0.0 : static_cast<double>(z[i].imag());
@@ -237,8 +237,8 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   }
 }
 
-/// One table: pairs of T and factor (from version 34 with an imaginary part), ended by a zero or the record;
-/// from version 34 it goes on over lines until a point is all zero.
+/// Reads one table of pairs of T and factor (from version 34 complex). It ends with a zero or with the
+/// record; from version 34 it continues over lines until a point is zero.
 void RawReader::correction_table(const Record& first) {
   const std::size_t width = version_ >= 34 ? 3 : 2;
   Fields head(first, file_, problems_);
@@ -255,11 +255,11 @@ void RawReader::correction_table(const Record& first) {
       if (over) break;
       points.emplace_back(t, Complex(re, im));
     }
-    // A line that is not full, or whose last point is zero, ends the table.
+    // An incomplete line, or one whose last point is zero, ends the table.
     if (over || f.size() < from + 6 * width) break;
     auto more = next();
     if (!more || more->fields.empty()) break;
-    const bool fresh = more->fields.size() % width == 1;  // a table number stands before the points
+    const bool fresh = more->fields.size() % width == 1;  // a table number precedes the points
     if (fresh || (ends_section(*more) && more->fields.size() == 1) || ends_file(*more)) {
       put_back(*more);
       break;
@@ -271,8 +271,8 @@ void RawReader::correction_table(const Record& first) {
                   head.where(), "their T must ascend", "put them in order");
 }
 
-/// Impedances at the present tap or angle. Points between 0.5 and 1.5 are ratios, others angles in degrees;
-/// between them the factor is a straight line, beyond them the nearest holds.
+/// Corrects impedances at the present tap or angle. Points between 0.5 and 1.5 are ratios, others angles in
+/// degrees. The factor is interpolated linearly and constant beyond the end points.
 void RawReader::correct_impedances() {
   for (const Correction& c : corrections_) {
     const auto found = tables_.find(c.table);

@@ -1,4 +1,4 @@
-// The writer of a .raw, versions 32 to 35: what was read comes back to the last bit.
+// Writer of .raw files, versions 32 to 35, with an exact round trip of all values.
 #include <array>
 
 #include "base/durable.hpp"
@@ -11,10 +11,10 @@ namespace {
 using psse::quote;
 using psse::shortest;
 
-/// The angle in degrees that reads back as `radians`.
+/// Returns the angle in degrees that reads back as `radians`.
 std::string degrees(double radians) { return shortest(radians, psse::kDegrees); }
 
-/// Sections that stay empty, in their order after the transformers.
+/// Empty sections after the transformers, in file order.
 constexpr std::array kEmpty = {"area",
                                "two-terminal dc",
                                "vsc dc line",
@@ -67,7 +67,7 @@ class RawWriter {
   }
   static std::string yes(bool b) { return b ? "1" : "0"; }
   static void add(Row& row, std::initializer_list<std::string> more) { row.insert(row.end(), more); }
-  /// No ratings: three up to version 33, twelve from 34.
+  /// Appends zero ratings: three up to version 33, twelve from 34.
   void ratings(Row& row) const { row.insert(row.end(), version_ >= 34 ? 12 : 3, "0"); }
 
   void header() {

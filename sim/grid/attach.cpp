@@ -7,7 +7,7 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// What was put in may measure elsewhere; there it must find something.
+/// Locates the remote measurements of an added effect; a missing bus or branch becomes a problem.
 void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, Problems& problems) {
   for (const NotThere& missing : look_far(grid, plant))
     problems.add(fmt::format("no {} for {} of plant {}", missing.what, missing.control, plant.name), where,
@@ -18,7 +18,7 @@ void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, P
 }  // namespace
 
 void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Problems& problems) {
-  if (a.plant.empty() && !a.block.effect) return;  // nothing could be read
+  if (a.plant.empty() && !a.block.effect) return;  // the text was unreadable
   bool any = false;
   std::string names;
   for (plant::Plant& plant : grid.plants) {

@@ -1,5 +1,5 @@
 #pragma once
-// Effects put into the plants of a grid.
+// Addition of effects to the plants of a grid.
 #include <string>
 
 #include "sim/grid/grid.hpp"
@@ -7,12 +7,12 @@
 
 namespace swingbank::sim::grid {
 
-/// Puts an effect that was read into its plants. An unknown plant, a slot that is taken, and a bus or
-/// a branch to measure at that the network lacks become problems.
+/// Adds an effect to its plants. An unknown plant, an occupied slot, or a measured bus or branch that the
+/// network does not have becomes a problem.
 void attach(Grid& grid, const plant::Attachment& attachment, const std::string& where, Problems& problems);
 
-/// "PLANT:EFFECT[:PARAM=VALUE,...]" puts an effect into a plant ("all": into every plant): any slot but
-/// machine and load. read_attachment() with the effects of Grid::library and the above in one.
+/// Adds the effect described by "PLANT:EFFECT[:PARAM=VALUE,...]" to a plant ("all": to every plant), in any
+/// slot except machine and load. Combines read_attachment(), with the effects of Grid::library, and attach().
 void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

@@ -10,7 +10,7 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Models that are not there, by the beginnings of their names, and why.
+/// Missing models by the prefix of their names, with the reason.
 struct Missing {
   std::string_view beginning, why;
 };

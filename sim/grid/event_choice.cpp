@@ -14,7 +14,8 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Machines behind their step-up transformers, at the impedance the positive sequence has of them.
+/// Returns the machines with their step-up transformers as sequence sources, with their positive-sequence
+/// impedances.
 std::vector<network::SequenceSource> sequence_sources(const Grid& grid) {
   std::vector<network::SequenceSource> list;
   for (const plant::Plant& plant : grid.plants) {
@@ -40,7 +41,7 @@ void choose_fault_type(const EventTexts& texts, const Grid& grid, const EventPla
     network::make_unbalanced(event, *type, z0, grid.network, grid.flow, sequence_sources(grid), problems);
 }
 
-/// A step of a reference that nothing follows would be lost without a word.
+/// Adds a problem for a reference step that no control follows, which would otherwise be ignored silently.
 void check_followers(const Grid& grid, const EventPlace& place, const network::Event& event,
                      Problems& problems) {
   for (const network::SetpointStep& step : event.setpoint_steps) {
@@ -106,7 +107,7 @@ void note_shed_loads(Grid& grid, const network::Event& event) {
     before = dead;
   }
   if (remark.places.empty()) return;
-  constexpr std::size_t places = 4;  // as of the other changes to the case
+  constexpr std::size_t places = 4;  // as for the other remarks of the case
   spdlog::warn("{}", remark_line(remark, places));
   n.remarks.push_back(std::move(remark));
 }

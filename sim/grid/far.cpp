@@ -10,14 +10,14 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// A circuit is a word in the network and a number in a control's parameters.
+/// Compares a circuit id of the network, a text, with a control's parameter, a number.
 bool is_circuit(const std::string& name, int number) {
   int value = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), value);
   return error == std::errc() && end == name.data() + name.size() && value == number;
 }
 
-/// The branch in service between two buses with this circuit, or the only one; -1: none.
+/// Returns the branch in service between two buses with this circuit, or the only one; -1: none.
 int branch_between(const network::Network& n, int from, int to, int circuit) {
   int only = -1, count = 0;
   for (std::size_t i = 0; i < n.branches.size(); ++i) {
@@ -30,7 +30,7 @@ int branch_between(const network::Network& n, int from, int to, int circuit) {
   return count == 1 ? only : -1;
 }
 
-/// The place that a control of `plant` names.
+/// Returns the remote place that a control of `plant` names.
 plant::FarPlace place_of(const network::Network& network, const plant::Plant& plant,
                          const plant::Block& block, std::vector<NotThere>& missing) {
   plant::FarPlace place;
@@ -55,7 +55,8 @@ plant::FarPlace place_of(const network::Network& network, const plant::Plant& pl
   return place;
 }
 
-/// At the operating point, on the plant's base; nothing where it measures at the plant alone.
+/// Returns the remote measurements at the operating point, on the plant's base [pu]; none without a remote
+/// place.
 std::optional<Far<double>> measured(const Grid& grid, const plant::Plant& plant) {
   const auto& [bus, branch, at_from] = plant.far_place;
   if (bus < 0 && branch < 0) return {};

@@ -1,5 +1,5 @@
 #pragma once
-// What plants' controls measure elsewhere in the grid: found in the network, and measured in its power flow.
+// Remote measurements of plants' controls: located in the network and evaluated from its power flow.
 #include <string>
 #include <vector>
 
@@ -7,17 +7,17 @@
 
 namespace swingbank::sim::grid {
 
-/// A bus or a branch that a control names and the network does not have in service.
+/// A bus or branch that a control names and that is not in service in the network.
 struct NotThere {
   std::string control;  ///< its effect
   std::string what;     ///< "bus 999"
 };
-/// Finds the bus and the branch that the controls of a plant name (Plant::far_place), and measures there. For
-/// what is not there the control measures at its plant.
+/// Locates the bus and the branch that the controls of a plant name (Plant::far_place) and evaluates the
+/// measurements there. Where one is missing the control measures at its plant. Returns the missing ones.
 std::vector<NotThere> look_far(const Grid& grid, plant::Plant& plant);
-/// The same of every plant; a remark tells what is not there.
+/// The same for every plant; each missing bus or branch becomes a remark.
 void look_far(Grid& grid);
-/// Measures anew, after another power flow (Plant::far).
+/// Re-evaluates the remote measurements (Plant::far) after another power flow.
 void measure_far(Grid& grid);
 
 }  // namespace swingbank::sim::grid

@@ -77,7 +77,7 @@ class GridMaker {
     const auto [effect, reach] = effect_of_dyr(given);
     const std::pair<int, std::string> key{given.bus, given.id};
     const bool of_load = effect && effect->slot == Slot::load;
-    if (known_.contains(key) && !plant_of_.contains(key) && !of_load) return;  // it is out of service
+    if (known_.contains(key) && !plant_of_.contains(key) && !of_load) return;  // the unit is out of service
     if (!effect) return unknown(given, where);
     if (!given.equipment.empty())
       return problems_.add(
@@ -99,7 +99,7 @@ class GridMaker {
         refuse(p, given.line);
     }
   }
-  /// Kept until all are known: one sentence for records with the same fault.
+  /// Collects records with the same fault into one problem.
   void refuse(const Problem& p, int line) {
     const auto same = std::ranges::find_if(
         alike_, [&](const Alike& a) { return a.first.what == p.what && a.first.why == p.why; });
@@ -133,7 +133,7 @@ class GridMaker {
     else
       add_control(effect, std::move(record), where, problems);
   }
-  /// Whether the record is as long as its model takes it, or is made so where that is asked for.
+  /// Returns true if the record has the required length, after completion as the options allow.
   bool fits(const Effect& effect, formats::DyrRecord& record, const std::string& where, Problems& problems) {
     tell_empty(record, where);
     const Completion done = complete(effect, record, options_.complete_records, where, problems);
@@ -170,7 +170,7 @@ class GridMaker {
       grid_.network.remark("empty parameters of the .dyr are taken as zero",
                            record.model + " parameter " + std::to_string(i) + " (" + where + ")");
   }
-  /// Kept until all are known: one sentence for each model, not for each record.
+  /// Collects the records of an unknown model into one problem per model.
   void unknown(const formats::DyrRecord& record, const std::string& where) {
     Unknown& one = unknown_[{record.user.empty() ? record.model : record.user, !record.user.empty()}];
     if (++one.records > 1) return;
@@ -193,7 +193,7 @@ class GridMaker {
                                    ") stand for it with --map-model " + name + "=OTHER"));
     }
   }
-  /// A model for one load, or with the id * for every load, of a bus, owner, zone, area or of all.
+  /// Adds a model for one load, or with id * for every load, of a bus, owner, zone, area or of the grid.
   void add_load(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
                 Problems& problems) {
     constexpr std::array of = {"at bus", "of owner", "in zone", "in area", "anywhere"};
@@ -222,7 +222,7 @@ class GridMaker {
       if (load.kind != network::LoadKind::load) continue;
       if (record.id == "*" && load.power == Complex{} && load.current == Complex{} &&
           load.admittance == Complex{})
-        continue;  // there is nothing to model
+        continue;  // zero consumption
       any = true;
       const auto same = [&](const LoadModel& m) { return m.load == static_cast<int>(i); };
       const auto other = std::ranges::find_if(load_models_, same);
@@ -238,7 +238,7 @@ class GridMaker {
     if (!any)
       grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");
   }
-  /// A model of a switched shunt; a record without an id means the first one of its bus.
+  /// Adds a model of a switched shunt; a record without an id applies to the first one at its bus.
   void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
                        Problems& problems) {
     const std::string what = record.model + " at bus " + std::to_string(record.bus);
@@ -269,7 +269,7 @@ class GridMaker {
                            where + ": " + what + ": " + left_out);
     shunt_models_.push_back(std::move(model));
   }
-  /// Of each switched shunt with a model the power flow's susceptance becomes a load with that model.
+  /// Converts each switched shunt with a model to a load with the power flow's susceptance and that model.
   void shunts_with_models() {
     network::Network& n = grid_.network;
     for (ShuntModel& model : shunt_models_) {
@@ -302,7 +302,8 @@ class GridMaker {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
     return "'" + g.id + "' at bus " + std::to_string(bus_number(g));
   }
-  /// Whether the .dyr seems to end too early: inside a record, or before the last generators of the network.
+  /// Returns a hint if the .dyr seems truncated: within a record, or before the last generators of the
+  /// network.
   [[nodiscard]] std::string cut_off_text() const {
     if (cut_off_at_ > 0)
       return fmt::format("; no '/' ends the last record, of line {}: the file may be cut off", cut_off_at_);
@@ -312,7 +313,7 @@ class GridMaker {
                             modelled->generator < std::ranges::min(unmodelled_);
     return at_the_end ? "; all generators before them have one: the .dyr may be cut off" : "";
   }
-  /// Generators without a machine model: all in one sentence.
+  /// Reports all generators without a machine model in one problem.
   void tell_unmodelled() {
     if (unmodelled_.empty() || options_.net_generators) return;
     constexpr std::size_t most = 20;
@@ -340,7 +341,7 @@ class GridMaker {
     for (plant::Plant& plant : grid_.plants)
       plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
   }
-  /// Puts the steps that the power flow took into the network.
+  /// Writes the shunt steps of the power flow into the network.
   void switched_shunts() {
     network::Network& n = grid_.network;
     if (!options_.flow.step_shunts || options_.start_from_file) {
@@ -369,7 +370,7 @@ class GridMaker {
     }
   }
   [[nodiscard]] std::string bus_text(int bus) const { return grid_.network.bus_text(bus); }
-  /// Where the solution is not that of the file.
+  /// Adds a remark on buses where the solution differs from the file's voltages.
   void compare_with_file() {
     constexpr double apart = 1e-3;  // [pu]
     std::vector<std::pair<double, std::size_t>> far;
@@ -388,7 +389,7 @@ class GridMaker {
                                                       std::abs(grid_.flow.voltage[i]),
                                                       grid_.network.buses[i].vm));
   }
-  /// What the generators without a machine model deliver becomes negative consumption, as PSS/E's GNET does.
+  /// Converts generators without a machine model to negative loads, as PSS/E's GNET does.
   void net_generators() {
     for (const int k : unmodelled_) {
       network::Generator& g = grid_.network.generators[static_cast<std::size_t>(k)];
@@ -406,7 +407,7 @@ class GridMaker {
     }
     std::erase_if(grid_.plants, [](const plant::Plant& p) { return !p.machine.effect; });
   }
-  /// Equipment without a model of its own draws constant P and Q.
+  /// Models equipment without a dynamic model as constant P and Q.
   void devices() {
     const Effect* zip = library::compiled().find("ZIP");
     for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
@@ -427,18 +428,18 @@ class GridMaker {
   };
   struct ShuntModel {
     int bus;         ///< index of its own bus
-    std::string id;  ///< in Network::shunts
+    std::string id;  ///< id in Network::shunts
     plant::Block block;
     std::string where;
   };
   struct Unknown {
     int records = 0;
-    std::string where, first;  ///< of its first record
+    std::string where, first;  ///< place and description of its first record
     std::size_t parameters = 0;
   };
   std::string dyr_;
   CaseOptions options_;
-  int cut_off_at_ = 0;           ///< line of the .dyr's last record, where no '/' ends it
+  int cut_off_at_ = 0;           ///< line of the .dyr's last record if no '/' ends it, else 0
   std::vector<int> unmodelled_;  ///< generators in service without a machine model
   Grid grid_;
   Problems problems_;
@@ -446,12 +447,12 @@ class GridMaker {
   std::vector<ShuntModel> shunt_models_;
   struct Alike {
     Problem first;
-    std::vector<int> lines;  ///< of the others
+    std::vector<int> lines;  ///< lines of the others
   };
-  std::vector<Alike> alike_;                                 ///< records that their model cannot take
-  std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< by name and whether it is user-written
+  std::vector<Alike> alike_;                                 ///< records that their model does not accept
+  std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< key: name, and true for a user-written model
   std::map<std::pair<int, std::string>, std::size_t> plant_of_;
-  std::set<std::pair<int, std::string>> refused_;  ///< generators whose machine's record is told as refused
+  std::set<std::pair<int, std::string>> refused_;  ///< generators with a refused machine record
   std::set<std::pair<int, std::string>> known_;    ///< every generator of the network
 };
 

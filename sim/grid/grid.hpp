@@ -14,6 +14,7 @@
 
 namespace swingbank::sim::grid {
 
+/// A network with its power flow, plants, dynamic loads and the library of their effects.
 struct Grid {
   network::Network network;
   network::PowerFlow flow;
@@ -21,46 +22,48 @@ struct Grid {
   std::vector<plant::Plant> plants;
   std::vector<plant::Consumer> loads;
   network::PowerFlowOptions flow_options;
-  library::EffectLibrary library;  ///< owns the laws that its plants have; attach() takes effects from it
+  library::EffectLibrary library;  ///< owns the user-defined models of its plants; source of attach()
 
-  /// Indices into Network::loads of the loads with a model of their own, sorted.
+  /// Returns the sorted indices into Network::loads of the loads with a dynamic model.
   [[nodiscard]] std::vector<int> modelled_loads() const;
 };
 
-/// What is done to a case that is not whole. Everything done stands in Network::remarks.
+/// Treatment of an incomplete case. Every change is recorded in Network::remarks.
 struct CaseOptions {
   formats::DyrOptions dyr;
   formats::RawOptions raw;
   bool net_generators = false;   ///< generators without a machine model become negative loads (PSS/E: GNET)
-  bool start_from_file = false;  ///< the file's voltages are the operating point, whatever they leave over
+  bool start_from_file = false;  ///< the file's voltages are the operating point, whatever their mismatch
   network::PowerFlowOptions flow;
-  /// Records shorter or longer than their model: missing values at the end are these, surplus ones left out.
+  /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).
   Lacking complete_records = Lacking::refused;
-  bool drop_refused = false;  ///< records of the .dyr that their model cannot take are left out
+  bool drop_refused = false;  ///< drop records of the .dyr that their model does not accept
 };
 
-/// Joins a network with its dynamic models. Throws InputError naming every generator in service without a
-/// model, every unknown model, wrong column count and inconsistent value, with the .dyr line. Records for
-/// generators that the network has not, or has out of service, are left out, the former with a remark. The
-/// frequency is the network's: conventions.frequency is overwritten. Where an effect keeps a parameter in the
-/// .raw (ZR, ZX) it is taken from there; where the .dyr has its own source reactance and ZX contradicts it,
-/// the .dyr counts, as in PSS/E, with a remark. Equipment without a model draws constant P and Q. Where the
-/// solution and the file's voltages differ by more than 1e-3 pu a remark says so.
+/// Combines a network with its dynamic models. Throws InputError that names every generator in service
+/// without a model, every unknown model, wrong column count and inconsistent value, with the .dyr line.
+///
+/// Records of generators that are out of service are dropped; those of generators that the network does not
+/// have are dropped with a remark. The frequency is the network's: conventions.frequency is overwritten.
+/// Parameters that an effect keeps in the .raw (ZR, ZX) are taken from there. If the .dyr has its own source
+/// reactance and ZX contradicts it, the .dyr takes precedence, as in PSS/E, with a remark. Equipment without
+/// a model draws constant P and Q. A solution that differs from the file's voltages by more than 1e-3 pu
+/// causes a remark.
 Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& dynamics,
                const std::string& dyr_name, Conventions conventions, const CaseOptions& options = {});
-/// read_network + read_dyr (of a .dyd: survey_dyd, whose mva, Ra and X'd count for their generators) +
-/// make_grid; what was done to the case is warned of.
+/// Combines read_network, read_dyr and make_grid, and warns of every change to the case. A .dyd is read by
+/// survey_dyd; its mva, Ra and X'd take precedence over those of the network's generators.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const formats::DyrOptions& options = {}, std::optional<double> frequency_hz = {});
 
-/// A remark in a line: what, how often, and at most `places` of the places.
+/// Returns a remark as one line: subject, count, and at most `places` places.
 std::string remark_line(const network::Remark& remark, std::size_t places);
 
-/// Writes the plants' models and parameters; with the network's .raw they read back to the last bit. Throws
-/// InputError if a parameter that belongs into the .raw differs from the network's, or an effect has no .dyr
-/// form.
+/// Writes the plants' models and parameters as a .dyr. Reading it with the network's .raw restores them bit
+/// by bit. Throws InputError if a parameter that belongs in the .raw differs from the network's, or if an
+/// effect has no .dyr form.
 void write_dyr(const Grid& grid, const std::filesystem::path& file);
 
 }  // namespace swingbank::sim::grid

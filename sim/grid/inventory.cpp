@@ -91,7 +91,7 @@ Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem
                          const formats::RawOptions& options) {
   formats::refuse_exchanged(raw, dyr);
   formats::RawOptions counting = options;
-  counting.needs_frequency = false;  // nothing turns here
+  counting.needs_frequency = false;  // no simulation follows
   const formats::RawSurvey survey = formats::survey_network(raw, counting);
   formats::DyrSurvey dynamics =
       formats::is_dyd(dyr) ? formats::survey_dyd(dyr).dyr : formats::survey_dyr(dyr);

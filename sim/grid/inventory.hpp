@@ -1,5 +1,5 @@
 #pragma once
-// What a case holds of units and models, and how much of it can be modelled.
+// Inventory of a case: its units and models, and how many of them can be modelled.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,37 +9,39 @@
 
 namespace swingbank::sim::grid {
 
-/// One model of the .dyr, over all its records.
+/// Counts of one model of the .dyr over all its records.
 struct ModelCount {
-  std::string name, kind;  ///< kind: its slot, "" if it is not known
+  std::string name, kind;  ///< kind: its slot, "" if the model is unknown
   int records = 0, units = 0, first_line = 0;
-  int faulty = 0;     ///< of the records of a known model
-  std::string fault;  ///< what is wrong with the first of these
+  int faulty = 0;     ///< faulty records of a known model
+  std::string fault;  ///< error of the first of these
   [[nodiscard]] int uncovered() const { return kind.empty() ? records : faulty; }
 };
 
+/// A unit of the case and its models.
 struct UnitCount {
   int bus = 0;
   std::string id, bus_name;
   double mva = 0;
   bool in_service = true;
-  std::vector<std::string> models;     ///< as the .dyr has them
-  std::vector<std::string> uncovered;  ///< those of them that cannot be used
-  bool machine = false;                ///< one of the models is a machine that can be used
-  bool classical = false;              ///< it has no field winding: GENCLS
-  int field_records = 0;               ///< of controls that act through the field voltage
+  std::vector<std::string> models;     ///< names in the .dyr
+  std::vector<std::string> uncovered;  ///< unusable ones among them
+  bool machine = false;                ///< true if one of the models is a usable machine
+  bool classical = false;              ///< true if that machine has no field winding: GENCLS
+  int field_records = 0;               ///< number of controls that act through the field voltage
   [[nodiscard]] bool covered() const { return machine && uncovered.empty(); }
 };
 
+/// Units and models of a case.
 struct Inventory {
   std::vector<UnitCount> units;     ///< in the order of the .raw
   std::vector<ModelCount> models;   ///< most records first
-  int without_generator = 0;        ///< records of known controls whose generator the .raw does not have
-  int first_without_generator = 0;  ///< line of the first
+  int without_generator = 0;        ///< records of known controls whose generator is missing in the .raw
+  int first_without_generator = 0;  ///< line of the first of these
   std::vector<std::string> raw_faults = {}, dyr_faults = {};  ///< sentences
 };
 
-/// Throws InputError where one of the files cannot be read at all.
+/// Takes the inventory of a case. Throws InputError if one of the files cannot be read at all.
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
                          const formats::RawOptions& options = {});
 

@@ -1,8 +1,9 @@
 #pragma once
-// What the values are that a record of a .dyr lacks at its end.
+// Values used for those missing at the end of a .dyr record.
 
 namespace swingbank::sim::grid {
 
+/// `refused`: the record is an error; `zero`: zeros; `standard`: the effect's defaults.
 enum class Lacking { refused, zero, standard };
 
 }  // namespace swingbank::sim::grid

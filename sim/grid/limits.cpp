@@ -12,7 +12,7 @@ namespace {
 Complex voltage_of(const Grid& grid, const plant::Plant& plant) {
   return grid.flow.voltage[static_cast<std::size_t>(plant.bus)];
 }
-/// What keeps a plant from its operating point; empty: nothing.
+/// Returns the reasons why a plant's operating point is infeasible; empty if it is feasible.
 std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
   try {
     (void)plant::operating_point(plant, voltage_of(grid, plant), grid.network.base_mva, grid.conventions);
@@ -22,8 +22,8 @@ std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
   return {};
 }
 
-/// Which way a limit opens: +1 upwards, -1 downwards, 0: the parameter is none. An effect says in the
-/// parameter's meaning what it is.
+/// Returns the direction in which a limit widens: +1 upwards, -1 downwards, 0 if the parameter is no limit.
+/// The parameter's meaning identifies a limit.
 int opening(const Parameter& p) {
   const std::string meaning(p.meaning);
   const auto says = [&](const char* word) { return meaning.find(word) != std::string::npos; };
@@ -44,7 +44,7 @@ int opening(const Parameter& p) {
 }
 
 struct Limit {
-  std::size_t block, parameter;  ///< of the plant's controls
+  std::size_t block, parameter;  ///< index of the control and of its parameter
   int way;
   double given;
 };
@@ -57,7 +57,7 @@ class Widener {
         if (const int way = opening(plant.controls[b].effect->parameters[i]); way != 0)
           limits_.push_back({b, i, way, plant.controls[b].p[i]});
   }
-  /// What is in the way besides the limits; the plant is then as it was.
+  /// Widens the limits. Returns the reasons other than limits, in which case the plant is unchanged.
   std::vector<Problem> widen() {
     for (const Limit& l : limits_) value(l) = l.given + l.way * kAllOpen;
     std::vector<Problem> left = hindrances(grid_, plant_);
@@ -70,10 +70,10 @@ class Widener {
   }
 
  private:
-  static constexpr double kAllOpen = 100.0;  ///< [pu] beyond what any operating point needs
+  static constexpr double kAllOpen = 100.0;  ///< [pu] more than any operating point requires
   double& value(const Limit& l) { return plant_.controls[l.block].p[l.parameter]; }
   bool stands() { return hindrances(grid_, plant_).empty(); }
-  /// Back to the given value, or as near to it as the operating point stands.
+  /// Restores a limit to its given value, or to the nearest value with a feasible operating point.
   void narrow(const Limit& l) {
     double near = 0.0, far = kAllOpen;
     value(l) = l.given;

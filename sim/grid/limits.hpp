@@ -1,12 +1,12 @@
 #pragma once
-// Operating points beyond a control's limits: all told at once, or the limits moved there, as PSS/E does.
+// Operating points beyond a control's limits: all reported at once, or the limits widened, as in PSS/E.
 #include "sim/grid/grid.hpp"
 
 namespace swingbank::sim::grid {
 
-/// Brings every plant to its operating point; what cannot be held is thrown together.
-/// `widen`: where limits alone are in the way, those of the plant's controls are moved to what the operating
-/// point needs and not further, each with a remark and a warning.
+/// Checks that every plant can hold its operating point. Throws one InputError that lists all infeasible
+/// plants. `widen`: if only limits of the plant's controls prevent the operating point, they are moved no
+/// further than required, each with a remark and a warning.
 void settle_limits(Grid& grid, bool widen);
 
 }  // namespace swingbank::sim::grid

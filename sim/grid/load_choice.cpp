@@ -21,7 +21,7 @@ std::string load_name(const network::Network& network, std::size_t load) {
          (at_bus > 1 ? "/" + l.id : "");
 }
 
-/// Loads that "BUS" or "BUS/ID" means, by index.
+/// Returns the indices of the loads named by "BUS" or "BUS/ID".
 std::vector<int> loads_named(const network::Network& network, const std::string& text,
                              const std::string& where, Problems& problems) {
   const auto slash = text.find('/');
@@ -41,7 +41,7 @@ std::vector<int> loads_named(const network::Network& network, const std::string&
   return list;
 }
 
-/// Every load that has no model and draws something, by index.
+/// Returns the indices of the loads without a model and with non-zero consumption.
 std::vector<int> loads_without_model(const Grid& grid, const std::string& where, Problems& problems) {
   std::vector<int> list;
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i)
@@ -54,7 +54,7 @@ std::vector<int> loads_without_model(const Grid& grid, const std::string& where,
   return list;
 }
 
-/// Fraction of the total that `part` is; 0 of 0 is 0.
+/// Returns part/total, and 0 for part = 0.
 double fraction(double part, double total) { return part == 0.0 ? 0.0 : part / total; }
 
 }  // namespace
@@ -97,7 +97,7 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
     block.p[static_cast<std::size_t>(block.effect->parameter_index(parameter))] = value;
   };
   const auto cancels = [&](double a, double b, double c, double sum, const char* name) {
-    constexpr double least = 1e-9;  // of the parts: below it their difference has no digits left
+    constexpr double least = 1e-9;  // relative size below which cancellation leaves no significant digits
     if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
       return;
     problems.add(fmt::format("the parts of {} cancel", name), where,

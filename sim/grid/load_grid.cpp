@@ -1,4 +1,4 @@
-// A grid from the files of a case, whoever's they are.
+// Construction of a grid from the files of a case, in any supported format.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -24,7 +24,7 @@ std::string remark_line(const network::Remark& remark, std::size_t places) {
 
 namespace {
 
-/// What a .dyd holds of machines and PSS/E in the .raw.
+/// Copies the machine data that PSLF keeps in the .dyd and PSS/E in the .raw.
 void take_machines(network::Network& network, const formats::DydSurvey& dyd, const std::string& name) {
   for (const formats::DyrRecord& record : dyd.dyr.records) {
     const std::string where = name + ":" + std::to_string(record.line);
@@ -36,9 +36,9 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
     const auto g = std::ranges::find_if(network.generators, [&](const network::Generator& other) {
       return network.buses[static_cast<std::size_t>(other.bus)].number == record.bus && other.id == record.id;
     });
-    if (g == network.generators.end()) continue;  // the record is left out with a remark
+    if (g == network.generators.end()) continue;  // make_grid drops the record with a remark
     g->zr = machine->second.resistance;
-    g->zx = machine->second.reactance.value_or(0);  // 0: nothing to compare with
+    g->zx = machine->second.reactance.value_or(0);  // 0: no value to compare with
     if (machine->second.mva == g->mva || !(machine->second.mva > 0)) continue;
     network.remark("machine bases of the .dyd count where those of the network are others",
                    fmt::format("'{}' at bus {}: {:g} MVA, not {:g} ({})", record.id, record.bus,
@@ -79,7 +79,7 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
   problems.raise();
   take_machines(network, dyd, dyr.string());
   Grid grid = make_grid(std::move(network), dynamics, dyr.string(), conventions, options);
-  constexpr std::size_t places = 4;  // a screen holds them; `simulate --changes` writes all
+  constexpr std::size_t places = 4;  // fits on a screen; `simulate --changes` writes all
   for (const network::Remark& remark : grid.network.remarks)
     spdlog::warn("{}: {}", raw.filename().string(), remark_line(remark, places));
   return grid;

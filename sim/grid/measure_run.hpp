@@ -1,5 +1,5 @@
 #pragma once
-// The measurement chain behind every plant of a run.
+// Measurement chains of the plants of a run.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,9 +10,10 @@
 
 namespace swingbank::sim::grid {
 
-/// Replaces V, theta, P and Q of every plant in the run by what is measured: the plant's own measurements,
-/// then `chain`. Needs those four channels. Returns the frequency they report [Hz], [plant][sample]. Plant i
-/// of the grid draws from its own random numbers. Throws InputError as phasors_of.
+/// Replaces V, theta, P and Q of every plant in the run by their measured values: the plant's own measurement
+/// effects act first, then `chain`. The run must have these four channels. Returns the measured frequency
+/// [Hz] as [plant][sample]. Each plant has its own random-number stream. Throws InputError as phasors_of
+/// does.
 std::vector<std::vector<double>> measure_run(const Grid& grid, std::span<const plant::Block> chain,
                                              std::uint64_t seed, Trajectory& run);
 

@@ -27,7 +27,7 @@ void set_machine_base(Grid& grid, std::size_t plant, double mva) {
   plant::Plant& p = grid.plants[plant];
   p.mva = mva;
   grid.network.generators[static_cast<std::size_t>(p.generator)].mva = mva;
-  measure_far(grid);  // it is on the machine's base
+  measure_far(grid);  // remote measurements are on the machine's base
 }
 
 }  // namespace swingbank::sim::grid

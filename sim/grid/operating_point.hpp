@@ -1,19 +1,19 @@
 #pragma once
-// A grid brought to another operating point: the same buses, plants and models at other loads, dispatch,
-// voltages and machine bases.
+// Change of a grid's operating point: the same buses, plants and models with other loads, dispatch, voltages
+// and machine bases.
 #include <cstddef>
 
 #include "sim/grid/grid.hpp"
 
 namespace swingbank::sim::grid {
 
-/// The grid with `network`: its own with other loads, generation, held voltages or branches in service.
-/// Solves the power flow; plants and loads with a model of their own follow it. Throws InputError as
-/// solve_power_flow.
+/// Returns the grid with `network`, which is its own network with other loads, generation, regulated voltages
+/// or branches in service. Solves the power flow and updates plants and dynamic loads. Throws InputError as
+/// solve_power_flow does.
 Grid at_operating_point(const Grid& grid, network::Network network);
 
-/// Gives a plant another machine base [MVA]. Its parameters stay as they stand, per unit on it; its power
-/// stays in MW.
+/// Sets a plant's machine base [MVA]. Its parameters keep their per-unit values on the new base; its power in
+/// MW is unchanged.
 void set_machine_base(Grid& grid, std::size_t plant, double mva);
 
 }  // namespace swingbank::sim::grid

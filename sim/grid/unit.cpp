@@ -57,7 +57,7 @@ class UnitReader {
   [[nodiscard]] std::string line_of(const std::vector<int>& lines, std::size_t i) const {
     return net().origin + (i < lines.size() ? ":" + std::to_string(lines[i]) : "");
   }
-  /// What is wrong on these lines of the .raw.
+  /// Adds the faults on these lines of the .raw to the problems.
   void faults_of(int first, int count) {
     for (const Problem& p : survey_.faults)
       for (int line = first; line < first + count; ++line)
@@ -94,7 +94,8 @@ class UnitReader {
     generator_ = static_cast<int>(at);
     if (at < survey_.generator_line.size()) faults_of(survey_.generator_line[at], 1);
   }
-  /// Branches in service on the shortest path from the bus at `start` to each bus; -1 where there is none.
+  /// Returns the number of branches in service on the shortest path from bus `start` to each bus; -1: no
+  /// path.
   [[nodiscard]] std::vector<int> branches_from(std::size_t start) const {
     std::vector<std::vector<std::size_t>> neighbours(net().buses.size());
     for (const network::Branch& b : net().branches)
@@ -113,7 +114,7 @@ class UnitReader {
         }
     return apart;
   }
-  /// Some buses with generators: the nearest in the grid, or by number where there is no bus of that number.
+  /// Returns some buses with generators: the nearest in the grid, or by number if the bus does not exist.
   [[nodiscard]] std::string nearest_generators() const {
     const auto bus = std::ranges::find(net().buses, choice_.bus, &network::Bus::number);
     const bool known = bus != net().buses.end();
@@ -176,7 +177,7 @@ class UnitReader {
     for (const std::string& text : idle_controls(unit_.plant))
       unit_.notes.push_back(text + ": it does nothing");
   }
-  /// What the model cannot hold of the operating point that the .raw gives: records are likely to begin
+  /// Adds a note if the model cannot hold the operating point of the .raw, because records probably start
   /// there.
   void tell_dispatch() {
     const network::Bus& bus = bus_at(generator().bus);
@@ -188,12 +189,12 @@ class UnitReader {
       (void)plant::operating_point(plant, std::polar(bus.vm, bus.va), net().base_mva,
                                    Conventions::psse(net().frequency));
     } catch (const InputError& error) {
-      const Problem& p = error.problems().front();  // others follow from it
+      const Problem& p = error.problems().front();  // the others are consequences
       unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that begins there is refused",
                                         net().origin, p.what, p.why));
     }
   }
-  /// Why a record may have been lost.
+  /// Returns a possible reason for a missing machine record.
   [[nodiscard]] std::string lost_text() const {
     if (dynamics_.faults.empty()) return "it has no record that makes a machine";
     return "it has no record that makes a machine; the file has a fault: " + dynamics_.faults[0].sentence();
@@ -260,7 +261,7 @@ class UnitReader {
     std::string warning = place(unit_.plant, std::move(block), {g, net().origin}, where, problems_);
     if (!warning.empty()) unit_.notes.push_back(std::move(warning));
   }
-  /// The generator, with what a .dyd says of it in a machine's record in place of the .raw.
+  /// Returns the generator, with the machine data of a .dyd in place of those of the .raw.
   network::Generator generator_with(int line) {
     network::Generator g = generator();
     if (const auto note = dyd_.notes.find(line); note != dyd_.notes.end())
@@ -268,7 +269,7 @@ class UnitReader {
     const auto at = dyd_.machines.find(line);
     if (at == dyd_.machines.end()) return g;
     g.zr = at->second.resistance;
-    g.zx = at->second.reactance.value_or(0);  // 0: nothing to compare with
+    g.zx = at->second.reactance.value_or(0);  // 0: no value to compare with
     if (at->second.mva == unit_.plant.mva) return g;
     unit_.notes.push_back(
         fmt::format("the .dyd has the machine on {:g} MVA, {} on {:g} MVA: the former is used",
@@ -279,7 +280,7 @@ class UnitReader {
     unit_.plant.mva = at->second.mva;
     return g;
   }
-  /// A name that the unit does not have is a slip if the file has it nowhere.
+  /// Adds a problem for a model name of the options that does not occur in the file.
   void check_options() {
     std::set<std::string> all;
     for (const auto& r : dynamics_.records) all.insert({r.model, name_of(r)});
@@ -297,7 +298,7 @@ class UnitReader {
     }
   }
 
-  /// Numbers of the buses that transformers in service join to the unit's bus, each once.
+  /// Returns the numbers of the buses connected to the unit's bus by transformers in service.
   [[nodiscard]] std::set<int> transformers_to() const {
     std::set<int> ends;
     const int own = generator().bus;
@@ -345,8 +346,8 @@ class UnitReader {
     unit_.kv = bus_at(far).kv;
     if (unit_.dispatch) dispatch_behind(way.z - first.z, bus_at(far));
   }
-  /// Moves the dispatch from the machine's bus to behind the transformers between, less their losses. `z`: of
-  /// these, on the machine's side, where the current is that of the dispatch [pu of the case's base].
+  /// Refers the dispatch from the machine's bus to the measured bus by subtracting the losses in between.
+  /// `z`: impedance of the transformers on the machine's side [pu on the case's base].
   void dispatch_behind(Complex z, const network::Bus& there) {
     Dispatch& d = *unit_.dispatch;
     const double current = std::hypot(d.P, d.Q) / net().base_mva / d.V;
@@ -354,7 +355,7 @@ class UnitReader {
     d.Q -= current * current * z.imag() * net().base_mva;
     d.V = there.vm;
   }
-  /// A control that measures elsewhere does so, in a plant file, where the record was taken.
+  /// Adds a note on remote measurements: in a plant file they take place at the measured bus.
   void tell_far() {
     const int recorded = choice_.measured_at.value_or(unit_.bus);
     for (const plant::Block& block : unit_.plant.controls) {
@@ -367,7 +368,8 @@ class UnitReader {
           block.effect->name, bus != 0 && bus != recorded ? bus : from));
     }
   }
-  /// What else stands at the machine's bus flows through the transformer too.
+  /// Adds problems for other equipment at the machine's bus, whose current also flows through the
+  /// transformer.
   void neighbours(int measured_at) {
     const int bus = generator().bus;
     for (std::size_t i = 0; i < net().generators.size(); ++i) {
@@ -390,7 +392,7 @@ class UnitReader {
                         "model has none",
                         s.id, unit_.bus, measured_at));
   }
-  /// What joins between the transformers, whose current is then not the unit's alone.
+  /// Adds problems for equipment between the transformers, whose current adds to the unit's.
   void passed(const StepUp& way, int measured_at) {
     for (std::size_t k = 1; k + 1 < way.buses.size(); ++k)
       if (const std::string other = joins_on_the_way(net(), way, way.buses[k]); !other.empty())
@@ -403,7 +405,7 @@ class UnitReader {
                     net().origin, "they carry a current in circle, which the model does not have",
                     "take the records at the unit's own bus");
   }
-  /// STEPUP has its impedance on the machine's side, on the machine's base.
+  /// Adds the effect STEPUP, with its impedance on the machine's side and base.
   void add_transformer(const StepUp& way) {
     std::string where;
     for (const auto& stage : way.stages) {
@@ -436,7 +438,7 @@ class UnitReader {
   const UnitChoice& choice_;
   formats::RawSurvey survey_;
   formats::DyrSurvey dynamics_;
-  formats::DydSurvey dyd_;  ///< empty where the records are a .dyr's
+  formats::DydSurvey dyd_;  ///< empty for records of a .dyr
   int generator_ = -1;
   Unit unit_;
   std::set<std::string> found_;  ///< models of the unit

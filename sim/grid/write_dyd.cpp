@@ -1,4 +1,4 @@
-// A unit as lines of a PSLF .dyd: its .dyr records, converted.
+// Writer of a unit as lines of a PSLF .dyd, converted from its .dyr records.
 #include <fmt/format.h>
 
 #include "sim/formats/psse_text.hpp"

@@ -1,4 +1,4 @@
-// Plants as records of a .dyr: of a whole grid, or of one unit.
+// Writer of .dyr records for the plants of a grid or for one unit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// One record of a .dyr; `owner`: "generator 30" or "load 8", `id`: its id in the .raw; `raw`: the block with
-/// what the .raw says of it.
+/// Returns one record of a .dyr. `owner`: "generator 30" or "load 8", `id`: its id in the .raw; `raw`: block
+/// with the values of the .raw.
 std::string dyr_record(const plant::Block& block, const std::string& owner, int bus, const std::string& id,
                        const std::string& file, Problems& problems, const plant::Block* raw = nullptr) {
   const Effect& effect = *block.effect;
@@ -66,7 +66,7 @@ std::string plant_record(const Grid& grid, const plant::Plant& plant, const plan
                     grid.network.buses[static_cast<std::size_t>(plant.bus)].number, g.id, file, problems);
 }
 
-/// The record of a model of a switched shunt, which switches none of those beside it.
+/// Returns the record of a switched shunt's model, without mechanically switched shunts.
 std::string shunt_record(const plant::Block& block, int bus, const std::string& shunt) {
   using formats::psse::quote;
   using formats::psse::shortest;
@@ -84,7 +84,7 @@ std::string shunt_record(const plant::Block& block, int bus, const std::string& 
   return text + " /\n";
 }
 
-/// A step-up transformer stands in the .raw, or nowhere.
+/// Adds a problem if a step-up transformer differs from the .raw, because a .dyr cannot contain it.
 void write_transformer(const Grid& grid, const plant::Plant& plant, const std::string& file,
                        Problems& problems) {
   const network::Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
@@ -95,8 +95,8 @@ void write_transformer(const Grid& grid, const plant::Plant& plant, const std::s
                "set the generator's RT and XT in the network, or remove it before writing");
 }
 
-/// Instruments and moved references belong to a record of an event, not to a plant's model; a load
-/// controller, which stands among the latter, has a form of its own.
+/// Returns true for instruments and setpoint moves, which belong to the record of an event and not to a
+/// plant's model. A load controller is a setpoint effect with a .dyr form, and belongs to the model.
 bool belongs_to_event(const Effect& effect) {
   return effect.slot == Slot::measurement || (effect.slot == Slot::setpoint && effect.dyr_name.empty());
 }

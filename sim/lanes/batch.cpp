@@ -37,8 +37,8 @@ struct EngineOf final : Engine {
 }  // namespace detail
 
 namespace {
-/// Sixteen lanes in float: currents that are sought (algebra.hpp) are found to 1e-13, which a float cannot
-/// tell.
+/// Refuses effects that cannot run in single precision: laws, and sources with Newton's method (algebra.hpp),
+/// whose tolerance of 1e-13 a float cannot represent.
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {
@@ -61,7 +61,7 @@ void refuse_in_float(const grid::Grid& grid) {
   problems.raise();
 }
 
-/// The network is reduced to the sources' buses.
+/// Refuses loads that regulate another bus, because the network is reduced to the sources' buses.
 void refuse_far_regulation(const grid::Grid& grid) {
   Problems problems;
   for (const plant::Consumer& load : grid.loads)

@@ -1,7 +1,7 @@
 #pragma once
-// The engine: free-running adaptive lanes. Dormand-Prince 5(4); each lane of a pack runs its own event with
-// its own time, step, acceptance and refill from the queue; lanes share no arithmetic, so a sample's bytes do
-// not depend on which lane or batch it rode in.
+// Batch integrator with independent SIMD lanes. The method is Dormand-Prince 5(4). Each lane of a pack
+// integrates its own event with its own time, step size and step acceptance, and takes the next job from the
+// queue. Lanes share no arithmetic, so a result does not depend on its lane or batch, bit by bit.
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,30 +14,31 @@
 
 namespace swingbank::sim::lanes {
 
+/// Options of a batch; `t_end` in seconds, `rate` in samples per second.
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;
   double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;        ///< recorded; empty: all
-  std::vector<Channel> channels;  ///< recorded; empty: all of kChannels
+  std::vector<int> plants;        ///< recorded plants; empty: all
+  std::vector<Channel> channels;  ///< recorded channels; empty: all of kChannels
   int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 46); 0: the widest in double of this build
-  /// A run ends where a rotor angle has moved by so much against another's of the same island since the start
+  /// Loss of synchronism: a run ends when the angle between two rotors of one island has changed by this
+  /// much.
   double lose_at = constants::pi;  ///< [rad]
-  bool sensitivities = false;      ///< carry derivatives along Job::seeds, in kDualLanes lanes
+  bool sensitivities = false;      ///< compute derivatives with respect to Job::seeds, in kDualLanes lanes
 };
 
-/// A parameter a sensitivity is wanted for. The step control weighs the sensitivity's error times `scale`
-/// like that of the value itself.
+/// A sensitivity parameter. The step control weights the sensitivity times `scale` like the value itself.
 struct Seed {
   int plant;
-  plant::ParameterId parameter;  ///< of the machine, the transformer or a control
+  plant::ParameterId parameter;  ///< parameter of the machine, the transformer or a control
   double scale;                  ///< [unit of the parameter]
 };
 
-/// One run to make: the event and the plants' parameters. Plants that are not listed keep the grid's own.
+/// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
 struct Job {
   std::uint64_t id = 0;
-  /// The batch's grid at another operating point (grid/operating_point.hpp); none: as it is. Held while the
-  /// job runs.
+  /// The batch's grid at another operating point (grid/operating_point.hpp); null: unchanged. The job shares
+  /// its ownership.
   std::shared_ptr<const grid::Grid> grid = {};
   network::Event event;
   struct BlockValues {
@@ -46,23 +47,26 @@ struct Job {
     friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };
   std::vector<BlockValues> parameters = {};
-  std::vector<Seed> seeds = {};  ///< at most kDirections; only where BatchOptions::sensitivities
+  std::vector<Seed> seeds = {};  ///< at most kDirections; used only with BatchOptions::sensitivities
 };
 
-/// The plants a job changes, by index; `grid`: of the batch.
+/// Returns the plants whose parameters a job changes, by index. `grid`: the batch's grid.
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job);
 
+/// Integrates jobs on one grid in SIMD lanes. One Batch runs in one thread.
 class Batch {
  public:
-  /// Throws InputError: a number of lanes that is not built; sources or law files that cannot run in float.
+  /// Throws InputError if the number of lanes is not available, if a load model regulates a bus other than
+  /// its own, or if sources or laws of the grid cannot run in the requested single precision.
   Batch(const grid::Grid& grid, BatchOptions options);
   ~Batch();
-  /// Runs jobs until `next` returns false. `done` is called once per job, in the order they finish; the
-  /// trajectory is only valid during the call. An InputError of a job (operating point refused) is thrown.
+  /// Runs jobs until `next` returns false. Calls `done` once per job, in the order of completion; the
+  /// trajectory is valid only during the call. Throws the InputError of a job with an infeasible operating
+  /// point.
   void run(const std::function<bool(Job&)>& next,
            const std::function<void(const Job&, const Trajectory&)>& done);
-  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved", "dp54 lanes=16 float isa=...": part of a dataset's
-  /// config hash.
+  /// Returns the description of the kernel, which is part of a dataset's config hash:
+  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved", "dp54 lanes=16 float isa=...".
   [[nodiscard]] std::string variant() const;
 
  private:

@@ -1,4 +1,4 @@
-// Blocks of a law file: each becomes states and a value; their arithmetic is that of blocks.hpp.
+// Reader of a law file's blocks: each becomes states and an output value, with the arithmetic of blocks.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ int Reader::block_input(const std::string& name) {
   return look_up(Node{Op::name, 0.0, before, {}, 0}, "chain");
 }
 
-/// K times a vertex, where the block has a K.
+/// Multiplies a vertex by the block's gain K, if it has one.
 int Reader::with_gain(const std::string& name, int vertex) {
   const std::string key = "blocks." + name + ".K";
   return config_.has(key) ? graph_.make(Act::multiply, value(key), vertex) : vertex;
@@ -73,7 +73,7 @@ bool Reader::surely_positive(int vertex) const {
          law_.parameters[static_cast<std::size_t>(parameter)].low > 0.0;
 }
 
-/// The limits of a block's output; of a state they are its own, so that it does not wind up.
+/// Applies the limits of a block's output; the limits of a state belong to the state itself (non-windup).
 int Reader::limited(const std::string& name, int vertex) {
   const std::string low = "blocks." + name + ".low", high = "blocks." + name + ".high";
   if (!config_.has(low) && !config_.has(high)) return vertex;
@@ -81,7 +81,8 @@ int Reader::limited(const std::string& name, int vertex) {
   return graph_.make(Act::clamp, vertex, value(low, -far), value(high, far));
 }
 
-/// Output of a block. Only what the output needs at once is looked up: a lag or an integrator closes loops.
+/// Returns the output of a block. Resolves only direct inputs of the output, so that a loop through a lag or
+/// an integrator is allowed.
 int Reader::block_output(const std::string& name) {
   Block& block = blocks_.at(name);
   const std::string key = "blocks." + name + ".";
@@ -135,7 +136,7 @@ int Reader::first_order(const std::string& name, Block& block) {
   return limited(name, with_gain(name, out));
 }
 
-/// Vertices of a list of texts.
+/// Returns the vertices of a list of expressions.
 std::vector<int> Reader::list(const std::string& key) {
   std::vector<int> vertices;
   const auto texts = config_.require<std::vector<std::string>>(key);
@@ -152,7 +153,7 @@ std::vector<int> Reader::list(const std::string& key) {
   return vertices;
 }
 
-/// b(s)/a(s), coefficients in rising powers of s, in observer form:
+/// Adds the states of b(s)/a(s), with coefficients in ascending powers of s, in observer form:
 ///   y = z_n + d u,  dz_1 = b_0 u - a_0 y,  dz_i = z_(i-1) + b_(i-1) u - a_(i-1) y,  all over a_n;  d = b_n
 void Reader::transfer_function_states(const std::string& name, Block& block) {
   const std::string key = "blocks." + name + ".";
@@ -181,7 +182,8 @@ void Reader::transfer_function_states(const std::string& name, Block& block) {
   const bool strictly_proper = config_.require<std::vector<std::string>>(key + "numerator").size() <= n ||
                                (through != graph_.constants().end() && through->second == 0.0);
   int y = last;
-  if (strictly_proper) entry.vertex = limited(name, y);  // known before the input: it may close a loop
+  if (strictly_proper)
+    entry.vertex = limited(name, y);  // independent of the input, so that loops are allowed
   const int u = block_input(name);
   if (!strictly_proper) y = graph_.make(Act::add, last, graph_.make(Act::multiply, b[n], u));
   for (std::size_t i = 0; i < n; ++i) {
@@ -194,7 +196,7 @@ void Reader::transfer_function_states(const std::string& name, Block& block) {
   if (!strictly_proper) entry.vertex = limited(name, y);
 }
 
-/// Derivative of a block's state, once its output has a vertex.
+/// Sets the derivative of a block's state after its output has been resolved.
 void Reader::finish_block(const std::string& name) {
   const Node self{Op::name, 0.0, name, {}, 0};
   (void)named(self, "blocks." + name, named_.at(name));

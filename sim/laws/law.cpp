@@ -22,7 +22,7 @@ void evaluate(const void* data, const T* c, const T* x, Signals<T>& s, T* dx) {
   out = law.replaces ? value : out + value;
 }
 
-/// One lane of a scalar that carries several.
+/// Returns one lane of a packed scalar.
 template <int N>
 double lane_of(const Pack<N>& v, int lane) {
   return v[lane];
@@ -44,7 +44,7 @@ void set_lane(Dual<Pack<N>, D>& v, int lane, const Dual<double, D>& one) {
   for (std::size_t k = 0; k < D; ++k) v.d[k].set(lane, one.d[k]);
 }
 template <class T>
-constexpr int kLanesOf = 0;  ///< 0: one scenario, not packed
+constexpr int kLanesOf = 0;  ///< number of lanes; 0: not packed
 template <int N>
 constexpr int kLanesOf<Pack<N>> = N;
 template <int N, int D>
@@ -91,7 +91,7 @@ std::tuple<Ops<T>...> all_ops(std::tuple<T...>*) {
 
 std::vector<double> coefficients(const Definition& law, const double* p) {
   std::vector<double> c(static_cast<std::size_t>(law.code.coefficients), 0.0);
-  c[kFrequency] = 60.0;  // any: whether a value is finite must not depend on it
+  c[kFrequency] = 60.0;  // arbitrary: the checks must not depend on the frequency
   fill<double>(law, p, nullptr, c.data());
   return c;
 }

@@ -1,7 +1,7 @@
 #pragma once
-// Law files: effects that are read, not compiled. How one is written stands in docs/add-an-effect.md;
-// configs/laws/ has examples. A law runs wherever a compiled effect does: in the reference, in the lanes
-// kernel and with duals.
+// Law files: user-defined models that are read from text, not compiled. See docs/add-an-effect.md for the
+// format and configs/laws/ for examples. A law runs wherever a compiled effect does: in the reference
+// integrator, in the lanes kernel and with dual numbers.
 #include <filesystem>
 #include <string>
 
@@ -10,18 +10,17 @@
 
 namespace swingbank::sim::laws {
 
-/// Reads a law and adds it to a library; from then on its find() knows it. Reading the same text again gives
-/// the same effect. Throws InputError with every fault of the file (file:line:column), or if another effect
-/// of the library has the name.
+/// Reads a law and adds it to a library. Reading the same text again returns the same effect. Throws
+/// InputError with every fault of the file (file:line:column), or if another effect of the library has the
+/// name.
 const Effect& load_law(const std::filesystem::path& file, library::EffectLibrary& library);
-/// The same from a text; `name` stands for the file in messages.
+/// The same from a text; `name` replaces the file name in messages.
 const Effect& load_law(const std::string& text, const std::filesystem::path& name,
                        library::EffectLibrary& library);
 /// The same without adding it.
 Effect make_law(const std::string& text, const std::filesystem::path& name);
 
-/// Whether two effects are one: the same compiled one, or laws of the same text, whichever library holds
-/// them.
+/// Returns true if two effects are the same compiled effect, or laws with the same text in any library.
 bool same_effect(const Effect& a, const Effect& b);
 
 }  // namespace swingbank::sim::laws

@@ -1,4 +1,4 @@
-// Expressions of a law file: where they stand, what their names mean.
+// Resolution of a law file's expressions: their positions in the file and the meaning of their names.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -6,7 +6,7 @@
 
 namespace swingbank::sim::laws {
 
-/// file:line:column of a character of an expression: the key's value begins with its quote.
+/// Returns file:line:column of a character of an expression; the key's value begins with its quote.
 std::string Reader::place(const std::string& key, std::size_t offset) const {
   auto [line, column] = config_.position(key);
   if (line == 0) return config_.where(key);
@@ -32,8 +32,8 @@ void Reader::problem(const std::string& key, std::size_t offset, std::string wha
   problems_.add(fmt::format("{} in {}", what, key), place(key, offset), std::move(why), std::move(remedy));
 }
 
-/// The text at `key` as a tree; a number counts as its text. Nothing if it is missing or wrong, which is
-/// noted.
+/// Parses the text at `key`, or a number as its text. Returns none and adds a problem if it is missing or
+/// faulty.
 std::optional<Expression> Reader::expression(const std::string& key, bool condition) {
   constexpr std::size_t kLongestText = 10000;
   Expression e{key, {}, nullptr};
@@ -60,7 +60,7 @@ std::optional<Expression> Reader::expression(const std::string& key, bool condit
   return e;
 }
 
-/// Vertex of the value at `key`, or of `otherwise` where it is missing.
+/// Returns the vertex of the value at `key`, or of `otherwise` if it is missing.
 int Reader::value(const std::string& key, std::optional<double> otherwise) {
   if (otherwise && !config_.has(key)) {
     config_.ignore(key);
@@ -118,7 +118,7 @@ int Reader::lower(const Tree& tree, const std::string& key) {
     case Op::power:
       return graph_.power(v[0], static_cast<int>(n.value));
     default:
-      return graph_.constant(0.0);  // comparisons stand in select only: the parser sees to it
+      return graph_.constant(0.0);  // unreachable: the parser allows comparisons in select only
   }
 }
 
@@ -197,7 +197,7 @@ int Reader::named(const Node& n, const std::string& key, Named& entry) {
   return entry.vertex = vertex;
 }
 
-/// What others see of a state: never beyond its limits.
+/// Returns the vertex of a state's value, clamped to its limits.
 int Reader::state_value(int index) {
   const StateEntry& s = states_[static_cast<std::size_t>(index)];
   const int x = graph_.state(index);

@@ -1,6 +1,6 @@
-// Where a law rests: its states, and what it searches, such that nothing moves and its output is what the
-// operating point asks for. Newton's method on derivatives by duals; a linear law is solved by the first
-// step. Unknowns that nothing determines stay where they were (smallest step).
+// Steady state of a law: states and unknown references for which all derivatives vanish and the output has
+// its prescribed value. Newton's method with a Jacobian from dual numbers; the first step solves a linear
+// law. Undetermined unknowns keep their initial values (minimum-norm step).
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -20,7 +20,7 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-constexpr double kTolerance = 1e-9;  ///< as operating_point: derivatives of order 1 cancel to 1e-14 or so
+constexpr double kTolerance = 1e-9;  ///< as in operating_point: derivatives of order 1 cancel to about 1e-14
 
 class Search {
  public:
@@ -28,7 +28,7 @@ class Search {
       : law_(law), c_(c), s_(s), x_(x), states_(static_cast<Index>(law.states.size())) {
     unknowns_ = states_ + static_cast<Index>(law.searched.size());
     rows_ = states_ + (law.must_meet() ? 1 : 0);
-    s_.t = -1.0;  // before anything that begins at a time
+    s_.t = -1.0;  // before any switching time
     for (Index i = 0; i < states_; ++i) x_[i] = c_[law.start[static_cast<std::size_t>(i)]];
     for (const int i : law.searched) c_[i] = 0.0;
   }
@@ -43,7 +43,7 @@ class Search {
     return verdict();
   }
 
-  /// Derivatives of the unknowns by whatever moves the residual by `by`.
+  /// Returns the derivatives of the unknowns for the derivative `by` of the residual, with opposite sign.
   [[nodiscard]] Vector follow(const Vector& by) { return solve(by); }
   template <class T>
   static std::vector<T> residual_of(const Definition& law, const T* c, const T* x, const Signals<T>& s) {
@@ -92,8 +92,8 @@ class Search {
     }
     return j;
   }
-  /// Smallest step that takes the residual away; rows scaled to their largest slope, for time constants
-  /// differ by orders of magnitude.
+  /// Returns the minimum-norm solution of J u = rest. Rows are scaled by their largest entry, because time
+  /// constants differ by orders of magnitude.
   [[nodiscard]] Vector solve(const Vector& rest) const {
     Matrix j = jacobian();
     if (!j.allFinite()) return Vector::Constant(unknowns_, std::numeric_limits<double>::quiet_NaN());
@@ -106,7 +106,7 @@ class Search {
     }
     return j.completeOrthogonalDecomposition().solve(f);
   }
-  /// One Newton step, shortened until the residual falls; false: it cannot.
+  /// Takes one Newton step, halved until the residual decreases. Returns false if it does not decrease.
   bool improve(Vector& rest) {
     constexpr int halvings = 30;
     const Vector step = solve(rest), before = unknowns();
@@ -129,13 +129,14 @@ class Search {
                            law_.states[static_cast<std::size_t>(i)].name);
     return fmt::format("its {} is no number there", law_.output_name());
   }
-  /// Whether a limit keeps the state from following its derivative.
+  /// Returns true if a limit clamps the state against its derivative.
   [[nodiscard]] bool held(std::size_t i, double dx) const {
     const State& state = law_.states[i];
     return (state.low >= 0 && x_[i] <= c_[state.low] && dx < 0.0) ||
            (state.high >= 0 && x_[i] >= c_[state.high] && dx > 0.0);
   }
-  /// Judges what was found with the limits in force; a state outside its limits is the caller's to name.
+  /// Returns the reason if the result is no steady state with active limits, or "". The caller reports states
+  /// outside their limits.
   [[nodiscard]] std::string verdict() const {
     for (std::size_t i = 0; i < law_.states.size(); ++i) {
       const State& state = law_.states[i];
@@ -173,7 +174,7 @@ class Search {
   Index states_, unknowns_ = 0, rows_ = 0;
 };
 
-/// What later controls read: the output of a law that need not meet a value.
+/// Writes the output of a law without a prescribed value, for later controls.
 template <class T>
 void put_out(const Definition& law, const T* c, const T* x, Signals<T>& s) {
   if (law.must_meet()) return;
@@ -196,7 +197,7 @@ std::string steady(const Definition& law, const double* p, double* c, Signals<do
   return why;
 }
 
-/// The values as for doubles; their derivatives by the implicit function theorem.
+/// Computes values as for doubles and derivatives by the implicit function theorem.
 std::string steady(const Definition& law, const D8* p, D8* c, Signals<D8>& s, D8* x) {
   const std::size_t states = law.states.size();
   std::vector<double> pd, cd(static_cast<std::size_t>(law.code.coefficients), 0.0), xd(states);

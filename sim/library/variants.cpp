@@ -6,7 +6,7 @@
 
 namespace swingbank::sim::library {
 
-/// Every compiled effect's name and the name it is a variant of, or "". Generated.
+/// Returns, per compiled effect, its name and the name of the effect that it varies, or "". Generated.
 std::span<const std::pair<std::string_view, std::string_view>> variants();
 
 const Effect* variant_of(const Effect& effect) {

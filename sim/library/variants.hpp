@@ -1,11 +1,12 @@
 #pragma once
-// Which effects are variants of another: they differ from it by details that a record hardly shows. A header
-// says so with `variant_of`, the other's name; a search that tries every effect then tries that one alone.
+// Variants: effects that differ from another one by details that a record hardly shows. A header declares a
+// variant with `variant_of`, the name of the other; the search for a missing effect then tries only the
+// other.
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::library {
 
-/// The compiled effect that this one is a variant of, or nullptr.
+/// Returns the compiled effect of which `effect` is a variant, or nullptr.
 const Effect* variant_of(const Effect& effect);
 
 }  // namespace swingbank::sim::library

@@ -1,6 +1,6 @@
 #pragma once
-// The alternator of the brushless exciters EXAC1, EXAC2, ESAC1A, ESAC6A and REXS, and the rectifier behind
-// it. A Model has the parameters and coefficients named here, in its own order, and the states Vm and Ve.
+// Alternator and rectifier of the brushless exciters EXAC1, EXAC2, ESAC1A, ESAC6A and REXS. A Model has the
+// parameters and coefficients named here, in its own order, and the states Vm and Ve.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -11,7 +11,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct Alternator {
   static constexpr Slot slot = Slot::exciter;
-  /// What enters the regulator counts in Efd by its gain of hundreds, within its lags.
+  /// Weight of the regulator's inputs, which affect Efd with a gain of hundreds within the regulator's lags.
   static constexpr double kErrorWeight = 10.0;
 
   static std::string_view unphysical(const double*) { return ""; }
@@ -29,13 +29,13 @@ struct Alternator {
     c[M::satB] = saturation.B;
     c[M::none] = T(0.0);
   }
-  /// The field that keeps the alternator at `ve`.
+  /// Returns the field signal VFE for which the alternator's voltage `ve` is steady [pu].
   template <class T>
   static T field(const T* c, const T& ve, const T& Ifd) {
     using M = Model;
     return c[M::self] * ve + Quadratic<T>{c[M::satA], c[M::satB]}(ve) + c[M::demagnetising] * Ifd;
   }
-  /// Fills Vm and Ve, and the field they need; returns why there is none.
+  /// Computes the steady Vm, Ve and field signal Vfe. Returns the reason if there is no solution, or "".
   template <class T>
   static std::string steady_alternator(const T* p, const T* c, const Signals<T>& s, T* x, T& Vfe) {
     if (!(value_of(s.Efd) > 0.0))

@@ -1,7 +1,7 @@
 #pragma once
-// The brushless exciter of EXAC1, EXAC2 and ESAC1A: regulator, alternator, rectifier. A Model names the
-// regulator's limits, may add coefficients after `alternator`, and says what of the regulator's output
-// reaches the alternator's field: field_input(c, output, Vfe).
+// Brushless exciter of EXAC1, EXAC2 and ESAC1A: regulator, alternator, rectifier. A Model names the
+// regulator's limits, may add coefficients after `alternator`, and maps the regulator's output to the
+// alternator's field by field_input(c, output, Vfe).
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -19,7 +19,7 @@ struct AlternatorRectifier : Alternator<Model> {
   static constexpr Source kRange = literature::sienna("ESAC1A");
   static constexpr Source standards_from = literature::cim("ExcIEEEAC1A");
   static constexpr Source bounds_from = kBeyondCases;
-  /// The parameters, `upper` and `lower` being the regulator's limits.
+  /// Returns the parameters; `upper` and `lower`: the regulator's limits.
   static constexpr std::array<Parameter, parameter_count> parameters_with(const Parameter& upper,
                                                                           const Parameter& lower) {
     return {{{"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",

@@ -1,6 +1,6 @@
 #pragma once
-// What the converters behind an impedance REGCB1 and REGCC1 have in common: their parameters, the commands
-// within Imax behind their lags, the current through the impedance.
+// Common part of the converters behind an impedance REGCB1 and REGCC1: parameters, current commands with Imax
+// and lags, current through the impedance.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -12,11 +12,11 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// A Model has the parameters below by these names without the k, the coefficients that prepare_common()
+/// Requires of a Model: the parameters below with names without the k, the coefficients that prepare_common()
 /// fills, and the states Ip, Iq and Vf.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
-  using Core = renewable::ElectricalControl;  // for what check_common() asks
+  using Core = renewable::ElectricalControl;  // for the checks of check_common()
   static constexpr Source standards_from = literature::own("as REGCA1's");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter kRateFlag{"rateFlag", "rateFlag",
@@ -50,7 +50,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
                                  kNoNeutral,
                                  "source reactance",
                                  literature::own("InterPSS's for aggregated converters")};
-  /// Of Imax: from where on what is left to the other current falls along its tangent, not its circle.
+  /// Fraction of Imax below which the limit of the second current follows the tangent instead of the circle.
   static constexpr double kTangent = 0.05;
 
  protected:
@@ -80,19 +80,19 @@ struct BehindImpedance : ControlledCurrent<Model> {
     c[Model::admittance] = T(1.0) / (p[Model::Re] * p[Model::Re] + p[Model::Xe] * p[Model::Xe]);
     ControlledCurrent<Model>::prepare_frequency(p[Model::Tfreq], conventions, c);
   }
-  /// The active current behind its lag.
+  /// Returns the lagged active current [pu].
   template <class T>
   static T lagged_active(const T* c, const T* x, const T& V) {
     const T measured = renewable::at_least_small(select(c[Model::iTfltr] > T(0.0), x[Model::Vf], V));
     return select(c[Model::of_power] > T(0.5), x[Model::Ip] / measured, x[Model::Ip]);
   }
-  /// Adds to the voltage d + jq what drives the currents through the impedance.
+  /// Adds the voltage drop of the currents across the impedance to the voltage d + jq [pu].
   template <class T>
   static void add_drop(const T* c, const T& active, const T& reactive, T& d, T& q) {
     d = d + c[Model::r] * active + c[Model::x_e] * reactive;
     q = q + c[Model::x_e] * active - c[Model::r] * reactive;
   }
-  /// The currents that d + jq drives through the impedance, before Imax.
+  /// Computes the currents that the voltage d + jq drives through the impedance, before the limit Imax [pu].
   template <class T>
   static void driven(const T* c, const T& d, const T& q, T& active, T& reactive) {
     active = (c[Model::r] * d + c[Model::x_e] * q) * c[Model::admittance];
@@ -110,7 +110,8 @@ struct BehindImpedance : ControlledCurrent<Model> {
                           select(draws, none, c[Model::rise]));
     dx[Model::Iq] = clamp((q - x[Model::Iq]) * c[Model::iTg], c[Model::q_fall], c[Model::q_rise]);
   }
-  /// The commands and their lags at the operating point; p, q: its currents along the voltage V.
+  /// Initialises the commands and their lags. p, q: active and reactive current at the voltage V [pu].
+  /// Returns the reason if the operating point is infeasible, or "".
   template <class T>
   static std::string steady_commands(T* c, const T& V, T& p, T& q, Signals<T>& s, T* x) {
     const T P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
@@ -130,7 +131,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     s.V = V;
     return {};
   }
-  /// What the current `leading` leaves to the other one.
+  /// Returns the limit of the second current beside the current `leading`, which has priority [pu].
   template <class T>
   static T left(const T* c, const T& leading) {
     using std::sqrt;
@@ -138,7 +139,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     const auto on_circle = square > knee * knee;
     return select(on_circle, sqrt(select(on_circle, square, T(1.0))), (square + knee * knee) / (knee + knee));
   }
-  /// How far either current may go beside the other, the leading one as far as Imax.
+  /// Computes the limits of both currents; that of the current with priority is Imax [pu].
   template <class T>
   static void limits(const T* c, const T& p, const T& q, T& most_p, T& most_q) {
     const auto p_leads = c[Model::p_first] > T(0.5);
@@ -146,7 +147,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     most_p = select(p_leads, c[Model::most], room);
     most_q = select(p_leads, room, c[Model::most]);
   }
-  /// Brings both currents within Imax, the leading one as it is as far as it can be.
+  /// Limits both currents to Imax; the flag pqFlag selects the current with priority.
   template <class T>
   static void within(const T* c, T& p, T& q) {
     T most_p, most_q;

@@ -1,6 +1,6 @@
 #pragma once
-// The power source of the static exciters ESST4B and ESST3A: voltage and current at the terminal, added as
-// phasors and rectified.
+// Power source of the static exciters ESST4B and ESST3A: phasor sum of terminal voltage and current,
+// rectified.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -9,8 +9,9 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// VE FEX(KC Ifd/VE), at most VBMAX, with VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP [deg]
-/// (IEEE Std 421.5-2005, 7.3, 7.4 and annex D). Keeps `size` coefficients.
+/// Compound source with the output VE FEX(KC Ifd/VE), at most VBMAX, where VE = |KP' V + j (KI + KP' XL) I|
+/// and KP' = KP at angle THETAP [deg] (IEEE Std 421.5-2005, 7.3, 7.4 and annex D). It has `size`
+/// coefficients.
 struct CompoundSource {
   enum { voltage_r, voltage_i, current_r, current_i, commutation, most, size };
   template <class T>
@@ -28,7 +29,7 @@ struct CompoundSource {
     c[commutation] = p.KC;
     c[most] = p.VBMAX;
   }
-  /// What the source delivers behind its rectifier [pu].
+  /// Returns the source's rectified voltage VB [pu].
   template <class T>
   static T voltage(const T* c, const Signals<T>& s) {
     using std::sqrt;
@@ -38,7 +39,7 @@ struct CompoundSource {
     const T VE = sqrt(select(square_2 > tiny, square_2, tiny));
     return clamp(rectified(VE, c[commutation] * s.Ifd), T(0.0), c[most]);
   }
-  /// Why an exciter cannot start from VB, empty if it can.
+  /// Returns the reason why an exciter cannot operate with VB, or "".
   template <class T>
   static std::string refuses(const T& VB, const Signals<T>& s) {
     if (value_of(VB) > 0.0) return {};

@@ -1,7 +1,7 @@
 #pragma once
-// What the sources of a controlled current REGCA1, CSVGN1 and DERA1 have in common: the reactance that the
-// network sees, no voltage of their own, the frequency of their terminal. A Model has the coefficients iTfreq
-// and per_angle and the states Vrlag and Vilag.
+// Common part of the controlled-current sources REGCA1, CSVGN1 and DERA1: reactance in the network equations,
+// zero internal voltage, frequency of the terminal. A Model has the coefficients iTfreq and per_angle and the
+// states Vrlag and Vilag.
 #include <cmath>
 
 #include "sim/core/bus_frequency.hpp"
@@ -24,7 +24,8 @@ struct ControlledCurrent {
                                        literature::own("about a cycle")};
   static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},
                          kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};
-  /// Of the source as the network sees it: any is exact (decision 37), a large one makes the iteration short.
+  /// Reactance of the source in the network equations [pu]: any value is exact (decision 37); a large one
+  /// gives fast convergence.
   static constexpr double kReactance = 10.0;
   static constexpr double kNoFrequency =
       1e-3;  ///< voltage below which the measured frequency fades to f0 [pu]
@@ -35,7 +36,7 @@ struct ControlledCurrent {
     r = T(0.0);
     x = T(kReactance);
   }
-  /// There is no voltage of its own; where it is off its terminal shows none.
+  /// Sets the internal voltage to zero; a source that is off also has zero terminal voltage.
   template <class T>
   static void emf(const T*, const T*, T*, T& er, T& ei) {
     er = ei = T(0.0);
@@ -44,7 +45,7 @@ struct ControlledCurrent {
  protected:
   template <class T>
   static T square_of_voltage(const Signals<T>& s) {
-    return s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // a dual needs a slope at V = 0
+    return s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // keeps the derivative finite at V = 0
   }
   template <class T>
   static T magnitude(const Signals<T>& s) {
@@ -56,10 +57,10 @@ struct ControlledCurrent {
     c[Model::iTfreq] = T(1.0) / time_constant;
     c[Model::per_angle] = frequency_slope(c[Model::iTfreq], conventions.frequency);
   }
-  /// The signals that a source of current gives, as far as no turbine stands behind it. `squared`: |V|^2.
+  /// Sets the signals of a current source without a turbine. `squared`: |V|^2 [pu].
   template <class T>
   static void terminal(const T* c, const T* x, const T& squared, Signals<T>& s) {
-    const T least(kNoFrequency * kNoFrequency);  // beside a bolted fault rounding alone would give some
+    const T least(kNoFrequency * kNoFrequency);  // at a bolted fault V is rounding error only
     s.speed = bus_frequency(s.Vr, s.Vi, select(squared > least, squared, least), x[Model::Vrlag],
                             x[Model::Vilag], c[Model::per_angle]);
     s.Te = s.Vr * s.Ir + s.Vi * s.Ii;

@@ -1,13 +1,13 @@
 #pragma once
-// The rotating exciter behind a lead-lag and a regulator: DC1 (IEEEX1, ESDC1A), whose limits are fixed, and
-// what EXDC2 shares with it. A Model says whether its field voltage ends at zero.
+// Rotating exciter with a lead-lag and a regulator: DC1 (IEEEX1, ESDC1A) with fixed limits, and the part
+// shared with EXDC2. A Model declares whether the lower limit of its field voltage is zero.
 #include "sim/effects/detail/rotating_dc.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// A Model gives the regulator, regulator(c, x, u, V, dx), and what keeps Vr from its value at rest,
-/// hindrance(c, Vr, V), empty for nothing.
+/// Requires of a Model: regulator(c, x, u, V, dx), and hindrance(c, Vr, V), which returns the reason why Vr
+/// cannot have its steady value, or "".
 template <class Model>
 struct DcBehindLeadLag : RotatingDc<Model> {
   using Dc = RotatingDc<Model>;
@@ -94,7 +94,7 @@ struct DcTypeOne : DcBehindLeadLag<Model> {
   }
   template <class T>
   static std::string hindrance(const T*, const T&, const T&) {
-    return {};  // the limits are the state's own
+    return {};  // the state's own limits apply
   }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Woodward's governor of a diesel engine: control box, actuator and engine of DEGOV and DEGOV1. A Model names
-// the coefficients and states after these and says what the control box reads: asked(c, x, s, dx).
+// Woodward's governor of a diesel engine: control box, actuator and engine of DEGOV and DEGOV1. A Model
+// appends its coefficients and states and defines the control box's input, asked(c, x, s, dx).
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -35,8 +35,8 @@ struct Diesel {
       kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "time between two firings, a delay (0: none)"},
       kTMAX = {"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNeutral, "upper limit of the throttle"},
       kTMIN = {"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the throttle"};
-  /// The delay's own order: exp(-s TD) as a ratio of polynomials of the orders 3 and 4 (Pade), which is exact
-  /// to 1e-3 up to s TD = 3j and has no answer at the instant of a step.
+  /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
+  /// error is 1e-3 up to s TD = 3j, and it has no direct response to a step.
   static constexpr int kDelayOrder = 4;
   enum C { iTb, iT1, box_lead, gain, t4, iT5, iT6, high, low, iTD, own };
   enum X { box, box_rate, integral, lead, throttle, delay, own_states = delay + kDelayOrder };
@@ -84,7 +84,8 @@ struct Diesel {
     c[low] = p[M::TMIN];
     c[iTD] = inverse(p[M::TD]);
   }
-  /// (1 + s T3)/(1 + s T1 + s^2 T1 T2): of second order, of first with T2 = 0, nothing with T1 = 0.
+  /// Evaluates the control box (1 + s T3)/(1 + s T1 + s^2 T1 T2): second order, first order for T2 = 0, the
+  /// input for T1 = 0.
   template <class T>
   static T control_box(const T* c, const T* x, const T& u, T* dx) {
     const T zero(0.0);
@@ -95,7 +96,7 @@ struct Diesel {
         (u - x[box]) * c[iTb] - select(second, c[iTb] / select(first, c[iT1], T(1.0)), zero) * x[box_rate];
     return select(first, x[box] + c[box_lead] * dx[box], u);
   }
-  /// exp(-s TD) behind TD = 0: the input. In controllable form, scaled by TD:
+  /// Evaluates the delay exp(-s TD); TD = 0 passes the input. Controllable form, scaled by TD, of
   /// (840 - 360 z + 60 z^2 - 4 z^3)/(840 + 480 z + 120 z^2 + 16 z^3 + z^4), z = s TD.
   template <class T>
   static T delayed(const T* c, const T* x, const T& u, T* dx) {
@@ -111,7 +112,7 @@ struct Diesel {
     const T y = control_box(c, x, Model::asked(c, x, s, dx), dx);
     dx[integral] = c[gain] * y;
     const T sum = clamp(x[integral], c[low], c[high]);
-    // The lead acts on what is integrated: (1 + s T4)/(s (1 + s T5)).
+    // The lead acts on the integral: (1 + s T4)/(s (1 + s T5)).
     const T u = lead_lag(c[t4], c[iT5], x[lead], sum, dx[lead]);
     const T opening = clamp(lag(c[iT6], x[throttle], u, dx[throttle]), c[low], c[high]);
     s.Tm = delayed(c, x, opening, dx) * (T(1.0) + s.speed);

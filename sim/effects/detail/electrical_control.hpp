@@ -1,6 +1,6 @@
 #pragma once
-// What the electrical controls REECA1, REECB1, REECC1 and REECD1 have in common: reactive current by one of
-// four ways, active current by the ordered power, and the limit of both.
+// Common part of the electrical controls REECA1, REECB1, REECC1 and REECD1: reactive current in one of four
+// modes, active current from the ordered power, and the limit of both.
 #include <fmt/format.h>
 
 #include <initializer_list>
@@ -12,7 +12,7 @@
 
 namespace swingbank::sim::effects::renewable {
 
-/// Why a converter cannot stand at its operating point: currents [pu] beyond its largest one.
+/// Returns the reason why an operating point is infeasible: currents [pu] beyond Imax.
 inline std::string beyond_imax(double active, double reactive, double most) {
   return fmt::format(
       "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = {:.4f} pu", active,
@@ -20,7 +20,7 @@ inline std::string beyond_imax(double active, double reactive, double most) {
 }
 
 struct ElectricalControl {
-  /// Parameters by what they are, whatever order an effect has them in.
+  /// Parameters by meaning, independent of their order in an effect.
   template <class T>
   struct Values {
     bool pf = false, vflag = false, qflag = false, active_first = false;
@@ -57,8 +57,8 @@ struct ElectricalControl {
     pmin,
     imax,
     iTpord,
-    tangent,  ///< of the power factor's angle
-    need,     ///< Qin at the operating point, the bias included where Qext is a voltage
+    tangent,  ///< tangent of the power factor angle
+    need,     ///< Qin at the operating point, including the bias if Qext is a voltage
     pneed,    ///< Pext at the operating point
     coefficients
   };
@@ -105,7 +105,7 @@ struct ElectricalControl {
     c[iTiq] = v.qflag ? T(0.0) : inverse(v.tiq);
     c[iTpord] = inverse(v.tpord);
   }
-  /// The measured voltage.
+  /// Returns the measured voltage [pu].
   template <class T>
   static T measure(const T* c, const T* x, const Signals<T>& s, T* dx) {
     return lag(c[iTrv], x[Vf], s.V, dx[Vf]);
@@ -114,13 +114,13 @@ struct ElectricalControl {
   static T ride_through(const T* c, const T& measured) {
     return clamp(c[kqv] * dead_zone(c[vref] - measured, c[dbd1], c[dbd2]), c[iql1], c[iqh1]);
   }
-  /// Vref0 = 0 stands for the voltage at the operating point.
+  /// Sets the voltage reference; Vref0 = 0 means the voltage at the operating point.
   template <class T>
   static void reference(T* c, const Signals<T>& s) {
     if (value_of(c[vref]) == 0.0) c[vref] = s.V;
   }
-  /// The reactive current before what rides through, within +-most. `regulated`: the voltage that the
-  /// regulator of V holds.
+  /// Returns the reactive current without the ride-through contribution [pu]. The limits of the voltage
+  /// regulator's output are +-most. `regulated`: the regulated voltage [pu].
   template <class T>
   static T reactive(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                     const T& most, Signals<T>& s, T* dx) {
@@ -135,20 +135,20 @@ struct ElectricalControl {
     dx[Iqlag] = dx[Iqlag] * runs;
     return select(c[by_v] > half, of_voltage, of_power);
   }
-  /// The ordered power; `wanted`: Pext and what turns it into a power.
+  /// Returns the ordered power [pu]; `wanted`: its reference from Pext.
   template <class T>
   static T ordered(const T* c, const T* x, const T& wanted, const T& runs, T* dx) {
     dx[Pord] = runs * clamp((wanted - x[Pord]) * c[iTpord], c[dpmin], c[dpmax]);
     return clamp(select(c[iTpord] > T(0.0), x[Pord], wanted), c[pmin], c[pmax]);
   }
-  /// What each current may be beside Imax.
+  /// Limits of the currents in addition to Imax [pu].
   template <class T>
   struct Limits {
     T most_p, least_p, most_q;
   };
-  /// Both commands, into s.Tm (active) and s.Efd (reactive). `total` adds to the reactive current what rides
-  /// through, `active` makes the active current of the one ordered, `held` the largest one of what Imax
-  /// leaves.
+  /// Computes both commands: s.Tm (active) and s.Efd (reactive). A Model passes three functions. `total` adds
+  /// the ride-through contribution to the reactive current. `active` maps the ordered to the active current.
+  /// `held` maps the remaining limit to that of the active current.
   template <class T, class Total, class Active, class Held>
   static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                        const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,
@@ -163,8 +163,8 @@ struct ElectricalControl {
     const T beside = select(p_first, c[imax], other_current(c[imax], s.Efd));
     s.Tm = clamp(asked, larger(limits.least_p, zero - beside), held(smaller(limits.most_p, beside)));
   }
-  /// From the commands backwards. `regulated`: as in reactive(); `injected`: what rides through at rest;
-  /// `bias`: added to a Qext that is a voltage; `turning`: what Pext is multiplied by.
+  /// Initialises states and references from the commands. `regulated`: as in reactive(); `injected`: steady
+  /// ride-through current; `bias`: added to a Qext that is a voltage; `turning`: factor of Pext.
   template <class T>
   static std::string steady(T* c, const T& regulated, const T& injected, const T& bias, const T& turning,
                             const Limits<T>& limits, Signals<T>& s, T* x) {
@@ -200,7 +200,7 @@ struct ElectricalControl {
     return outside("Vcmd", regulated, c[vmin], c[vmax]);
   }
 
-  // What check() of each asks for.
+  // Checks of the effects.
   static std::string value(std::span<const Parameter> all, const double* p, int i) {
     const Parameter& r = all[static_cast<std::size_t>(i)];
     return fmt::format("{} = {:g}{}{}", r.symbol, p[i], r.is_code() ? "" : " ", r.is_code() ? "" : r.unit);

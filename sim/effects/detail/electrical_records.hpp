@@ -1,6 +1,6 @@
 #pragma once
-// The parameters that the electrical controls REECA1, REECB1, REECC1 and REECD1 have in common, each with its
-// record and what check() asks of it.
+// Common parameters of the electrical controls REECA1, REECB1, REECC1 and REECD1, with their records and
+// checks.
 #include <array>
 #include <string_view>
 
@@ -81,8 +81,8 @@ inline constexpr std::string_view kReactivePoints[] = {"Vq1", "Iq1", "Vq2", "Iq2
                                   kActivePoints[] = {"Vp1", "Ip1", "Vp2", "Ip2", "Vp3",  "Ip3", "Vp4",
                                                      "Ip4", "Vp5", "Ip5", "Vp6", "Ip6",  "Vp7", "Ip7",
                                                      "Vp8", "Ip8", "Vp9", "Ip9", "Vp10", "Ip10"};
-/// Voltages and currents of N points of the limit of Iq, then of that of Ip; the standard ones hold the
-/// limits at `most_q` and `most_p` [pu].
+/// Returns voltages and currents of N points of the limit of Iq, then of the limit of Ip. The defaults are
+/// constant limits `most_q` and `most_p` [pu].
 template <int N>
 constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p) {
   static_assert(N <= kMostPoints);
@@ -103,7 +103,7 @@ constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p
   }
   return all;
 }
-/// Records one behind the other.
+/// Concatenates arrays of records.
 template <std::size_t... N>
 constexpr auto joined(const std::array<Parameter, N>&... parts) {
   std::array<Parameter, (N + ...)> all{};
@@ -115,7 +115,7 @@ constexpr auto joined(const std::array<Parameter, N>&... parts) {
   return all;
 }
 
-/// What Model's parameters are to the control that all of them share.
+/// Returns the Model's parameters as values of the common control.
 template <class Model, class T>
 ElectricalControl::Values<T> electrical_values(const T* p) {
   using M = Model;
@@ -152,7 +152,7 @@ ElectricalControl::Values<T> electrical_values(const T* p) {
   return v;
 }
 
-/// What check() of each of them asks for.
+/// Checks the common parameters; errors become problems.
 template <class Model>
 void check_electrical(std::span<const Parameter> all, const double* p, const std::string& where,
                       Problems& problems) {

@@ -1,25 +1,25 @@
 #pragma once
-// The curve from a gate's or valve's opening to power or flow, through points given in ascending order.
-// Points not used are zero; with fewer than two the output is the opening. Beyond the ends the curve goes on
-// straight.
+// Piecewise linear curve from the opening of a gate or valve to power or flow. Its points are in ascending
+// order; unused points are zero. With fewer than two points the output is the opening. The curve is
+// extrapolated linearly beyond its ends.
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// How fast a gate or valve behind a backlash follows beyond it [1/s]: fast beside its servo.
+/// Rate with which a gate or valve follows beyond its backlash [1/s]; fast compared with the servo.
 inline constexpr double kFollowRate = 50.0;
 
-/// Through `count` points: a Model keeps `size` coefficients from `first` on.
+/// Curve through `count` points; a Model has `size` coefficients for it.
 template <int count>
 struct GatePower {
   static constexpr int segments = count - 1;
-  /// Of each segment: where it begins, what it begins with, its width, its slope and the slope's reciprocal.
+  /// Per segment: opening and power at its beginning, its width, its slope and the reciprocal slope.
   enum { begin, base = begin + segments, width = base + segments, slope = width + segments };
   static constexpr int flat = slope + segments, size = flat + segments;
 
-  /// The points as (opening, power), each given by its index in p.
+  /// Computes the coefficients; the points are (opening, power), given by their indices in p.
   template <class T>
   static void prepare(const T* p, const int (&gate)[count], const int (&power)[count], T* c) {
     const T zero(0.0), one(1.0), far(1e9);
@@ -27,7 +27,7 @@ struct GatePower {
       const T run = p[gate[k + 1]] - p[gate[k]], rise = p[power[k + 1]] - p[power[k]];
       const auto used = run > zero;
       const T divisor = select(used, run, one), steep = select(rise > zero, rise, one);
-      const T unused_slope = T(k == 0 ? 1.0 : 0.0);  // a curve without points is the opening itself
+      const T unused_slope = T(k == 0 ? 1.0 : 0.0);  // without points the output is the opening
       c[begin + k] = select(used, p[gate[k]], k == 0 ? zero : far);
       c[base + k] = select(used, p[power[k]], k == 0 ? zero : far);
       c[slope + k] = select(used, rise / divisor, unused_slope);
@@ -40,13 +40,13 @@ struct GatePower {
   static T value(const T* c, const T& opening) {
     return along(c, opening, begin, c[base], slope, false);
   }
-  /// The opening that gives this power.
+  /// Returns the opening for a given power [pu].
   template <class T>
   static T opening(const T* c, const T& power) {
     return along(c, power, base, c[begin], flat, true);
   }
 
-  /// What is wrong with the points.
+  /// Checks the points; errors become problems.
   template <class Text>
   static void check(const double* p, const int (&gate)[count], const int (&power)[count], const Text& text,
                     const std::string& where, Problems& problems) {
@@ -62,7 +62,8 @@ struct GatePower {
   }
 
  private:
-  /// From `first` on, the rates times what lies within each segment; `inverse`: widths are those of the rise.
+  /// Integrates the segments' rates up to `at`, starting at `first`. `inverse`: the independent variable is
+  /// the power.
   template <class T>
   static T along(const T* c, const T& at, int from, const T& first, int rate, bool inverse) {
     T sum = first;

@@ -1,7 +1,6 @@
 #pragma once
-// What the hydro governors WSHYGP and HYG3 have in common: the PID regulator behind a filter of its input,
-// which may be fed back through a droop without a lag, the gate's servo and its backlash, the points of its
-// curve.
+// Common part of the hydro governors WSHYGP and HYG3: PID regulator with an input filter and an optional
+// feedback through a droop without a lag, gate servo with backlash, points of the gate's curve.
 #include <array>
 #include <string>
 
@@ -10,14 +9,14 @@
 
 namespace swingbank::sim::effects::shared {
 
-inline constexpr double kLeastRating = 1e-3;  ///< of a turbine: less is none given [MW]
-/// The base of a turbine's gate and power, the machine's where none is given [MVA].
+inline constexpr double kLeastRating = 1e-3;  ///< smaller turbine ratings mean "not given" [MW]
+/// Returns the base of a turbine's gate and power: its rating, or the machine base if not given [MVA].
 template <class T>
 T turbine_rating(const T& given, const Conventions& conventions) {
   return select(given > T(kLeastRating), given, T(conventions.mva));
 }
 
-/// Openings and powers of the points of a gate's curve; a model has the first ones of them.
+/// Openings and powers of the points of a gate's curve; a model has the first of them.
 inline constexpr Source kFarPoint = literature::own("99 stands for a point beyond reach");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNeutral, meaning, kAsEffect, kFarPoint};
@@ -35,8 +34,8 @@ inline constexpr std::array kCurvePoints = {curve_point("GV1", "first opening (a
                                             curve_point("GV6", "sixth opening"),
                                             curve_point("PGV6", "power there")};
 
-/// From the governor's output to the gate behind its backlash. A Model has the coefficients servo, iTP,
-/// opening, closing, high, low, play and follow, and the states velocity, gate and position.
+/// Gate servo with backlash. A Model has the coefficients servo, iTP, opening, closing, high, low, play and
+/// follow, and the states velocity, gate and position.
 template <class Model>
 struct GateServo {
   using M = Model;
@@ -53,7 +52,7 @@ struct GateServo {
             .moved_by = {follow},
             .bends = true};
   }
-  /// The gate as the water feels it.
+  /// Returns the gate's effective position, after the backlash [pu].
   template <class T>
   static T evaluate(const T* c, const T* x, const T& cv, T* dx) {
     const T open = clamp(x[M::gate], c[M::low], c[M::high]);
@@ -65,7 +64,8 @@ struct GateServo {
   }
 };
 
-/// u/(1 + s TD) --> KP + KI/s + s KD/(1 + s TF). States and coefficients are the first of its Model.
+/// PID regulator with input filter: u/(1 + s TD) --> KP + KI/s + s KD/(1 + s TF). Its states and coefficients
+/// are the first ones of a Model.
 struct HydroPid {
   enum C { iTD, kp, ki, kd, iTF, coefficients };  ///< kd: KD/TF
   enum X { filtered, integral, lagged, count };
@@ -82,7 +82,8 @@ struct HydroPid {
     c[iTF] = inverse(TF);
     c[kd] = KD * c[iTF];
   }
-  /// The output for the input `u - back * output`; without the filter that is solved for.
+  /// Returns the output for the input `u - back * output`. Without the filter this is an algebraic loop,
+  /// which is solved.
   template <class T>
   static T evaluate(const T* c, const T* x, const T& u, const T& back, T* dx) {
     const T rest = x[integral] - c[kd] * x[lagged], share = c[kp] + c[kd];
@@ -94,7 +95,7 @@ struct HydroPid {
     dx[lagged] = (error - x[lagged]) * c[iTF];
     return out;
   }
-  /// States for a resting output; returns the error that holds it, which is 0 where it is integrated.
+  /// Computes the states for a steady output. Returns the steady error, which is 0 with an integral gain.
   template <class T>
   static T steady(const T* c, const T& out, T* x) {
     const T zero(0.0);

@@ -1,6 +1,6 @@
 #pragma once
-// What the over-excitation limiters MAXEX1 and MAXEX2 have in common: the time that a field voltage or
-// current is borne, by three points, and the timer that runs through it and stays once it has.
+// Common part of the over-excitation limiters MAXEX1 and MAXEX2: inverse-time characteristic through three
+// points, and a timer that latches when it expires.
 #include <fmt/format.h>
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// In which a field voltage is measured [s]: that of a static exciter follows a limiter's output at once, and
-/// the two would have no order. PSS/E takes the field voltage of its step before.
+/// Time constant of the field voltage measurement [s]. It avoids an algebraic loop, because the field voltage
+/// of a static exciter follows the limiter's output without delay. PSS/E uses the value of the previous step.
 inline constexpr double kFieldVoltageLag = 0.01;
 
-/// Parameters that a Model has in this order from EFDRATED on.
+/// Parameters of a Model in this order, starting with EFDRATED.
 enum InverseTimePoint { rated, efd1, time1, efd2, time2, efd3, time3, efddes, gain_of_it, vlow };
 inline constexpr Parameter kPickup{"EFD1",    "EFD1",  "-", 1.1, 0.5, 5.0, kNoNeutral, "pickup, of rated",
                                    kAsEffect, kNoCases};
@@ -65,12 +65,13 @@ inline constexpr Parameter kLowest{"VLOW",
                                    literature::own("a tenth of the voltage"),
                                    kNoCases};
 
-/// A Model keeps `size` coefficients; p and c point to its first parameter and coefficient of these.
+/// Inverse-time characteristic and timer with `size` coefficients; p and c point to its first parameter and
+/// coefficient in a Model.
 struct InverseTime {
   enum { irated, i1, i2, i3, t1, t2, slope12, slope23, size };
-  static constexpr double kOperated = 1.0;      ///< of the timer
-  static constexpr double kOperatedFor = 2.0;   ///< it goes on to here, so that no rounding brings it back
-  static constexpr double kTimerReset = -10.0;  ///< of the timer itself, below the pickup [1/s]
+  static constexpr double kOperated = 1.0;      ///< value of the expired timer
+  static constexpr double kOperatedFor = 2.0;   ///< final value, so that rounding cannot reset the timer
+  static constexpr double kTimerReset = -10.0;  ///< reset rate of the timer below the pickup [1/s]
 
   template <class T>
   static void prepare(const T* p, T* c) {
@@ -83,21 +84,21 @@ struct InverseTime {
     c[slope12] = (p[time2] - p[time1]) / (p[efd2] - p[efd1]);
     c[slope23] = (p[time3] - p[time2]) / (p[efd3] - p[efd2]);
   }
-  /// Time to operate at the current i [of rated], from pickup on.
+  /// Returns the time to operate [s] at a current i >= pickup [of rated].
   template <class T>
   static T operating_time(const T* c, const T& i) {
     const T at = clamp(i, c[i1], c[i3]);
     return select(at < c[i2], c[t1] + c[slope12] * (at - c[i1]), c[t2] + c[slope23] * (at - c[i2]));
   }
-  /// Derivative of the timer at the limited quantity [pu]. Once operated it moves away from 1: no rounding of
-  /// an integrator's can undo it.
+  /// Returns the timer's derivative at the limited quantity [pu]. After expiry it moves away from 1, so that
+  /// rounding in the integrator cannot reset it.
   template <class T>
   static T pace(const T* c, const T& timer, const T& limited) {
     const T one(kOperated), i = limited * c[irated];
     return select(one <= timer, one, select(c[i1] < i, one / operating_time(c, i), T(kTimerReset) * timer));
   }
 
-  /// Where the derivatives jump: the timer runs out; and until then the limited quantity passes the pickup.
+  /// Guards at discontinuities of the derivatives: the timer's expiry, and the pickup before it.
   static constexpr int guards = 2;
   template <class T>
   static void guard(const T* c, const T& timer, const T& limited, T* g) {
@@ -106,7 +107,7 @@ struct InverseTime {
     g[1] = select(one <= timer, one, limited * c[irated] - c[i1]);
   }
 
-  /// What is wrong with the values; `model`: its name, `limited`: what it limits.
+  /// Checks the values; errors become problems. `model`: its name, `limited`: the limited quantity.
   static void check(const double* p, std::string_view model, std::string_view limited,
                     const std::string& where, Problems& problems) {
     const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
@@ -125,7 +126,7 @@ struct InverseTime {
     bad(!(p[vlow] <= 0), fmt::format("VLOW = {:g} pu", p[vlow]), "the limiter can only lower the voltage",
         "give VLOW <= 0");
   }
-  /// Why it cannot rest at what it limits now [pu], empty if it can.
+  /// Returns the reason if the present value `now` [pu] of the limited quantity exceeds the pickup, or "".
   template <class T>
   static std::string beyond_pickup(const T* p, std::string_view model, std::string_view limited, double now) {
     const double most = value_of(p[efd1]) * value_of(p[rated]);

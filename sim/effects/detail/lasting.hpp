@@ -1,11 +1,11 @@
 #pragma once
-// Timers as states: what has lasted for its delay, and what stays so for good once it has.
+// Timers as states, with and without latching after their delay.
 #include "sim/effects/detail/renewable.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// A timer that runs while `beyond` is 1 and returns to 0 where that ends before `delay`; 1 for good once
-/// it has gone past it, where nothing moves it back.
+/// Latching timer: runs while `beyond` is 1 and resets if this ends before `delay` [s]. Returns 1 permanently
+/// after the delay, else 0.
 template <class T>
 T passed(const T& beyond, const T& delay, const T& x, T& dx) {
   const T zero(0.0), one(1.0), past = (x - delay) * T(1.0 / renewable::kFading);
@@ -15,7 +15,7 @@ T passed(const T& beyond, const T& delay, const T& x, T& dx) {
   return kept;
 }
 
-/// The same, but it returns to 0 where `beyond` ends, whenever that is.
+/// Non-latching timer: as passed(), but it resets whenever `beyond` ends.
 template <class T>
 T lasting(const T& beyond, const T& delay, const T& x, T& dx) {
   const T zero(0.0), one(1.0), past = (x - delay) * T(1.0 / renewable::kFading);

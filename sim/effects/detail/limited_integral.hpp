@@ -1,20 +1,20 @@
 #pragma once
-// The integral of a PI regulator that stops while the regulator's output stands beyond a limit.
+// Non-windup integral of a PI regulator: integration stops while the regulator's output is beyond a limit.
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-inline constexpr double kIntegralBand = 2e-3;  ///< beyond a limit, where a PI's integral comes to rest [pu]
+inline constexpr double kIntegralBand = 2e-3;  ///< width beyond a limit over which integration stops [pu]
 
-/// Slope of a PI's integral: none while its output, `out` before the limits, stands beyond one and `slope`
-/// would lead further. It fades out over a narrow band: cut off at once, it has no solution where the
-/// proportional part falls while the integral rises (the output would slide along the limit).
+/// Returns the derivative of a PI's integral: zero while the unlimited output `out` is beyond a limit and
+/// `slope` leads further out, else `slope`. It fades over a narrow band: with a step there is no solution if
+/// the proportional part falls while the integral rises (sliding along the limit).
 template <class T>
 inline T non_windup(const T& slope, const T& out, const T& least, const T& most) {
   const T zero(0.0), one(1.0), per_band(1.0 / kIntegralBand);
   const T rise = one - clamp((out - most) * per_band, zero, one);
   const T fall = one - clamp((least - out) * per_band, zero, one);
-  return slope * select(slope > zero, rise, fall);  // one derivative also where it is zero
+  return slope * select(slope > zero, rise, fall);  // differentiable also at zero
 }
 
 }  // namespace swingbank::sim::effects::shared

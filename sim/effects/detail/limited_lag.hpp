@@ -1,14 +1,13 @@
 #pragma once
-// A lag between limits that move: its state is drawn back to one that it has passed, so that it does not wind
-// up.
+// Lag with moving limits: a state beyond a limit is driven back to it, which prevents windup.
 #include "sim/core/blocks.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// How fast [1/s]: fast beside any time constant, slow enough to be integrated.
+/// Rate of the return to a limit [1/s]: fast compared with all time constants, slow enough for integration.
 inline constexpr double kReturn = 500.0;
 
-/// 1/(1 + sT) within `least` and `most`; T = 0 passes the input within them.
+/// Returns the output of 1/(1 + sT) with the limits `least` and `most`; T = 0 passes the limited input.
 template <class T>
 T limited_lag(const T& inverse_T, const T& x, const T& u, const T& least, const T& most, T& dx) {
   const T within = clamp(lag(inverse_T, x, u, dx), least, most);

@@ -1,12 +1,12 @@
 #pragma once
-// A lead-lag whose output has limits that it does not wind up against (IEEE Std 421.5-2005, annex E): while
-// it stands at a limit, its state goes there with the lead's time constant.
+// Lead-lag with non-windup limits of its output (IEEE Std 421.5-2005, annex E): while the output is at a
+// limit, the state approaches the limit with the lead's time constant.
 #include "sim/core/blocks.hpp"
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// (1 + s TC)/(1 + s TB) between limits; TB = 0 passes the input within them. Keeps `size` coefficients.
+/// (1 + s TC)/(1 + s TB) between limits, with `size` coefficients; TB = 0 passes the limited input.
 struct LimitedLeadLag {
   enum { share, iTC, iTB, size };
   template <class T>
@@ -21,7 +21,7 @@ struct LimitedLeadLag {
     const auto lagged = c[iTB] > zero, leads = c[iTC] > zero;
     const T free = select(lagged, x + c[share] * (u - x), u);
     const T y = clamp(free, low, high);
-    // Within the limits y - x is the lead's share of u - x, so that both forms of the slope are the same.
+    // Within the limits y - x = (TC/TB) (u - x), so that both forms of the derivative agree.
     const T slope = select(leads, (y - x) * c[iTC], (clamp(u, low, high) - x) * c[iTB]);
     dx = select(lagged, slope, zero);
     return y;

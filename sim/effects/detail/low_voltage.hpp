@@ -1,12 +1,12 @@
 #pragma once
-// How PSS/E lets constant power and constant current go at low voltage, as OpenIPSL writes it (Loads.PSSE):
-// both fall to nothing without a step.
+// Reduction of constant power and constant current at low voltage in PSS/E, as given by OpenIPSL
+// (Loads.PSSE): both decrease to zero continuously.
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// What is left of a constant power at voltage v, divided by v^2, so that nothing is divided by V = 0. With
-/// x = v/threshold it is 2 x^2 up to a half and 1 - 2 (1 - x)^2 up to 1. `v` > 0.
+/// Returns the remaining fraction of a constant power at voltage v, divided by v^2 to avoid a division by V =
+/// 0. With x = v/threshold the fraction is 2 x^2 up to x = 0.5 and 1 - 2 (1 - x)^2 up to x = 1. `v` > 0.
 template <class T>
 inline T power_per_square(const T& v, const T& threshold) {
   const T one(1.0), two(2.0), half = T(0.5) * threshold;
@@ -15,8 +15,9 @@ inline T power_per_square(const T& v, const T& threshold) {
   return (one - two * missing * missing) * inverse * inverse;
 }
 
-/// What is left of a constant current at voltage v, divided by v: min(1, a b u^(b-1) exp(-a u^b)) of
-/// u = v/(2 threshold), a = 1.502, b = 1.769 (at the threshold itself those constants give 1.0035). `v` > 0.
+/// Returns the remaining fraction of a constant current at voltage v, divided by v. The fraction is
+/// min(1, a b u^(b-1) exp(-a u^b)) with u = v/(2 threshold), a = 1.502, b = 1.769 (these constants
+/// give 1.0035 at the threshold). `v` > 0.
 template <class T>
 inline T current_per_voltage(const T& v, const T& threshold) {
   using std::exp;

@@ -1,17 +1,17 @@
 #pragma once
-// One parameter's record in several effects: under another name, with another standard value.
+// Variants of a parameter's record in several effects: another name or another default.
 #include <string_view>
 
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// Under the name that a model's guide writes.
+/// Returns the record with the name of a model's guide.
 constexpr Parameter renamed(Parameter record, std::string_view name) {
   record.name = record.symbol = name;
   return record;
 }
-/// `from`: the value's source, none: the effect's own.
+/// Returns the record with another default. `from`: its source; none: the effect's own source.
 constexpr Parameter with(Parameter record, double standard, Source from = kAsEffect) {
   record.standard = standard;
   record.standard_from = from;

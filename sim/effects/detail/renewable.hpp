@@ -1,15 +1,15 @@
 #pragma once
-// What the controls of converters have in common: the dead-band with two edges, the regulator whose integral
-// stops at the limits of its output, the voltage dip, the lower bound of a voltage that divides.
+// Common blocks of converter controls: dead-band with two edges, non-windup PI regulator, voltage dip
+// detection, lower bound of a voltage used as a divisor.
 #include "sim/core/blocks.hpp"
 #include "sim/core/literature.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
 
 namespace swingbank::sim::effects::renewable {
 
-inline constexpr double kSmallVoltage = 0.01;  ///< no division by less (WECC's models) [pu]
-inline constexpr double kDipBand = 2e-3;       ///< below Vdip and above Vup, where a dip is full [pu]
-inline constexpr double kNoLimit = 1e6;        ///< [pu]
+inline constexpr double kSmallVoltage = 0.01;  ///< lower bound of divisors (WECC's models) [pu]
+inline constexpr double kDipBand = 2e-3;  ///< width below Vdip and above Vup over which a dip sets in [pu]
+inline constexpr double kNoLimit = 1e6;   ///< [pu]
 
 inline constexpr Source kWecc = literature::own(
     "the sign the equations need; at the far end beyond what WECC's guides and the case files give, or 99 and "
@@ -17,13 +17,14 @@ inline constexpr Source kWecc = literature::own(
 inline constexpr Source kFlag = literature::derived("the codes there are");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
 
-/// Nothing between the edges, beyond them the distance; an edge on the wrong side of 0 is 0.
+/// Returns 0 between the edges and the distance to the edge beyond them; an edge of the wrong sign counts as
+/// 0.
 template <class T>
 T dead_zone(const T& u, const T& below, const T& above) {
   return positive_part(u - positive_part(above)) - positive_part(T(0.0) - positive_part(T(0.0) - below) - u);
 }
 
-/// Kp + Ki/s with its output limited; `runs`: 1, or 0 while it is frozen.
+/// Returns the limited output of Kp + Ki/s; `runs`: 1, or 0 while the integral is frozen.
 template <class T>
 T regulator(const T& kp, const T& ki, const T& u, const T& least, const T& most, const T& runs, const T& x,
             T& dx) {
@@ -32,17 +33,18 @@ T regulator(const T& kp, const T& ki, const T& u, const T& least, const T& most,
   return clamp(out, least, most);
 }
 
-/// 1 in a voltage dip (below Vdip or above Vup), else 0; in between over kDipBand, so that a control that
-/// ends its own dip finds a rest.
+/// Returns 1 in a voltage dip (below Vdip or above Vup), else 0, with a linear transition over kDipBand. The
+/// transition gives an equilibrium to a control that ends its own dip.
 template <class T>
 T voltage_dip(const T& V, const T& vdip, const T& vup) {
   const T zero(0.0), one(1.0), per_band(1.0 / kDipBand);
   return clamp((vdip - V) * per_band, zero, one) + clamp((V - vup) * per_band, zero, one);
 }
 
-inline constexpr double kFollow = 2e-3;  ///< in which timers are set and what is to be kept is followed [s]
-inline constexpr double kFading = 1e-3;  ///< over which what is kept after a dip fades [s]
-/// A timer's state, set to `whole` in a dip, runs down to 0 after it; returns 1 while it runs after the dip.
+inline constexpr double kFollow = 2e-3;  ///< time constant for setting timers and tracking kept values [s]
+inline constexpr double kFading = 1e-3;  ///< time over which values kept after a dip fade [s]
+/// Timer after a dip: its state is set to `whole` [s] in the dip and decreases to 0 after it. Returns 1 while
+/// it runs after the dip.
 template <class T>
 T timer(const T& dip, const T& whole, const T& x, T& dx) {
   const T zero(0.0), one(1.0);
@@ -63,10 +65,11 @@ T larger(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 
-/// Where an electrical control keeps nothing over: what it is given.
+/// Identity, for electrical controls that keep no value after a dip.
 inline constexpr auto as_it_is = [](const auto& given) { return given; };
 
-/// What is left for one current beside the other within Imax; a dual needs a slope where nothing is left.
+/// Returns the remaining limit of one current, sqrt(most^2 - used^2) [pu]; the small minimum keeps its
+/// derivative finite.
 template <class T>
 T other_current(const T& most, const T& used) {
   using std::sqrt;
@@ -74,12 +77,12 @@ T other_current(const T& most, const T& used) {
   return sqrt(select(square > tiny, square, tiny));
 }
 
-/// Coefficients of a limit by voltage of N points: N voltages, the first current, N - 1 slopes, the largest
-/// current.
+/// Number of coefficients of a voltage-dependent limit with N points: N voltages, the first current, N - 1
+/// slopes, the largest current.
 template <int N = 4>
 inline constexpr int kByVoltage = 2 * N + 1;
-/// Of the N points V, I, V, I, ... as far as the voltages rise; the current of the last one goes on. Points
-/// that do not rise at all are no limit beside `most`.
+/// Computes these coefficients from N points V, I, V, I, ..., used as long as the voltages rise; beyond the
+/// last point the current is constant. If the voltages do not rise at all, the only limit is `most`.
 template <int N = 4, class T>
 void prepare_by_voltage(const T* points, const T& most, T* c) {
   const bool any = value_of(points[2]) > value_of(points[0]);

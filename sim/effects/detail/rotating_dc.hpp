@@ -1,6 +1,6 @@
 #pragma once
-// The rotating direct-current exciter of IEEET1, IEEET2, EXDC2 and DC1: saturation, rate feedback, and what
-// PSS/E finds for VRMAX = 0 and KE = 0. A Model has the parameters, coefficients and states named here, in
+// Rotating direct-current exciter of IEEET1, IEEET2, EXDC2 and DC1: saturation, rate feedback, and PSS/E's
+// initialisation of VRMAX = 0 and KE = 0. A Model has the parameters, coefficients and states named here, in
 // its own order, and the regulator.
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ struct RotatingDc {
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_with({Model::TR, Model::TA}, p, where, problems);
   }
-  /// `bypassed`: time constants that may be zero.
+  /// Checks the parameters; `bypassed`: time constants that may be zero.
   static void check_with(std::initializer_list<int> bypassed, const double* p, const std::string& where,
                          Problems& problems);
   static std::string_view unphysical(const double*) { return ""; }
@@ -72,7 +72,7 @@ struct RotatingDc {
     c[M::satA] = saturation.A;
     c[M::satB] = saturation.B;
   }
-  /// What the regulator is to remove.
+  /// Returns the regulator's input, the voltage error minus the rate feedback [pu].
   template <class T>
   static T voltage_error(const T* c, const T* x, const Signals<T>& s, T* dx) {
     using M = Model;
@@ -80,7 +80,7 @@ struct RotatingDc {
     const T stabilised = c[M::feedback] * washout(c[M::iTF], x[M::rate], x[M::Efd], dx[M::rate]);
     return c[M::Vref] + s.dVref - measured + s.Vs + s.Vlimiter - stabilised;
   }
-  /// From the regulator's output to the field voltage.
+  /// Computes the field voltage and its derivative from the regulator's output [pu].
   template <class T>
   static void excite(const T* c, const T* x, const T& vr, Signals<T>& s, T* dx) {
     using M = Model;

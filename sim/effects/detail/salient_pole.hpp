@@ -1,7 +1,7 @@
 #pragma once
-// The salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model says
-// what saturates: it adds its coefficients after `circuits` and writes prepare, electrical, derivative and
-// steady in terms of what stands here.
+// Salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model defines
+// the saturation: it adds its coefficients after `circuits` and implements prepare, electrical, derivative
+// and steady with the functions below.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -19,7 +19,7 @@ struct SalientPole {
       literature::psid("EXAC1/TVC_System.dyr, where 999 stands for no damper");
   static constexpr Source standards_from = literature::kundur("within table 4.2, hydraulic units");
   static constexpr Source bounds_from = kBeyondKundur;
-  /// All parameters; what the saturation factors are of is told by their meaning.
+  /// Returns all parameters; `s10`, `s12`: meaning of the saturation factors.
   static constexpr std::array<Parameter, parameter_count> parameters_with(std::string_view s10,
                                                                           std::string_view s12) {
     return {{{"Tdop", "T'do", "s", 6.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},
@@ -40,8 +40,8 @@ struct SalientPole {
              {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
              {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
   }
-  /// As the round-rotor machine's: above a steep saturation knee a flux error counts tenfold in the field
-  /// current.
+  /// As for the round-rotor machine: above a steep saturation knee the gain from a flux error to the field
+  /// current is about 10.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -112,7 +112,7 @@ struct SalientPole {
     er = ed * m[sn] + eq * m[cs];
     ei = eq * m[sn] - ed * m[cs];
   }
-  /// All but the field current.
+  /// Computes all stator quantities except the field current.
   template <class T>
   static void stator(const T* c, const T* x, T* m, Signals<T>& s) {
     m[Id] = s.Ir * m[sn] - s.Ii * m[cs];
@@ -121,12 +121,13 @@ struct SalientPole {
     s.speed = x[speed];
     s.Te = m[pd] * m[Iq] - x[psi2q] * m[Id];
   }
-  /// The field current that the saturation adds to.
+  /// Returns the field current without saturation [pu].
   template <class T>
   static T unsaturated_field(const T* c, const T* x, const T* m) {
     return x[Eqp] + c[dXd] * (m[Id] - c[kd] * m[td]);
   }
-  /// `excited`: what the q-axis damper sees of its own flux, with saturation psi''q (1 + ks Se).
+  /// Computes the rotor's derivatives. `excited`: q-axis damper flux with its saturation, psi''q (1 + ks Se)
+  /// [pu].
   template <class T>
   static void rotor_derivative(const T* c, const T* x, const T* m, const Signals<T>& s, const T& excited,
                                T* dx) {

@@ -1,6 +1,6 @@
 #pragma once
-// What steps and ramps of a set-point have in common. A Model says what it moves, moved(signals), and how
-// far, in its first parameter `amount`.
+// Common part of steps and ramps of a set-point. A Model defines the moved signal, moved(signals), and the
+// size by its first parameter `amount`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct SetpointMove {
   }
 };
 
-/// `amount` from start until just before end.
+/// Step of `amount` from start to end [s], end excluded.
 template <class Model>
 struct SetpointStep : SetpointMove {
   enum P { amount, start, end };
@@ -57,7 +57,7 @@ struct SetpointStep : SetpointMove {
   }
 };
 
-/// From 0 at start in a straight line to `amount` at start + duration, where it stays.
+/// Linear ramp from 0 at start to `amount` at start + duration [s], constant afterwards.
 template <class Model>
 struct SetpointRamp : SetpointMove {
   enum P { amount, start, duration };

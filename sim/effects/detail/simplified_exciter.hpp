@@ -1,6 +1,6 @@
 #pragma once
-// The exciter of SEXS and SCRX: a lead-lag and one lag between fixed limits. A Model may add parameters and
-// coefficients behind the own ones; its second state is that of the lag.
+// Exciter of SEXS and SCRX: a lead-lag and one lag between fixed limits. A Model may append parameters and
+// coefficients; its second state is that of the lag.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -23,7 +23,8 @@ struct SimplifiedExciter {
                              kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNeutral, "gain"},
                              kTE = {"TE", "TE", "s",        0.1,
                                     0.0,  5.0,  kNoNeutral, "exciter time constant (0: none)"};
-  // An error of the lead-lag stays for TB and reaches Efd some 100 times larger; one of Efd is gone after TE.
+  // An error of the lead-lag persists for TB and is amplified to Efd about 100 times; one of Efd decays with
+  // TE.
   static constexpr State kLeadLag = {"leadlag", "pu", "state of the lead-lag", 20.0, -1, -1, {iTB}};
   static constexpr double kLagWeight = 0.1;
 
@@ -56,7 +57,7 @@ struct SimplifiedExciter {
     const T y = lead_lag(c[TA], c[iTB], x[leadlag], error, dx[leadlag]);
     return clamp(lag(c[iTE], x[output], c[gain] * y, dx[output]), c[low], c[high]);
   }
-  /// States and reference that give `out`.
+  /// Computes the states and the reference for a steady output `out` [pu].
   template <class T>
   static void rest(const T* p, T* c, const Signals<T>& s, const T& out, T* x) {
     x[output] = out;

@@ -1,6 +1,6 @@
 #pragma once
-// Sources that several effects give for their values and bounds. "The case files" are those of the works
-// named in sim/core/literature.hpp: some 60 .dyr files, with 2,700 records of the models compiled here.
+// Common sources of the effects' values and bounds. "The case files" are those of the works named in
+// sim/core/literature.hpp: some 60 .dyr files, with 2,700 records of the compiled models.
 #include "sim/core/literature.hpp"
 
 namespace swingbank::sim::effects::shared {
@@ -26,7 +26,7 @@ inline constexpr Source kNoMeasurement = literature::own("a tenth of the quantit
 inline constexpr Source kAnyTime = literature::own("a run begins at 0; longer than any record");
 inline constexpr Source kRating = literature::own("not more than the rating");
 
-// Standard values.
+// Defaults.
 inline constexpr Source kNothing = literature::own("off unless it is asked for");
 inline constexpr Source kNeglected = literature::own("neglected; the default of ZR in PSS/E's .raw");
 inline constexpr Source kPowerThreshold = literature::psse("PQBRAK, where constant power ends");

@@ -1,8 +1,8 @@
 #pragma once
-// The rule for a time constant of zero, one for all effects. A lag or lead-lag with T = 0 passes its input
-// (sim/core/blocks.hpp). Any other block, such as a washout or a rate feedback, needs T > 0 where it acts;
-// where its gain is 0 or nothing reads its output it is switched off and needs T >= 0 only. prepare() then
-// takes inverse(T), which is 0 for T = 0: the state of the block stays at its steady value.
+// Common rule of all effects for a time constant of zero. A lag or lead-lag with T = 0 passes its input
+// (sim/core/blocks.hpp). Any other block, such as a washout or a rate feedback, requires T > 0 if it acts. A
+// block with zero gain or an unused output is off and requires only T >= 0. Its state then keeps the steady
+// value, because prepare() takes inverse(T), which is 0 for T = 0.
 #include <fmt/format.h>
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Notes a time constant [s] that breaks the rule. `model`: what divides by it; `acts`: whether its block
-/// acts; `off`: what switches the block off ("KF = 0").
+/// Adds a problem for a time constant [s] that violates the rule. `model`: model that divides by it; `acts`:
+/// true if its block acts; `off`: condition that switches the block off ("KF = 0").
 inline void check_time_constant(std::string_view model, std::string_view symbol, double seconds, bool acts,
                                 std::string_view off, const std::string& where, Problems& problems) {
   if (acts ? seconds > 0 : seconds >= 0) return;

@@ -1,6 +1,6 @@
 #pragma once
-// What the under-excitation limiters UEL1 and UEL2 have in common: from how far the operating point lies
-// beyond the characteristic to what is added to the voltage error.
+// Common part of the under-excitation limiters UEL1 and UEL2: PI regulator and lead-lags from the distance
+// beyond the characteristic to the signal added to the voltage error.
 #include <fmt/format.h>
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// (KUL + KUI/s), two lead-lags and the limits of the output. A Model has the parameters KUI, KUL, KUF,
-/// VUIMAX, VUIMIN, TU1 to TU4, VULMAX, VULMIN, the coefficients integral to bottom and the states Vui, lead1
-/// and lead2.
+/// (KUL + KUI/s), two lead-lags and limits of the output. A Model has the parameters KUI, KUL, KUF, VUIMAX,
+/// VUIMIN, TU1 to TU4, VULMAX, VULMIN, the coefficients integral to bottom and the states Vui, lead1 and
+/// lead2.
 template <class Model>
 struct UnderExcitation {
   template <class T>
@@ -30,7 +30,7 @@ struct UnderExcitation {
     c[M::top] = p[M::VULMAX];
     c[M::bottom] = p[M::VULMIN];
   }
-  /// At the error e, positive beyond the characteristic.
+  /// Returns the output for the error e, positive beyond the characteristic [pu].
   template <class T>
   static T output(const T* c, const T* x, const T& e, T* dx) {
     using M = Model;
@@ -39,7 +39,7 @@ struct UnderExcitation {
     const T a = lead_lag(c[M::t1], c[M::it2], x[M::lead1], u, dx[M::lead1]);
     return clamp(lead_lag(c[M::t3], c[M::it4], x[M::lead2], a, dx[M::lead2]), c[M::bottom], c[M::top]);
   }
-  /// At rest with e <= 0, where the integrator stands at its lower limit.
+  /// Computes the steady states for e <= 0, with the integrator at its lower limit.
   template <class T>
   static void rest(const T* p, const T& e, T* x) {
     using M = Model;

@@ -8,7 +8,7 @@ namespace {
 
 using enum Use;
 
-// Names and order are those of public files: [1] thadhaines/PSLTDSim,
+// Sources of names and order, public files: [1] thadhaines/PSLTDSim,
 // tests/dydParse/sixMachineGENERICmodels.dyd (excerpts of a WECC case), [2] the same,
 // verification/GE4machine/g4_a.dyd (written by PSLF, with its template), [3] the same,
 // testCases/200201-sunset/sixMachineLTD.dyd, [4] the same, epctemp.dyd, [5] PowerWorld's help on EXST1_GE.
@@ -60,7 +60,7 @@ constexpr Column kExst1[] = {  // [5]
     {"xe", off},
     {"ilr", free},
     {"klr", off}};
-// [6] PowerWorld's help on REXS; up to se2 PSS/E's REXSYS has the same names in the same order, by InterPSS.
+// [6] PowerWorld's help on REXS. Up to se2, PSS/E's REXSYS has the same names in the same order (InterPSS).
 constexpr Column kRexs[] = {{"tr", value, 0},
                             {"kvp", value, 1},
                             {"kvi", value, 2},
@@ -100,7 +100,8 @@ constexpr Column kRexs[] = {{"tr", value, 0},
                             {"vcmax", off, -1, 0, "xc"},
                             {"kefd", off},
                             {"limflg", off}};
-// The four behind EMAX are a second regulator, off while its time constant (the eighth) is 0, and its limits.
+// The four columns after EMAX are a second regulator and its limits; it is off while its time constant (the
+// eighth column) is 0.
 constexpr Column kSexs[] = {  // [3]
     {"ta/tb", value, 0},  {"tb", value, 1},     {"k", value, 2},        {"te", value, 3},
     {"emin", value, 4},   {"emax", value, 5},   {"kc", free, -1, 0.08}, {"tc", off},
@@ -131,7 +132,7 @@ constexpr Column kGgov1[] = {  // [1]
     {"ka", value, 27},     {"ta", value, 28},     {"db", value, 30},     {"tsa", value, 31},
     {"tsb", value, 32},    {"rup", value, 33},    {"rdown", value, 34}};
 constexpr Column kTrate[] = {{"trate", rating, 29, 0.0}};
-constexpr Column kHygov[] = {  // [1]; its gate is a share of the opening, so only power goes with the rating
+constexpr Column kHygov[] = {  // [1]; the gate is a fraction of the opening, so that only power is scaled
     {"r", value, 0},  {"rtemp", value, 1},  {"tr", value, 2},         {"tf", value, 3},
     {"tg", value, 4}, {"velm", value, 5},   {"gmax", value, 6},       {"gmin", value, 7},
     {"tw", value, 8}, {"at", mva_power, 9}, {"dturb", mva_power, 10}, {"qnl", value, 11}};
@@ -170,7 +171,7 @@ constexpr Column kPss2a[] = {  // [2], [4]
     {"ta", off},
     {"tb", off}};
 
-// [7] J. Eisenbarth, oel1_dyd.m of MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR (writes the
+// [7] oel1_dyd.m of MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR by J. Eisenbarth (writes the
 // line).
 constexpr Column kOel1[] = {{"ifdset", value, 0},  {"ifdmax", value, 1},  {"tpickup", value, 2},
                             {"runback", value, 3}, {"tmax", value, 4},    {"tset", value, 5},

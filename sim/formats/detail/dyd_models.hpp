@@ -1,47 +1,52 @@
 #pragma once
-// Which model of a .dyd is which of a .dyr, column by column; the sources stand at each model.
+// Correspondence of .dyd and .dyr models, column by column; the source is given at each model.
 #include <span>
 #include <string_view>
 
 namespace swingbank::sim::formats::dyd {
 
-/// What becomes of a column.
+/// Conversion of a column.
 enum class Use {
-  value,      ///< is a column of the .dyr
-  mva_power,  ///< is one, in proportion to the rating of the turbine
-  per_mva,    ///< is one, in inverse proportion to it
-  again,      ///< repeats the limit of an earlier column, and must not be narrower
-  rating,     ///< is the rating itself, which a .dyd gives before the values [MW]
-  off,        ///< has no counterpart and must have the value that switches it off
-  open,       ///< a limit that has no counterpart and must be too far off to act
-  free,       ///< has no counterpart and no influence on the model
+  value,      ///< a column of the .dyr
+  mva_power,  ///< a column of the .dyr, proportional to the turbine's rating
+  per_mva,    ///< a column of the .dyr, inversely proportional to the turbine's rating
+  again,      ///< repeats the limit of an earlier column; must not be narrower
+  rating,     ///< the turbine's rating [MW], which precedes the values in a .dyd
+  off,        ///< no counterpart; must have the value that disables it
+  open,       ///< a limit without counterpart; must be too wide to act
+  free,       ///< no counterpart and no influence on the model
   resistance,
-  reactance,  ///< of the machine, in the .raw of PSS/E
+  reactance,  ///< impedance of the machine, which PSS/E keeps in the .raw
 };
 
+/// A column of a .dyd model.
 struct Column {
   std::string_view name;  ///< in lower case
   Use use = Use::value;
   int dyr = -1;                ///< column of the .dyr, from 0
-  double off = 0;              ///< the value that is written, and with Use::off the only one that is read
-  std::string_view idle = {};  ///< with Use::off: any value will do where this column is 0
+  double off = 0;              ///< written value; with Use::off also the only accepted one
+  std::string_view idle = {};  ///< with Use::off: any value is accepted if this column is 0
 };
 
+/// A model of a .dyd and its counterpart in a .dyr.
 struct Model {
   std::string_view dyd, dyr;
   std::string_view base;  ///< "mva" of a machine, "mwcap" of a turbine, empty: none
-  bool named = true;      ///< values are written behind their names
-  bool in_order = true;   ///< values without names are read: their order is documented
-  int columns = 0;        ///< of the .dyr
+  bool named = true;      ///< values are written with their names
+  bool in_order = true;   ///< values without names are accepted, because their order is documented
+  int columns = 0;        ///< number of columns of the .dyr
   std::span<const Column> in;
-  std::span<const Column> fixed = {};  ///< columns of the .dyr that a .dyd has not, with their values
+  std::span<const Column> fixed =
+      {};  ///< columns of the .dyr without counterpart in the .dyd, with their values
 };
 
+/// Returns all models with a counterpart.
 std::span<const Model> models();
-/// Models that may stand at a unit's bus with its id and are none of its own: meters, loads, relays.
+/// Returns true for models that share a unit's bus and id but do not belong to the unit: meters, loads,
+/// relays.
 bool is_no_unit(std::string_view dyd);
 
-/// Beyond it a limit does not act [pu].
+/// Magnitude beyond which a limit does not act [pu].
 inline constexpr double kOpen = 99.0;
 
 }  // namespace swingbank::sim::formats::dyd

@@ -1,5 +1,5 @@
 #pragma once
-// The reader of .epc files, section by section. Used by pslf_epc*.cpp only.
+// Reader of .epc files, section by section. Used only by pslf_epc*.cpp.
 #include <array>
 #include <map>
 #include <set>
@@ -15,15 +15,16 @@
 
 namespace swingbank::sim::formats::epc {
 
-/// A record: what it is of, and what it says of it.
+/// A record: the equipment before the colon (`of`) and its values after it (`says`).
 struct Row {
   psse::Record of, says;
-  std::vector<std::size_t> starts;  ///< for each line that continues it, how many of `says` are before it
+  std::vector<std::size_t> starts;  ///< per continuation line: number of `says` fields before it
 };
 
+/// Reads one .epc; each object reads once.
 class EpcReader {
  public:
-  /// `name` stands for the file in messages.
+  /// `name` replaces the file name in messages.
   EpcReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
   EpcReader(const EpcReader&) = delete;
@@ -33,13 +34,13 @@ class EpcReader {
  private:
   struct Section {
     std::string name;         ///< "bus", "dc converter"
-    int announced;            ///< records
-    std::size_t first, last;  ///< its lines, from 0, the last one not its own
+    int announced;            ///< announced number of records
+    std::size_t first, last;  ///< its lines, from 0, `last` excluded
   };
   using Reads = void (EpcReader::*)(const Row&);
 
   void divide();
-  /// The block up to '!' after a line that names it; leaves `at` behind it.
+  /// Returns the lines up to '!' after a block's title, and advances `at` past the block.
   std::vector<std::string> block(std::size_t& at) const;
   void solution_parameters(const std::vector<std::string>& block, std::size_t first);
   void read_sections();
@@ -63,7 +64,7 @@ class EpcReader {
   int star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on);
   Complex magnetising(psse::Fields& f, int bus);
 
-  /// Index of the bus with this number; -1 and a problem or a remark if the file has none.
+  /// Returns the index of the bus with this number; otherwise -1, and a problem or a remark.
   int find_bus(int number, const psse::Fields& fields) {
     return identities_.bus_index(index_, number, section_, fields);
   }
@@ -74,7 +75,7 @@ class EpcReader {
   [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }
   [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
-  /// One section of a line, as it stands in the file; `section` from 1.
+  /// One section of a line in the file; `section` from 1.
   struct Part {
     network::Branch branch;
     int section, line;
@@ -88,14 +89,15 @@ class EpcReader {
   network::Network network_;
   Problems problems_;
   Identities identities_{options_, network_, problems_};
-  std::string section_;  ///< whose records are being read
+  std::string section_;  ///< section being read
   std::map<int, int> index_;
-  std::vector<double> vsched_;                                            ///< per bus [pu]
-  std::map<std::tuple<int, int, std::string>, std::vector<Part>> parts_;  ///< of the lines: ends and circuit
-  std::vector<std::tuple<int, int, std::string>> order_;                  ///< of these, as in the file
+  std::vector<double> vsched_;  ///< scheduled voltage per bus [pu]
+  std::map<std::tuple<int, int, std::string>, std::vector<Part>>
+      parts_;                                             ///< (ends, circuit) -> line sections
+  std::vector<std::tuple<int, int, std::string>> order_;  ///< keys of parts_ in file order
   std::vector<int> generator_line_, branch_line_;
   std::vector<network::Device> devices_;
-  std::set<int> stars_;  ///< indices
+  std::set<int> stars_;  ///< indices of star-point buses
   bool units_only_ = false;
 };
 

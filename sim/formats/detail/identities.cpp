@@ -42,7 +42,7 @@ std::optional<std::string> Identities::id(network::Duplicate of, const std::stri
     if (once(identity(given), fields)) return given;
     return {};
   }
-  constexpr std::string_view letters = "RSTUVWXYZ";  // an id has two characters
+  constexpr std::string_view letters = "RSTUVWXYZ";  // first of two characters of a new id
   for (const char letter : letters)
     for (int i = 1; i <= 9; ++i) {
       of.id = letter + std::to_string(i);

@@ -1,5 +1,5 @@
 #pragma once
-// Which equipment of a network file is read: every identity once, and only at buses that the file has.
+// Identity checks for the equipment of a network file: each identity is unique and each bus exists.
 #include <map>
 #include <optional>
 #include <string>
@@ -11,24 +11,25 @@
 
 namespace swingbank::sim::formats {
 
+/// Registry of the identities of a file's equipment.
 class Identities {
  public:
-  /// All three outlive the object.
+  /// All three arguments must outlive the object.
   Identities(const RawOptions& options, network::Network& network, Problems& problems)
       : options_(options), network_(network), problems_(problems) {}
 
-  /// Index of the bus with this number. -1 if there is none: a problem, or a remark where the equipment is to
-  /// be left out. `section`: of the record that refers to it.
+  /// Returns the index of the bus with this number. Returns -1 if there is none, with a problem, or with a
+  /// remark if the equipment is to be dropped. `section`: section of the referring record.
   int bus_index(const std::map<int, int>& buses, int number, const std::string& section,
                 const psse::Fields& fields);
-  /// False where this identity ("bus 5") has been given before and the equipment is to be left out, which is
-  /// noted. A problem where it is not to be; reading goes on.
+  /// Returns false, with a remark, if this identity ("bus 5") is a duplicate and the equipment is to be
+  /// dropped. A duplicate that is not to be dropped becomes a problem.
   bool once(const std::string& identity, const psse::Fields& fields);
-  /// The equipment's id: the given one where "`before` 'id'`after`" is the first of its name, a new one where
-  /// repeated equipment is kept; nothing where it is not to be read. `of`: its kind and bus numbers.
+  /// Returns the equipment's id: the given one if "`before` 'id'`after`" is unique, a new one for a duplicate
+  /// that is kept, none for equipment to be dropped. `of`: its kind and bus numbers.
   std::optional<std::string> id(network::Duplicate of, const std::string& before, const std::string& given,
                                 const std::string& after, const psse::Fields& fields);
-  /// The equipment that got a new id.
+  /// Returns the equipment with a new id.
   [[nodiscard]] const std::vector<network::Duplicate>& kept() const { return kept_; }
 
  private:

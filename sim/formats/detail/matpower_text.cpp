@@ -19,11 +19,11 @@ std::string trimmed(const std::string& text) {
 }
 
 struct Statement {
-  std::string text;  ///< newlines within brackets are kept
+  std::string text;  ///< with newlines within brackets
   int line;
 };
 
-/// Cuts a file into statements; comments, continuations and empty statements are gone.
+/// Splits a file into statements, without comments, continuations and empty statements.
 class Splitter {
  public:
   Splitter(const std::string& text, const std::string& file, Problems& problems)
@@ -87,7 +87,7 @@ class Splitter {
     at_ = line_end();
     if (line != "%{" && line != "#{") return;
     const int first = line_;
-    for (int depth = 1; depth > 0;) {  // a block, up to its own closing line
+    for (int depth = 1; depth > 0;) {  // nested block comments
       if (at_ >= text_.size()) {
         problems_.add("a block comment is not closed", where(first), "the rest of the file is in it",
                       "close it with %}");
@@ -105,7 +105,7 @@ class Splitter {
     ++line_;
     put(' ');
   }
-  /// A quote right after a value transposes it; elsewhere it begins a text.
+  /// Returns true if a quote transposes the preceding value; elsewhere it begins a text.
   [[nodiscard]] bool transposes() const {
     if (at_ == 0) return false;
     const char before = text_[at_ - 1];
@@ -118,7 +118,7 @@ class Splitter {
     for (const std::size_t stop = line_end(); i < stop; ++i) {
       if (text_[i] != mark) continue;
       if (i + 1 >= text_.size() || text_[i + 1] != mark) break;
-      ++i;  // a doubled quote stands for itself
+      ++i;  // a doubled quote represents one quote
     }
     if (i >= line_end()) {
       problems_.add("a quote is not closed", where(line_), "the text runs to the end of the line",
@@ -147,7 +147,7 @@ std::optional<long double> number(const std::string& word) {
   return psse::parse_number(word);
 }
 
-/// The rows between the brackets of a matrix.
+/// Returns the rows between the brackets of a matrix.
 std::vector<Row> read_rows(const std::string& text, int line, const std::string& file, Problems& problems) {
   std::vector<Row> rows;
   Row row{line, {}};
@@ -178,7 +178,7 @@ std::vector<Row> read_rows(const std::string& text, int line, const std::string&
   return rows;
 }
 
-/// Words that begin statements without a value in them.
+/// Returns true for statements without a value: function, end, endfunction, return.
 bool passed_over(const std::string& text) {
   for (const char* word : {"function", "end", "endfunction", "return"}) {
     const std::string w = word;

@@ -1,6 +1,6 @@
 #pragma once
-// The part of the MATLAB language that case files are written in: assignments of numbers, texts, matrices and
-// cell arrays. Used by matpower.cpp only.
+// Parser of the MATLAB subset of case files: assignments of numbers, texts, matrices and cell arrays. Used
+// only by matpower.cpp.
 #include <string>
 #include <vector>
 
@@ -8,21 +8,22 @@
 
 namespace swingbank::sim::formats::matpower {
 
+/// One row of a matrix.
 struct Row {
-  int line;  ///< in the file, from 1
+  int line;  ///< line of the file, from 1
   std::vector<long double> values;
 };
-/// `name = value`: a number is a matrix of one row and one column, texts have no rows.
+/// An assignment `name = value`. A number is a matrix of one row and one column; a text has no rows.
 struct Assignment {
-  std::string name;  ///< without the struct before the dot: "bus"
+  std::string name;  ///< field name without the struct: "bus"
   int line;
   enum Kind { matrix, text, cell } kind;
   std::vector<Row> rows;
-  std::string words;  ///< of a text
+  std::string words;  ///< value of a text
 };
-/// Reads every assignment to a field of the case's struct. Everything else that could change a value (indexed
-/// assignments, loops, expressions) goes to `problems` with file and line; comments, the function's head and
-/// its end are passed over.
+/// Reads every assignment to a field of the case's struct. Any other statement that could change a value
+/// (indexed assignment, loop, expression) becomes a problem with file and line. Comments, the function's head
+/// and its end are ignored.
 std::vector<Assignment> read_assignments(const std::string& text, const std::string& file,
                                          Problems& problems);
 

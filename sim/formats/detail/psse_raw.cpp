@@ -11,7 +11,7 @@ namespace swingbank::sim::formats {
 namespace {
 bool is_rawx(const std::string& name) { return name.ends_with(".rawx") || name.ends_with(".RAWX"); }
 
-/// Throws in place of many faults of a wrong version that version.
+/// Throws InputError with the likely version if many faults are due to a wrong version.
 void tell_version(const std::vector<std::string>& lines, const std::string& name, const RawOptions& options,
                   int read_as, const std::vector<Problem>& faults) {
   if (const auto other = psse::other_version(lines, name, options, read_as, faults)) throw InputError(*other);
@@ -107,7 +107,7 @@ void RawReader::read_sections() {
   }
   if (is_rawx(file_)) return read_json();
   header();
-  bool area_behind = false;  // what comes after it may be missing as a whole
+  bool area_behind = false;  // the sections from "area" on are optional
   for (const Section& s : sections()) {
     if (left_out(s)) continue;
     area_behind = area_behind || std::string_view(s.name) == "area";
@@ -157,7 +157,7 @@ void RawReader::header() {
   Fields f(record, file_, problems_);
   const int change = f.integer(0, "IC", 0);
   base_ = static_cast<double>(
-      f.number(1, "SBASE", 100.0L));  // the value the network holds, so that writing inverts reading
+      f.number(1, "SBASE", 100.0L));  // rounded as in the network, for an exact round trip
   std::string comment;
   if (const auto slash = lines_[at_].find('/'); slash != std::string::npos)
     comment = "; the line says \"" + without_return(lines_[at_].substr(slash + 1)) + "\"";
@@ -170,7 +170,7 @@ void RawReader::header() {
     problems_.add("BASFRQ is missing", f.where(), "the rotors turn at this frequency",
                   "say it with --frequency-hz, 50 or 60 Hz");
   const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
-  problems_.raise();  // without these nothing below can be read
+  problems_.raise();  // the rest requires these values
   if (version_ < 23 || version_ > 35)
     throw InputError({"version " + std::to_string(version_) + " of the .raw format", f.where(),
                       "versions 23 to 35 are read", "save the case as one of these versions"});
@@ -185,7 +185,7 @@ void RawReader::header() {
   at_ += 3;
 }
 
-/// Throws where a title line looks like the first bus: a title line is missing.
+/// Throws InputError if a title line looks like a bus record, which means that a title line is missing.
 void RawReader::check_titles() {
   for (std::size_t i = at_ + 1; i <= at_ + 2; ++i) {
     Problems ignored;
@@ -197,8 +197,8 @@ void RawReader::check_titles() {
     const auto type = value(version_ == 23 ? 1 : 3), number = value(0);
     const auto numbers = std::ranges::count_if(
         record.fields, [](const Field& f) { return !f.quoted && parse_number(f.text); });
-    const auto vm = value(columns_.bus_voltage);  // it may be left empty
-    constexpr int least = 6;                      // of the numbers in a bus record of any version
+    const auto vm = value(columns_.bus_voltage);  // may be empty
+    constexpr int least = 6;                      // minimum count of numbers in a bus record of any version
     if (!type || !number || *type < 1 || *type > 4 || *type != std::trunc(*type) || *number < 1 ||
         *number != std::trunc(*number) || numbers < least || (vm && (*vm < 0 || *vm > 2)))
       continue;
@@ -260,7 +260,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
       return true;
     }
     if (ends_file(*record)) return false;
-    // A bus record where the system-wide data should be: the file has none.
+    // A bus record in place of the system-wide data: the file has no such section.
     if (section.row == &RawReader::system_wide && !first.quoted && parse_number(first.text)) {
       put_back(*record);
       return true;
@@ -278,7 +278,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
   return false;
 }
 
-// Solution settings and names of ratings: nothing in it changes the equations.
+// Solution settings and names of ratings, which do not affect the equations.
 void RawReader::system_wide(const Record&) {}
 
 std::optional<std::string> RawReader::circuit_of(int from, int to, const std::string& circuit,

@@ -1,5 +1,5 @@
 #pragma once
-// The reader of .raw files, section by section. Used by psse_*.cpp only.
+// Reader of .raw files, section by section. Used only by psse_*.cpp.
 #include <array>
 #include <functional>
 #include <limits>
@@ -16,20 +16,20 @@
 
 namespace swingbank::sim::formats::psse {
 
-/// Where the fields whose place depends on the version stand (counted from 0). Version 34 puts twelve ratings
-/// and a name into branches and transformer windings and appends the regulated node; version 35 moves the
-/// node beside the regulated bus and gives switched shunts an id; before 32 switched shunts have no status,
-/// before 30 no RMPCT, before 28 no RMIDNT, and transformers stand among the branches. Source: PSS/E data
-/// format manuals, "Power Flow Data"; for 24 to 28 MATPOWER, psse_parse.m.
+/// Columns, counted from 0, of the fields whose position depends on the version. Version 34 inserts twelve
+/// ratings and a name into branches and transformer windings and appends the regulated node. Version 35 moves
+/// the node next to the regulated bus and adds an id to switched shunts. Switched shunts have no status
+/// before 32, no RMPCT before 30, no RMIDNT before 28; before 28 transformers are among the branches. Source:
+/// PSS/E data format manuals, "Power Flow Data"; for 24 to 28 MATPOWER, psse_parse.m.
 struct Columns {
   std::size_t gen_base, gen_status;          ///< MBASE (ZR, ZX, RT, XT, GTAP follow), STAT (RMPCT follows)
   std::size_t branch_shunts, branch_status;  ///< GI (BI, GJ, BJ follow), ST
   std::size_t winding_table;                 ///< TAB1
-  std::size_t switched_id;                   ///< 1 if an ID stands before MODSW, else 0
+  std::size_t switched_id;                   ///< 1 if an ID precedes MODSW, else 0
   std::size_t switched_status, switched_binit;
   std::size_t bus_area, bus_voltage, bus_owner;  ///< AREA (ZONE follows), VM (VA follows)
 };
-constexpr std::size_t kNoColumn = 999;  ///< beyond every record: the default holds
+constexpr std::size_t kNoColumn = 999;  ///< beyond every record, so that the default applies
 constexpr Columns columns(int version) {
   if (version >= 35) return {9, 15, 19, 23, 23, 1, 4, 11, 4, 7, 6};
   if (version == 34) return {8, 14, 19, 23, 22, 0, 3, 9, 4, 7, 6};
@@ -40,27 +40,28 @@ constexpr Columns columns(int version) {
   return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 7, kNoColumn};
 }
 
+/// Reads one .raw or .rawx; each object reads once.
 class RawReader {
  public:
-  /// `name` stands for the file in messages.
+  /// `name` replaces the file name in messages.
   RawReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
       : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
   RawReader(const RawReader&) = delete;
   network::Network read();
   RawSurvey survey();
-  /// How many faults the file has if it is read as this version, whatever its header says; it is read no
-  /// further once there are more than `most`. The reader is of no use after that.
+  /// Returns the number of faults of the file when read as this version, independent of its header. Reading
+  /// stops after more than `most` faults. The reader cannot be used afterwards.
   std::size_t faults_as(int version, std::size_t most);
-  /// The version it was read as; 0: the header did not say it.
+  /// Returns the version used for reading; 0: the header has none.
   [[nodiscard]] int version() const { return version_; }
 
  private:
   void read_sections();
   struct Section {
     const char* name;
-    void (RawReader::*row)(const Record&) = nullptr;  ///< none: passed over
+    void (RawReader::*row)(const Record&) = nullptr;  ///< null: ignored section
   };
-  /// The sections of a version in their order.
+  /// Returns the sections of a version in file order.
   [[nodiscard]] std::vector<Section> sections() const;
   void read_json();
   void json_transformers(const nlohmann::json& network);
@@ -69,14 +70,15 @@ class RawReader {
   void header();
   void check_header(const Fields& header, int change, double frequency);
   void check_titles();
-  /// False if the file is over ('Q' or no more lines); the latter is a fault unless only sections are missing
-  /// that may be.
+  /// Reads a section. Returns false at the end of the file ('Q' or no more lines); missing lines are a fault
+  /// unless only optional sections are missing.
   bool section(const Section& section, bool may_be_missing);
-  /// Some programs write version 34 without this section: the line that ends the branches says so.
+  /// Returns true if the file has no such section. Some programs write version 34 without switching devices;
+  /// the text of the line after the branches shows it.
   [[nodiscard]] bool left_out(const Section& section) const;
-  /// Whether the line that ended a section says that the same begins again.
+  /// Returns true if the text of the line that ended a section announces the same section again.
   [[nodiscard]] bool again(const Section& section) const;
-  /// The next record that holds a field; lines that begin with '@!' are comments.
+  /// Returns the next record with a field; lines that begin with '@!' are comments.
   std::optional<Record> next();
   /// Steps back by the record that next() returned last.
   void put_back(const Record& record) { at_ = static_cast<std::size_t>(record.line) - 1; }
@@ -89,7 +91,7 @@ class RawReader {
   void load(const Record& record);
   void fixed_shunt(const Record& record);
   void generator(const Record& record);
-  /// The generator holds its own bus at the voltage in the file, with a remark.
+  /// Makes the generator regulate its own bus to the voltage in the file, with a remark.
   void hold_own(network::Generator& g, const char* what, const std::string& where);
   void branch(const Record& record);
   void switching_device(const Record& record);
@@ -112,16 +114,16 @@ class RawReader {
   }
   void correct_impedances();
 
-  /// The `count` records after `first`, which belong to it; fewer where the section ends.
+  /// Returns the `count` continuation records after `first`; fewer at the end of the section.
   std::vector<Record> following(const Record& first, std::size_t count, const char* what);
   void device(const std::string& kind, const std::string& name, const Record& record,
               const std::vector<int>& numbers, const std::vector<double>& scheduled = {});
 
-  /// Index of the bus with this number; -1 and a problem or a remark if the file has none.
+  /// Returns the index of the bus with this number; otherwise -1, and a problem or a remark.
   int find_bus(int number, const Fields& fields) {
     return identities_.bus_index(index_, number, section_, fields);
   }
-  /// The circuit that a branch bears, in either direction: Identities::id.
+  /// Returns the circuit id of a branch, unique for both orders of its ends (Identities::id).
   std::optional<std::string> circuit_of(int from, int to, const std::string& circuit, const Fields& fields);
   bool status(int value, const char* name, const Fields& fields);
   double pu(long double mw) const { return static_cast<double>(mw / base_); }
@@ -129,13 +131,13 @@ class RawReader {
     return network_.buses[static_cast<std::size_t>(bus)];
   }
 
-  struct Codes;  ///< CW, CZ, CM of a transformer
+  struct Codes;  ///< data codes CW, CZ, CM of a transformer
   Codes codes(Fields& head);
   void two_windings(std::span<const Record> rows, int from, int to);
   void three_windings(std::span<const Record> rows, const std::array<int, 3>& ends);
   int star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
                  bool in_service);
-  /// The correction table that a winding names, kept until the tables are read.
+  /// Stores a winding's reference to a correction table until the tables are read.
   void note_table(Fields& winding, std::size_t number, std::size_t branch);
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
                       const network::Bus& bus);
@@ -147,27 +149,27 @@ class RawReader {
   std::string file_;
   std::vector<std::string> lines_;
   std::size_t at_ = 0;     ///< next line
-  std::string separator_;  ///< the line that ended the last section
+  std::string separator_;  ///< line that ended the last section
   int version_ = 0, forced_ = 0;
-  std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< more end the reading
+  std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< reading stops after more faults
   Columns columns_{};
   long double base_ = 100.0L;
   network::Network network_;
   Problems problems_;
   std::map<int, int> index_;
   std::vector<int> generator_line_, branch_line_;
-  std::vector<std::string> places_;  ///< of the generators, where they are not lines
-  bool units_only_ = false;          ///< what matters to a network alone is no fault
+  std::vector<std::string> places_;  ///< places of the generators for messages, if they are not lines
+  bool units_only_ = false;          ///< true: errors that concern only the network are not faults
   RawOptions options_;
   Identities identities_{options_, network_, problems_};
-  std::string section_;  ///< whose records are being read
+  std::string section_;  ///< section being read
   std::vector<network::Device> devices_;
-  std::vector<int> regulated_;  ///< per generator: number of the bus it holds, 0: its own
+  std::vector<int> regulated_;  ///< per generator: number of the regulated bus, 0: its own
   struct Correction {
     std::size_t branch;
     int table;
     std::string name;     ///< TAB1 to TAB3
-    double ratio, angle;  ///< WINDV as in the file, ANG [deg]
+    double ratio, angle;  ///< unconverted WINDV, ANG [deg]
     std::string where;
   };
   std::vector<Correction> corrections_;
@@ -175,7 +177,8 @@ class RawReader {
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 
-/// Where a file has many faults as the version that it was read as, and hardly any as another: that.
+/// Returns a problem that names the likely version if the file has many faults in the version used and hardly
+/// any in another one.
 std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
                                      const RawOptions& options, int read_as,
                                      const std::vector<Problem>& faults);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array kEndings = {"BL", "OW", "ZN", "AR", "AL"};
 
-/// The effect with this name in a .dyr (case matters not), or nullptr.
+/// Returns the effect with this name in a .dyr (case-insensitive), or nullptr.
 const Effect* effect_named(std::string_view model) {
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
   for (const Effect& e : library::compiled_effects())
@@ -25,8 +25,8 @@ const Effect* effect_named(std::string_view model) {
       return &e;
   return nullptr;
 }
-/// Other names of a model whose equations are the same, and where its columns stand in theirs; none: in the
-/// same order.
+/// Alias of a model with the same equations. `order`: position of each column in the alias; empty: same
+/// order.
 struct OtherName {
   std::string_view name, known_as;
   std::span<const int> order = {};
@@ -34,10 +34,10 @@ struct OtherName {
 constexpr int kPslfsSt5b[] = {0, 6, 7, 8, 9, 1, 4, 5, 2, 3, 14, 15, 16, 17, 10, 11, 12, 13};
 constexpr OtherName kOtherNames[] = {
     {"REECD", "REECD1"},
-    {"REPCTA1", "REPCA1"},           // of a wind plant of type 3
+    {"REPCTA1", "REPCA1"},           // for a wind plant of type 3
     {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
     {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
-    {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name of the type DC1 of 1981
+    {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name for type DC1 of 1981
 };
 
 const OtherName* other_name(std::string_view model) {
@@ -45,7 +45,7 @@ const OtherName* other_name(std::string_view model) {
   return at == std::end(kOtherNames) ? nullptr : at;
 }
 
-/// Names of the standard model that a user-written one comes from: PSS/E ends these with U1, or with U
+/// Returns the possible standard names of a user-written model. PSS/E's user-written names end with U1 or U
 /// (REGCAU1 is REGCA1, HYG3U1 is HYG3, GENQECU is GENQEC).
 std::vector<std::string> standard_names(std::string_view user_written) {
   if (user_written.ends_with("U1")) {
@@ -55,8 +55,8 @@ std::vector<std::string> standard_names(std::string_view user_written) {
   if (user_written.ends_with("U")) return {std::string(user_written.substr(0, user_written.size() - 1))};
   return {};
 }
-/// The effect that PSS/E knows as a user-written model in some versions only (GENTPJU1 is GENTPJ1), or
-/// nullptr.
+/// Returns the effect of a model that is user-written in some versions of PSS/E and standard in others
+/// (GENTPJU1 is GENTPJ1), or nullptr.
 const Effect* effect_since_standard(const std::string& model) {
   for (const Effect& e : library::compiled_effects())
     for (const std::string& name : standard_names(e.dyr_name))
@@ -64,14 +64,14 @@ const Effect* effect_since_standard(const std::string& model) {
   return nullptr;
 }
 
-/// A model of a .dyr: its effect, the loads it is for, and where its columns stand if not in the effect's
-/// order.
+/// A model of a .dyr: its effect, the loads that it applies to, and the order of its columns if it differs
+/// from the effect's.
 struct Known {
   const Effect* effect = nullptr;
   Reach reach = Reach::load;
   std::span<const int> order = {};
 };
-/// The same, with the names that stand for it too: IEELAR is IEELBL for an area.
+/// Returns the model of a name, with aliases resolved: IEELAR is IEELBL for an area.
 Known known_by(std::string model) {
   Known known;
   if (const OtherName* other = other_name(model)) {
@@ -95,7 +95,7 @@ Known known_model(const formats::DyrRecord& record) {
   return known;
 }
 
-/// What stands already where the effect belongs, or nullptr.
+/// Returns the effect that already occupies the slot of `effect`, or nullptr.
 const Effect* in_the_way(const plant::Plant& plant, const Effect& effect) {
   if (effect.slot == Slot::machine) return plant.machine.effect;
   if (effect.slot == Slot::transformer) return plant.transformer.effect;
@@ -125,8 +125,9 @@ std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record) 
 }
 
 void find_named_buses(std::vector<formats::DyrRecord>& records, const network::Network& network) {
-  constexpr std::size_t name_width = 12;  // of an extended bus name, the base voltage follows
-  constexpr double rounding = 0.006;      // [kV] of a voltage with two decimals
+  constexpr std::size_t name_width =
+      12;                             // width of the name in an extended bus name, before the base voltage
+  constexpr double rounding = 0.006;  // tolerance of a voltage with two decimals [kV]
   std::map<std::string, std::vector<const network::Bus*>> named;
   for (const network::Bus& bus : network.buses) named[bus.name].push_back(&bus);
   const auto trimmed = [](const std::string& text) { return text.substr(0, text.find_last_not_of(' ') + 1); };
@@ -171,8 +172,8 @@ std::string columns_text(const Effect& effect) {
 
 namespace {
 
-/// Leaves its parameters of a record of a switched shunt. No shunt beside it is switched here: a record that
-/// asks for it says so by its flags.
+/// Reduces a record of a switched shunt to the parameters of its model. Mechanically switched shunts are not
+/// modelled; the record's flags show whether it uses them.
 void without_shunts_beside(formats::DyrRecord& record, const ShuntRecord& layout, std::size_t columns) {
   std::vector<double>& v = record.values;
   if (record.model == layout.of_first) {
@@ -196,7 +197,7 @@ int number_in(const plant::Block& block, int parameter) {
   if (parameter < 0) return 0;
   const auto at = static_cast<std::size_t>(parameter);
   const double value = block.p[at];
-  // Another value is none that a bus has: check() refuses it.
+  // Any other value is no bus number; check() refuses it.
   return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
 }
 
@@ -218,7 +219,7 @@ formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect) {
   for (const formats::DyrRecord::Text& text : record.texts) record.faults.add(text.fault);
   record.texts.clear();
   const std::span<const int> order = known_model(record).order;
-  constexpr std::size_t icons = 2, cons = 3;  // among the codes: how many whole numbers and constants follow
+  constexpr std::size_t icons = 2, cons = 3;  // codes NI, NC: number of integers and constants that follow
   std::vector<double>& v = record.values;
   if (record.codes > 0 && v.size() >= record.codes &&
       v[icons] + v[cons] == static_cast<double>(v.size() - record.codes)) {
@@ -240,7 +241,7 @@ namespace {
 std::string_view symbol_of_column(const Effect& effect, std::size_t column) {
   return effect.parameters[static_cast<std::size_t>(effect.dyr_columns[column])].symbol;
 }
-/// Fills in what is missing at the end; what stands where, as text.
+/// Appends the missing values at the end. Returns them as text.
 std::string fill(const Effect& effect, std::vector<double>& values, Lacking lacking) {
   const std::vector<double> standard = effect.standard_parameters();
   std::string text;

@@ -1,5 +1,5 @@
 #pragma once
-// Records of a .dyr as blocks of plants: which effect a model is, its parameters, its place.
+// Conversion of .dyr records to blocks of plants: effect, parameter values and slot of a record.
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -12,75 +12,79 @@
 
 namespace swingbank::sim::grid {
 
-/// Which loads a load model of a .dyr is for. Where several are for one load the first of these counts.
+/// Scope of a load model of a .dyr. If several apply to a load, the first in this order takes precedence.
 enum class Reach { load, owner, zone, area, all };
 
-/// The effect of a record, nullptr if there is none, and the loads it is for; names that stand for another
-/// count: IEELAR is IEELBL for an area.
+/// Returns the effect of a record, or nullptr, and the loads that it applies to. Aliases are resolved: IEELAR
+/// is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record);
-/// Gives records at an extended bus name (name and base voltage, 'UNIT        20.000') the number of that
-/// bus; a name that the network does not have, or has twice, stays.
+/// Resolves extended bus names of records (name and base voltage, 'UNIT        20.000') to bus numbers. A
+/// name that is missing or ambiguous in the network remains.
 void find_named_buses(std::vector<formats::DyrRecord>& records, const network::Network& network);
-/// Why a record of an unknown model is refused, for messages.
+/// Returns the reason why a record of an unknown model is refused, for messages.
 std::string lacking_text(const std::string& dyr);
-/// Names of the machines that have a .dyr form, for messages.
+/// Returns the names of the machines that have a .dyr form, for messages.
 std::string machine_names();
-/// Symbols of the columns: "6: TA/TB TB K".
+/// Returns the number and the symbols of an effect's columns: "6: TA/TB TB K".
 std::string columns_text(const Effect& effect);
 
-/// The name it goes by: of a user-written model its own.
+/// Returns the model's name; for a user-written model, its own name.
 inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
-/// A user-written model that is one of ours, without IC, IT, NI, NC, NS, NV before its parameters; a model of
-/// a switched shunt without the mechanically switched ones beside it; any other record as it is.
+/// Reduces a record to the parameters of its effect. Drops the codes IC, IT, NI, NC, NS, NV of a user-written
+/// model, and the mechanically switched shunts in the model of a switched shunt. Other records are returned
+/// unchanged.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
-/// As the id of a record that names no switched shunt: the first one of its bus.
+/// Id of a record that names no switched shunt; it applies to the first one at its bus.
 inline constexpr std::string_view kAnyShunt = "*";
-/// A bus or circuit that a parameter names (Elsewhere); 0: none.
+/// Returns the number of the bus or circuit that a parameter names (Elsewhere); 0: none.
 int number_in(const plant::Block& block, int parameter);
-/// Number of the bus whose voltage a model regulates; 0: its own, or none.
+/// Returns the number of the bus whose voltage a model regulates; 0: its own bus, or none.
 int regulated_bus(const plant::Block& block);
-/// Its index, -1 where there is none; a bus that the network has not is a problem.
+/// Returns the index of that bus, or -1. A bus that the network does not have is a problem.
 int regulated_index(const network::Network& network, const plant::Block& block, const std::string& where,
                     Problems& problems);
-/// What was done to a record that is shorter or longer than its model takes it.
+/// Result of completing a record that is shorter or longer than its model requires.
 struct Completion {
-  bool sound = false;  ///< it is now as long as that
-  std::string what;    ///< empty: it was
-  std::string place;   ///< record, and each value that was filled in or left out
+  bool sound = false;  ///< true if the record now has the required length
+  std::string what;    ///< description of the change; empty if there was none
+  std::string place;   ///< record, and each value that was filled in or dropped
 };
-/// Makes the record as long as its model takes it, if that is asked for; else it is a problem.
+/// Adjusts the record to the length that its model requires, as `lacking` allows; otherwise adds a problem.
 Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking lacking,
                     const std::string& where, Problems& problems);
-/// The record's values, standard ones where it has no column.
+/// Returns the record's values, with defaults for parameters without a column.
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record);
 
-/// What is wrong with a record of a known model; empty if nothing is. `g`: its generator, if there is one.
+/// Returns the error of a record of a known model, or "". `g`: its generator, or nullptr.
 std::string fault_of(const Effect& effect, formats::DyrRecord record, const network::Generator* g,
                      const std::string& where);
 
-/// What the .raw says of a unit: its generator, and the file's name for messages.
+/// Generator of a unit in the .raw, and the file's name for messages.
 struct RawGenerator {
   const network::Generator& generator;
   const std::string& origin;
 };
-/// The step-up transformer that a .raw keeps in the generator's record (RT, XT); no effect if there is none.
+/// Returns the step-up transformer that the .raw keeps in the generator's record (RT, XT); its effect is null
+/// if there is none.
 plant::Block transformer_of(const network::Generator& g);
-/// Puts ZR and ZX into the parameters that PSS/E keeps in the .raw.
+/// Sets the parameters that PSS/E keeps in the .raw from ZR and ZX.
 void take_from_raw(plant::Block& block, const network::Generator& g);
-/// Checks the block and puts it into its slot; a slot that is taken is a problem. A source reactance of the
-/// .dyr that contradicts ZX is used; the warning of it is returned, empty if there is none.
+/// Checks the block and inserts it into its slot; an occupied slot is a problem. A source reactance of the
+/// .dyr that contradicts ZX takes precedence; the warning on it is returned, or "".
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
+/// Sorts the plant's controls by slot, the order of their evaluation.
 void sort_controls(plant::Plant& plant);
-/// What a block's values ask for and its equations leave out, as a warning; empty if nothing.
+/// Returns a warning on features that a block's values request and its equations omit, or "".
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
-/// Whether a machine's derivatives change with Efd, tried out: a classical machine's do not.
+/// Returns true if the machine's derivatives depend on Efd, found by evaluation; false for a classical
+/// machine.
 bool reads_field_voltage(const Effect& machine);
-/// Whether a control in this slot acts through the field voltage alone.
+/// Returns true if a control in this slot acts only through the field voltage.
 bool acts_on_field(Slot slot);
-/// Controls of the field voltage at a machine whose equations do not read it, one sentence each.
+/// Returns one sentence per control of the field voltage at a machine whose equations do not depend on it.
 std::vector<std::string> idle_controls(const plant::Plant& plant);
-/// Controls that have no place beside the plant's source become problems.
+/// Adds a problem for every control that is incompatible with the plant's source.
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

@@ -9,9 +9,9 @@
 namespace swingbank::sim::grid {
 namespace {
 
-constexpr double kSameRatio = 1e-6;  ///< below it the current in circle is below 1e-5 pu at X = 0.1 pu
+constexpr double kSameRatio = 1e-6;  ///< the circulating current is then below 1e-5 pu at X = 0.1 pu
 
-/// Per bus of the shortest way from `machine` to `far`: the one before it.
+/// Returns the buses of the shortest path from `machine` to `far`; empty if there is none.
 std::vector<int> way_of_buses(const network::Network& n, int machine, int far) {
   std::vector<int> before(n.buses.size(), -1);
   before[static_cast<std::size_t>(machine)] = machine;
@@ -41,7 +41,7 @@ bool on_the_way(const StepUp& way, std::size_t branch) {
                              [&](const auto& stage) { return std::ranges::count(stage, branch) > 0; });
 }
 
-/// Names the equipment at a bus other than branches; "" for none.
+/// Returns a description of equipment at a bus other than branches, or "".
 std::string equipment_at(const network::Network& n, int bus) {
   for (const network::Generator& g : n.generators)
     if (g.bus == bus && g.in_service) return "generator '" + g.id + "'";
@@ -66,7 +66,7 @@ StepUp step_up(const network::Network& n, int machine, int far, const StepUp& fi
       const network::Branch& b = n.branches[i];
       const bool ahead = b.from == near && b.to == next;
       if (!b.transformer || !b.in_service || !(ahead || (b.from == next && b.to == near))) continue;
-      // A branch is an ideal ratio tap:1 at its `from` side, then the impedance.
+      // A branch is an ideal ratio tap:1 at its `from` side in series with the impedance.
       const double own = ahead ? 1.0 / b.tap : b.tap;
       const Complex z = Complex(b.r, b.x) * (ahead ? b.tap * b.tap : 1.0);
       if (stage.empty()) ratio = own;

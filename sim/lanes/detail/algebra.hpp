@@ -1,9 +1,9 @@
 #pragma once
-// Lanes: sources whose current is no linear function of the voltage - loads with a model of their own,
-// machines with saliency, converters. Each is written as E = V + z I(V) behind its constant impedance z, so
-// that the network stays I = (G + jB) E; the voltages V at these sources are found by Newton's method, every
-// lane until it has converged and no further, so that no lane's bits depend on another's. V is the machine's
-// own terminal: behind a step-up transformer of ratio n the network has n E, and the machine n I.
+// Lanes: sources whose current is a nonlinear function of the voltage (loads with a dynamic model, machines
+// with saliency, converters). Each is represented by E = V + z I(V) behind its constant impedance z, so that
+// the network equation remains I = (G + jB) E. Newton's method solves for the voltages V at these sources.
+// Each lane stops at its own convergence, so that its bits do not depend on other lanes. V is the machine's
+// own terminal voltage: with a step-up transformer of ratio n the network has n E, and the machine n I.
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {
@@ -18,14 +18,14 @@ inline const T* Lanes<T>::source_impedance(const Constants& k, int source) const
   return l.equations.impedance(&k.c[static_cast<std::size_t>(l.c)]);
 }
 
-/// Of a machine without its step-up transformer.
+/// Returns a source's impedance without its step-up transformer [pu on its own base].
 template <class T>
 inline const T* Lanes<T>::own_impedance(const Constants& k, int source) const {
   if (source >= n_) return source_impedance(k, source);
   const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
   return p.equations.machine_impedance(&k.c[static_cast<std::size_t>(p.c)]);
 }
-/// Of a machine's step-up transformer; none: nullptr.
+/// Returns the ratio of a machine's step-up transformer, or nullptr if it has none.
 template <class T>
 inline const T* Lanes<T>::ratio(const Constants& k, int source) const {
   if (source >= n_) return nullptr;
@@ -33,7 +33,7 @@ inline const T* Lanes<T>::ratio(const Constants& k, int source) const {
   return p.equations.ratio(&k.c[static_cast<std::size_t>(p.c)]);
 }
 
-/// E = V + z I(V) of one nonlinear source, as the network has it.
+/// Computes E = V + z I(V) of one nonlinear source, referred to the network.
 template <class T>
 void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er,
                           T& ei) {
@@ -51,7 +51,7 @@ void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& v
   er = vr + z[0] * s.Ir - z[1] * s.Ii;
   ei = vi + z[0] * s.Ii + z[1] * s.Ir;
   if (source < n_ && !plants_[static_cast<std::size_t>(source)].rotor) {
-    const T& on = k.on[static_cast<std::size_t>(source)];  // a tripped converter has no voltage of its own
+    const T& on = k.on[static_cast<std::size_t>(source)];  // a tripped converter has E = 0
     er = er * on;
     ei = ei * on;
   }
@@ -61,8 +61,8 @@ void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& v
   }
 }
 
-/// Triangular factors in place, no pivoting: the matrix is the identity plus what the nonlinear parts feed
-/// back.
+/// Computes triangular factors in place. It does not pivot, because the matrix is the identity plus the
+/// feedback of the nonlinear sources.
 template <class T>
 void factor_dense(T* a, std::size_t n) {
   for (std::size_t p = 0; p < n; ++p) {
@@ -91,8 +91,8 @@ void solve_factored(const T* a, T* b, std::size_t n) {
   }
 }
 
-/// What V - (E(V) - z (G + jB) E(V)) = 0 leaves, into algebra_[0 .. 2K). steady: currents of the linear
-/// sources.
+/// Computes the residual of V - (E(V) - z (G + jB) E(V)) = 0 into algebra_[0 .. 2K), for K nonlinear sources.
+/// steady: currents of the linear sources.
 template <class T>
 void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   const std::size_t count = nonlinear_.size();
@@ -125,8 +125,8 @@ void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   }
 }
 
-/// The slopes of that after V, after algebra_rest, into a. dE/dV by differences: their error only slows the
-/// convergence.
+/// Computes the Jacobian of that residual with respect to V into a; call after algebra_rest. dE/dV is a
+/// difference quotient, whose error only slows the convergence.
 template <class T>
 void Lanes<T>::algebra_slopes(const Constants& k, const T* x, T* a) {
   constexpr double nudge = 1e-6;  // [pu]
@@ -168,8 +168,8 @@ void Lanes<T>::algebra_slopes(const Constants& k, const T* x, T* a) {
   }
 }
 
-/// One step of Newton's method, left in algebra_[0 .. 2K), with the factors that a lane has, or with new ones
-/// in the lanes of `anew`. Returns the largest component.
+/// Computes one Newton step into algebra_[0 .. 2K), with the stored factors of each lane, or with new ones in
+/// the lanes of `anew`. Returns the largest component of the step.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x, const T* steady, unsigned anew) {
   const std::size_t size = 2 * nonlinear_.size();
@@ -192,17 +192,17 @@ typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x, const T*
   return largest;
 }
 
-/// How the search of one lane goes.
+/// Convergence monitor of one lane's Newton iteration.
 struct LaneSearch {
-  double last = 0.0;  ///< size of the step before; 0: none
-  int calm = 0;       ///< short steps with new factors
+  double last = 0.0;  ///< size of the previous step; 0: none
+  int calm = 0;       ///< number of short steps with new factors
 
-  /// After a step: whether the voltages are found. `anew`: its factors were of where it began; slow: they
-  /// should be made anew.
+  /// Returns true after the last step, when the voltages have converged. `anew`: the step used factors of its
+  /// own starting point. Sets `slow` if the factors need renewal.
   bool found(double step, bool anew, int more, bool& slow) {
-    constexpr double near = 1e-7;     // [pu]: a step this short with new factors leaves 1e-13 behind
-    constexpr double left = 1e-13;    // [pu]
-    constexpr double slowest = 0.02;  // of steps with old factors: what is left over what there was
+    constexpr double near = 1e-7;     // [pu]: the error after a step this short with new factors is 1e-13
+    constexpr double left = 1e-13;    // tolerance of the voltages [pu]
+    constexpr double slowest = 0.02;  // largest convergence rate accepted with old factors
     const bool known = last > 0.0;
     const double rate = known ? step / last : 1.0;
     last = step;
@@ -214,15 +214,15 @@ struct LaneSearch {
   }
 };
 
-/// Newton's method in the lanes of `open`, from the voltages that stand in k; returns those in which none
-/// were found. Factors are kept from search to search while they serve: making them is the third power of the
-/// sources, a step the second. What a lane has follows from its own past alone.
+/// Runs Newton's method in the lanes of `open`, starting from the voltages in k. Returns the lanes that did
+/// not converge. Factors are reused across searches as long as they converge fast enough: a factorisation
+/// costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
 template <class T>
 unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
-  constexpr double longest = 0.3;  // [pu]: a load of constant power may throw the first steps far
-  // Newton's last step still carries the slopes' error of the differences: duals take two more, and new
-  // factors always.
+  constexpr double longest = 0.3;  // [pu]: a constant-power load may cause too large first steps
+  // The difference quotients still affect the derivatives after the last Newton step. Dual numbers therefore
+  // take two more steps and always use new factors.
   constexpr int more = Traits::directions > 0 ? 2 : 0;
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
@@ -251,7 +251,7 @@ unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   return open;
 }
 
-/// The next search of some lanes begins at one voltage [pu] everywhere.
+/// Sets the initial voltage of the next search in some lanes to the same value [pu] everywhere.
 template <class T>
 void Lanes<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
   const auto these = Traits::mask(lanes);
@@ -262,8 +262,8 @@ void Lanes<T>::begin_search(Constants& k, unsigned lanes, double voltage) const 
   k.factored &= ~lanes;
 }
 
-/// The voltages at the nonlinear sources: those near the ones found before or, where there are none, those
-/// found from zero (a current that is given beside a fault has no others; decision 37).
+/// Solves for the voltages at the nonlinear sources, starting from the previous solution. If this fails it
+/// starts from zero: a prescribed current next to a fault has no other solution (decision 37).
 template <class T>
 void Lanes<T>::solve_algebra(Constants& k, const T* x) {
   constexpr unsigned all = (1U << kLanes) - 1U;
@@ -284,7 +284,7 @@ void Lanes<T>::solve_algebra(Constants& k, const T* x) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
     source_emf(k, x, nonlinear_[i], k.vr[i], k.vi[i], er_[at], ei_[at]);
-    // No voltage was found: the step must not pass.
+    // Not converged: NaN causes the step's rejection.
     if (open != 0) er_[at] = select(Traits::mask(open), T(std::numeric_limits<double>::quiet_NaN()), er_[at]);
   }
   if (open != 0) begin_search(k, open, 1.0);

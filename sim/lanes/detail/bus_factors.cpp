@@ -8,7 +8,7 @@
 namespace swingbank::sim::lanes {
 
 namespace {
-constexpr double kLeastPivot = 1e-4;  ///< of the row's largest entry
+constexpr double kLeastPivot = 1e-4;  ///< smallest accepted pivot, as a fraction of the row's largest entry
 }
 
 bool BusFactors::factor(const Sparse& admittance) {
@@ -58,7 +58,8 @@ bool BusFactors::eliminate(const Sparse& admittance) {
   return true;
 }
 
-/// Buses that wait for equally many others follow each other: the processor then has several at work.
+/// Reorders the buses by their height in the elimination tree. Buses of equal height are independent, so that
+/// the processor executes several at once.
 void BusFactors::by_height() {
   const std::size_t n = order_.size();
   std::vector<int> height(n, 0), sorted(n);

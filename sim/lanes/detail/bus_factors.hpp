@@ -1,6 +1,6 @@
 #pragma once
-// The whole network of many sources as sparse triangular factors: the buses' voltages from the currents into
-// them, for all lanes at once.
+// Sparse triangular factors of the bus admittance matrix, for grids of many sources: computes the bus
+// voltages from the injected currents, for all lanes at once.
 #include <Eigen/SparseCore>
 #include <vector>
 
@@ -8,17 +8,18 @@
 
 namespace swingbank::sim::lanes {
 
+/// LDU factors of a bus admittance matrix in the elimination order.
 class BusFactors {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;
-  /// Without pivoting, which admittances with the machines' own on the diagonal seldom need; false where they
-  /// do.
+  /// Factorises without pivoting, which admittance matrices that include the machines' own admittances seldom
+  /// need. Returns false if the matrix needs pivoting.
   bool factor(const Sparse& admittance);
   [[nodiscard]] std::size_t buses() const { return inverse_.size(); }
   [[nodiscard]] std::size_t entries() const { return lower_.entries.size() + upper_.entries.size(); }
-  /// Where a bus stands among currents and voltages.
+  /// Returns the position of a bus in the arrays of currents and voltages.
   [[nodiscard]] int place(int bus) const { return place_[static_cast<std::size_t>(bus)]; }
-  /// Currents become voltages.
+  /// Replaces the currents by the voltages, in place.
   template <class T>
   void solve(T* real, T* imaginary) const;
 
@@ -27,7 +28,7 @@ class BusFactors {
     int column;
     double r, i;
   };
-  /// One triangle, row by row.
+  /// One triangular factor, row by row.
   struct Triangle {
     std::vector<std::size_t> first{0};
     std::vector<Entry> entries;
@@ -38,9 +39,9 @@ class BusFactors {
   template <class T>
   static void take_off(const Triangle& triangle, std::size_t row, T* real, T* imaginary);
 
-  std::vector<int> order_, place_;  ///< bus eliminated k-th, and the inverse
-  Triangle lower_, upper_;          ///< upper: over the row's pivot
-  std::vector<Complex> inverse_;    ///< of the pivots
+  std::vector<int> order_, place_;  ///< bus eliminated k-th, and its inverse permutation
+  Triangle lower_, upper_;          ///< upper: divided by the row's pivot
+  std::vector<Complex> inverse_;    ///< reciprocal pivots
 };
 
 template <class T>

@@ -1,5 +1,5 @@
 #pragma once
-// Lanes: one evaluation of the whole grid.
+// Lanes: evaluation of the grid's equations.
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {
@@ -14,7 +14,8 @@ inline void Lanes<T>::emfs(Constants& k, const T* x) {
   if (!nonlinear_.empty()) solve_algebra(k, x);
 }
 
-/// Current of one source on its own base: row `source` of (G + jB) E; and what the event brings to a plant.
+/// Computes the current of one source on its own base, row `source` of (G + jB) E, and sets the plant's
+/// inputs.
 template <class T>
 inline void Lanes<T>::current(const Constants& k, std::size_t source, Signals<T>& s) const {
   const T* g = &k.g[source * static_cast<std::size_t>(sources_)];
@@ -23,7 +24,7 @@ inline void Lanes<T>::current(const Constants& k, std::size_t source, Signals<T>
   if (source < plants_.size()) inputs(k, source, s);
 }
 
-/// The same where all currents were computed at once and plant's is the at-th.
+/// The same if all currents have been computed; that of `plant` has index `at`.
 template <class T>
 inline void Lanes<T>::shared_current(std::size_t at, const Constants& k, std::size_t plant,
                                      Signals<T>& s) const {
@@ -40,7 +41,7 @@ inline void Lanes<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& 
   s.dPref = k.dpref[plant];
 }
 
-/// What a plant's control measures elsewhere, after the voltages() of its plant.
+/// Evaluates the remote measurements of a plant's controls; call after voltages() of the plant.
 template <class T>
 inline void Lanes<T>::look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const {
   const auto row = [&](int at, T& real, T& imaginary) {

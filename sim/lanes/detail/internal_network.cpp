@@ -5,7 +5,7 @@
 namespace swingbank::sim::lanes {
 
 namespace {
-constexpr std::size_t kCacheLimit = 4096;  // topologies: one per bus and branch of any grid we run, and more
+constexpr std::size_t kCacheLimit = 4096;  // cached topologies: more than buses and branches of usual grids
 }
 
 std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows) {
@@ -21,7 +21,7 @@ std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows) {
   return all;
 }
 
-/// Where a bus stands among the nodes; a new one if it is not there.
+/// Returns the index of a bus in buses_, and appends the bus if it is missing.
 int InternalNetwork::node_at(int bus) {
   const auto at = std::ranges::find(buses_, bus);
   const auto node = static_cast<int>(at - buses_.begin());
@@ -47,7 +47,7 @@ InternalNetwork::InternalNetwork(const grid::Grid& grid) : grid_(grid) {
   }
 }
 
-/// `voltage`: at the nodes per unit of E.
+/// Computes the rows of remote measurements. `voltage`: node voltages per unit of E.
 void InternalNetwork::assemble_far(Reduced& entry, const Eigen::MatrixXcd& voltage) const {
   const auto sources = static_cast<std::size_t>(voltage.cols());
   InternalMatrix& out = entry.latest;
@@ -70,7 +70,8 @@ void InternalNetwork::assemble_far(Reduced& entry, const Eigen::MatrixXcd& volta
     const network::Branch& b = grid_.network.branches[static_cast<std::size_t>(branch)];
     const Eigen::RowVectorXcd near = at(at_from ? b.from : b.to), other = at(at_from ? b.to : b.from);
     put(far_[i].near, near);
-    if (std::ranges::binary_search(entry.topology.open, branch)) continue;  // it carries nothing
+    if (std::ranges::binary_search(entry.topology.open, branch))
+      continue;  // an open branch carries no current
     const network::BranchEnd end = network::branch_end(b, at_from);
     put(far_[i].current, (end.own * near + end.other * other) / base_[i]);
   }
@@ -98,7 +99,7 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
   auto& out = entry.latest;
   out.tripped.assign(node_of_.size(), 0);
   out.connected.assign(node_of_.size(), 1.0);
-  Eigen::VectorXcd source(plants);  // admittance of each on the network's base
+  Eigen::VectorXcd source(plants);  // admittances of the sources on the network's base
   for (Eigen::Index i = 0; i < plants; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (generator_[k] >= 0) out.connected[k] = entry.topology.connected(generator_[k]);
@@ -119,7 +120,7 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
       a(n, n) = 1.0;
     }
   const Eigen::MatrixXcd voltage =
-      a.partialPivLu().solve(injection);  // V at the generator buses per unit of E
+      a.partialPivLu().solve(injection);  // V at the sources' buses per unit of E
   out.g.resize(static_cast<std::size_t>(plants * plants));
   out.b.resize(out.g.size());
   out.grounded.resize(static_cast<std::size_t>(plants));

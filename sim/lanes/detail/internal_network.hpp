@@ -1,7 +1,8 @@
 #pragma once
-// The network as the machines see it: currents at the terminals as a linear function of the voltages behind
-// the machines' own impedances, per topology. Two steps: Kron reduction to the buses with sources (once per
-// topology), then a solve of their number with the sources' impedances (once per set of impedances).
+// The network reduced to the sources' internal nodes: terminal currents as a linear function of the voltages
+// behind the machines' impedances, per topology. The reduction has two steps: Kron reduction to the buses
+// with sources, once per topology, then a dense solve with the sources' impedances, once per set of
+// impedances.
 #include <Eigen/Dense>
 #include <deque>
 #include <vector>
@@ -11,27 +12,26 @@
 
 namespace swingbank::sim::lanes {
 
-/// How each source is connected.
+/// Connection status per source.
 struct Terminals {
-  std::vector<char> grounded;     ///< 1 where the bus is held at V = 0
-  std::vector<char> tripped;      ///< 1 where it is disconnected
-  std::vector<double> connected;  ///< part of its units that is connected
+  std::vector<char> grounded;     ///< 1 if the bus has a bolted fault (V = 0)
+  std::vector<char> tripped;      ///< 1 if the source is disconnected
+  std::vector<double> connected;  ///< connected fraction of its units, 0 to 1
 };
-/// Where among the rows of InternalMatrix::far_g, far_b those of one plant's control stand
-/// (Plant::far_place); -1: it measures that at its plant.
+/// Row indices in InternalMatrix::far_g and far_b of one plant's remote measurements (Plant::far_place);
+/// -1: the control measures at its plant.
 struct FarRows {
-  int voltage = -1;             ///< of the bus that it regulates
-  int near = -1, current = -1;  ///< of the branch whose flow counts: voltage and current at its near end
+  int voltage = -1;             ///< row of the regulated bus
+  int near = -1, current = -1;  ///< rows of the measured branch: voltage and current at its near end
 };
-/// Per plant; `rows`: how many there are.
+/// Returns the row indices per plant; sets `rows` to the number of rows.
 std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows);
 
-/// I = (G + jB) E, row and column per source: plants, then loads with a model of their own; currents on each
-/// source's own base [pu]. Row-major.
+/// Matrix of I = (G + jB) E, row-major, with a row and a column per source: plants, then loads with a dynamic
+/// model. Currents are on each source's own base [pu].
 struct InternalMatrix : Terminals {
   std::vector<double> g, b;
-  /// What plants' controls measure elsewhere, likewise of E: voltages, and currents on the plant's own base
-  /// [pu].
+  /// Remote measurements as linear functions of E: voltages, and currents on the plant's own base [pu].
   std::vector<double> far_g, far_b;
   [[nodiscard]] Eigen::VectorXcd row(int k) const {
     const auto n = static_cast<Eigen::Index>(grounded.size());
@@ -52,12 +52,14 @@ struct InternalMatrix : Terminals {
   }
 };
 
+/// Computes and caches the internal matrices of a grid per topology.
 class InternalNetwork {
  public:
   explicit InternalNetwork(const grid::Grid& grid);
   [[nodiscard]] int sources() const { return static_cast<int>(node_of_.size()); }
-  /// r, x: impedance per source [pu on its own base]. The reference stays valid until the next call
-  /// with other impedances; for unchanged impedances matrices are kept per topology.
+  /// Returns the matrix of a topology. r, x: impedance per source [pu on its own base]. The reference is
+  /// valid until the next call with other impedances; for unchanged impedances matrices are cached per
+  /// topology.
   const InternalMatrix& matrix(const network::Topology& topology, const std::vector<double>& r,
                                const std::vector<double>& x);
 
@@ -66,7 +68,7 @@ class InternalNetwork {
     network::Topology topology;
     network::ReducedNetwork network;
     InternalMatrix latest;
-    std::vector<double> r, x;  ///< impedances `latest` was made with
+    std::vector<double> r, x;  ///< impedances of `latest`
   };
   Reduced& reduced(const network::Topology& topology);
   void assemble(Reduced& entry, const std::vector<double>& r, const std::vector<double>& x) const;
@@ -74,9 +76,9 @@ class InternalNetwork {
   int node_at(int bus);
 
   const grid::Grid& grid_;
-  std::vector<int> buses_;      ///< buses with sources and those that a control measures at, one entry each
+  std::vector<int> buses_;      ///< buses with sources and remotely measured buses, one entry each
   std::vector<int> node_of_;    ///< per source: position in buses_
-  std::vector<double> base_;    ///< per source: own base over the network's
+  std::vector<double> base_;    ///< per source: its base divided by the network's base
   std::vector<int> generator_;  ///< per source: index into Network::generators, -1 for a load
   std::vector<FarRows> far_;    ///< per plant
   int far_count_ = 0;

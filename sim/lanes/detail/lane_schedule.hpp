@@ -1,5 +1,5 @@
 #pragma once
-// Time of one lane: its segments, its step and the rules by which the step grows and shrinks.
+// Time and step size control of one lane.
 #include <vector>
 
 #include "sim/lanes/batch.hpp"
@@ -11,8 +11,8 @@ namespace swingbank::sim::lanes {
 /// Step size control of a lane: proportional-integral (Hairer & Wanner II, IV.2), order 5.
 struct LaneClock {
   double t = 0.0;     ///< [s]
-  double h = 0.0;     ///< step the controller asks for [s]
-  double next = 0.0;  ///< next instant the step must not cross: a switching or the end [s]
+  double h = 0.0;     ///< step size requested by the controller [s]
+  double next = 0.0;  ///< next time that a step must not cross: a switching time or the end [s]
   float last_error = 1.0F;
   static constexpr double kFirstStep = 0.006, kLongestStep = 0.25, kShortestStep = 1e-9;
 
@@ -21,14 +21,14 @@ struct LaneClock {
     last_error = 1.0F;
     next = next_switch;
   }
-  /// The step to try now: the rest of the segment at once, or halved so that no sliver remains.
+  /// Returns the step size to try [s]: the rest of the segment, or half of it to avoid a tiny last step.
   [[nodiscard]] double step(bool& reaches) const {
     const double rest = next - t;
     reaches = h >= 0.999 * rest;
     if (reaches) return rest;
     return h > 0.55 * rest ? 0.5 * rest : h;
   }
-  /// Adapts to the scaled error of the step just tried; true if it is accepted.
+  /// Adapts the step size to the scaled error of the step `tried` [s]. Returns true if the step is accepted.
   bool judge(double tried, double scaled_error) {
     const bool ok = scaled_error <= 1.0;
     float e = static_cast<float>(scaled_error);
@@ -50,17 +50,18 @@ struct LaneClock {
   }
 };
 
-/// One lane's run: the job, where it is in its segments, and its record.
+/// State of one lane's run: the job, its segments and its record.
 struct LaneRun {
   Job job;
   std::vector<network::Segment> segments;
-  std::vector<double> jumps;  ///< instants at which the plants' effects jump, sorted [s]
+  std::vector<double> jumps;  ///< sorted times at which the plants' effects are discontinuous [s]
   std::size_t segment = 0;
-  int recorded = 0;                                   ///< samples in the record
-  int pending = 0;                                    ///< samples whose states wait to be evaluated
-  std::vector<double, CacheAligned<double>> waiting;  ///< their states, [samples of a pack][state][sample]
-  std::vector<double> theta;  ///< last terminal angle per recorded plant, held while V = 0 [rad]
-  std::vector<int> islands;   ///< per plant, where the segment has several; else empty
+  int recorded = 0;  ///< number of samples in the record
+  int pending = 0;   ///< number of buffered samples, not yet evaluated
+  std::vector<double, CacheAligned<double>>
+      waiting;                ///< states of the buffered samples, [pack][state][sample]
+  std::vector<double> theta;  ///< last terminal angle per recorded plant, kept while V = 0 [rad]
+  std::vector<int> islands;   ///< island number per plant; empty if the segment has only one island
   LaneClock clock;
   Trajectory record;
 };

@@ -1,6 +1,5 @@
 #pragma once
-// What the lanes kernel needs to know of a scalar: how many scenarios it carries, how to reach one, how to
-// mask.
+// Traits of a scalar type for the lanes kernel: number of lanes, access to one lane, masks.
 #include <cstdint>
 #ifdef __AVX__
 #include <immintrin.h>
@@ -17,7 +16,7 @@ struct LaneTraits;
 template <>
 struct LaneTraits<double> {
   using Flat = double;
-  using Real = double;  ///< of one lane
+  using Real = double;  ///< type of one lane
   static constexpr int lanes = 1, directions = 0;
   static double get(double v, int) { return v; }
   static void set(double& v, int, double a) { v = a; }
@@ -30,7 +29,7 @@ struct LaneTraits<double> {
   static double magnitude(double v) { return std::fabs(v); }
 };
 #ifdef __AVX__
-/// Writes doubles register by register, past the caches.
+/// Writes doubles register by register with non-temporal stores.
 template <class S, int N>
 inline void stream_registers(const Packed<S, N>& v, double* to) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -64,7 +63,7 @@ struct LaneTraits<Packed<S, N>> {
   static typename Flat::Mask mask(unsigned bits) { return Flat::mask(bits); }
   static Flat load(const S* v) { return Flat::load(v); }
   static void store(const Flat& v, S* to) { v.store(to); }
-  // Times, errors and records are double.
+  // Times, errors and records have double precision.
   static Flat load(const double* v) requires(sizeof(S) < sizeof(double)) {
     Flat p;
     for (int l = 0; l < lanes; ++l) set(p, l, v[l]);
@@ -74,8 +73,8 @@ struct LaneTraits<Packed<S, N>> {
     const S* from = reinterpret_cast<const S*>(&v);
     for (int l = 0; l < lanes; ++l) to[l] = from[l];
   }
-  /// Past the caches where a pack is whole lines of them: records are far larger than the caches and not read
-  /// soon. Half a line would go to memory by itself, before its other half comes after all other rows.
+  /// Bypasses the caches if a pack fills whole cache lines, because records are far larger than the caches
+  /// and not read soon. A partial line would be written to memory twice.
   static void stream(const Flat& v, double* to) {
 #ifdef __AVX__
     if constexpr (N * sizeof(double) % 64 == 0)
@@ -88,7 +87,7 @@ struct LaneTraits<Packed<S, N>> {
   static Flat constant(const Flat& v) { return v; }
   static Flat magnitude(const Flat& v) { return absolute(v); }
 };
-/// Sensitivities ride in the lanes: a value is 1 + D flats, one after the other.
+/// Dual numbers: a value is stored as 1 + D flats, the value and its derivatives.
 template <int N, int D>
 struct LaneTraits<Dual<Pack<N>, D>> {
   using T = Dual<Pack<N>, D>;
@@ -112,12 +111,13 @@ struct LaneTraits<Dual<Pack<N>, D>> {
     r.a = v;
     return r;
   }
-  /// A slope's error counts like a value's: slopes are per unit of the parameter's own scale.
+  /// Weights the errors of derivatives like that of the value: derivatives are scaled by the parameter's
+  /// scale.
   static Flat magnitude(const T& v) {
     Flat m = Of::magnitude(v.a);
     for (const auto& d : v.d) {
       const Flat e = Of::magnitude(d);
-      m = select(e <= m, m, e);  // in this order a NaN wins
+      m = select(e <= m, m, e);  // this order propagates NaN
     }
     return m;
   }

@@ -1,6 +1,6 @@
 #pragma once
 // The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See
-// batch.hpp for what it promises.
+// batch.hpp for the interface.
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,13 +19,14 @@
 
 namespace swingbank::sim::lanes {
 
+/// Integrator for LaneTraits<T>::lanes events at once.
 template <class T>
 class Lanes {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
   static constexpr int kWaiting =
-      8 * kLanes;  ///< samples evaluated together: constants are spread once for all
-  static constexpr int kRoom = kWaiting + 4 * kLanes;  ///< whole packs are stored and moved
+      8 * kLanes;  ///< samples evaluated together, to broadcast the constants only once
+  static constexpr int kRoom = kWaiting + 4 * kLanes;  ///< buffer size in samples, in whole packs
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
@@ -36,28 +37,29 @@ class Lanes {
   using Traits = LaneTraits<T>;
   using Flat = typename Traits::Flat;
   using Real = typename Traits::Real;
-  /// States are then carried as the sum of two, and lose nothing from step to step.
+  /// Compensated summation of the states, used in single precision.
   static constexpr bool kCarries = std::is_same_v<Real, float>;
-  /// Of dp54::kink in the error: 0.03 would bound what a kink leaves by the tolerance, this by ten times it.
+  /// Factor of dp54::kink in the error estimate. 0.03 would bound the error of a kink by the tolerance; this
+  /// value bounds it by ten times the tolerance.
   static constexpr double kKinkShare = 0.003;
-  /// What a kink leaves shows at once, however soon it is gone: a state weighs at least this much there.
+  /// Minimum weight of a state in the kink error: the error is visible at once, even if it decays quickly.
   static constexpr double kKinkWeight = 0.3;
-  static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< flats in one T
+  static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< number of flats in one T
   struct PlantSlice {
     plant::PlantEquations<T> equations;
     int x, c, m;        ///< offsets of states, coefficients and scratch
-    int watch = -1;     ///< of watched_, -1: none
-    FarRows far{};      ///< what its control measures elsewhere
-    bool rotor = true;  ///< whether its first state is a rotor's angle; else it is a converter
+    int watch = -1;     ///< index into watched_, -1: none
+    FarRows far{};      ///< remote measurements of its controls
+    bool rotor = true;  ///< true if its first state is a rotor angle; false for a converter
   };
 
-  /// An exciter behind a stabiliser: whether Vs comes to its limits or leaves them is seen from stages in
-  /// which it stays the same to the bit.
+  /// An exciter with a stabiliser. Stages with bitwise equal Vs show whether Vs reaches or leaves its limits
+  /// within a step.
   struct Watch {
-    int first, count;              ///< the exciter's states
-    Flat start{}, last{};          ///< Vs at the step's start, at the last stage
-    Flat rested{}, rested_next{};  ///< 1 where Vs rested before the step, before the next one
-    Flat same{};                   ///< stages at which Vs was the last one's
+    int first, count;              ///< states of the exciter
+    Flat start{}, last{};          ///< Vs at the start of the step and at the last stage
+    Flat rested{}, rested_next{};  ///< 1 if Vs was constant before this step, before the next one
+    Flat same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
   struct LoadSlice {
@@ -65,31 +67,31 @@ class Lanes {
     int x, c;
   };
 
-  /// A state that stands still while two coefficients are zero (State::moved_by; -1: only the first counts).
+  /// A state that is constant while two coefficients are zero (State::moved_by; second = -1: only the first).
   struct Resting {
     int state, first, second;
   };
 
-  /// A state whose weight a coefficient multiplies (State::weighed_by).
+  /// A state whose weight is multiplied by a coefficient (State::weighed_by).
   struct Weighed {
     int state, coefficient;
   };
 
-  /// Samples of one lane that fall into this step and have room.
+  /// Samples of one lane that lie in this step and fit into its buffer.
   struct Due {
     int lane, count;
   };
 
-  /// What the equations need besides the states. One set has a lane per event; the other, for recording, is
-  /// one event's values in every lane, its lanes being consecutive samples.
+  /// Inputs of the equations other than the states. One set, for integration, has one event per lane. The
+  /// other, for recording, has one event's values in every lane; its lanes are consecutive samples.
   struct Constants {
-    std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 where the plant is tripped
+    std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 if the plant is tripped
     std::vector<T> far_g, far_b;                        ///< see InternalMatrix
-    std::vector<T> vr, vi;   ///< voltages at nonlinear sources' own terminals: where the search begins
-    T last_moment;           ///< largest time effects may see [s]
-    std::vector<T> factors;  ///< of the slopes of what the search solves, lane by lane of another past
-    unsigned factored = 0;   ///< lanes that have some
-    unsigned fallen = 0;     ///< lanes whose voltages were sought from zero in this step
+    std::vector<T> vr, vi;   ///< terminal voltages of nonlinear sources: start of the next search [pu]
+    T last_moment;           ///< upper bound of the time passed to effects [s]
+    std::vector<T> factors;  ///< factors of the Newton matrix, of a different age in each lane
+    unsigned factored = 0;   ///< lanes with valid factors
+    unsigned fallen = 0;     ///< lanes whose search restarted from zero voltage in this step
   };
 
   // one evaluation (equations.hpp)
@@ -100,7 +102,7 @@ class Lanes {
   void look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const;
   void derivative(const T* x, T* dx);
 
-  // sources whose current is no linear function of the voltage (algebra.hpp)
+  // sources whose current is a nonlinear function of the voltage (algebra.hpp)
   void solve_algebra(Constants& k, const T* x);
   unsigned search_voltages(Constants& k, const T* x, unsigned open);
   void begin_search(Constants& k, unsigned lanes, double voltage) const;
@@ -116,7 +118,7 @@ class Lanes {
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
   void interpolate(const T& h, const double* start, const double* tried);
   void dense(std::size_t state, const T& h, Flat* rows) const;
-  /// States of the waiting samples: [pack][state][sample of the pack].
+  /// Returns the states of the buffered samples, [pack][state][sample of the pack].
   static Real* waiting(LaneRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
   static const Real* waiting(const LaneRun& run) { return reinterpret_cast<const Real*>(run.waiting.data()); }
   const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* room) const;
@@ -125,11 +127,11 @@ class Lanes {
   void spread_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
-  /// Whether a lane's samples need the currents of all plants.
+  /// Returns true if the recording of a lane computes the currents of all plants.
   [[nodiscard]] bool records_whole(int lane) const { return whole_record_ && !shared_.whole(lane); }
   T unwrapped(T angle, const T& squared, double last, int count) const;
 
-  // the lanes' matrices (network.hpp)
+  // network matrices of the lanes (network.hpp)
   void share();
   void choose_state(int lane);
   const Terminals& set_matrix(int lane, const network::Topology& topology);
@@ -174,57 +176,56 @@ class Lanes {
 
   const grid::Grid& grid_;
   BatchOptions options_;
-  std::shared_ptr<OperatingState> own_;                 ///< of the grid itself
-  std::vector<std::shared_ptr<OperatingState>> state_;  ///< per lane
-  SharedNetwork<T> shared_;                             ///< where shares_
-  std::optional<SwitchedNetwork> switched_;             ///< where shares_
-  std::optional<InternalMatrix> own_matrix_;            ///< where it was asked for
-  bool whole_record_ =
-      false;  ///< where shares_: so many are recorded that all currents are less work than their rows
-  Terminals terminals_;                    ///< of the segment a lane enters; where shares_
-  std::vector<double> own_r_, own_x_;      ///< impedances of the grid's own machines; where shares_
-  std::vector<SharedRows> recorded_rows_;  ///< per lane, of its own matrix; where shares_
+  std::shared_ptr<OperatingState> own_;                 ///< operating point of the grid itself
+  std::vector<std::shared_ptr<OperatingState>> state_;  ///< operating point per lane
+  SharedNetwork<T> shared_;                             ///< used if shares_
+  std::optional<SwitchedNetwork> switched_;             ///< used if shares_
+  std::optional<InternalMatrix> own_matrix_;            ///< computed on demand
+  bool whole_record_ = false;          ///< if shares_: all currents cost less than the recorded plants' rows
+  Terminals terminals_;                ///< if shares_: connections in the segment that a lane enters
+  std::vector<double> own_r_, own_x_;  ///< if shares_: impedances of the grid's own machines [pu]
+  std::vector<SharedRows> recorded_rows_;  ///< if shares_: rows of the recorded plants, per lane
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
   std::vector<Watch> watched_;
-  std::vector<int> nonlinear_;            ///< sources: plants, then loads
-  bool limited_ = false, timed_ = false;  ///< whether any state has limits, any effect reads the time
-  bool shares_ = false;                   ///< many sources: not a matrix per lane
-  std::vector<int> stopped_;              ///< states with limits at which they are held
-  std::vector<int> bent_;                 ///< states of which any step may hold a kink (State::bends)
+  std::vector<int> nonlinear_;            ///< nonlinear sources: plants, then loads
+  bool limited_ = false, timed_ = false;  ///< true if any state has limits, if any effect depends on time
+  bool shares_ = false;                   ///< true if the lanes share one matrix (grids of many sources)
+  std::vector<int> stopped_;              ///< states with limits
+  std::vector<int> bent_;                 ///< states with a kink error estimate in every step (State::bends)
   std::vector<Resting> resting_;
   std::vector<Weighed> weighed_;
-  bool weighs_ = false;                ///< whether a coefficient of weighed_ is above 1 in any lane
-  std::vector<int> moving_;            ///< states that move in any lane
-  std::vector<int> wanted_, sampled_;  ///< states the outputs need; of these the moving ones
-  std::vector<char> needed_;           ///< per state: whether the outputs need it
-  std::vector<std::pair<std::size_t, std::size_t>> spread_;  ///< coefficients they need: first, number
+  bool weighs_ = false;                ///< true if a coefficient of weighed_ exceeds 1 in any lane
+  std::vector<int> moving_;            ///< states that are not constant in some lane
+  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; the moving ones among them
+  std::vector<char> needed_;           ///< per state: 1 if the outputs need it
+  std::vector<std::pair<std::size_t, std::size_t>> spread_;  ///< coefficients of the outputs: first, number
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
-  int far_count_ = 0;           ///< rows of what controls measure elsewhere
-  std::vector<double> weight_;  ///< per state, already divided by the tolerance
+  int far_count_ = 0;           ///< number of rows of remote measurements
+  std::vector<double> weight_;  ///< weight per state, divided by the tolerance
 
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
-  std::vector<T> ir_, ii_;       ///< likewise, where shares_
-  Signals<T> signals_;           ///< likewise: zeroing one per plant would cost 25 packs
+  std::vector<T> ir_, ii_;       ///< scratch, if shares_
+  Signals<T> signals_;           ///< scratch, because zeroing one per plant would write 25 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
   std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
-  T time_{}, start_{};           ///< of the evaluation, of the step, per lane [s]
+  T time_{}, start_{};           ///< time of the evaluation, start of the step [s]
   std::vector<T> y_, trial_;     ///< states
-  std::vector<T> carry_, move_;  ///< where kCarries: what y_ does not hold, what a step adds to it
-  std::vector<T> rest_;          ///< rotor angle of each plant at its operating point [rad]
+  std::vector<T> carry_, move_;  ///< if kCarries: rounding error of y_, increment of a step
+  std::vector<T> rest_;          ///< initial rotor angle per plant [rad]
   std::vector<T> k_[plant::dp54::kStages];
   std::vector<T> kept_, unused_;
   std::vector<LaneRun> lanes_;
   std::vector<Due> due_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
-  std::vector<std::vector<char>> grounded_;           ///< per lane and source: bus held at V = 0
-  std::vector<std::vector<double>> connected_;        ///< per lane and source: part that is connected
-  unsigned active_ = 0, fresh_ = 0;  ///< lanes that run; lanes whose first stage must be evaluated anew
-  unsigned tripped_ = 0;             ///< lanes in which a plant is tripped
-  int islands_ = 1;                  ///< of the grid with nothing tripped
+  std::vector<std::vector<char>> grounded_;           ///< per lane and source: 1 if its bus has V = 0
+  std::vector<std::vector<double>> connected_;        ///< per lane and source: connected fraction
+  unsigned active_ = 0, fresh_ = 0;  ///< running lanes; lanes whose first stage needs evaluation
+  unsigned tripped_ = 0;             ///< lanes with a tripped plant
+  int islands_ = 1;                  ///< number of islands of the unswitched grid
 };
 
 }  // namespace swingbank::sim::lanes

@@ -1,5 +1,5 @@
 #pragma once
-// Lanes: construction, loading a job into a lane, switching, finishing.
+// Lanes: construction, loading of jobs, entry of segments, completion of runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
   build_slices();
   share();
   reserve();
-  // Idle lanes carry the grid's own operating point, so that their arithmetic stays finite.
+  // Idle lanes hold the grid's own operating point, so that their arithmetic stays finite.
   for (int l = 0; l < kLanes; ++l) {
     lanes_[static_cast<std::size_t>(l)].segments = {{0.0, {}, {}}};
     load(l);
@@ -33,7 +33,7 @@ Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
   }
 }
 
-/// Where each source's states, coefficients and scratch lie.
+/// Assigns the offsets of each source's states, coefficients and scratch.
 template <class T>
 void Lanes<T>::build_slices() {
   int c = 0, m = 0;
@@ -160,7 +160,7 @@ void Lanes<T>::load_consumer(int lane, std::size_t load) {
   lane_x_[static_cast<std::size_t>(lane)][source] = z[plant::load_x];
 }
 
-/// The operating point a lane's job asks for: jobs that follow one another mostly share one.
+/// Selects the operating point of a lane's job. Consecutive jobs mostly share one, so it is reused.
 template <class T>
 void Lanes<T>::choose_state(int lane) {
   const auto& wanted = lanes_[static_cast<std::size_t>(lane)].job.grid;
@@ -174,7 +174,7 @@ void Lanes<T>::choose_state(int lane) {
   state = found != state_.end() ? *found : std::make_shared<OperatingState>(wanted);
 }
 
-/// Brings every source of the lane to its operating point, with the job's parameters where it has any.
+/// Initialises every source of the lane at its operating point, with the job's parameters.
 template <class T>
 void Lanes<T>::load(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -200,7 +200,7 @@ void Lanes<T>::load(int lane) {
   run.clock.t = 0.0;
 }
 
-/// Which states move in any lane; the others keep what they have through every step.
+/// Finds the states that move in some lane; the others are constant through every step.
 template <class T>
 void Lanes<T>::find_moving() {
   const auto zero = [this](int coefficient) {
@@ -220,7 +220,7 @@ void Lanes<T>::find_moving() {
   trial_ = y_;
 }
 
-/// Whether a state weighs more than its effect's standard says in any lane.
+/// Determines whether some lane weights a state more than its effect's default.
 template <class T>
 void Lanes<T>::find_weights() {
   weighs_ = std::ranges::any_of(weighed_, [this](const Weighed& w) {
@@ -228,7 +228,7 @@ void Lanes<T>::find_weights() {
   });
 }
 
-/// Plants with seeded parameters once more, with the derivatives of their operating point.
+/// Loads plants with sensitivity parameters again, with the derivatives of their operating point.
 template <class T>
 void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed) {
   const auto& seeds = lanes_[static_cast<std::size_t>(lane)].job.seeds;
@@ -258,7 +258,7 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
   }
 }
 
-/// The last moment before an instant at which effects may jump, in a lane's own precision [s].
+/// Returns the last time before a discontinuity of effects at `instant`, in the lane's precision [s].
 template <class Real>
 double moment_before(double instant) {
   if constexpr (std::is_same_v<Real, float>)
@@ -267,7 +267,7 @@ double moment_before(double instant) {
     return instant - plant::kBeforeSwitching;
 }
 
-/// Puts the matrices of the lane's current segment into place and starts the step control anew.
+/// Sets the matrices and setpoints of the lane's current segment and restarts the step control.
 template <class T>
 void Lanes<T>::enter_segment(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -303,8 +303,8 @@ void Lanes<T>::enter_segment(int lane) {
   fresh_ |= 1U << lane;
 }
 
-/// Until the first switching the grid stands still (operating_point checks the derivatives): the samples up
-/// to there are the operating point itself.
+/// Records the samples before the first switching time without integration. The grid is in steady state until
+/// then (operating_point checks the derivatives), so these samples equal the operating point.
 template <class T>
 void Lanes<T>::record_steady_start(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -323,7 +323,7 @@ void Lanes<T>::record_steady_start(int lane) {
   }
 }
 
-/// Fills a lane's waiting room with its operating point: what rests is not interpolated.
+/// Fills a lane's buffer with its operating point, because constant states are not interpolated.
 template <class T>
 void Lanes<T>::fill_waiting(int lane) {
   Real* to = waiting(lanes_[static_cast<std::size_t>(lane)]);
@@ -333,7 +333,7 @@ void Lanes<T>::fill_waiting(int lane) {
       std::fill(to, to + kLanes, from[i * kLanes]);
 }
 
-/// How many samples lie at or before t.
+/// Returns the number of samples at or before t [s].
 template <class T>
 int Lanes<T>::samples_until(double t) const {
   int count = static_cast<int>(t * options_.rate) + 1;
@@ -342,7 +342,7 @@ int Lanes<T>::samples_until(double t) const {
   return count < samples_ ? count : samples_;
 }
 
-/// Starts the next job in this lane; one that ends at once (nothing ever switches) is handed over right away.
+/// Starts the next job in this lane. A job without switching is complete and handed over at once.
 template <class T>
 void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -369,7 +369,7 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
     }
     hand_over(lane, Outcome::stable, done);
   }
-  // Nothing left: the lane idles at the grid's own operating point.
+  // No job remains: the lane idles at the grid's own operating point.
   active_ &= ~(1U << lane);
   run.job = {};
   run.segments = {{0.0, {}, {}}};
@@ -394,7 +394,8 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   run.theta.assign(recorded_.size(), 0.0);
 }
 
-/// A run that ended early keeps its last sample to the end.
+/// Completes a run and passes its record to `done`. A run that ended early repeats its last sample to the
+/// end.
 template <class T>
 void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];

@@ -7,16 +7,16 @@ namespace swingbank::sim::lanes {
 
 namespace {
 constexpr double kSolveRounding =
-    1e-13;  ///< of the matrix' largest entry: both are solutions of linear systems
+    1e-13;  ///< rounding error of both matrices, as a fraction of the largest entry
 
 double square(double a, double b) { return a * a + b * b; }
 
-/// What is left of the difference.
+/// Remainder of the difference during the elimination.
 struct Rest {
   std::size_t n;
   std::vector<double> g, b;
 
-  /// Where the largest entry stands; `size`: its square.
+  /// Returns the index of the largest entry; sets `size` to its squared magnitude.
   [[nodiscard]] std::size_t largest(double& size) const {
     std::size_t at = 0;
     size = 0.0;
@@ -30,7 +30,8 @@ struct Rest {
     return at;
   }
 
-  /// Takes the outer product of the pivot's column, over the pivot, and its row off.
+  /// Subtracts the outer product of the pivot's column, divided by the pivot, and its row, and adds it to
+  /// `out`.
   void eliminate(std::size_t pivot, LowRank& out) {
     const std::size_t row = pivot / n, column = pivot % n;
     const double scale = 1.0 / square(g[pivot], b[pivot]);
@@ -102,7 +103,7 @@ void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
       a(k, j) += by * rows(k, changes[static_cast<std::size_t>(j)].source);
   }
   const Eigen::MatrixXcd emf =
-      a.partialPivLu().solve(Eigen::MatrixXcd(dz.asDiagonal()));  // that does as much
+      a.partialPivLu().solve(Eigen::MatrixXcd(dz.asDiagonal()));  // equivalent change of the EMF
   const Eigen::MatrixXcd u = columns * -emf;
   for (Eigen::Index k = 0; k < count; ++k)
     for (Eigen::Index i = 0; i < n; ++i) products.add(u(i, k), rows(k, i));

@@ -1,5 +1,5 @@
 #pragma once
-// What one switching or one machine's impedance changes in the reduced network: few outer products.
+// Low-rank updates of the reduced network's matrix, caused by a switching or by a machine's impedance.
 #include <functional>
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace swingbank::sim::lanes {
 
-/// sum_k u_k w_k^T. Of every factor real and imaginary parts, one vector after the other.
+/// The sum of outer products sum_k u_k w_k^T; real and imaginary parts of the vectors, one after the other.
 struct LowRank {
   int rank = 0;
   std::vector<double> ur, ui, wr, wi;  ///< [k][row], [k][column]
@@ -19,20 +19,20 @@ struct LowRank {
   }
 };
 
-/// matrix - from, by elimination with full pivoting until the largest entry left is rounding; none where that
-/// takes more than `most` products.
+/// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining
+/// entry is at rounding level. Returns none if this needs more than `most` products.
 std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMatrix& from, int most);
 
 struct ImpedanceChange {
   int source;
   Complex dz;  ///< [pu on its own base]
 };
-/// A matrix by its rows and columns, as they are asked for.
+/// A matrix with access by rows and columns, computed on demand.
 struct ByRowsAndColumns {
   std::function<Eigen::VectorXcd(int)> row, column;
 };
-/// Adds to the products of M = matrix + products what other impedances of some sources C change:
-/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. That saves the solution of the whole network for every set of
+/// Adds to `products` the update of M = matrix + products by changed impedances of the sources C (Woodbury):
+/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of
 /// machines.
 void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
                     const std::vector<ImpedanceChange>& changes);

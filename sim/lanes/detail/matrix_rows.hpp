@@ -1,10 +1,10 @@
 #pragma once
-// Rows of I = (G + jB) E: of a matrix with a value per lane, or of one that all lanes share.
+// Row products of I = (G + jB) E, for a matrix with a value per lane or for one that all lanes share.
 #include "sim/lanes/detail/low_rank.hpp"
 
 namespace swingbank::sim::lanes {
 
-/// One row with a value per lane.
+/// Computes one row of I for a matrix with a value per lane.
 template <class T>
 inline void row_times(const T* g, const T* b, const T* er, const T* ei, int columns, T& ir, T& ii) {
   T gr = g[0] * er[0], gi = g[0] * ei[0], bi = b[0] * ei[0], br = b[0] * er[0];
@@ -18,23 +18,23 @@ inline void row_times(const T* g, const T* b, const T* er, const T* ei, int colu
   ii = gi + br;
 }
 
-/// Rows of a matrix that all lanes share; some rows at once, so that E is loaded once for all of them.
+/// Rows of a matrix that all lanes share. It multiplies several rows at once, so that E is loaded only once.
 class SharedRows {
  public:
 #ifdef __AVX512F__
   static constexpr std::size_t kTogether = 4;
 #else
-  static constexpr std::size_t kTogether = 2;  ///< four sums each: sixteen registers hold no more
+  static constexpr std::size_t kTogether = 2;  ///< four sums per row: limit of sixteen registers
 #endif
-  /// Room for so many rows in `times`.
+  /// Returns the size of ir and ii that `times` requires for a number of rows.
   static std::size_t padded(std::size_t rows) { return (rows + kTogether - 1) / kTogether * kTogether; }
 
-  /// Rows of matrix + more.
+  /// Stores the given rows of matrix + more.
   void assign(const InternalMatrix& matrix, const std::vector<int>& rows, const LowRank& more = {}) {
     assign(
         matrix.grounded.size(), rows, [&](int row) { return matrix.row(row); }, more);
   }
-  /// The same of a matrix that gives its rows one by one: row(k), complex.
+  /// The same for a matrix with row access: row(k) returns a complex row.
   template <class RowOf>
   void assign(std::size_t columns, const std::vector<int>& rows, const RowOf& row, const LowRank& more) {
     columns_ = columns;
@@ -55,7 +55,7 @@ class SharedRows {
     }
   }
 
-  /// I of every row.
+  /// Computes I for every stored row.
   template <class T>
   void times(const T* er, const T* ei, T* ir, T* ii) const {
     const double* at = values_.data();
@@ -81,7 +81,7 @@ class SharedRows {
 
  private:
   std::size_t columns_ = 0;
-  std::vector<double> values_;  ///< [rows together][column][row]: g, b
+  std::vector<double> values_;  ///< [group of kTogether rows][column][row of the group]: g, b
 };
 
 }  // namespace swingbank::sim::lanes

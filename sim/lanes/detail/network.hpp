@@ -1,12 +1,13 @@
 #pragma once
-// Lanes: the matrices of the lanes' networks. Few sources: a matrix per lane; many: one for all lanes and
-// what each changes in it.
+// Lanes: network matrices. Grids of few sources have a matrix per lane; grids of many sources have one for
+// all lanes and a low-rank update per lane.
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {
 
-/// Grids of many sources share the grid's own matrix. Slopes differ by lane in every entry, Newton's method
-/// reads the lanes' matrices, and one lane has nobody to share with.
+/// Decides whether the lanes share the grid's own matrix, and sets it up. They do in grids of many sources,
+/// with three exceptions. With sensitivities every entry differs by lane. With nonlinear sources Newton's
+/// method reads the lanes' matrices. A single lane has nothing to share.
 template <class T>
 void Lanes<T>::share() {
   shares_ = Traits::directions == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
@@ -31,15 +32,15 @@ void Lanes<T>::share() {
   for (auto* v : {&ir_, &ii_}) v->assign(rows, T(0.0));
 }
 
-/// The matrix of the grid without any switching. Its size is quadratic and its making cubic in the sources:
-/// only where there are no factors, or where a generator is lost.
+/// Returns the matrix of the unswitched grid. Its size is quadratic and its cost cubic in the number of
+/// sources. It is therefore computed only without sparse factors or after the trip of a generator.
 template <class T>
 const InternalMatrix& Lanes<T>::own_matrix() {
   if (!own_matrix_) own_matrix_ = own_->network.matrix({}, own_r_, own_x_);
   return *own_matrix_;
 }
 
-/// Puts a lane's matrix into place.
+/// Sets a lane's matrix for a topology. Returns the connection status of its sources.
 template <class T>
 const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topology) {
   if (shares_) return set_shared(lane, topology);
@@ -75,8 +76,8 @@ const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topolog
   return matrix;
 }
 
-/// What the lane's topology and machines change, and in terminals_ how the sources are then connected; none
-/// where that takes too many products, as another operating point does: it changes every load.
+/// Returns the low-rank update for the lane's topology and machines, and sets terminals_. Returns none if it
+/// needs too many products, for example at another operating point, where every load changes.
 template <class T>
 std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology& topology) {
   const auto l = static_cast<std::size_t>(lane);
@@ -111,8 +112,8 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
   return products;
 }
 
-/// M = (G + jB) changes with a source's impedance by dM = -M[:,k] dz M[k,:], and a row of what is measured
-/// elsewhere likewise, by its own entry k.
+/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. The
+/// rows of remote measurements have their own entry k in place of M[:,k].
 template <class T>
 void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);

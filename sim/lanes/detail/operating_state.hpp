@@ -1,5 +1,5 @@
 #pragma once
-// What lanes need of one operating point of the grid: its network, and every source brought to it.
+// Data of one operating point of the grid: its network and the initial state of every source.
 #include <memory>
 #include <vector>
 
@@ -8,13 +8,14 @@
 
 namespace swingbank::sim::lanes {
 
+/// Network and initial states of a grid at its operating point.
 struct OperatingState {
-  /// A grid that outlives this.
+  /// The grid must outlive this object.
   explicit OperatingState(const grid::Grid& at);
   explicit OperatingState(std::shared_ptr<const grid::Grid> at) : OperatingState(*at) {
     kept = std::move(at);
   }
-  /// A plant of the grid, with other parameters, brought to the operating point. Throws as operating_point.
+  /// Returns the initial state of a plant of the grid with other parameters. Throws as operating_point does.
   [[nodiscard]] plant::Operating bring(const plant::Plant& plant) const;
 
   std::shared_ptr<const grid::Grid> kept;

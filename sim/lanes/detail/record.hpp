@@ -1,8 +1,7 @@
 #pragma once
-// Lanes: recording. The states at the sample instants are interpolated lane by lane and wait there; when a
-// pack of them has gathered, the outputs are evaluated with the pack's lanes as consecutive samples of one
-// event. That fills every lane, whatever the steps of the others, and writes each channel as whole cache
-// lines.
+// Lanes: recording. The states at the sample times are interpolated lane by lane and buffered. The outputs
+// are evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one event. This
+// occupies every lane, independent of the step sizes, and writes each channel in whole cache lines.
 #include <algorithm>
 #include <array>
 
@@ -11,8 +10,8 @@
 
 namespace swingbank::sim::lanes {
 
-/// Of one state, y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))): y0, d0 to d3,
-/// each a row of flats.
+/// Computes the dense-output coefficients y0, d0 to d3 of one state, each a row of flats:
+/// y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))), theta in 0 to 1.
 template <class T>
 void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
   const std::size_t i = state;
@@ -28,8 +27,8 @@ void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
   row[4] = h * d;
 }
 
-/// Records the samples in (start, start + tried] of every accepted lane. Where a step holds more than a
-/// waiting room takes, in several rounds.
+/// Records the samples in (start, start + tried] of every accepted lane, in several rounds if a step has more
+/// samples than the buffer.
 template <class T>
 void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
   for (;;) {
@@ -51,9 +50,9 @@ void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, c
   }
 }
 
-/// The states at the due samples, state by state: its values of all lanes lie side by side. What waits lies
-/// pack by pack, so that the states of one are written to consecutive lines; a pack of new samples that
-/// begins within one goes into two.
+/// Interpolates the states at the due samples, state by state, because one state's values of all lanes are
+/// adjacent. The buffer is ordered by pack, so that the states of a pack are written to consecutive lines.
+/// New samples that do not start at a pack boundary are split between two packs.
 template <class T>
 void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
   using Of = LaneTraits<Flat>;
@@ -61,7 +60,7 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
     Flat a, b;  ///< theta, 1 - theta
     Real* to;   ///< the pack's first state
     int lane, offset;
-    decltype(Of::mask(0U)) later;  ///< samples of this pack, not of the next
+    decltype(Of::mask(0U)) later;  ///< samples that belong to this pack, not to the next
   };
   const double spacing = 1.0 / options_.rate;
   const std::size_t flats = y_.size() * kFlats * kLanes;  // of one pack
@@ -107,12 +106,12 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
   }
 }
 
-/// Copies one lane's constants into every lane of the recording set.
+/// Broadcasts one lane's constants to every lane of the recording set.
 template <class T>
 void Lanes<T>::spread_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
-    if (count == 0) return;  // an empty vector has no address to count from
+    if (count == 0) return;  // data() of an empty vector may be null
     const Real* __restrict source = reinterpret_cast<const Real*>(from.data()) + lane;
     Flat* __restrict target = reinterpret_cast<Flat*>(to.data());
     for (std::size_t i = first * kFlats; i < (first + count) * kFlats; ++i)
@@ -144,7 +143,8 @@ void Lanes<T>::spread_constants(int lane) {
   for (int source : nonlinear_) row(source);
 }
 
-/// The states of a pack of waiting samples from `first` on: where they wait, or gathered in `room`.
+/// Returns the states of the pack of buffered samples that starts at `first`, in the buffer or copied to
+/// `room`.
 template <class T>
 const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector<int>& states,
                                 T* room) const {
@@ -164,7 +164,7 @@ const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector
   return room;
 }
 
-/// Evaluates the first `count` waiting samples of a lane into its record; the rest move to the front.
+/// Evaluates the first `count` buffered samples of a lane into its record and removes them from the buffer.
 template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
@@ -189,7 +189,7 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
   drop_waiting(run, count);
 }
 
-/// Takes the first `count` waiting samples out of the room.
+/// Removes the first `count` samples from the buffer.
 template <class T>
 void Lanes<T>::drop_waiting(LaneRun& run, int count) {
   run.pending -= count;
@@ -200,7 +200,7 @@ void Lanes<T>::drop_waiting(LaneRun& run, int count) {
   }
 }
 
-/// The channels of the k-th recorded plant, `count` samples from run.recorded on.
+/// Evaluates the channels of the k-th recorded plant for `count` samples, starting at run.recorded.
 template <class T>
 void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   const auto i = static_cast<std::size_t>(recorded_[k]);
@@ -217,7 +217,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   p.equations.signals(c, x + p.x, &m_[static_cast<std::size_t>(p.m)], s, unused_.data() + p.x);
   T power, reactive, vr, vi;
   p.equations.grid_power(c, s, power, reactive);
-  if (const double part = connected_[lane][i]; part < 1.0) {  // of a unit; a tripped one has no current
+  if (const double part = connected_[lane][i]; part < 1.0) {  // partial trip; a tripped plant has no current
     power = power * T(part);
     reactive = reactive * T(part);
   }
@@ -263,7 +263,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
           run.theta[k] = Traits::get(v, count - 1);
           break;
         }
-        v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // the turn in which the rotor is
+        v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // same turn as the rotor angle
         run.theta[k] = Traits::get(v, count - 1);
         break;
       }
@@ -281,12 +281,12 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
   }
 }
 
-/// An angle plus the turns that bring each of the first `count` samples closest to the one before; `last`:
-/// before the first. `squared`: |V|^2; where there is none the angle keeps the last one.
+/// Unwraps the first `count` samples of an angle [rad]: adds the turns that minimise the step from sample to
+/// sample, from `last` on. `squared`: |V|^2 [pu]; at zero voltage the angle keeps its last value.
 template <class T>
 T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
-  constexpr double kNoAngle = 1e-9;  // beside a bolted fault, where rounding gives some: no angle [pu]
-  T turns(0.0);                      // beside the angle, which keeps its slopes
+  constexpr double kNoAngle = 1e-9;  // below it |V| is rounding error at a bolted fault [pu]
+  T turns(0.0);                      // separate from the angle, whose derivatives it must not change
   for (int l = 0; l < count; ++l) {
     if (Traits::get(squared, l) < kNoAngle * kNoAngle) Traits::set(angle, l, last);
     const double now = Traits::get(angle, l);
@@ -297,7 +297,7 @@ T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
   return angle + turns;
 }
 
-/// Repeats the last sample until `until` samples are recorded.
+/// Repeats the last sample until the record has `until` samples.
 template <class T>
 void Lanes<T>::hold(LaneRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;

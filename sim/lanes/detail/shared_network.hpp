@@ -1,8 +1,8 @@
 #pragma once
-// The network of many sources: I = (M + sum_k u_k w_k^T) E. M is the grid's own matrix, the same for all
-// lanes, as sparse factors of the whole network or as it stands; what a lane's switching and machines change
-// in it are few outer products. Matrices lane by lane would leave the caches. A lane's bits do not depend on
-// what the others hold: products that only they have add zero.
+// Network solution for grids of many sources, I = (M + sum_k u_k w_k^T) E, with one matrix for all lanes. M
+// is the grid's own matrix, stored densely or as sparse factors of the whole network. The few outer products
+// represent a lane's switching and machines. A matrix per lane would not fit into the caches. The bits of a
+// lane do not depend on other lanes, because products of other lanes add zero.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -14,37 +14,38 @@
 
 namespace swingbank::sim::lanes {
 
+/// The shared matrix M and the updates of all lanes.
 template <class T>
 class SharedNetwork {
  public:
-  /// From so many sources on it is faster than a matrix per lane.
+  /// Number of sources from which it is faster than a matrix per lane.
   static constexpr int kMany = 32;
-  /// Up to so many products a lane's are less work than a matrix of its own.
+  /// Returns the largest number of products that cost less than a lane's own matrix.
   static constexpr int most_products(std::size_t sources) { return static_cast<int>(sources / 2); }
 
   void assign(const InternalMatrix& own);
-  /// Factors of the network in its place.
+  /// Uses sparse factors of the network instead of the matrix.
   void assign(const BusFactors& factors, const std::vector<Feed>& plants);
-  /// Whether factors are less work than `rows` rows of the matrix.
+  /// Returns true if the sparse factors cost less than `rows` rows of the matrix.
   static bool pays(const BusFactors& factors, std::size_t rows, std::size_t sources) {
     return 2 * (factors.entries() + 2 * factors.buses()) <= rows * sources;
   }
   [[nodiscard]] bool factored() const { return factors_.buses() > 0; }
   [[nodiscard]] const BusFactors& factors() const { return factors_; }
-  /// Puts a lane's matrix into place: own() + products, or one by itself.
+  /// Sets a lane's matrix: M + products, or a separate matrix.
   void set(int lane, const LowRank& products);
   void set(int lane, const InternalMatrix& matrix);
-  /// All currents; ir, ii with room for SharedRows::padded of them.
+  /// Computes all currents; ir and ii have the size SharedRows::padded.
   void solve(const T* er, const T* ei, T* ir, T* ii);
-  /// The same where all lanes of er, ei are of one event, in whose lane are its products.
+  /// The same if all lanes of er and ei belong to the event of `lane`, whose products apply.
   void solve_of(int lane, const T* er, const T* ei, T* ir, T* ii);
-  /// Whether a lane has a matrix by itself.
+  /// Returns true if a lane has a separate matrix.
   [[nodiscard]] bool whole(int lane) const { return ((whole_ >> lane) & 1U) != 0; }
 
  private:
   using Traits = LaneTraits<T>;
   static constexpr int kLanes = LaneTraits<T>::lanes;
-  /// One outer product of every lane.
+  /// One outer product per lane.
   struct Product {
     std::vector<T> ur, ui, wr, wi;
   };
@@ -54,15 +55,15 @@ class SharedNetwork {
 
   std::size_t sources_ = 0;
   SharedRows rows_;
-  BusFactors factors_;        ///< in place of rows_ where there are any
-  std::vector<Feed> plants_;  ///< buses as `factors_` places them
-  std::vector<T> vr_, vi_;    ///< scratch: at the buses
+  BusFactors factors_;        ///< replaces rows_ if not empty
+  std::vector<Feed> plants_;  ///< buses in the order of `factors_`
+  std::vector<T> vr_, vi_;    ///< scratch: currents into and voltages at the buses
   std::vector<Product> products_;
   std::vector<T> sum_r_, sum_i_;  ///< scratch: w_k^T E
   std::array<int, kLanes> rank_{};
-  int most_ = 0;          ///< of rank_
-  unsigned whole_ = 0;    ///< lanes with a matrix of their own
-  std::vector<T> g_, b_;  ///< their matrices; empty until one is needed
+  int most_ = 0;          ///< maximum of rank_
+  unsigned whole_ = 0;    ///< lanes with a separate matrix
+  std::vector<T> g_, b_;  ///< their matrices; empty until the first use
 };
 
 template <class T>
@@ -142,7 +143,7 @@ inline void SharedNetwork<T>::solve_of(int lane, const T* er, const T* ei, T* ir
   }
 }
 
-/// Without what the lanes change.
+/// Computes M E, without the lanes' updates.
 template <class T>
 inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) {
   if (!factored()) return rows_.times(er, ei, ir, ii);
@@ -166,8 +167,8 @@ inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) 
   }
 }
 
-/// Adds sum_k u_k (w_k^T E), summed by itself: a lane whose own products are fewer adds +0 like one with
-/// none.
+/// Adds sum_k u_k (w_k^T E). The sum is formed separately, so that a lane with fewer products adds +0, as a
+/// lane without products does.
 template <class T>
 inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
   const std::size_t n = sources_;
@@ -190,7 +191,7 @@ inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
   }
 }
 
-/// The currents of lanes with a matrix of their own.
+/// Replaces the currents of lanes with a separate matrix.
 template <class T>
 inline void SharedNetwork<T>::replace(const T* er, const T* ei, T* ir, T* ii) const {
   const std::size_t n = sources_;

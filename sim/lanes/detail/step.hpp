@@ -1,11 +1,12 @@
 #pragma once
-// Lanes: the free-running loop. Every pack step advances each lane by its own step; a lane accepts, rejects,
-// switches and refills alone.
+// Lanes: the integration loop. Every pack step advances each lane by its own step size. Acceptance, switching
+// and refill are independent per lane.
 #include "sim/lanes/detail/lanes.hpp"
 
 namespace swingbank::sim::lanes {
 
-/// First stage of the lanes that were loaded or switched; the others keep theirs (first same as last).
+/// Evaluates the first stage of lanes that were loaded or switched; the others reuse theirs (first same as
+/// last).
 template <class T>
 void Lanes<T>::evaluate_fresh() {
   if (timed_) {
@@ -44,11 +45,11 @@ void Lanes<T>::stage(const T& h) {
   derivative(trial, k_[Stage].data());
 }
 
-/// Largest weighted error over the states, in units of the tolerance.
+/// Returns the largest weighted error over the states, in units of the tolerance.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
   Flat worst(0.0);
-  const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // so a NaN wins
+  const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // propagates NaN
   for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
   if (weighs_)
     for (const Weighed& w : weighed_)
@@ -67,7 +68,7 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
   return worst * h;
 }
 
-/// The method's own estimate of a state's error over h, weighted.
+/// Returns the weighted embedded error estimate of a state, divided by h.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
   T sum = T(plant::dp54::error[0]) * k_[0][state];
@@ -75,7 +76,7 @@ typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
   return Traits::magnitude(sum) * Flat(weight_[state]);
 }
 
-/// 1 where a state held at its limit comes off it within the step, else 0.
+/// Returns 1 if a state leaves its limit within the step, else 0.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
   const Flat zero(0.0), one(1.0), first = Traits::magnitude(k_[0][state]),
@@ -83,7 +84,7 @@ typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
   return select(first <= zero, select(last <= zero, zero, one), zero);
 }
 
-/// 1 where Vs comes to a limit within the step or leaves one, else 0.
+/// Returns 1 if Vs reaches or leaves a limit within the step, else 0.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
   const Flat zero(0.0), one(1.0);
@@ -91,7 +92,7 @@ typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
   return select(Flat(plant::dp54::kStages - 1) <= watch.same, zero, moves);
 }
 
-/// After a stage's evaluation.
+/// Updates the watch after the evaluation of a stage.
 template <class T>
 void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
   const Flat now = Traits::value(vs), zero(0.0), one(1.0);
@@ -100,7 +101,7 @@ void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
   watch.last = now;
 }
 
-/// What a kink within the step may leave in a state, over h, weighted: see dp54::kink.
+/// Returns the weighted error estimate of a state for a kink within the step, divided by h; see dp54::kink.
 template <class T>
 typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
   Flat worst(0.0);
@@ -114,7 +115,7 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
   return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
 
-/// How far apart the rotor angles have moved since the start, over all plants.
+/// Returns the largest change since the start of the angle between two rotors, over all plants [rad].
 template <class T>
 T Lanes<T>::spread(const T* x) const {
   T low(std::numeric_limits<Real>::max()), high = -low;
@@ -133,7 +134,7 @@ T Lanes<T>::spread(const T* x) const {
   return maximum(high - low, T(0.0));
 }
 
-/// The same within the islands of a lane whose grid is in several, of the island where it is largest.
+/// Returns the same for a lane with several islands: the largest value within one island [rad].
 template <class T>
 double Lanes<T>::spread_of_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);
@@ -159,7 +160,7 @@ void Lanes<T>::commit(unsigned accepted) {
   const auto ok = Traits::mask(accepted);
   for (const int state : moving_) {
     const auto i = static_cast<std::size_t>(state);
-    if constexpr (kCarries) {  // Knuth's sum of two: the sum and what it lost
+    if constexpr (kCarries) {  // Knuth's two-sum: the sum and its rounding error
       const T added = trial_[i] - y_[i];
       const T lost = (y_[i] - (trial_[i] - added)) + (move_[i] - added);
       carry_[i] = select(ok, lost, carry_[i]);
@@ -174,8 +175,8 @@ void Lanes<T>::commit(unsigned accepted) {
   if (limited_) clamp_states();
 }
 
-/// States that overshot a limit within the step go back to it; their lanes' first stage is then evaluated
-/// anew.
+/// Clamps states that overshot a limit within the step, and marks the first stage of their lanes for
+/// re-evaluation.
 template <class T>
 void Lanes<T>::clamp_states() {
   T moved(0.0);
@@ -192,13 +193,13 @@ void Lanes<T>::clamp_states() {
     }
 }
 
-/// After a step: lanes that lost synchronism or came to their end are handed over, lanes at a switching
-/// switch.
+/// Finishes a step: hands over lanes that lost synchronism or reached their end, and switches lanes at a
+/// switching time.
 template <class T>
 void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
   LaneTraits<Flat>::store(Traits::value(spread(y_.data())), angle);
-  // A shorter step may find the voltages that a longer one did not.
+  // The voltage search may succeed with a shorter step.
   if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
   per_lane_.fallen = 0;
   for (int l = 0; l < kLanes; ++l) {

@@ -7,7 +7,7 @@
 namespace swingbank::sim::lanes {
 
 namespace {
-/// Of the small system, below which the products have lost three digits.
+/// Smallest reciprocal condition number of the small system; below it the products lose three digits.
 constexpr double kLeastCondition = 1e-3;
 }  // namespace
 
@@ -80,7 +80,8 @@ std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const network::To
   return touched;
 }
 
-/// Into the touched buses, per unit of their voltages before: J = -Y (V + Z J), where bolted V + Z J = 0.
+/// Returns the currents J into the affected buses per unit of their previous voltages V: J = -Y (V + Z J),
+/// and V + Z J = 0 at bolted buses. Returns none if the system is ill-conditioned.
 std::optional<Eigen::MatrixXcd> SwitchedNetwork::currents(const Touched& touched,
                                                           const std::vector<int>& bolted) const {
   const auto count = touched.admittance.rows();

@@ -1,41 +1,43 @@
 #pragma once
-// What a switching changes in the reduced network of many sources, without reducing it anew: the buses it
-// touches are few, and what their currents do everywhere follows from one factorisation of the whole network.
+// Low-rank update of the reduced network for a switching, in grids of many sources. A switching affects few
+// buses, and one factorisation of the whole network gives the response to their currents.
 #include <Eigen/SparseLU>
 
 #include "sim/lanes/detail/low_rank.hpp"
 
 namespace swingbank::sim::lanes {
 
-/// How a plant feeds its bus: its admittance on the network's base, on its own.
+/// Connection of a plant to its bus: its admittance on the network's base and on its own base [pu].
 struct Feed {
   int bus;
   Complex source, own;
 };
 
+/// Factorised network of a grid, for the low-rank updates of switchings.
 class SwitchedNetwork {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;
-  /// r, x: impedance per plant [pu on its own base]. Every load a constant impedance.
+  /// r, x: impedance per plant [pu on its own base]. Every load must be a constant impedance.
   SwitchedNetwork(const grid::Grid& grid, const std::vector<double>& r, const std::vector<double>& x);
-  /// Against the network without any switching: at most `most` products. None where a generator is lost, more
-  /// buses are touched, or what is left hangs together too loosely for it: InternalNetwork has the matrix.
+  /// Returns the change of the matrix relative to the unswitched network, with at most `most` products.
+  /// Returns none if a generator is tripped, if more buses are affected, or if the switched network is
+  /// ill-conditioned; InternalNetwork then computes the matrix.
   [[nodiscard]] std::optional<LowRank> change(const network::Topology& topology, int most) const;
 
-  /// Whether the network could be factored: then row and column give those of the reduced matrix without
-  /// switching.
+  /// Returns true if the network could be factorised; only then row() and column() of the unswitched reduced
+  /// matrix are available.
   [[nodiscard]] bool sound() const { return sound_; }
   [[nodiscard]] Eigen::VectorXcd row(int plant) const;
   [[nodiscard]] Eigen::VectorXcd column(int plant) const;
   [[nodiscard]] const std::vector<Feed>& plants() const { return plants_; }
-  /// Bus admittances without any switching, with the machines' own.
+  /// Returns the bus admittance matrix without switching, including the machines' admittances.
   [[nodiscard]] const Sparse& closed() const { return closed_; }
 
  private:
   struct Touched {
     std::vector<int> buses;
-    Eigen::MatrixXcd admittance;  ///< what is added between them
-    Eigen::MatrixXcd voltage;     ///< per unit of current into them: rows all buses
+    Eigen::MatrixXcd admittance;  ///< added admittance between them
+    Eigen::MatrixXcd voltage;     ///< voltages of all buses (rows) per unit current into them
   };
   [[nodiscard]] std::optional<Touched> touch(const network::Topology& topology, int most) const;
   [[nodiscard]] std::optional<Eigen::MatrixXcd> currents(const Touched& touched,
@@ -43,7 +45,7 @@ class SwitchedNetwork {
   [[nodiscard]] Eigen::MatrixXcd unit_currents(const std::vector<int>& buses) const;
 
   const grid::Grid& grid_;
-  Sparse own_, closed_;  ///< bus admittances; with the machines'
+  Sparse own_, closed_;  ///< bus admittance matrix without and with the machines' admittances
   Eigen::SparseLU<Sparse> factors_, transposed_;
   std::vector<Feed> plants_;
   bool sound_ = false;

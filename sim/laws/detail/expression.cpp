@@ -28,17 +28,17 @@ const Function* find_function(std::string_view name) {
   return at == kFunctions.end() ? nullptr : at;
 }
 
-// ASCII only, whatever the locale.
+// ASCII only, independent of the locale.
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 bool blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Binary operators and how strongly they bind.
+/// A binary operator and its precedence.
 struct Operator {
   std::string_view sign;
   Op op;
   int binding;
-  bool turned = false;  ///< a > b is b < a
+  bool turned = false;  ///< exchange the operands: a > b is b < a
 };
 constexpr int kCompare = 1, kSum = 2, kProduct = 3, kSign = 4, kPower = 5;
 constexpr std::array kOperators = {Operator{"<=", Op::less_equal, kCompare},
@@ -71,7 +71,7 @@ class Parser {
   }
 
  private:
-  static constexpr int kDeepest = 100;  ///< of nested brackets: keeps the parser's own stack small
+  static constexpr int kDeepest = 100;  ///< maximum nesting of brackets; bounds the parser's recursion
   static constexpr double kLargestPower = 16;
 
   static bool compares(const Node& n) { return n.op == Op::less || n.op == Op::less_equal; }
@@ -103,7 +103,7 @@ class Parser {
     return tree;
   }
 
-  /// Everything that binds more strongly than `binding`.
+  /// Parses operators with a higher precedence than `binding`.
   Tree expression(int binding) {
     if (++depth_ > kDeepest)
       fail(at_, "brackets nested too deeply", fmt::format("at most {} levels are read", kDeepest),

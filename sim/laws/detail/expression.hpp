@@ -1,8 +1,8 @@
 #pragma once
-// The expressions of a law file, as text and as a tree.
+// Expressions of a law file: grammar and syntax tree.
 //   precedence, lowest first:  < > <= >=   + -   * /   unary -   ^ (whole exponent 0 ... 16)
 //   functions:                 min max abs sqrt exp log sin cos clamp deadband select
-// A comparison stands only as the first argument of select, or as a whole condition.
+// A comparison may occur only as the first argument of select, or as a whole condition.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,6 +11,7 @@
 
 namespace swingbank::sim::laws {
 
+/// Operation of a node.
 enum class Op : std::uint8_t {
   number,
   name,
@@ -30,36 +31,37 @@ enum class Op : std::uint8_t {
   clamp,      ///< clamp(u, low, high)
   dead_band,  ///< deadband(u, width): see blocks.hpp
   select,     ///< select(a < b, then, otherwise)
-  less,       ///< comparisons; > and >= are turned round
+  less,       ///< comparisons; > and >= are stored with exchanged operands
   less_equal,
   power  ///< exponent in `value`
 };
 
 struct Node;
 using Tree = std::shared_ptr<const Node>;
+/// Node of the syntax tree; the fields used depend on `op`.
 struct Node {
   Op op;
   double value = 0.0;  ///< number, power
   std::string name;    ///< name
   std::vector<Tree> arguments;
-  std::size_t at = 0;  ///< place in the text
+  std::size_t at = 0;  ///< offset in the text
 };
 
-/// What is wrong with an expression, and at which character.
+/// Error in an expression, with its character offset.
 struct Fault {
   std::size_t at;
   std::string what, why, remedy;
 };
 
-/// A value (no comparison at the top), or nullptr with the reason in `fault`.
+/// Parses a value (no comparison at the top level). Returns nullptr and sets `fault` on an error.
 Tree parse_value(std::string_view text, Fault& fault);
-/// A comparison `a < b`, or nullptr with the reason in `fault`.
+/// Parses a comparison `a < b`. Returns nullptr and sets `fault` on an error.
 Tree parse_condition(std::string_view text, Fault& fault);
 
-/// "min, max, ..." for messages.
+/// Returns the function names "min, max, ..." for messages.
 std::string function_names();
 bool is_function(std::string_view name);
-/// Letters, digits and _, not beginning with a digit.
+/// Returns true for a name of letters, digits and _ that does not begin with a digit.
 bool is_identifier(std::string_view name);
 
 }  // namespace swingbank::sim::laws

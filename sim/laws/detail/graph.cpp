@@ -25,7 +25,7 @@ int Graph::constant(double value) {
   if (found != by_value_.end()) return found->second;
   Vertex v{Act::coefficient};
   v.fixed = v.parameters = true;
-  v.index = -2 - static_cast<int>(constants_.size());  // its place among the coefficients comes with Program
+  v.index = -2 - static_cast<int>(constants_.size());  // compile() assigns its coefficient
   const int place = add(v);
   by_value_.emplace(value, place);
   constants_.emplace(place, value);
@@ -61,7 +61,7 @@ int Graph::power(int a, int exponent) {
   return result;
 }
 
-/// As dead_band() in blocks.hpp.
+/// Returns the vertex of dead_band() in blocks.hpp.
 int Graph::dead_band(int u, int width) {
   const int zero = constant(0.0);
   const auto positive_part = [&](int a) { return make(Act::select_less, zero, a, a, zero); };

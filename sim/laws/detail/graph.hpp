@@ -1,7 +1,6 @@
 #pragma once
-// A law's expressions as one graph: every value once, whatever how many expressions use it. What depends on
-// parameters and on the operating point only is marked, so that it is evaluated once per run, not once per
-// step.
+// Expression graph of a law, with common subexpressions eliminated. Values that depend only on parameters and
+// on the operating point are marked: they are evaluated once per run, not once per step.
 #include <array>
 #include <map>
 #include <string>
@@ -13,10 +12,10 @@
 
 namespace swingbank::sim::laws {
 
-/// The signals a law may read, by the names of the fields of Signals.
+/// A signal that a law may read; `name` is the field of Signals.
 struct SignalRecord {
   std::string_view name, meaning;
-  Slot made_in;  ///< readable in later slots only; machine: in all
+  Slot made_in;  ///< slot that computes it; readable in later slots only (machine: in all)
 };
 inline constexpr std::array kSignals = {
     SignalRecord{"Vr", "terminal voltage, real part [pu]", Slot::machine},
@@ -43,10 +42,10 @@ inline constexpr std::array<T Signals<T>::*, kSignals.size()> kMembers = {
     &Signals<T>::P,        &Signals<T>::Q,   &Signals<T>::speed, &Signals<T>::Te,    &Signals<T>::Ifd,
     &Signals<T>::t,        &Signals<T>::Vc,  &Signals<T>::dVref, &Signals<T>::dPref, &Signals<T>::Vs,
     &Signals<T>::Vlimiter, &Signals<T>::Efd, &Signals<T>::Tm};
-/// Index into kSignals, -1 if there is none of that name.
+/// Returns the index into kSignals, or -1 if no signal has that name.
 int signal_index(std::string_view name);
 
-/// What a vertex of the graph does with the values of its operands.
+/// Operation of a vertex on the values of its operands.
 enum class Act : std::uint8_t {
   coefficient,  ///< c[index]: constant of the file, parameter, value at the operating point
   state,        ///< x[index]
@@ -63,31 +62,34 @@ enum class Act : std::uint8_t {
   sine,
   cosine,
   clamp,
-  limit,  ///< clamp of a state at its own limits; the search for the steady state looks through it
+  limit,  ///< clamp of a state to its own limits; the steady-state solution ignores it
   inverse,
   select_less,        ///< a < b ? c : d
   select_less_equal,  ///< a <= b ? c : d
-  store               ///< of programs: writes a value
+  store               ///< in programs only: writes a value
 };
+/// A vertex of the graph: an operation and its operands.
 struct Vertex {
   Act act;
   int index = -1;  ///< coefficient, state, signal
   std::array<int, 4> from = {-1, -1, -1, -1};
   bool fixed = false;       ///< depends on coefficients only
-  bool parameters = false;  ///< and on none from the operating point
+  bool parameters = false;  ///< fixed, and independent of the operating point
 };
 
-/// Thrown when a law grows beyond what is read.
+/// Thrown when a law exceeds the maximum size.
 struct TooLarge {};
 
+/// Directed acyclic graph of a law's expressions. Methods that add a vertex return its index; an existing
+/// equal vertex is reused.
 class Graph {
  public:
-  static constexpr std::size_t kMost = 4000;  ///< vertices
+  static constexpr std::size_t kMost = 4000;  ///< maximum number of vertices
 
   int constant(double value);
-  /// `parameter`: not of the operating point.
+  /// Adds a fixed coefficient. `parameter`: independent of the operating point.
   int coefficient(int index, bool parameter);
-  /// A coefficient that steady() searches: never fixed.
+  /// Adds a coefficient that steady() solves for; it is never fixed.
   int solved(int index) { return add(Vertex{Act::coefficient, index}); }
   int state(int index);
   int signal(int index);
@@ -98,7 +100,7 @@ class Graph {
 
   [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
   [[nodiscard]] const Vertex& operator[](int i) const { return vertices_[static_cast<std::size_t>(i)]; }
-  /// Constants of the file; vertex index -> value.
+  /// Returns the constants of the file as vertex index -> value.
   [[nodiscard]] const std::map<int, double>& constants() const { return constants_; }
 
  private:

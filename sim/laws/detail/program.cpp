@@ -7,13 +7,13 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Where a value goes: (vertex, index of the store).
+/// A value to store: (vertex, index of the target).
 using Store = std::pair<int, int>;
 
-/// Orders the vertices that the stores need and gives them registers.
+/// Orders the vertices needed by the stores and assigns registers to them.
 class Emitter {
  public:
-  /// `known`: coefficient of vertices that need no computing, else -1.
+  /// `known`: coefficient of vertices that need no computation, else -1.
   Emitter(const Graph& graph, const std::vector<int>& known) : graph_(graph), known_(known) {}
 
   Code emit(const std::vector<Store>& stores) {
@@ -21,7 +21,7 @@ class Emitter {
     last_.assign(n, -1);
     register_.assign(n, -1);
     for (const auto& [vertex, index] : stores) last_[at(vertex)] = vertex;
-    for (int v = static_cast<int>(n) - 1; v >= 0; --v) {  // operands stand before what uses them
+    for (int v = static_cast<int>(n) - 1; v >= 0; --v) {  // operands precede their users
       if (last_[at(v)] < 0 || loaded(v)) continue;
       for (const int from : graph_[v].from)
         if (from >= 0) last_[at(from)] = std::max(last_[at(from)], v);
@@ -40,8 +40,8 @@ class Emitter {
  private:
   [[nodiscard]] bool loaded(int v) const { return known_[at(v)] >= 0 || graph_[v].act <= Act::signal; }
   [[nodiscard]] std::uint8_t place(int v) const { return static_cast<std::uint8_t>(register_[at(v)]); }
-  /// The result gets a register before its operands' are given free, so that no instruction overwrites what
-  /// it still reads.
+  /// Emits the instruction of a vertex. The result gets its register before those of the operands are
+  /// released, so that no instruction overwrites its own operands.
   void compute(int v) {
     const Vertex& vertex = graph_[v];
     const int known = known_[at(v)];
@@ -71,7 +71,7 @@ class Emitter {
   Code code_;
 };
 
-/// Fixed vertices whose values the loop reads.
+/// Returns a mask of the fixed vertices that the loop reads directly.
 std::vector<char> frontier(const Graph& graph, const std::vector<int>& roots) {
   const std::size_t n = graph.vertices().size();
   std::vector<char> needed(n, 0), fixed(n, 0);
@@ -90,7 +90,7 @@ std::vector<char> frontier(const Graph& graph, const std::vector<int>& roots) {
 
 Compiled compile(const Graph& graph, const std::vector<int>& derivatives, int output,
                  const std::vector<int>& also, int first) {
-  constexpr int kMostCoefficients = 10000;  // an index fits its 16 bits
+  constexpr int kMostCoefficients = 10000;  // fits the 16-bit index of an instruction
   Compiled out;
   const int n = static_cast<int>(graph.vertices().size());
   std::vector<int> roots = derivatives;
@@ -98,7 +98,7 @@ Compiled compile(const Graph& graph, const std::vector<int>& derivatives, int ou
   std::vector<char> wanted = frontier(graph, roots);
   for (const int v : also) wanted[at(v)] = 1;
   out.coefficients = first;
-  std::vector<int> given(at(n), -1);  // coefficients that are not computed from others
+  std::vector<int> given(at(n), -1);  // coefficients that are not computed
   for (int v = 0; v < n; ++v) {
     if (graph[v].act != Act::coefficient) continue;
     given[at(v)] = graph[v].index;

@@ -1,6 +1,6 @@
 #pragma once
-// A law's graph as two flat lists of instructions over a few registers: one for what is fixed during a run
-// (it fills coefficients), one for the loop. No branch depends on a T, nothing is allocated.
+// Register program of a law's graph: one instruction list fills the coefficients once per run, the other
+// evaluates the derivatives. No branch depends on a value of type T, and execution allocates no memory.
 #include <cstdint>
 #include <vector>
 
@@ -9,18 +9,19 @@
 
 namespace swingbank::sim::laws {
 
+/// One instruction: registers of the result and of the operands, and an index.
 struct Instruction {
   Act act;
   std::uint8_t to = 0;
   std::array<std::uint8_t, 4> from = {};
-  std::int16_t index = -1;  ///< of coefficient, state, signal, or of what Act::store writes
+  std::int16_t index = -1;  ///< index of the coefficient, state or signal, or the target of Act::store
 };
 using Code = std::vector<Instruction>;
 
 constexpr int kRegisters = 64;
 
-/// Runs `code` over coefficients c, states x and signals s; Act::store writes out[index], or `last` where the
-/// index is -1. r: room for kRegisters. `Free`: states are not held to their limits.
+/// Executes `code` on coefficients c, states x and signals s. Act::store writes out[index], or `last` if the
+/// index is -1. r: kRegisters registers. `Free`: Act::limit does not clamp.
 template <class T, bool Free>
 void run(const Code& code, const T* c, const T* x, const Signals<T>& s, T* r, T* out, T& last) {
   using std::exp;
@@ -99,7 +100,7 @@ void run(const Code& code, const T* c, const T* x, const Signals<T>& s, T* r, T*
   }
 }
 
-/// Room for registers without the cost of clearing them.
+/// Uninitialised storage for the registers; avoids the cost of clearing them.
 template <class T>
 class Registers {
  public:
@@ -109,16 +110,18 @@ class Registers {
   alignas(64) std::byte room_[sizeof(T) * kRegisters];
 };
 
+/// Compiled graph.
 struct Compiled {
-  Code fixed;                                     ///< stores coefficients
-  Code loop;                                      ///< stores derivatives, and the output as the last
-  std::vector<int> coefficient_of;                ///< per vertex: where its value stands during a run, or -1
+  Code fixed;                                     ///< computes coefficients
+  Code loop;                                      ///< computes derivatives, and the output as the last value
+  std::vector<int> coefficient_of;                ///< per vertex: index of its coefficient, or -1
   std::vector<std::pair<int, double>> constants;  ///< coefficient index, value
   int coefficients = 0;
 };
 
-/// Compiles a graph. `derivatives`, `output`: vertices whose values the loop gives; `also`: further fixed
-/// vertices that must get a coefficient; `first`: number of coefficients already taken. Throws TooLarge.
+/// Compiles a graph. `derivatives`, `output`: vertices that the loop evaluates; `also`: further fixed
+/// vertices that need a coefficient; `first`: number of coefficients already in use. Throws TooLarge if the
+/// program needs too many registers or coefficients.
 Compiled compile(const Graph& graph, const std::vector<int>& derivatives, int output,
                  const std::vector<int>& also, int first);
 

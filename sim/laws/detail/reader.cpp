@@ -10,7 +10,7 @@ namespace {
 
 struct Output {
   std::string_view name;
-  Slot replaced, added;  ///< machine: it cannot be
+  Slot replaced, added;  ///< slot if the law replaces or adds to the output; machine: not allowed
 };
 constexpr std::array kLawOutputs = {
     Output{"Vc", Slot::compensator, Slot::compensator}, Output{"dVref", Slot::machine, Slot::setpoint},
@@ -24,8 +24,8 @@ constexpr std::size_t kMostStates = 40, kMostParameters = 100, kLargestFile = 10
 Reader::Reader(const std::string& text, const std::filesystem::path& name)
     : text_(text), file_(name.string()), config_(text, name) {}
 
-/// Names in a table, as they follow one another in the file. Names that cannot be written in an expression
-/// are noted and left out.
+/// Returns the names in a table in file order. Names that are not identifiers become problems and are
+/// omitted.
 std::vector<std::string> Reader::in_file_order(const std::string& table) {
   std::vector<std::string> list;
   for (const std::string& name : config_.keys(table)) {
@@ -41,7 +41,7 @@ std::vector<std::string> Reader::in_file_order(const std::string& table) {
   return list;
 }
 
-/// Gives a name to what stands at `key`; false and a problem if it has another meaning already.
+/// Reserves a name for the entry at `key`. Returns false and adds a problem if the name is already in use.
 bool Reader::claim(const std::string& key, const std::string& name, const char* what) {
   std::string why;
   const bool at_rest =
@@ -147,12 +147,13 @@ void Reader::read_references() {
   }
 }
 
-/// What `key` says of a state's error in step control (State::weight).
+/// Returns the weight at `key` of a state's error in step control (State::weight).
 double Reader::state_weight(const std::string& key) {
   return config_.optional<double>(key + "weight", 1.0, {1e-6, 1e6, ""});
 }
 
-/// Names first, so that derivatives may use any state; see read() for the order.
+/// Reads the states. All names are registered first, so that derivatives may use any state; read() has the
+/// order.
 void Reader::read_states() {
   const auto names = in_file_order("states");
   for (const std::string& name : names) {
@@ -223,7 +224,7 @@ void Reader::read_output() {
   }
   for (const std::string& name : block_order_)
     if (blocks_.contains(name)) finish_block(name);
-  for (auto& [name, entry] : named_)  // what nobody uses is checked all the same
+  for (auto& [name, entry] : named_)  // unused entries are checked as well
     (void)named(Node{Op::name, 0.0, name, {}, 0}, "value", entry);
   for (StateEntry& s : states_)
     for (const int limit : {s.low, s.high})
@@ -257,7 +258,7 @@ std::string Reader::describe() const {
   return text;
 }
 
-/// Whether an exciter has limits, and none of them at a state.
+/// Returns true for an exciter with limits, none of which belongs to a state (State::bends).
 bool Reader::bends() const {
   constexpr std::array kBending = {Act::minimum, Act::maximum, Act::clamp, Act::select_less,
                                    Act::select_less_equal};
@@ -268,7 +269,7 @@ bool Reader::bends() const {
          });
 }
 
-/// Records and program from what was read; only of a sound file.
+/// Builds records and program; requires a file without faults.
 void Reader::finish() {
   std::vector<int> derivatives, also;
   for (const StateEntry& s : states_) {

@@ -1,6 +1,5 @@
 #pragma once
-// How a law file becomes a Definition: names are looked up, expressions become vertices of the graph, blocks
-// become states.
+// Reader of law files: resolves names, adds expressions to the graph and converts blocks to states.
 #include <map>
 #include <optional>
 #include <set>
@@ -10,24 +9,25 @@
 
 namespace swingbank::sim::laws {
 
-/// An expression and the key it stands at ("states.x.derivative").
+/// An expression and its key ("states.x.derivative").
 struct Expression {
   std::string key, text;
   Tree tree;
 };
 
+/// Reads one law file.
 class Reader {
  public:
   Reader(const std::string& text, const std::filesystem::path& name);
   Definition read();
 
  private:
-  /// A name that stands for an expression, or for a block's output.
+  /// A name of an expression, or of a block's output.
   struct Named {
     enum class Kind { signal, reference, block } kind;
-    Expression expression;  ///< not of blocks
+    Expression expression;  ///< empty for blocks
     int vertex = -1;
-    bool open = false;  ///< being looked up: to meet it again is a loop
+    bool open = false;  ///< being resolved; a second visit is an algebraic loop
   };
   struct StateEntry {
     std::string name, unit, meaning;
@@ -35,7 +35,7 @@ class Reader {
     int derivative = -1, low = -1, high = -1, start = -1;  ///< vertices
   };
   struct Block {
-    std::string kind, before;  ///< name of the one before it in the chain
+    std::string kind, before;  ///< before: name of the preceding block in the chain
     int first_state = -1;
   };
 
@@ -88,19 +88,19 @@ class Reader {
   Definition law_;
   Graph graph_;
   int coefficients_ = kFirstParameter;
-  std::map<std::string, std::string> taken_;         ///< name -> what has it
-  std::map<std::string, int> parameter_;             ///< index
-  std::map<std::string, int> operating_, searched_;  ///< vertex
+  std::map<std::string, std::string> taken_;         ///< name -> kind of its owner
+  std::map<std::string, int> parameter_;             ///< name -> index
+  std::map<std::string, int> operating_, searched_;  ///< name -> vertex
   std::map<std::string, Named> named_;
-  std::map<std::string, int> state_;  ///< index
+  std::map<std::string, int> state_;  ///< name -> index
   std::map<std::string, Block> blocks_;
   std::vector<std::string> block_order_;
   std::string last_in_chain_;
-  std::map<std::string, int> values_;  ///< vertex by key, for keys that are read more than once
+  std::map<std::string, int> values_;  ///< key -> vertex, for keys that are read more than once
   std::vector<StateEntry> states_;
-  std::vector<Expression> read_;  ///< every expression, for the description
+  std::vector<Expression> read_;  ///< all expressions, for the description
   int own_ = -1;                  ///< state whose derivative is being read
-  int output_ = -1;               ///< vertex
+  int output_ = -1;               ///< vertex of the output
   std::vector<std::pair<int, int>> requirement_vertices_;
   std::vector<int> instant_vertices_;
 };
