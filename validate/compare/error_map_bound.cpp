@@ -1,5 +1,4 @@
-// What noise alone stays below in an error map: quantiles of the F distribution (and of chi-square) by the
-// incomplete beta (gamma) function.
+// Noise bounds of an error map: quantiles of the F distribution by the incomplete beta function.
 #include <cmath>
 
 #include "validate/compare/error_map.hpp"
@@ -39,7 +38,7 @@ double incomplete_beta(double a, double b, double x) {
 }  // namespace
 
 double noise_bound(int values, int freedom, double probability) {
-  // A known variance is one estimated from very many samples.
+  // A known variance is the limit of many degrees of freedom.
   const double m = values, nu = freedom > 0 ? freedom : 1e9;
   const auto tail = [&](double f) { return incomplete_beta(nu / 2, m / 2, nu / (nu + m * f)); };
   double low = 1e-6, high = 10;
