@@ -399,7 +399,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
-  // the start is fitted only if residuals are then within noise: an incomplete model would be biased by it
+  // the start is fitted only if residuals are then within noise; an incomplete model would bias it
   const auto fitted = [&] {
     for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;

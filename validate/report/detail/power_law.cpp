@@ -9,14 +9,14 @@
 namespace swingbank::validate::report {
 namespace {
 
-/// A variable of Student's distribution stays within so much of 0, on both sides, with a probability of 95 %.
+/// Returns the two-sided 95 % quantile of Student's t distribution.
 double student95(std::size_t freedom) {
   static constexpr std::array<double, 10> kQuantiles = {12.706, 4.303, 3.182, 2.776, 2.571,
                                                         2.447,  2.365, 2.306, 2.262, 2.228};
   if (freedom <= kQuantiles.size()) return kQuantiles.at(freedom - 1);
   const double z = constants::normal95, v = static_cast<double>(freedom);
-  return z +
-         (z * z * z + z) / (4 * v);  // Cornish and Fisher's first term: 2.195 for 11, where 2.201 is right
+  return z + (z * z * z + z) /
+                 (4 * v);  // first Cornish-Fisher term: 2.195 for 11 degrees of freedom (exact: 2.201)
 }
 
 }  // namespace
