@@ -32,7 +32,7 @@ fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
   return f;
 }
 
-/// chi2 of all events with their states as given; infinite where the plant cannot be driven.
+/// Returns chi2 of all events with fixed states; infinite if the plant cannot be simulated.
 double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                const std::vector<fit::EventState>& states) {
   double sum = 0;
@@ -89,14 +89,14 @@ class Calibrating {
     learn();
     judge();
   }
-  /// Throws the best fit so far, if there is any.
+  /// Throws InterruptedFit with the best fit so far, or Interrupted if there is none.
   [[noreturn]] void throw_reached() const {
     if (!c_.fit.parameters.empty()) throw fit::InterruptedFit{{}, c_.fit};
     const auto best = std::ranges::min_element(reached_, {}, fit::penalised);
     if (best != reached_.end()) throw fit::InterruptedFit{{}, *best};
     throw Interrupted{};
   }
-  /// Keeps a fit for the case that the calibration is interrupted.
+  /// Keeps a fit for throw_reached().
   void reached(const fit::Fit& f) {
     const std::lock_guard guard(reaching_);
     if (!f.parameters.empty() && f.failed.empty() && std::isfinite(fit::penalised(f))) reached_.push_back(f);
@@ -104,8 +104,7 @@ class Calibrating {
   void tell(event::Phase phase, int done, int total) const {
     if (options_.progress) options_.progress(phase, "", done, total);
   }
-  /// Fits every event by itself, with only its own state free. Events that were seen keep the state of the
-  /// common fit if that is better.
+  /// Fits the state of every event by itself, with fixed parameters.
   std::vector<fit::EventFit> each_alone(const sim::plant::Plant& plant, event::Phase phase) const {
     std::vector<fit::EventFit> fits(c_.prepared.size());
     in_parallel(
@@ -117,8 +116,8 @@ class Calibrating {
     return fits;
   }
 
-  /// From the closed form, where there is one; from the model's own values; and from drawn sets, unless the
-  /// closed form has led to where nothing but noise is left.
+  /// Searches from the closed form, if there is one, the model's own values and the given starts. Random sets
+  /// follow, unless the fit from the closed form has residuals within noise.
   void search() {
     std::vector<fit::EventState> states;
     for (std::size_t e = 0; e < before_.size(); ++e)
@@ -150,7 +149,7 @@ class Calibrating {
   };
   using Starts = std::vector<Start>;
 
-  /// The best of the sets drawn about the model's own values.
+  /// Returns the best of the random parameter sets about the model's values.
   [[nodiscard]] Starts drawn(const Screen& screen, const std::vector<fit::EventState>& states) const {
     std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
     std::vector<std::pair<double, std::size_t>> order(draws.size());
@@ -213,8 +212,8 @@ class Calibrating {
     c_.fit = *best;
   }
 
-  /// Predicts from sample to sample what noise of the played-in voltage becomes behind the fitted plant; the
-  /// fit goes on with the rest.
+  /// Whitens the fitted plant's response to noise of the played-in voltage by an innovations filter, then
+  /// refits.
   void whiten_voltage_noise() {
     fit::Fit whole;
     whole.plant = c_.fit.plant;
@@ -241,7 +240,7 @@ class Calibrating {
           {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
     before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
   }
-  /// Slopes of the events that are seen.
+  /// Returns the sensitivities of the fitted events.
   std::vector<fit::EventSlopes> slopes_seen(const sim::plant::Plant& plant) const {
     std::vector<fit::EventSlopes> slopes(seen_.size());
     in_parallel(
@@ -252,8 +251,8 @@ class Calibrating {
         [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(slopes.size())); });
     return slopes;
   }
-  /// Goes by Newton steps from where noise of the played-in voltage has pulled the fit to where the scores
-  /// are what that noise makes them.
+  /// Removes the bias due to noise of the played-in voltage. Newton steps solve for the parameters at which
+  /// the scores equal their expectation under that noise.
   void undo_voltage_noise() {
     const std::vector<double> fitted = fit::values_of(c_.fit.plant, free_);
     states_.clear();
@@ -297,24 +296,24 @@ class Calibrating {
     }
   }
   static constexpr int kPullRounds = 12;
-  static constexpr double kLongestPull = 0.5;  ///< of a step, in a parameter's belief
-  static constexpr double kShortest = 1e-4;    ///< likewise
-  static constexpr double kClose = 0.1;        ///< so near, the search ends [standard errors]
-  /// Information less what noise pretends; no direction of it is below zero.
+  static constexpr double kLongestPull = 0.5;  ///< longest step [prior standard deviations]
+  static constexpr double kShortest = 1e-4;    ///< shortest step [prior standard deviations]
+  static constexpr double kClose = 0.1;        ///< distance at which the search ends [standard errors]
+  /// Returns the information without the part that noise alone causes; negative eigenvalues are set to zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
     if (pull_.information.size() == 0) return data;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - pull_.information);
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
            eigen.eigenvectors().transpose();
   }
-  /// Information of the priors, in units of the axes of `plant`.
+  /// Returns the information of the priors per axis_unit() of `plant`.
   Eigen::MatrixXd belief_at(const sim::plant::Plant& plant) const {
     const auto n = static_cast<Eigen::Index>(free_.size());
     if (options_.spread <= 0) return Eigen::MatrixXd::Zero(n, n);
     return prior_information(model_.plant, plant, free_).asDiagonal();
   }
 
-  /// Fills in errors, correlations, what is not decided, and the event that would decide it.
+  /// Computes errors, correlations, poorly identified directions and helpful further events.
   void learn() {
     std::vector<fit::EventSlopes> slopes(c_.prepared.size());
     in_parallel(
@@ -351,11 +350,11 @@ class Calibrating {
     fill_parameters(inverse, unit, widening);
     c_.blurs = find_blurs(data, unit);
     if (!options_.only_given) try_others(data + belief, inverse, unit, widening);
-    for (std::size_t e = 0; e < slopes.size(); ++e)  // what uncertain parameters add to events they never saw
+    for (std::size_t e = 0; e < slopes.size(); ++e)  // effect of parameter uncertainty on held-out events
       allowance_.push_back(
           out_[e] ? unseen_allowance(fit::information(slopes[e]), robust, c_.prepared[e].values()) : 0.0);
   }
-  static constexpr double kColour = 0.5;  ///< how far apart samples of coloured noise count together [s]
+  static constexpr double kColour = 0.5;  ///< largest lag of the scores' covariance (Newey and West) [s]
 
   void fill_parameters(const Eigen::MatrixXd& inverse, const Eigen::VectorXd& unit,
                        const Eigen::VectorXd& widening) {
@@ -402,8 +401,8 @@ class Calibrating {
     }
   }
 
-  /// Allows for what taking the noise back costs. The optimum itself lay lower, so this cost is no sign of a
-  /// missing effect.
+  /// Adds the cost of the bias correction to the limits. The optimum had a lower chi-square, so this cost
+  /// does not indicate a missing effect.
   void allow_correction() {
     double cost = 0, values = 0;
     for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {
@@ -477,17 +476,17 @@ class Calibrating {
   const CalibrateOptions& options_;
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
-  std::vector<std::size_t> fitted_;  ///< the events that are not left out
+  std::vector<std::size_t> fitted_;  ///< indices of the events that are not held out
   event::WhitenedEvents seen_;       ///< these events
   std::vector<fit::EventFit> before_, after_;
   std::vector<double> allowance_;
   fit::VoltageNoise noise_;
   VoltagePull pull_;
-  sim::plant::Plant whitened_through_;   ///< the plant whose memory the noise has
-  std::vector<fit::EventState> states_;  ///< of the events seen, while the noise is taken back
+  sim::plant::Plant whitened_through_;   ///< plant of the innovations filter
+  std::vector<fit::EventState> states_;  ///< of the fitted events during the bias correction
   Eigen::VectorXd shift_;
   std::mutex reaching_;
-  std::vector<fit::Fit> reached_;  ///< fits of all starts so far, those that were interrupted too
+  std::vector<fit::Fit> reached_;  ///< fits of all starts so far, including interrupted ones
   Calibration c_;
 };
 

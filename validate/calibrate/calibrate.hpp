@@ -1,7 +1,7 @@
 #pragma once
-// Calibration: the free parameters of the present structure fitted to several events at once, from several
-// starts; what the records decide and what they cannot; and whether the structure holds after that, on the
-// events it was fitted to and on those left out.
+// Multistart calibration of a plant model's parameters on several events. Also computes standard errors and
+// intervals, lists parameters that the records do not identify, and judges the structure on fitted and
+// held-out events.
 #include <string>
 #include <vector>
 
@@ -11,135 +11,139 @@
 
 namespace swingbank::validate::calibrate {
 
-/// A further start of the search, and the name that reports give it.
+/// Additional start of the search, with its name in reports.
 struct GivenStart {
   std::string name;
   sim::plant::Plant plant;
 };
 
 struct CalibrateOptions {
-  double spread = thresholds::parameters.spread;  ///< relative uncertainty believed of the parameters
-  int draws = 24;  ///< parameter sets tried as starts, unless the machine's closed form is good enough
-  int starts = 2;  ///< how many of these are refined beside the model's own values
+  double spread = thresholds::parameters.spread;  ///< relative prior standard deviation of the parameters
+  int draws = 24;  ///< random parameter sets evaluated as starts, unless the closed form fits well enough
+  int starts = 2;  ///< number of the best draws that are refined
   std::uint64_t seed = 1;
   std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
-  std::vector<std::string> fixed;             ///< "GENROU.Xl": stays as it is
-  std::vector<GivenStart> given;              ///< starts beside the model's own values and those drawn
-  bool only_given = false;                    ///< starts from `given` alone, and no further event is tried
+  std::vector<std::string> fixed;             ///< names of fixed parameters, e.g. "GENROU.Xl"
+  std::vector<GivenStart> given;              ///< starts in addition to the model's own values and the draws
+  bool only_given = false;                    ///< use only `given` as starts and simulate no further events
   std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
-  double adequate =
-      thresholds::adequacy.misfit;  ///< chi2 per value that interpolation and the played-in voltage may leave
+  /// Least limit of the reduced chi-square; it allows for interpolation of the played-in voltage.
+  double adequate = thresholds::adequacy.misfit;
   event::FitEventOptions events = {};
   event::Progress progress = {};
 };
 
-/// One channel of one event in the fit, which moves the event's own state. The errors that commands show are
-/// those of compare::error_table.
+/// Errors of one channel of one event in the fit, with the event's own switching times and start fitted.
+/// Commands show the errors of compare::error_table() instead.
 struct ChannelScore {
   playin::Output channel;
   std::string unit;
   double scale = 1;                      ///< units in 1 pu of the record's base
   double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]
-  double over_noise = 0;                 ///< rms_after over the noise that the fit is weighted by
+  double over_noise = 0;                 ///< rms_after / standard deviation of the noise in the fit's weights
 };
+/// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
   std::string record;
-  bool seen = true;              ///< false: left out of the fit; only its own state was fitted
-  double before = 0, after = 0;  ///< chi2 per value
-  double limit = 0;              ///< limit of chi2 per value; above it, more than noise is left
-  double colour = 0;             ///< correlation of neighbouring samples of the pre-event residual
+  bool seen = true;              ///< false: held out; only the event's own state was fitted
+  double before = 0, after = 0;  ///< reduced chi-square
+  double limit = 0;              ///< limit of the reduced chi-square for noise alone
+  double colour = 0;             ///< lag-1 autocorrelation of the pre-event residual
   std::vector<ChannelScore> channels;
   [[nodiscard]] bool adequate() const { return thresholds::within_limit(after, limit); }
 };
 
-/// Parameters that move together without the records noticing.
+/// Poorly identified direction in parameter space: moving along it hardly changes the simulated response.
 struct Blur {
   struct Member {
     int parameter;  ///< index into Calibration::parameters
-    double change;  ///< along the direction [unit of the parameter], for one standard deviation
+    double change;  ///< change for one standard deviation along the direction [unit of the parameter]
   };
   std::vector<Member> members;  ///< the largest first
-  double decided = 0;           ///< share of this direction that the records decide
-  bool alone = false;           ///< one parameter by itself: it leaves no trace in the records
+  double decided = 0;           ///< share of the direction's posterior precision that comes from the records
+  bool alone = false;           ///< the direction is a single parameter
 };
 
-/// An event that the records do not hold, tried in simulation.
+/// Simulated event that was not recorded, with the parameter errors that it would give.
 struct Candidate {
   std::string what;
   std::vector<double> error;  ///< standard error of each parameter with this event added [unit]
 };
 
 struct CalibratedParameter {
-  fit::FittedParameter fit;    ///< error and interval: widened where the residual is coloured
-  double curvature_error = 0;  ///< standard error as the curvature alone says
-  double shift = 0;            ///< shift by noise of the played-in voltage, which has been taken back [unit]
-  int best_candidate = -1;     ///< index of the event that would narrow the error most; -1: none by a fifth
-  double narrowed = 1;         ///< its error with that event / without
+  fit::FittedParameter fit;    ///< error and interval include the widening for coloured residuals
+  double curvature_error = 0;  ///< standard error from the curvature alone, for white noise [unit]
+  double shift = 0;            ///< correction applied for noise of the played-in voltage [unit]
+  int best_candidate = -1;     ///< index of the event that reduces the error most; -1: none by a fifth
+  double narrowed = 1;         ///< standard error with that event / without it
 };
 
 enum class Adequacy {
-  adequate,         ///< before and after: the parameters were as good
-  parameters_poor,  ///< only after: the structure holds, the parameters did not
-  structure_poor,   ///< what is left survives the refit: something is missing
+  adequate,         ///< residuals are within noise before and after the fit
+  parameters_poor,  ///< residuals are within noise only after the fit
+  structure_poor,   ///< residuals exceed noise after the fit: a model component is missing
 };
 
-/// One start of the search.
+/// Result of one start of the search.
 struct StartScore {
   std::string name;              ///< "closed form", "model", "network", "draw 3"
-  double before = 0, after = 0;  ///< chi2 per value over the events seen; infinite where it cannot be run
-  bool agrees = false;           ///< came to the best optimum
+  double before = 0, after = 0;  ///< reduced chi-square of the fitted events; infinite if it cannot be run
+  bool agrees = false;           ///< reached the best optimum
 };
 
 struct Calibration {
   plant::PlantModel model;  ///< with the fitted values
   Adequacy adequacy = Adequacy::adequate;
-  thresholds::Ruling ruling;  ///< what decided whether the structure holds
+  thresholds::Ruling ruling;  ///< criterion and figures behind `adequacy`
   std::string sentence;
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;
   std::vector<Blur> blurs;
   std::vector<Candidate> candidates;
   std::vector<EventScore> events;
-  double before = 0, after = 0, limit = 0;  ///< chi2 per value over the events seen
-  int starts = 0, agreeing = 0;             ///< refined starts; how many came to the same optimum
-  std::vector<StartScore> started;          ///< each refined start, in the order tried
+  double before = 0, after = 0, limit = 0;  ///< reduced chi-square of the fitted events
+  int starts = 0, agreeing = 0;     ///< number of refined starts; number that reached the best optimum
+  std::vector<StartScore> started;  ///< each refined start, in the order tried
   bool converged = false;
-  double voltage_noise = 0;             ///< share of the pre-event movement of V that is the instrument's
-  fit::Fit fit;                         ///< of the events seen
+  double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
+  fit::Fit fit;                         ///< fit of the events that are not held out
   std::vector<fit::EventState> states;  ///< of every event, at the fitted parameters
   event::WhitenedEvents prepared;       ///< every event, in the order given
   double seconds = 0;
 };
 
-/// Throws InputError: no events, unknown names in `held_out` or `fixed`, all events held out, records without
-/// a pre-event, a model that cannot hold its operating point.
+/// Calibrates `model` on the records that are not held out. Throws InputError: no events, unknown names in
+/// `held_out` or `fixed`, all events held out, records without a pre-event, or a model without a steady state
+/// at its operating point.
 Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
                       const CalibrateOptions& options);
 
-/// The plant's free parameters, and the errors of its instruments that can be taken back, without those in
-/// `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, none left.
+/// Returns the plant's free parameters and the invertible instrument errors, without those in `fixed`
+/// ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, or no free parameter.
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
                                                   const std::vector<std::string>& fixed);
 
-/// Which of the events are left out: by record name (with or without ending) or number from 1.
+/// Returns one flag per record: true where `names` holds its name (with or without extension) or its number
+/// from 1. Throws InputError: no record, unknown names, or every record held out.
 std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
 
-/// Number of samples that the noise was estimated from, less one for each event.
+/// Returns the number of pre-event samples over all events, less one per event.
 int pre_event_samples(const event::WhitenedEvents& events);
 
-/// Limit of chi2 per value for nothing but noise, which one in a thousand exceeds. It allows for residuals as
-/// coloured as the event's pre-event stretch and for a noise that was estimated from `pre_event` samples, and
-/// is at least `least`.
+/// Returns the limit of an event's reduced chi-square that noise alone exceeds with probability 0.001, at
+/// least `least`. It allows for the autocorrelation of the pre-event residual (Bartlett) and for a noise
+/// level estimated from `pre_event` samples.
 double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
 
-/// What uncertain parameters add to the chi2 per value of an event that they were not fitted to: mean
-/// and 3.09 standard deviations. One event in a thousand exceeds it where the uncertainty is that of many
-/// directions, and two in a hundred where one direction governs, because a single square has a longer tail.
-/// `information`: of that event; `covariance` of the parameters in the same units.
+/// Returns what parameter uncertainty adds to the reduced chi-square of a held-out event: the mean plus 3.09
+/// standard deviations. The probability of exceeding it is about 0.001 if many directions are uncertain, and
+/// about 0.02 if one direction dominates (a single square has a longer tail). `information` is that of the
+/// event, `covariance` that of the parameters, in the same units.
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
 
-/// Misfit of one event before and after, seen or not. Both fits were made with the noise of `event`.
+/// Returns the reduced chi-square and channel errors of one event before and after. Both fits must use the
+/// noise of `event`; otherwise throws std::logic_error.
 EventScore score_event(event::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
 

@@ -18,7 +18,7 @@ namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// What stands fixed: z[i] = value of parameter i over its start.
+/// Scaling of the fit: z[i] = value of parameter i / its start value.
 struct Setting {
   const plant::PlantModel& model;
   const std::vector<fit::FreeParameter>& free;
@@ -32,7 +32,7 @@ struct Setting {
   }
 };
 
-/// P and Q of the model less those measured [pu], and their slopes along z.
+/// Cost function: modelled - measured P and Q [pu], and their Jacobian with respect to z.
 class EventResidual : public ceres::CostFunction {
  public:
   EventResidual(const Setting& setting, const event::FitEvent& event) : setting_(setting), event_(event) {
@@ -56,9 +56,9 @@ class EventResidual : public ceres::CostFunction {
       for (std::size_t i = 0; i < along.size(); ++i)
         write(r.slopes[i].value, false, slopes, width, static_cast<int>(i));
     } catch (const InputError&) {
-      return false;  // the search turns back
+      return false;  // Ceres shortens the step
     } catch (const Interrupted&) {
-      return false;  // nothing is thrown through Ceres
+      return false;  // exceptions must not pass through Ceres
     }
     return true;
   }
@@ -80,7 +80,7 @@ class EventResidual : public ceres::CostFunction {
   const event::FitEvent& event_;
 };
 
-/// The event as the fitted curves meet it, in units of noise as everywhere else.
+/// Returns the event's whitened residuals with the prepared switching times and start.
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
                         const event::WhitenedEvents& events, std::size_t e) {
   fit::EventFit f;
@@ -88,8 +88,8 @@ fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
   return f;
 }
 
-/// Inverse over the parameters that have any slope; infinite for the others, or for all where those left are
-/// singular.
+/// Returns the inverse over the parameters with non-zero sensitivity; infinite for the others, or for all if
+/// the remaining matrix is singular.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
   std::vector<Eigen::Index> moving;
   for (Eigen::Index i = 0; i < curvature.rows(); ++i)
@@ -102,7 +102,7 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
   return back;
 }
 
-/// Ends a search that is interrupted.
+/// Ends the search on interruption.
 class UntilInterrupted : public ceres::IterationCallback {
  public:
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
@@ -184,7 +184,7 @@ class CurveFitting {
       if (!out_[e]) ended.reached.values += events_[e].values();
     throw ended;
   }
-  /// As such tools state them: from the curvature and the residual's own size, noise taken as white.
+  /// Computes intervals as such tools do: from curvature and residual variance, for white noise.
   void intervals() {
     const auto n = static_cast<Eigen::Index>(free_.size());
     Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);

@@ -1,9 +1,8 @@
 #pragma once
-// The usual way, as a baseline: curves of P and Q fitted by least squares from the model's own values, as
-// parameter derivation tools do it (EPRI's PPPD, MATLAB's lsqnonlin). The model is the file's, with its
-// instruments, and is played as in `calibrate`; nothing else is shared. Switching instants stand half-way
-// between samples, every event starts where the pre-event mean says, samples weigh alike, nothing is believed
-// of a parameter but its bounds, and there is one start.
+// Baseline: plain least squares of P and Q from the model's own values, as parameter derivation tools do it
+// (EPRI's PPPD, MATLAB's lsqnonlin). It shares the model, its instruments and the playback with `calibrate`,
+// and nothing else. Switching times lie half-way between samples, and every event starts at its pre-event
+// mean. All samples have equal weight, there are no priors but bounds, and there is one start.
 #include <functional>
 #include <string>
 #include <vector>
@@ -14,28 +13,28 @@ namespace swingbank::validate::calibrate {
 
 struct CurveFitOptions {
   std::vector<std::string> held_out;   ///< record names (or their numbers, from 1) left out of the fit
-  std::vector<std::string> fixed;      ///< "GENROU.Xl": stays as it is
-  event::FitEventOptions events = {};  ///< measured_states is not used: P and Q are fitted
+  std::vector<std::string> fixed;      ///< names of fixed parameters, e.g. "GENROU.Xl"
+  event::FitEventOptions events = {};  ///< measured_states is ignored: only P and Q are fitted
   int iterations = 200;
   double adequate = thresholds::adequacy.misfit;  ///< as CalibrateOptions::adequate
 };
 
 struct CurveFit {
   plant::PlantModel model;  ///< with the fitted values
-  /// Interval: s^2 (J'J)^-1 with s^2 = RSS / (values - parameters), as such tools state it; infinite where
-  /// J'J is singular.
+  /// Intervals from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values - parameters) \f$, as such tools
+  /// report them; infinite where \f$ J^T J \f$ is singular.
   std::vector<fit::FittedParameter> parameters;
-  std::vector<EventScore> events;        ///< as the baseline sees them: without a state of their own
-  double rms_before = 0, rms_after = 0;  ///< of P and Q over the events seen [pu on the record's base]
-  double before = 0, after = 0,
-         limit = 0;  ///< chi2 per value over the events seen; largest limit of an event
+  std::vector<EventScore> events;        ///< with prepared switching times and start, which are not fitted
+  double rms_before = 0, rms_after = 0;  ///< of P and Q over the fitted events [pu on the record's base]
+  /// Reduced chi-square of the fitted events; largest limit of one of them.
+  double before = 0, after = 0, limit = 0;
   int iterations = 0;
   bool converged = false, adequate = false;  ///< adequate: every event within its limit
   std::string sentence;
   double seconds = 0;
 };
 
-/// Throws InputError as calibrate does.
+/// Fits the records that are not held out. Throws InputError as calibrate().
 CurveFit curve_fit(const plant::PlantModel& model, std::vector<record::Record> records,
                    const CurveFitOptions& options);
 

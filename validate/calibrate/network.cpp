@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kBridged = 3.0;  ///< standard deviations of what is believed of a parameter
+constexpr double kBridged = 3.0;  ///< largest distance from the training range [prior standard deviations]
 
 NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
   NetworkEstimate e;
@@ -33,7 +33,7 @@ NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
   return e;
 }
 
-/// Whether a plant believed to be `value`, `spread` off, may be one of those between low and high.
+/// Returns whether `value` is within kBridged prior standard deviations (`spread`, relative) of [low, high].
 bool within_reach(double value, double low, double high, double spread) {
   const double reach = kBridged * spread * std::abs(value);
   return value == 0 || (value + reach >= low - 1e-9 && value - reach <= high + 1e-9);
@@ -47,7 +47,7 @@ NetworkEstimate read_estimate(const std::filesystem::path& file) {
   if (j.is_object() && j.value("format", "") == "swingbank-estimate-2") {
     try {
       return parse(j, file);
-    } catch (const json::exception&) {  // said below
+    } catch (const json::exception&) {  // reported below
     }
   }
   throw InputError({"no estimate of a network", file.string(), "it is not what predict writes",

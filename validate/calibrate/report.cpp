@@ -14,14 +14,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Bytes of UTF-8 that begin a character.
+/// Number of UTF-8 characters.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
-/// JSON has no infinity and no NaN.
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
-/// Moved far beyond what its spread believes: the belief pulls it back, and others with it.
+/// Returns whether a value is so far from the model's that the prior biases it and correlated parameters.
 bool strained(const fit::FittedParameter& p) {
   const bool logarithmic = p.start > 0 && p.value > 0;
   const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;

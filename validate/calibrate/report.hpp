@@ -1,5 +1,5 @@
 #pragma once
-// A calibration as text for the terminal and as JSON.
+// Calibration report as terminal text and JSON.
 #include <string>
 #include <vector>
 
@@ -9,21 +9,21 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Parameters: start, value, standard error, 95 % interval, share decided by the records.
+/// Table of parameters: start, value, standard error, 95 % interval, share determined by the records.
 report::Table parameter_table(const Calibration& c);
-/// Event and channel: rms before and after in MW or Mvar, misfit with its limit, seen or unseen.
+/// Table of events: fitted or unseen, reduced chi-square before and after, and its limit.
 report::Table event_table(const std::vector<EventScore>& events);
-/// A table for a terminal: columns aligned, the first to the left.
+/// Table for a terminal with aligned columns, the first left-aligned.
 std::string aligned(const report::Table& table);
 
-/// Verdict, tables, what cannot be told and which event would tell it.
+/// Verdict, tables, parameters that are not identified, and events that would identify them.
 std::string terminal_report(const Calibration& c);
 nlohmann::json calibration_json(const Calibration& c);
 nlohmann::json event_json(const EventScore& e);
-/// Where the values come from: head comment of the plant file.
+/// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const Calibration& c, const std::string& command_line);
 std::string adequacy_name(Adequacy adequacy);
-/// What a blur says, as a sentence.
+/// Sentence that describes a poorly identified direction.
 std::string describe(const Calibration& c, const Blur& blur);
 
 }  // namespace swingbank::validate::calibrate

@@ -1,4 +1,4 @@
-// Misfit of events and channels beside what noise alone leaves; which events and parameters take part.
+// Reduced chi-square of events, its limit for noise alone, and the choice of events and parameters.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr int kLags = 10;  ///< samples over which noise may be coloured
+constexpr int kLags = 10;  ///< largest lag of the noise's autocorrelation [samples]
 
-/// Correlations of the whitened residual before the event at lags 1..kLags, its channels pooled.
+/// Returns the autocorrelation of the whitened pre-event residual at lags 1..kLags, pooled over the channels.
 std::vector<double> correlations(const event::FitEvent& event, const fit::EventFit& fitted) {
   std::vector<double> sums(kLags + 1, 0.0);
   const int n = std::min(event.start.samples, event.record.samples());
@@ -31,7 +31,7 @@ std::vector<double> correlations(const event::FitEvent& event, const fit::EventF
   return rho;
 }
 
-/// Root mean square of model - measured over what is compared [pu].
+/// Returns the RMS of model - measured over the compared samples [pu].
 double rms(const event::FitEvent& event, const fit::EventFit& fitted, std::size_t c) {
   const auto& measured = event.measured(event.channels[c]);
   double sum = 0;
@@ -47,10 +47,10 @@ double rms(const event::FitEvent& event, const fit::EventFit& fitted, std::size_
 }  // namespace
 
 double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least) {
-  double spread = 1;  // of a sum of squares of a coloured series (Bartlett), against a white one
+  double spread = 1;  // variance of a sum of squares of coloured noise / that of white noise (Bartlett)
   const int n = std::max(2, event.start.samples);
   for (const double r : correlations(event, fitted))
-    spread += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is what white noise shows
+    spread += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is the expectation for white noise
   const double samples = 2 * spread / event.values();
   const double estimate =
       2 * spread / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
@@ -64,7 +64,7 @@ int pre_event_samples(const event::WhitenedEvents& events) {
 }
 
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values) {
-  // chi2 is |J d + e|^2 for an error d of the parameters and white noise e
+  // chi2 = |J d + e|^2 for a parameter error d and white noise e
   const Eigen::MatrixXd form = information * covariance;
   const double mean = form.trace(), variance = 2 * (form * form).trace() + 4 * mean;
   return (mean + thresholds::adequacy.one_in_thousand * std::sqrt(std::max(variance, 0.0))) / values;

@@ -36,7 +36,7 @@ void require_base(double mva, const plant::PlantModel& model, const std::string&
                       "give the truth of the same machine"});
 }
 
-/// What `blind-test` writes: effects with their parameters by name.
+/// Reads a truth file of `blind-test`.
 Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
   note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
@@ -70,7 +70,7 @@ const Way::Value* find(const Way& way, const std::string& parameter) {
   const auto at = std::ranges::find(way.values, parameter, &Way::Value::parameter);
   return at == way.values.end() ? nullptr : &*at;
 }
-/// Every parameter of any way, in the order met.
+/// Returns all parameters of all methods in order of occurrence.
 std::vector<const Way::Value*> all_parameters(const std::vector<Way>& ways) {
   std::vector<const Way::Value*> all;
   for (const auto& way : ways)
@@ -80,7 +80,7 @@ std::vector<const Way::Value*> all_parameters(const std::vector<Way>& ways) {
   return all;
 }
 
-/// Every event of the calibration with another plant's parameters and a state of its own.
+/// Evaluates every event of the calibration with another plant's parameters; each event's state is fitted.
 std::vector<EventScore> try_plant(const sim::plant::Plant& plant, const Calibration& c) {
   std::vector<EventScore> events = c.events;
   in_parallel(

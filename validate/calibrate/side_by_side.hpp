@@ -1,6 +1,6 @@
 #pragma once
-// Several ways to a plant's parameters set side by side: values, intervals, the truth where it is known, and
-// what each leaves of every event.
+// Comparison of several estimates of a plant's parameters: values, intervals, known true values, and the
+// reduced chi-square of every event.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -14,14 +14,15 @@
 
 namespace swingbank::validate::calibrate {
 
-/// True values by "GENROU.H"; empty: not known.
+/// True values by name ("GENROU.H"); empty: unknown.
 using Truth = std::map<std::string, double>;
-/// From a plant file (.toml), or from the truth that `blind-test` sealed (.json). Throws InputError: neither,
-/// or on another MVA base than the model.
+/// Reads true values from a plant file (.toml) or a truth file of `blind-test` (.json). Throws InputError:
+/// neither of them, or another MVA base than the model's.
 Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model);
 
-/// One way: what it says of the parameters and what is left of the events then. Every event is met with its
-/// own switching instants and start, so that only the parameters differ.
+/// Estimate by one method, with the reduced chi-square of every event. Switching times and start of each
+/// event are fitted anew, so that methods differ in parameters only. The curve fit's own report is the
+/// exception.
 struct Way {
   std::string name;
   struct Value {
@@ -31,31 +32,32 @@ struct Way {
   std::vector<Value> values;
   std::vector<EventScore> events;  ///< `after`: with these values
 };
-/// The model as it is, without intervals.
+/// The model's own values, without intervals.
 Way way_of_model(const Calibration& c);
 Way way_of(const Calibration& c);
-/// The curve fit's parameters, tried on the events of the calibration.
+/// The curve fit's parameters, evaluated on the calibration's events.
 Way way_of(const CurveFit& f, const Calibration& c);
-/// The network's estimates where the plant has them, with its spread for an interval; `plant`: with them
-/// (estimated_plant). Where that plant cannot follow an event, what is left of it is infinite.
+/// The network's estimates that vary in training, with intervals of ±1.96 times its validation error. `plant`
+/// is the plant with these estimates (estimated_plant()). The reduced chi-square is infinite where that plant
+/// cannot follow an event.
 Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, const Calibration& c);
 
-/// How far one way is from the truth, over the parameters that both know.
+/// Error of an estimate over the parameters whose true value is known.
 struct Distance {
-  int parameters = 0;           ///< compared
-  int intervals = 0, held = 0;  ///< of them, with a 95 % interval; of those, that hold the truth
-  double relative = 0;          ///< rms of (value - truth) / |truth|
-  double mse = 0;               ///< mean of (value - truth)^2, raw units, as the thesis counts
+  int parameters = 0;           ///< number of parameters compared
+  int intervals = 0, held = 0;  ///< parameters with a finite 95 % interval; intervals that contain the truth
+  double relative = 0;          ///< RMS of (value - truth) / |truth|
+  double mse = 0;               ///< mean of (value - truth)^2 in raw units, as in the thesis
 };
 Distance distance(const Way& way, const Truth& truth);
 
 report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth);
 report::Table events_beside(const std::vector<Way>& ways);
-/// Both tables and, where the truth is known, how far each way is from it.
+/// Both tables and, if the truth is known, each method's error.
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth);
 nlohmann::json beside_json(const std::vector<Way>& ways, const Truth& truth);
 
-/// A curve fit by itself.
+/// Report of a curve fit alone.
 std::string terminal_report(const CurveFit& f, const Truth& truth);
 nlohmann::json curve_fit_json(const CurveFit& f, const Truth& truth);
 std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantModel& from,

@@ -26,7 +26,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 }
 
 namespace {
-/// "KPR and KIR together would do in place of KPM", of all alternatives.
+/// "KPR and KIR together would do in place of KPM", for all alternatives.
 std::string alternatives_text(const fit::Fewest& found) {
   std::string text;
   for (const auto& a : found.alternatives)

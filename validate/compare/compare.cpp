@@ -38,7 +38,7 @@ WindowError measure(const std::vector<double>& t, const std::vector<double>& res
   return e;
 }
 
-/// Samples that are left out in the middle of a window, on a straight line between their neighbours.
+/// Replaces samples that are left out by linear interpolation between their neighbours.
 std::vector<double> bridged(std::vector<double> values, const std::vector<char>& left_out) {
   for (std::size_t k = 0; k < left_out.size(); ++k) {
     if (!left_out[k]) continue;
@@ -53,8 +53,8 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<char>&
   return values;
 }
 
-/// Takes off what a rounding may have made: half a step of each value. Where noise does not blur the steps,
-/// what a slow signal is rounded by is slow too, and no noise.
+/// Reduces each residual by up to half a quantisation step. Without noise to dither it, the rounding error of
+/// a slow signal is slow too, so it cannot be treated as white noise.
 void take_rounding(std::vector<double>& residual, double step) {
   for (double& r : residual) r = std::copysign(std::max(0.0, std::abs(r) - step / 2), r);
 }
@@ -81,8 +81,8 @@ const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
   return p.Ifd;
 }
 
-/// Whether what was recorded has no noise of its own: P and Q before the event are the model's to within what
-/// interpolation leaves.
+/// Returns whether the record has no noise: before the event P and Q equal the model's within the
+/// interpolation error.
 bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
   if (e.playback.start.samples < 3) return false;
   const double floor = event::kLeastNoise * model.plant.mva / e.record.base.mva;
@@ -95,8 +95,9 @@ bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
   return least(e.record.P, e.playback.P) && least(e.record.Q, e.playback.Q);
 }
 
-/// Where nothing else is left, what the voltage does between its samples decides. Played in with every second
-/// sample the model answers differently; an error that goes with the square of the step is a third of that.
+/// Adds the interpolation error of the played-in voltage, which dominates in records without noise. It is a
+/// third of the change of the response when every second sample is omitted, for an error of second order in
+/// the step (Richardson).
 void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptions& options,
                        EventComparison& e) {
   if (e.record.component != record::Component::plant || !is_noiseless(model, e)) return;
@@ -124,7 +125,7 @@ void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptio
   }
 }
 
-/// Measures every channel, once the event's playback is there.
+/// Compares every channel of an event with a playback.
 void measure_channels(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
                       EventComparison& e) {
   const bool power = drive == DriveBy::power;
@@ -148,7 +149,7 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
           frequency_of(e.record.t, e.record.theta, base.frequency),
           frequency_of(e.record.t, e.playback.theta, base.frequency));
   }
-  const double per_machine = model.plant.mva / base.mva;  // floors are those of a machine on its own base
+  const double per_machine = model.plant.mva / base.mva;  // floors are on the machine's base
   const auto add_output = [&](playin::Output o, const std::vector<double>& measured,
                               const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
     const ChannelUnit u = channel_unit(o, base);
@@ -179,7 +180,7 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
   add_output(playin::Output::Ifd, e.record.Ifd, e.playback.Ifd, false, true);
 }
 
-/// Plays the record in with the event's switchings and measures every channel.
+/// Plays the record in with the event's switching times and compares every channel.
 void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
           EventComparison& e) {
   const playin::VoltageCurve curve(e.record, e.switchings);
@@ -190,7 +191,7 @@ void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOpt
   measure_channels(model, drive, options, e);
 }
 
-/// P and Q drive, as nothing else can.
+/// Plays P and Q in, because the record has neither angle nor frequency.
 void play_without_angle(const plant::PlantModel& model, const playin::PlayInOptions& options,
                         EventComparison& e) {
   try {
@@ -204,14 +205,14 @@ void play_without_angle(const plant::PlantModel& model, const playin::PlayInOpti
   }
 }
 
-/// Whether nothing but noise is left of the event by itself.
+/// Returns whether the event's residuals are within noise.
 bool explained(const EventComparison& e) {
   std::vector<EventComparison> one = {e};
   return judge(one).adequate;
 }
 
-/// Whether less is left of the judged channels in `other` than in `than`, on the whole: the mean of the
-/// squared errors' ratios.
+/// Returns whether `other` has smaller errors than `than`: mean ratio of the squared RMS of judged channels
+/// < 1.
 bool is_closer(const EventComparison& other, const EventComparison& than) {
   double ratios = 0, judged = 0;
   for (std::size_t c = 0; c < than.channels.size(); ++c) {
@@ -222,7 +223,7 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
   return ratios < judged;
 }
 
-/// Says how the instants were treated. `failed` is why they could not be moved, and empty where they could.
+/// Describes the fit of the switching times. `failed`: reason why it failed; empty if it did not.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
       e.record.component == record::Component::plant ? "P and Q" : "the compared signals";
@@ -301,7 +302,7 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   auto seen = bridged(c.residual, event.left_out);
   const std::span<const double> all(seen);
   const auto doubt = event.doubt.find(channel.name);
-  // Values that come in steps hide noise: what the steps leave is the least.
+  // Quantisation hides noise, so its variance step^2 / 12 is the least variance.
   const double step = record::quantum(measured), hidden = step * step / 12 - c.noise * c.noise;
   const double floor = std::hypot(channel.floor, std::sqrt(std::max(0.0, hidden)));
   const auto noise = estimate_noise(all.first(static_cast<std::size_t>(quiet)), floor);
@@ -335,7 +336,7 @@ std::vector<Window> event_windows(const record::Record& record,
   const double still = moved ? staged : std::min(first + pre_event, end);
   const double begins = slack + (switched ? std::min(switchings.front().time, staged) : still);
   const double over = slack + (switched ? switchings.back().time : still);
-  const bool known = switched || moved;  // else nothing tells when the event begins
+  const bool known = switched || moved;  // the start of the event is known
   const auto of_record = [&](double from, double to) {
     return fmt::format("{:.4g}–{:.4g} s of the record", from - first, to - first);
   };
@@ -398,7 +399,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
-  // a model that lacks something would move P and Q of the start to hide it
+  // the start is fitted only if residuals are then within noise; an incomplete model would bias it
   const auto fitted = [&] {
     for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
@@ -422,7 +423,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       step("instants and start are fitted", 1);
       try {
         if (EventComparison other = fitted(); is_closer(other, e)) e = std::move(other);
-      } catch (const InputError& error) {  // a fit may take fewer steps, and the play-in above stands
+      } catch (const InputError& error) {  // the playback without a fit remains valid
         failed = error.problems().front().sentence();
       }
     }
@@ -430,7 +431,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   step("what is left is measured", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
   explain(e, jumps, options.fit_switchings && !no_angle, failed);
-  if (options.drive == DriveBy::power) {  // with the instants that the voltage told
+  if (options.drive == DriveBy::power) {  // with the switching times found by the voltage
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(
         "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "

@@ -16,7 +16,7 @@ constexpr Band kBands[] = {{"< 0.1 Hz", 0.0, 0.1},
                            {"0.8–3 Hz", 0.8, 3.0},
                            {"> 3 Hz", 3.0, std::numeric_limits<double>::infinity()}};
 
-/// Autocovariance of x (mean taken off) at lags 0 ... most, over n.
+/// Returns the biased autocovariance of x (sum over n) at lags 0 ... most.
 std::vector<double> autocovariance(std::span<const double> x, int most) {
   const auto n = x.size();
   const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(n);
@@ -29,7 +29,8 @@ std::vector<double> autocovariance(std::span<const double> x, int most) {
   return r;
 }
 
-/// Autoregressive coefficients, x[i] = a[0] x[i-1] + a[1] x[i-2] + ... + e, of the order with the best BIC.
+/// Returns the autoregressive coefficients, x[i] = a[0] x[i-1] + a[1] x[i-2] + ... + e, of the order with the
+/// lowest BIC (Levinson recursion).
 std::vector<double> autoregression(const std::vector<double>& r, std::size_t n) {
   std::vector<double> a, best;
   double rest = r[0], least = std::log(r[0]);
@@ -50,15 +51,15 @@ std::vector<double> autoregression(const std::vector<double>& r, std::size_t n) 
   return best;
 }
 
-/// Cosines of one window of n samples: mode k is a_k cos(pi k (2 i + 1) / 2n), of unit norm.
+/// Orthonormal cosines of a window of n samples: mode k is a_k cos(pi k (2 i + 1) / 2n).
 class Cosines {
  public:
   explicit Cosines(std::size_t n) : n_(n), table_(4 * n) {
     for (std::size_t i = 0; i < 4 * n; ++i)
       table_[i] = std::cos(constants::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
-  /// Every mode's coefficient by the discrete cosine transform, which is a Fourier transform of the samples
-  /// in the order even ones up, odd ones down (Makhoul 1980).
+  /// Returns the coefficients of the discrete cosine transform: a Fourier transform of the samples with even
+  /// indices ascending, then odd indices descending (Makhoul 1980).
   [[nodiscard]] std::vector<double> coefficients(std::span<const double> x) {
     if (n_ == 1) return {x[0]};  // kissfft reads past the end of one sample
     std::vector<std::complex<double>> folded(n_), modes;
@@ -70,8 +71,8 @@ class Cosines {
              std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n_));
     return c;
   }
-  /// Variance of a coefficient under noise: sum over lags d of covariance times sum_i b(i) b(i + d), which
-  /// is a geometric series.
+  /// Returns the variance of coefficient k under noise: sum over lags d of the covariance times
+  /// sum_i b(i) b(i + d), a geometric series.
   [[nodiscard]] double variance(const ChannelNoise& noise, std::size_t k) const {
     const double n = static_cast<double>(n_);
     double sum = noise.covariance[0];
@@ -93,7 +94,7 @@ class Cosines {
   Eigen::FFT<double> fft_;
 };
 
-/// Sums of a cell while it is filled.
+/// Accumulator of a bin.
 struct Filling {
   int values = 0;
   double square = 0, relative = 0;
@@ -144,7 +145,7 @@ WindowFilling fill(std::span<const double> x, double step, const ChannelNoise& n
   return f;
 }
 
-/// Samples of a window: [first, last).
+/// Returns the index range [first, last) of a window.
 std::pair<std::size_t, std::size_t> samples_of(std::span<const double> t, const Window& w, bool first) {
   const auto begin = first ? std::ranges::lower_bound(t, w.from) : std::ranges::upper_bound(t, w.from);
   const auto end = std::ranges::upper_bound(t, w.to);
@@ -176,7 +177,7 @@ ChannelNoise estimate_noise(std::span<const double> quiet, double floor) {
   std::vector<double>& c = noise.covariance;
   c = {r[0]};
   constexpr std::size_t kLongestCovariance =
-      400;  // samples; the noise of a slowly filtered channel is forgotten by then
+      400;  // samples; longer than the memory of a slowly filtered channel
   while (!a.empty() && c.size() < kLongestCovariance) {
     const std::size_t lag = c.size();
     double next = 0;
@@ -190,7 +191,7 @@ ChannelNoise estimate_noise(std::span<const double> quiet, double floor) {
   for (double& v : c) v *= bessel;
   c[0] += floor * floor;
   noise.sigma = std::sqrt(c[0]);
-  // A spectrum of p coefficients from n samples scatters about as a mean of n / p squares does.
+  // A spectrum of p coefficients from n samples has about n / p degrees of freedom.
   noise.freedom = std::max(1, static_cast<int>((n - 1) / (a.size() + 1)));
   return noise;
 }

@@ -1,6 +1,5 @@
 #pragma once
-// Where a model is wrong: the residual of one channel per window of time and band of frequency, normalised by
-// the coloured noise of the channel.
+// Error map: residual of one channel per time window and frequency band, normalised by its coloured noise.
 #include <limits>
 #include <span>
 #include <string>
@@ -9,52 +8,54 @@
 
 namespace swingbank::validate::compare {
 
-/// A stretch of the record: from < t <= to (the first one includes its start).
+/// Time window from < t <= to; the first one includes its start.
 struct Window {
   std::string name;
   double from, to;  ///< [s]
 };
 
-/// from <= f < to [Hz].
+/// Frequency band from <= f < to [Hz].
 struct Band {
   std::string_view name;
   double from, to;
 };
-/// Slow (governor, set points), swings between areas, swings of the plant, and what is faster.
+/// Bands of slow responses (governor, set points), inter-area modes, local modes, and faster responses.
 std::span<const Band> error_bands();
 
 /// Stationary noise of one channel.
 struct ChannelNoise {
   double sigma = 0;                ///< standard deviation [pu]
   std::vector<double> covariance;  ///< at lags of 0, 1, ... samples [pu^2]; zero beyond
-  int samples = 0;                 ///< number of samples it was estimated from; 0: known
-  int freedom = 0;                 ///< degrees of freedom of the estimate; 0: known
-  /// Variance of the mean of many samples, times their number.
+  int samples = 0;                 ///< number of samples of the estimate; 0: the noise is known
+  int freedom = 0;                 ///< degrees of freedom of the estimate; 0: the noise is known
+  /// Returns the spectral density at frequency zero: variance of the mean of n samples, times n [pu^2].
   [[nodiscard]] double slow() const;
 };
 
-/// Noise from a stretch in which nothing happens: its mean is taken off, and an autoregressive model
-/// (Levinson; order by BIC, at most 8) says how the noise is coloured. `floor` [pu] is added as white noise:
-/// what a computation leaves where a record has no noise. Needs at least 3 samples.
+/// Estimates the noise from samples of a steady state, less their mean, by an autoregressive model (Levinson;
+/// order by BIC, at most 8). `floor` [pu] is added as white noise, because interpolation leaves residuals in
+/// records without noise. Needs at least 3 samples.
 ChannelNoise estimate_noise(std::span<const double> quiet, double floor);
-/// Known white noise.
+/// White noise of known standard deviation `sigma` [pu].
 ChannelNoise white_noise(double sigma);
 
+/// Time-frequency bin of an error map.
 struct MapCell {
-  /// Independent values in the cell; 0: the window is too short for the band, nothing is known.
+  /// Number of independent components; 0: the window is too short for the band.
   int values = 0;
-  double rms = 0;  ///< of the residual's part in window and band [pu]
-  /// Normalised RMS: sqrt(mean of the squared components, each over its variance under coloured noise); 1
-  /// for noise alone. It is not rms / sigma: a window or band holds a part of the noise only.
+  double rms = 0;  ///< of the residual's components in window and band [pu]
+  /// Normalised RMS: square root of the mean of \f$ c_k^2 / \mathrm{var}(c_k) \f$ over the components, with
+  /// variances under coloured noise; 1 for noise alone. It differs from rms / sigma, because a window or band
+  /// contains only a part of the noise.
   double normalised = std::numeric_limits<double>::quiet_NaN();
-  double bound = std::numeric_limits<double>::quiet_NaN();  ///< noise alone stays below; set by set_bounds()
+  double bound = std::numeric_limits<double>::quiet_NaN();  ///< of `normalised` for noise; see set_bounds()
   [[nodiscard]] bool empty() const { return values == 0; }
-  /// What noise alone may leave [pu].
+  /// Returns the RMS that noise alone may reach [pu].
   [[nodiscard]] double allowed() const { return normalised > 0 ? rms / normalised * bound : 0.0; }
   [[nodiscard]] bool exceeds() const { return !empty() && normalised > bound; }
 };
 
-/// One channel of one event.
+/// Error map of one channel of one event.
 struct ErrorMap {
   struct Row {
     MapCell all;                 ///< every frequency, the mean included
@@ -62,34 +63,32 @@ struct ErrorMap {
   };
   std::vector<Row> rows;  ///< one per window
   MapCell whole;          ///< all windows, all frequencies
-  int freedom = 0;        ///< of the noise's estimate; 0: known
+  int freedom = 0;        ///< degrees of freedom of the noise estimate; 0: the noise is known
 };
 
 struct ErrorMapOptions {
-  int quiet = 0;  ///< samples before the event, whose mean is the model's start; 0: the start is exact
-  /// The first window's mean tells nothing: the model starts there.
+  int quiet = 0;  ///< pre-event samples whose mean is the model's start; 0: the start is exact
+  /// The model starts at the first window's mean, so that mean carries no information.
   bool starts_at_mean = true;
-  std::string_view skip = {};  ///< name of a window to leave out: its cells stay empty
-  /// What else may be in the residual by chance, one standard deviation each [shape][sample] [pu]; may be
-  /// null.
+  std::string_view skip = {};  ///< name of a window to leave out: its bins stay empty
+  /// Further random errors of the residual, one standard deviation each [shape][sample] [pu]; may be null.
   const std::vector<std::vector<double>>* shapes = nullptr;
 };
 
-/// Projects each window's residual on the orthonormal cosines of that window (DCT-II; mode k has k half
-/// periods). A mode belongs to the band of its frequency, and white noise of any window gives each mode the
-/// same variance. A band is empty where the window is shorter than half a period of the band's upper end; the
-/// mean of such a window is in `all` only. After the first window the mean also carries the error of the
-/// start. A large component leaks: of one of 100 x some 3 x are seen two bands away.
+/// Projects each window's residual on the window's orthonormal cosines (DCT-II; mode k has k half periods).
+/// A mode belongs to the band of its frequency; white noise gives every mode the same variance. A band is
+/// empty if the window is shorter than half a period of the band's upper edge; the window's mean then counts
+/// in `all` only. After the first window the mean's variance includes the error of the start. Large
+/// components leak: of a component of 100 x, about 3 x appears two bands away.
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
                    const std::vector<Window>& windows, const ChannelNoise& noise,
                    const ErrorMapOptions& options = {});
 
-/// The bound that sqrt(mean square of `values` noise values / estimated variance) exceeds with this
-/// probability. It is the square root of the F distribution's quantile; `freedom` = 0 stands for a known
-/// variance.
+/// Returns the bound that the normalised RMS of `values` noise components exceeds with this probability: the
+/// square root of the F distribution's quantile. `freedom` = 0 means a known variance.
 double noise_bound(int values, int freedom, double probability);
 
-/// Bound of every cell of all maps such that noise alone exceeds any of them with at most `probability`
+/// Sets the bound of every bin of all maps so that noise alone exceeds any of them with at most `probability`
 /// (Bonferroni).
 void set_bounds(std::span<ErrorMap* const> maps, double probability);
 

@@ -11,8 +11,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// Shade of a cell: 0 (good) within the bound, at once visible beyond it, and 1 from 25 × the bound, which is
-/// beyond dispute. The scale is logarithmic.
+/// Returns the shade of a bin: 0 within its bound, 0.35 just above it, rising logarithmically to 1 at 25 ×
+/// the bound.
 double shade(const MapCell& cell) {
   if (cell.empty() || !std::isfinite(cell.bound)) return -1;
   if (!cell.exceeds()) return 0;
@@ -49,7 +49,7 @@ void keep_worse(MapCell& worst, const MapCell& cell) {
   if (worst.empty() || cell.normalised / cell.bound > worst.normalised / worst.bound) worst = cell;
 }
 
-/// Events whose cell of this channel, window and band exceeds its bound, and how many have that cell.
+/// Text ", in n of m events": events in which the bin exceeds its bound, of those that have the bin.
 std::string events_beyond(const std::vector<LabelledMap>& maps, const std::string& channel,
                           const std::string& window, std::size_t band) {
   int beyond = 0, all = 0;
@@ -95,7 +95,7 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
   std::vector<std::string> windows = {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"};
   for (const auto& m : maps)
-    for (const Window& w : *m.windows)  // of records without a switching
+    for (const Window& w : *m.windows)  // names in records without a switching
       if (std::ranges::find(windows, w.name) == windows.end()) windows.push_back(w.name);
   for (const auto& channel : channels)
     for (const auto& window : windows) {

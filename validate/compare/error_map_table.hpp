@@ -8,7 +8,7 @@
 
 namespace swingbank::validate::compare {
 
-/// A map and what its numbers mean.
+/// Error map with the names and units of its figures.
 struct LabelledMap {
   std::string event, channel, unit;
   double scale = 1;  ///< units in 1 pu
@@ -16,22 +16,22 @@ struct LabelledMap {
   const ErrorMap* map = nullptr;
 };
 
-/// One row per event, channel and window; columns: RMS in units, then the normalised RMS over all frequencies
-/// and per band. A star marks what exceeds its bound; "–" a band the window cannot hold. The event's column
-/// is left out where all are of one event.
+/// Table with one row per event, channel and window: RMS in units, then the normalised RMS over all
+/// frequencies and per band. A star marks values above their bound, "–" a band for which the window is too
+/// short. The event column is omitted if there is one event only.
 report::Table map_table(const std::vector<LabelledMap>& maps);
-/// The same with the worst of all events (furthest beyond its bound) in each cell.
+/// The same table with the worst event in each bin (highest normalised RMS / bound).
 report::Table worst_map_table(const std::vector<LabelledMap>& maps);
 
-/// The maps in words: of each channel the window and band that are furthest beyond their bound, and in how
-/// many events they are beyond it.
+/// Sentence that names, per channel, the window and band furthest above their bound, and the number of events
+/// in which this bin exceeds it.
 std::string map_sentence(const std::vector<LabelledMap>& maps);
 
-/// Rows of cells: window, band ("all" over every frequency), values, rms_pu, normalised_rms and
+/// JSON rows, one per bin: window, band ("all": every frequency), values, rms_pu, normalised_rms and
 /// normalised_bound.
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map);
 
-/// "0.9 ×", "85 ×", "–" where it is not known.
+/// "0.9 ×" or "85 ×"; "–" if not finite.
 std::string times_noise(double ratio);
 
 }  // namespace swingbank::validate::compare

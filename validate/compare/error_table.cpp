@@ -20,7 +20,7 @@ std::string quantity(double value, const ChannelComparison& c) {
   return fmt::format("{:.4g} {}", value * c.scale, c.unit);
 }
 
-/// The channel of the model's playback of an event; null where the model could not follow it.
+/// Returns the channel of an event in a model's playback; nullptr if the model could not follow it.
 const ChannelComparison* find_channel(const Played& played, std::size_t event, const std::string& name) {
   if (event >= played.events.size()) return nullptr;
   const auto& channels = played.events[event].channels;

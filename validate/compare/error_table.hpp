@@ -1,5 +1,5 @@
 #pragma once
-// RMS, noise and their ratio of every event and channel: the one table and the one JSON of all commands.
+// Table and JSON of RMS, noise and RMS / noise per event and channel, common to all commands.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace swingbank::validate::compare {
 
-/// One row per event and channel, for each model RMS, noise σ and RMS / noise of the whole record
-/// (WindowError, ChannelComparison); of a single model the largest error too. `unseen`: names of the records
-/// that were not fitted to.
+/// Table with one row per event and channel: RMS, noise σ and RMS / noise of the whole record for each model
+/// (WindowError, ChannelComparison). For a single model it also has the largest error. `unseen`: names of
+/// held-out records.
 report::Table error_table(const std::vector<Played>& played, const std::vector<std::string>& unseen = {});
-/// The same as the terminal prints it, below its caption.
+/// The same table as terminal text below its caption.
 std::string error_text(const std::vector<Played>& played, const std::vector<std::string>& unseen = {});
-/// Rows of record, channel, model, unit, rms, noise and rms_over_noise (null without noise).
+/// JSON rows: record, channel, model, unit, rms, noise and rms_over_noise (null without noise).
 nlohmann::json errors_json(const std::vector<Played>& played);
 
 }  // namespace swingbank::validate::compare

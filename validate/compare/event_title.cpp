@@ -11,11 +11,11 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr double kFaultDip = 0.1;          ///< share of the voltage that at least is lost in a fault
+constexpr double kFaultDip = 0.1;          ///< least relative voltage dip of a fault
 constexpr double kFrequencyChange = 0.05;  ///< smallest change of a frequency event [Hz]
-constexpr double kFrequencyAverage = 1.0;  ///< over which the frequency is averaged [s]
+constexpr double kFrequencyAverage = 1.0;  ///< averaging time of the frequency [s]
 
-constexpr double kQuietTime = 120;  ///< beyond what any control of a plant takes [s]
+constexpr double kQuietTime = 120;  ///< longer than the response of any plant control [s]
 
 double mean_of(const std::vector<double>& x, std::size_t begin, std::size_t end) {
   return std::accumulate(x.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -23,7 +23,7 @@ double mean_of(const std::vector<double>& x, std::size_t begin, std::size_t end)
          static_cast<double>(end - begin);
 }
 
-/// Whether the voltage dips between the first and the last switching.
+/// Returns whether the voltage dips between the first and the last switching.
 bool is_fault(const EventComparison& e) {
   const record::Record& r = e.record;
   if (e.switchings.size() < 2 || r.V.size() != r.t.size()) return false;
@@ -35,7 +35,7 @@ bool is_fault(const EventComparison& e) {
   return mean_of(r.V, begin, end) < (1 - kFaultDip) * mean_of(r.V, 0, begin);
 }
 
-/// Largest change of the averaged frequency against that before the event [Hz]; 0 where it is not recorded.
+/// Returns the largest change of the averaged frequency from its pre-event mean [Hz]; 0 if not recorded.
 double frequency_change(const EventComparison& e) {
   const record::Record& r = e.record;
   const double nominal = r.base.frequency;

@@ -16,7 +16,7 @@ namespace {
 using thresholds::Errors;
 using thresholds::Phase;
 
-/// Where the windows of an event end, and what of them the limits leave out [s].
+/// Windows of an event without the intervals that the limits exclude.
 class Phases {
  public:
   Phases(const EventComparison& e, const thresholds::Acceptance& by) : e_(e) {
@@ -27,7 +27,7 @@ class Phases {
     if (switched) after_clearing_ = over_ + by.after_clearing;
     if (over_ > begins_) after_fault_ = begins_ + by.after_fault;
   }
-  /// Nothing where the sample is not judged.
+  /// Returns the window of a sample; none if it is not judged.
   [[nodiscard]] std::optional<Phase> of(std::size_t sample) const {
     const double t = e_.record.t[sample];
     if (!e_.left_out.empty() && e_.left_out[sample]) return std::nullopt;
@@ -41,7 +41,7 @@ class Phases {
   double begins_ = 0, over_ = 0, after_fault_ = -1e300, after_clearing_ = -1e300;
 };
 
-/// What is left in one window [% of MVA], `percent` of them in 1 pu.
+/// Returns the errors in one window [% of MVA]; 1 pu is `percent` of them.
 JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Phase phase,
                        const Phases& phases, double percent) {
   JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}, !e.switchings.empty()};
@@ -51,14 +51,14 @@ JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Pha
     ++row.samples;
     row.errors.me += error;
     row.errors.mae += size;
-    if (!(size <= row.errors.mxe)) row.errors.mxe = size;  // what is no number stays so in the sums
+    if (!(size <= row.errors.mxe)) row.errors.mxe = size;  // NaN propagates
   }
   if (row.samples > 0) row.errors.me /= row.samples, row.errors.mae /= row.samples;
   if (!std::isfinite(row.errors.mae)) row.errors.mxe = row.errors.mae;
   return row;
 }
 
-/// The movement of a channel after the last switching; nothing where it is too small to be judged.
+/// Returns the deviation of a channel after the last switching; none if it is too small to be judged.
 std::optional<Movement> movement_of(const EventComparison& e, const ChannelComparison& c,
                                     const Phases& phases, double percent, double limit) {
   if (c.measured.size() != c.residual.size()) return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<Movement> movement_of(const EventComparison& e, const ChannelCompa
                   100 * common / measured, limit};
 }
 
-/// The judged quantity that is nearest to its limit, or furthest beyond it.
+/// Text about the error nearest to its limit, or furthest above it.
 std::string nearest_text(const Fitness& f) {
   const auto ratio = [](const JudgedErrors& row) {
     return thresholds::nearest(row.errors, row.limits).ratio;
@@ -120,7 +120,7 @@ std::string caption(const Fitness& f) {
       f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
 }
 
-/// Each error from the row that is given for it.
+/// Table cells; each of the three errors comes from its own row in `from`.
 std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors& of,
                                    const std::array<const JudgedErrors*, 3>& from) {
   std::vector<report::Cell> cells = {event, of.channel, std::string(of.window())};

@@ -1,6 +1,5 @@
 #pragma once
-// Is the model fit for its purpose? The errors of P and Q of every event, window by window, as IEC 61400-27-2
-// counts them, beside engineering limits.
+// Fitness for purpose: errors of P and Q per event and window (IEC 61400-27-2) against engineering limits.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -12,58 +11,61 @@
 
 namespace swingbank::validate::compare {
 
-/// One channel of one event in one window.
+/// Errors of one channel of one event in one window.
 struct JudgedErrors {
   std::string event, channel;
   thresholds::Phase phase = thresholds::Phase::pre_fault;
   int samples = 0;
   thresholds::Errors errors, limits;  ///< [% of MVA]
-  bool switched = true;               ///< of the event: without a switching it has no fault
-  /// "post-fault"; "rest of record" where nothing is switched.
+  bool switched = true;               ///< the event has a switching; without one it has no fault window
+  /// Name of the window, e.g. "post-fault"; "start of record" or "rest of record" without a switching.
   [[nodiscard]] std::string_view window() const;
 };
 
-/// What P or Q of one event moves after its last switching, from its mean before the event.
+/// Deviation of P or Q from its pre-event mean after the last switching, and the model's error relative to
+/// it.
 struct Movement {
   std::string event, channel, unit;
-  double measured = 0;  ///< RMS [unit]
+  double measured = 0;  ///< RMS of the measured deviation [unit]
   double error = 0;     ///< RMS of modelled - measured [% of `measured`]
-  double share = 0;     ///< of the measured movement that the model makes (least squares) [%]
-  double limit = 0;     ///< of `error` [%]
+  double share = 0;     ///< least-squares share of the measured deviation in the simulated one [%]
+  double limit = 0;     ///< limit of `error` [%]
   [[nodiscard]] bool exceeds() const { return !(error <= limit); }
 };
 
+/// Verdict on fitness for purpose.
 struct Fitness {
   thresholds::Acceptance by;
-  double mva = 0;  ///< 100 %
+  double mva = 0;  ///< machine base: 100 % of the errors [MVA]
   std::vector<JudgedErrors> rows;
-  std::vector<Movement> movements;  ///< of channels that move enough to be judged (thresholds::movement)
-  std::string not_judged;           ///< why there is nothing to judge; empty where there is
-  /// Every error within its limit, and at least one judged.
+  std::vector<Movement> movements;  ///< channels with a large enough deviation (thresholds::movement)
+  std::string not_judged;           ///< reason why nothing was judged; empty if judged
+  /// Every error is within its limit, and at least one was judged.
   bool fit = false;
-  std::string sentence;  ///< "Fit for purpose: yes. ...", and the error that is nearest to its limit
-  /// Exit code of a command whose model is statistically complete or not; what is not judged decides nothing.
+  std::string sentence;  ///< "Fit for purpose: yes. ..." and the error nearest to its limit
+  /// Exit code for a statistically complete or incomplete model. If nothing was judged, `complete` alone
+  /// decides.
   [[nodiscard]] int exit_code(bool complete) const {
     return thresholds::exit_code(complete, not_judged.empty() ? fit : complete);
   }
 };
 
-/// `mva`: base of the plant's machine. Samples that are not compared, and those that the limits leave out
-/// after the first and the last switching, are no part of the errors.
+/// Judges the events' errors by the limits `by`. `mva` is the base of the plant's machine. Samples that are
+/// not compared are excluded, and so are those that the limits exclude after the first and last switching.
 Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
                       const thresholds::Acceptance& by);
-/// The same of events that could not be played, which is why.
+/// Fitness without a verdict, for the reason `why`.
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why);
 
-/// Event, channel and window: the three errors beside their limits.
+/// Table with one row per event, channel and window: the three errors and their limits.
 report::Table fitness_table(const Fitness& fitness);
-/// The same with the worst of all events in each row.
+/// The same table with the worst of all events in each row.
 report::Table worst_fitness_table(const Fitness& fitness);
-/// Measured movement of P and Q of each event, and how much of it the model makes.
+/// Table of the measured deviation of P and Q per event, and the share that the model reproduces.
 report::Table movement_table(const Fitness& fitness);
 nlohmann::json fitness_json(const Fitness& fitness);
 
-/// "Statistically complete: yes. ...": the other verdict, with the sentence that a command has for it.
+/// Text of the statistical verdict: "Statistically complete: yes." and the command's sentence.
 std::string complete_text(bool complete, const std::string& sentence);
 
 }  // namespace swingbank::validate::compare

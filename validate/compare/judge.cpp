@@ -1,4 +1,4 @@
-// Is nothing but noise left, and could the records have told?
+// Statistical verdict: residuals within noise, and sensitivity of the records.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// One cell of all maps, and what it is called.
+/// Bin of an error map with its name.
 struct NamedCell {
   const EventComparison* event;
   const ChannelComparison* channel;
@@ -38,13 +38,14 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
   return all;
 }
 
-/// Whether noise alone may leave more in the cell than the channel is large: nothing can be compared there.
+/// Returns whether noise alone may exceed the channel's nominal value in the bin, so that it has no
+/// information.
 bool tells_nothing(const NamedCell& named) { return !(named.cell->allowed() <= named.channel->size); }
 
-/// The cell in which noise may leave most, beside the size of its channel.
+/// Sentence about the bin with the largest ratio of noise to nominal value.
 std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
   const auto share = [](const NamedCell& n) { return n.cell->allowed() / n.channel->size; };
-  constexpr double kNoSize = 10;  // of a machine: beyond it a number says no more than that it runs away
+  constexpr double kNoSize = 10;  // largest ratio shown as a number; above it the model is clearly unstable
   const NamedCell& most = *std::ranges::max_element(cells, {}, share);
   const std::string by = share(most) < kNoSize ? fmt::format("{:.3g} {}, {:.3g} times its size",
                                                              most.cell->allowed() * most.channel->scale,

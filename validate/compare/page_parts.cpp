@@ -14,7 +14,7 @@ namespace swingbank::validate::compare {
 namespace {
 
 constexpr const char* kInk = "#5b6b7b";
-/// Of the models in the order in which they are given: the submitted one is red.
+/// Colours of the models in their order: the submitted model is red.
 constexpr std::array kModelColours = {"#c0392b", "#0b5cad", "#b8860b"};
 
 std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
@@ -24,7 +24,7 @@ const ChannelComparison* find_channel(const EventComparison& e, const std::strin
   return c == e.channels.end() ? nullptr : &*c;
 }
 
-/// The event of the models that can follow it; the first says what was measured.
+/// Comparisons of one event by all models that can follow it; the first provides the measured curves.
 struct ShownEvent {
   std::vector<std::pair<const Played*, const EventComparison*>> of;
   [[nodiscard]] const EventComparison& first() const { return *of.front().second; }
@@ -44,14 +44,14 @@ std::vector<double> times(std::vector<double> values, double scale, double shift
   return values;
 }
 
-/// An empty chart of an event.
+/// Returns an empty chart of an event.
 report::Curves chart_of(const EventComparison& e, const std::string& title, const std::string& unit) {
   report::Curves c{title, "t [s]", "[" + unit + "]", e.record.name, e.record.t, {}, {}};
   if (!e.switchings.empty()) c.bands = {{e.switchings.front().time, e.switchings.back().time}};
   return c;
 }
 
-/// What each model answers in one channel, beside what was measured.
+/// Chart of one channel: measured, and simulated by each model.
 void channel_panel(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown,
                    const std::string& name, double shift = 0) {
   const ChannelComparison* measured = find_channel(shown.first(), name);
@@ -64,7 +64,7 @@ void channel_panel(report::Page& page, const std::vector<Played>& played, const 
   page.curves(c);
 }
 
-/// What was recorded and drives the model.
+/// Chart of a recorded quantity that is played in.
 void driving_panel(report::Page& page, const EventComparison& e, const std::string& name,
                    const std::string& unit, std::vector<double> values) {
   if (values.size() != e.record.t.size()) return;  // not recorded
@@ -100,7 +100,7 @@ void power_panels(report::Page& page, const std::vector<Played>& played, const S
   }
 }
 
-/// What is left of P and Q.
+/// Charts of the residuals of P and Q.
 void residual_panels(report::Page& page, const std::vector<Played>& played, const ShownEvent& shown) {
   for (const char* name : {"P", "Q"}) {
     const ChannelComparison* first = find_channel(shown.first(), name);
@@ -125,7 +125,7 @@ std::string instants_of(const EventComparison& e) {
 void event_panels(report::Page& page, const std::vector<Played>& played, std::size_t event) {
   const ShownEvent shown = shown_event(played, event);
   if (shown.of.empty()) return;
-  const EventComparison& e = *shown.of.back().second;  // what is said of it is said of the model that counts
+  const EventComparison& e = *shown.of.back().second;  // title and notes are those of the last model
   page.subsection(e.record.name + ": " + event_title(e));
   const auto begins = record::beginning(e.record);
   page.text(fmt::format(

@@ -1,6 +1,6 @@
 #pragma once
-// The parts that the pages of all commands have, in the order in which they stand: verdict, error maps,
-// panels of the events, parameters, errors, what was tried, glossary, provenance.
+// Parts that the report pages of all commands share. Their order is: verdict, error maps, panels of the
+// events, parameters, errors, hypotheses, glossary, provenance.
 #include <string>
 #include <vector>
 
@@ -9,31 +9,30 @@
 
 namespace swingbank::validate::compare {
 
-/// A parameter before and after, by its symbol.
+/// Value of a parameter before and after a command.
 struct PageParameter {
   std::string block, symbol, unit;
-  double before = 0, after = 0, low = 0, high = 0;  ///< 95 % interval; NaN: not estimated
-  double decided = 0;                               ///< share that the records decide; NaN: not estimated
+  double before = 0, after = 0, low = 0, high = 0;  ///< low, high: 95 % interval; NaN: not estimated
+  double decided = 0;                               ///< share determined by the records; NaN: not estimated
   std::string note = {};                            ///< "at its bound"
 };
 
-/// Both sentences, and the worst errors of the model that counts (the last one) beside their limits.
+/// Both verdicts, and the worst errors of the last model of `played` with their limits.
 void verdict_part(report::Page& page, const std::vector<Played>& played, bool complete,
                   const std::string& sentence, report::Tone tone);
-/// Of each event four panels, V, f, P and Q, measured and as each model answers; then what else was recorded.
+/// Panels of each event: V, f, P and Q, measured and simulated by each model; then other recorded channels.
 void panels_part(report::Page& page, const std::vector<Played>& played);
-/// Before, after, 95 % interval. Without intervals (compare) the values that the model has.
+/// Table of parameters: before, after, 95 % interval. Without intervals (compare): the model's values.
 void parameters_part(report::Page& page, const std::vector<PageParameter>& parameters);
-/// RMS, noise and their ratio of each event and channel (error_table). `unseen`: names of the events that
-/// were not fitted to.
+/// Table of error_table(). `unseen`: names of held-out events.
 void errors_part(report::Page& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen = {});
-/// The error map of each model.
+/// Error map of each model.
 void maps_part(report::Page& page, const std::vector<Played>& played);
 /// Definitions of the terms on the page.
 void glossary_part(report::Page& page);
 
-/// A page of a command that has no more to show: all parts, `tried` among them as sentences.
+/// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
   std::string title, subtitle;
   bool complete = false;

@@ -16,7 +16,7 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
   try {
     options.jumps = event::jumps_of(records, options.jump_threshold);
     for (const auto& record : records) played.events.push_back(compare_event(model, record, options));
-    judge(played.events);  // the bounds of the maps
+    judge(played.events);  // sets the bounds of the maps
     played.fitness = judge_fitness(played.events, mva, by);
   } catch (const InputError& error) {
     played.events.clear();

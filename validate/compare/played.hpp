@@ -1,6 +1,6 @@
 #pragma once
-// A plant's events played into one of its models (as submitted, as a command leaves it), and the verdict on
-// its fitness: what commands print, and what their pages draw.
+// Playback of all records into one model (submitted, calibrated, ...) with its verdict on fitness, for output
+// and pages.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -11,22 +11,22 @@ namespace swingbank::validate::compare {
 
 struct Played {
   std::string name;                     ///< "submitted", "calibrated"
-  std::vector<EventComparison> events;  ///< empty where the model cannot follow them
+  std::vector<EventComparison> events;  ///< empty if the model cannot follow them
   Fitness fitness;
 };
 
-/// Plays the records into the model and judges it. A model that cannot follow them is not judged, and says
-/// why.
+/// Plays the records into the model and judges its fitness. If the model cannot follow a record, `events` is
+/// empty and `fitness` is not judged and holds the reason.
 Played play_and_judge(std::string name, const plant::PlantModel& model,
                       const std::vector<record::Record>& records, CompareOptions options,
                       const thresholds::Acceptance& by);
 
-/// The records without what only measured states can be compared with (--power-only).
+/// Returns the records without the measured states speed, Efd and Ifd (--power-only).
 std::vector<record::Record> power_only(std::vector<record::Record> records);
 
-/// "submitted: Fit for purpose ...", a line each; the last of them counts and comes first.
+/// One line per model, "submitted: Fit for purpose ...", in reverse order: the last model is the result.
 std::string fitness_text(const std::vector<Played>& played);
-/// By name.
+/// JSON object of the verdicts by model name.
 nlohmann::json fitness_json(const std::vector<Played>& played);
 
 }  // namespace swingbank::validate::compare

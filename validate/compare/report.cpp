@@ -26,7 +26,7 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
   return maps;
 }
 
-/// Every parameter of a plant, as it is.
+/// Returns every parameter of a plant with its value.
 std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   std::vector<PageParameter> rows;
@@ -40,7 +40,7 @@ std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
   return rows;
 }
 
-/// Each note once, with the events that it is about.
+/// Text with each note once and the names of its events.
 std::string notes_text(const std::vector<EventComparison>& events) {
   std::vector<std::pair<std::string, std::vector<std::string>>> notes;
   for (const auto& e : events)

@@ -1,5 +1,5 @@
 #pragma once
-// A comparison as text for the terminal, as JSON, as CSV and as an HTML page.
+// Report of a comparison as terminal text, JSON, CSV and HTML page.
 #include <string>
 #include <vector>
 
@@ -9,24 +9,24 @@
 
 namespace swingbank::validate::compare {
 
-/// Normalised RMS per event, channel, window and band, and the RMS per window in units.
+/// Table of the normalised RMS per event, channel, window and band, and of the RMS per window in units.
 report::Table error_map(const std::vector<EventComparison>& events);
 
-/// The verdict, what to do next, the errors and each note once, for a terminal; `verbose`: every table.
+/// Terminal text: verdicts, next step, errors, titles and notes; with `verbose` also every table.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy, const Fitness& fitness, bool verbose);
-/// Everything but the samples; values in pu, bases and units beside them.
+/// JSON of everything but the samples; values in pu, with bases and units.
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness,
                         const report::Provenance& provenance);
-/// The samples of one event: t, V, theta, and every channel measured and modelled.
+/// CSV of the samples of one event: t, V, theta, and every channel measured and simulated.
 std::string csv_playback(const EventComparison& event);
-/// The self-contained page: verdict, tables, overlays, residuals, provenance.
+/// Self-contained page: verdicts, tables, curves, residuals, provenance.
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness,
                         const report::Provenance& provenance);
 
-/// Hashes of model and records, version and command line.
+/// Command line, version, model, conventions, default parameter values and records.
 report::Provenance provenance(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                               const std::string& command_line);
 

@@ -1,4 +1,4 @@
-// The chart library dygraphs (MIT licence) as Debian packages it, made part of the binary by the assembler.
+// Chart library dygraphs (MIT licence) from Debian, embedded in the binary by the assembler.
 #include "validate/report/page.hpp"
 
 asm(".section .rodata\n"
@@ -12,7 +12,7 @@ extern "C" const char swingbank_dygraphs_js[], swingbank_dygraphs_css[];
 namespace swingbank::validate::report {
 
 std::string_view dygraphs_script() {
-  // The last line names a source map; a page that opens offline must not ask for one.
+  // The last line refers to a source map, which an offline page must not request.
   const std::string_view all = swingbank_dygraphs_js;
   return all.substr(0, all.find("//# sourceMappingURL"));
 }

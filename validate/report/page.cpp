@@ -72,7 +72,7 @@ addEventListener("beforeprint",()=>boxes.forEach(b=>{b.style.zoom=Math.min(1,(b.
 addEventListener("afterprint",()=>boxes.forEach(b=>{b.style.zoom=""}));
 )js";
 
-/// JSON for a <script>: no tag and no comment can begin in it.
+/// Escapes JSON for a <script>, so that no tag or comment can begin in it.
 std::string script_safe(std::string text) {
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6)
     text.replace(at, 1, "\\u003c");
@@ -86,8 +86,8 @@ std::string shade_style(double shade) {
                      90 - 10 * s);
 }
 
-/// Words read from the left, numbers from the right. The units "-" and "1/s" are words, a missing number
-/// ("–") is a number.
+/// Returns whether a cell holds text, which is left-aligned, and not a number. The units "-" and "1/s" are
+/// text; a missing number ("–") is a number.
 bool is_words(const Cell& cell) {
   if (cell.shade >= 0 || cell.text.empty()) return false;
   const auto after = cell.text.find_first_not_of("0123456789.");
@@ -95,7 +95,7 @@ bool is_words(const Cell& cell) {
          (after > 0 && after != std::string::npos && cell.text[after] == '/');
 }
 
-/// Six significant digits: more than a screen shows, a third of the size.
+/// Formats six significant digits: more than a screen resolves, and a third of the full size.
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "null"; }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// One self-contained HTML page: text, tables, zoomable curves, bars and provenance. Opens offline, on a
-// telephone and on paper; no resource is fetched. Every text given is escaped here.
+// Self-contained HTML page with text, tables, zoomable curves, bars and provenance. It works offline, on
+// telephones and in print, and fetches no resource. All text arguments are escaped here.
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,10 +8,10 @@
 
 namespace swingbank::validate::report {
 
-/// & < > " as entities.
+/// Returns the text with & < > " as entities.
 std::string escape(std::string_view text);
 
-/// A cell's text and, if any, its shade: 0 good … 1 bad; and the address it leads to on a page.
+/// Table cell: text, shade from 0 (good) to 1 (bad) or none (-1), and optional link target.
 struct Cell {
   std::string text;
   double shade = -1;
@@ -21,14 +21,14 @@ struct Cell {
   Cell(const char* t) : text(t) {}  // NOLINT(google-explicit-constructor)
   Cell(std::string t, double s) : text(std::move(t)), shade(s) {}
 };
-/// The first column is left-aligned, the others are numbers.
+/// Table. On a page, text is left-aligned and numbers are right-aligned.
 struct Table {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<Cell>> rows;
 };
 
-/// Curves over a common x. Charts of the same group zoom together.
+/// Chart of curves over a common x. Charts of the same group zoom together.
 struct Curves {
   std::string title, x_label, y_label, group;
   struct Series {
@@ -39,10 +39,10 @@ struct Curves {
   std::vector<double> x;
   std::vector<Series> series;
   std::vector<std::pair<double, double>> bands;  ///< shaded intervals of x
-  double tolerance = 0;                          ///< shaded: y from -tolerance to it; 0: none
+  double tolerance = 0;                          ///< shaded band y = -tolerance ... tolerance; 0: none
 };
 
-/// Horizontal bars with a reference line, as inline SVG; a NaN is drawn as "missing".
+/// Horizontal bar chart with a reference line, as inline SVG; NaN is shown as "missing".
 struct Bars {
   std::string title, unit;
   double reference = 0;  ///< position of the line, 0: none
@@ -51,12 +51,12 @@ struct Bars {
     std::string label;
     double value;
     bool good = true;
-    std::string shown = {};  ///< beside the bar, instead of the value
+    std::string shown = {};  ///< text beside the bar in place of the value
   };
   std::vector<Bar> bars;
 };
 
-/// Points in a plane, small, as inline SVG.
+/// Small scatter plot, as inline SVG.
 struct Scatter {
   std::string title, x_label, y_label;
   struct Group {
@@ -66,6 +66,7 @@ struct Scatter {
   std::vector<Group> groups;
 };
 
+/// Colour of a verdict.
 enum class Tone { good, found, bad };
 
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -76,19 +77,19 @@ class Page {
   void section(std::string_view title);
   void subsection(std::string_view title);
   void text(std::string_view paragraph);
-  void note(std::string_view paragraph);               ///< set apart: a caution
-  void verdict(std::string_view sentence, Tone tone);  ///< the first thing to read
+  void note(std::string_view paragraph);               ///< highlighted caution
+  void verdict(std::string_view sentence, Tone tone);  ///< highlighted verdict
   void table(const Table& table);
   void curves(const Curves& curves);
-  void begin_panels();  ///< curves from here to end_panels() stand two in a row, where there is room
+  void begin_panels();  ///< curves up to end_panels() are placed two per row on wide screens
   void end_panels();
-  void hint(std::string_view paragraph);  ///< for the screen; not printed
+  void hint(std::string_view paragraph);  ///< shown on screen only, not printed
   void bars(const Bars& bars);
   void picture(std::string_view svg, std::string_view caption);
   void scatters(const std::vector<Scatter>& side_by_side);
   void provenance(const Provenance& rows);
-  void data(std::string_view id, std::string_view json);  ///< for programs; not shown
-  /// The whole page. Scripts are part of it only if it has curves.
+  void data(std::string_view id, std::string_view json);  ///< machine-readable data; not shown
+  /// Returns the whole page. It contains chart scripts only if it has curves.
   [[nodiscard]] std::string html() const;
 
  private:
@@ -96,11 +97,11 @@ class Page {
   int curves_ = 0;
 };
 
-/// The same table as Markdown and as CSV (RFC 4180).
+/// Table as Markdown and as CSV (RFC 4180).
 std::string markdown(const Table& table);
 std::string csv(const Table& table);
-/// The same in columns for a terminal, as wide as their texts (characters, not bytes); the first `left`
-/// columns start at the left.
+/// Table as terminal text. Column widths count characters, not bytes; the first `left` columns are
+/// left-aligned.
 std::string padded(const Table& table, std::size_t left = 2);
 
 /// Source text of the chart library.

@@ -17,7 +17,7 @@ constexpr const char *kInk = "#1b2733", *kSoft = "#5b6b7b", *kGrid = "#e4e9ee", 
 
 double letters(const std::string& s) {
   return static_cast<double>(
-      std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; }));  // bytes that begin one
+      std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; }));  // characters of UTF-8
 }
 
 struct Words {
@@ -36,7 +36,7 @@ std::string stroke(double x1, double y1, double x2, double y2, const char* colou
                      y1, x2, y2, colour, more);
 }
 
-/// 0.01 … 1000 as they are, others as a power of ten.
+/// Label of a decade: 0.001 … 10000 as numbers, others as powers of ten.
 std::string decade(int exponent) {
   if (exponent >= -3 && exponent <= 4) return fmt::format("{:g}", std::pow(10.0, exponent));
   static constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -46,7 +46,7 @@ std::string decade(int exponent) {
   return text;
 }
 
-/// A range of values laid over a range of pixels.
+/// Axis scale from values to pixels.
 class Scale {
  public:
   Scale(const PlotAxis& axis, double low, double high) : log_(axis.logarithmic) {
@@ -66,7 +66,7 @@ class Scale {
     return from_ + (level(v) - low_) / (high_ - low_) * (to_ - from_);
   }
   [[nodiscard]] bool shows(double v) const { return std::isfinite(level(v)); }
-  /// Positions of the grid's lines, and what stands at them.
+  /// Values and labels of the grid lines.
   [[nodiscard]] std::vector<std::pair<double, std::string>> ticks() const {
     return log_ ? decades() : steps();
   }
@@ -174,7 +174,7 @@ class Panel {
           left_edge_ - left_ + 13, top_ + down_ / 2, kSoft, escape(plot_.y.label));
     return out;
   }
-  /// A label that would run into the one before stands above it.
+  /// Vertical lines with labels; a label that would overlap the previous one is placed above it.
   [[nodiscard]] std::string rules() const {
     std::string out;
     double free_from = -1e9;
@@ -252,7 +252,7 @@ class Panel {
   double left_ = 0, across_ = 0, down_ = 0, left_edge_ = 0, top_ = 0;
 };
 
-/// In as many lines as the width asks for; `height` becomes theirs.
+/// Legend, wrapped to the width; sets its `height` [px].
 std::string legend(const std::vector<Plot>& panels, double width, double& height) {
   std::vector<const PlotSeries*> named;
   for (const auto& p : panels)

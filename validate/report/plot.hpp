@@ -1,6 +1,5 @@
 #pragma once
-// Pictures of points, lines and bands on linear or logarithmic axes, as SVG that stands alone in a file or in
-// a page.
+// Plots of points, lines and bands on linear or logarithmic axes, as self-contained SVG for files and pages.
 #include <array>
 #include <string>
 #include <utility>
@@ -11,22 +10,22 @@ namespace swingbank::validate::report {
 struct PlotAxis {
   std::string label;
   bool logarithmic = false;
-  std::vector<std::string> names = {};       ///< of a vertical axis: rows from the top, point i at y = i
-  bool silent = false;                       ///< the names stand at the panel to the left
-  std::pair<double, double> range = {0, 0};  ///< both ends the same: what the points need
+  std::vector<std::string> names = {};       ///< vertical axis only: row names from the top, row i at y = i
+  bool silent = false;                       ///< omit the names, which the panel to the left shows
+  std::pair<double, double> range = {0, 0};  ///< equal ends: range of the points
 };
-/// Points that a logarithmic axis cannot show (0, NaN) are left out.
+/// Series of a plot. Points that a logarithmic axis cannot show (0, NaN) are omitted.
 struct PlotSeries {
   enum class Mark { dot, ring, diamond, none };
-  std::string name, colour;  ///< without a name it is not in the legend
+  std::string name, colour;  ///< an empty name is not in the legend
   std::vector<std::pair<double, double>> points = {};
   Mark mark = Mark::dot;
-  double size = 4.5, opacity = 1.0;  ///< [px]; of the marks
+  double size = 4.5, opacity = 1.0;  ///< of the marks; size in [px]
   bool line = false, dashed = false;
-  std::vector<std::pair<double, double>> reach = {};  ///< of each point: least and largest y
-  std::vector<std::array<double, 3>> band = {};       ///< x, low, high: shaded
+  std::vector<std::pair<double, double>> reach = {};  ///< error bars: least and largest y of each point
+  std::vector<std::array<double, 3>> band = {};       ///< shaded band: x, low, high
 };
-/// A line across the plot.
+/// Vertical line across the plot.
 struct PlotRule {
   double x = 0;
   std::string label;
@@ -36,13 +35,13 @@ struct Plot {
   PlotAxis x, y;
   std::vector<PlotSeries> series;
   std::vector<PlotRule> rules = {};
-  double width = 480;  ///< of the area [px]
+  double width = 480;  ///< of the plot area [px]
 };
 
-/// The plots side by side under one legend, each name once.
+/// Plots side by side under a common legend that has each name once.
 std::string svg(const std::vector<Plot>& panels);
 
-/// The colour of the i-th of several series; they repeat after nine.
+/// Colour of series i; colours repeat after nine.
 std::string plot_colour(std::size_t i);
 
 }  // namespace swingbank::validate::report

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Reads keys of one JSON object, collecting what is missing or of the wrong type.
+/// Reader of one JSON object, which collects missing keys and keys of the wrong type.
 class Object {
  public:
   Object(const json& object, std::string where, Problems& problems)
@@ -64,7 +64,7 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
   }
 }
 
-/// Key `posterior` of train/run/README.md: how often the truth lay in the intervals of the rows judged.
+/// Reads key `posterior` of train/run/README.md: coverage of the intervals on the test rows.
 void read_coverage(Object& o, const std::string& where, RunResult& r, Problems& problems) {
   if (!o.value().contains("posterior")) return;
   const json& posterior = o.value()["posterior"];
@@ -78,7 +78,7 @@ void read_coverage(Object& o, const std::string& where, RunResult& r, Problems& 
   }
 }
 
-/// Key `several` of train/run/README.md.
+/// Reads key `several` of train/run/README.md.
 void read_several(Object& o, const std::string& where, RunResult& r, Problems& problems) {
   if (!o.value().contains("several")) return;
   if (!o.value()["several"].is_array()) return o.fault("several", "it is no list");
@@ -132,14 +132,14 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("baseline_mse", r.baseline_mse);
   o.get("ratio", r.ratio);
   if (parsed.contains("H_ratio") && parsed["H_ratio"].is_null())
-    r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H does not vary in that dataset
+    r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H is constant in that dataset
   else
     o.get("H_ratio", r.H_ratio);
   r.seen = std::numeric_limits<double>::quiet_NaN();
   if (parsed.contains("seen_mse") && !parsed["seen_mse"].is_null()) o.get("seen_mse", r.seen);
   o.get("shuffled_labels", r.shuffled);
   o.get("threads", r.threads);
-  r.core_seconds = r.seconds * r.threads;  // of a result that does not say: at most
+  r.core_seconds = r.seconds * r.threads;  // upper bound for results without processor_seconds
   if (parsed.contains("processor_seconds")) o.get("processor_seconds", r.core_seconds);
   o.get("software", r.software);
   o.get("blas", r.blas);

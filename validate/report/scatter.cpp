@@ -1,4 +1,4 @@
-// Small scatter plots, side by side.
+// Small scatter plots side by side.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Range {
     low = std::min(low, v);
     high = std::max(high, v);
   }
-  /// Room for the outermost points; never nothing.
+  /// Adds a margin, so that the range is never empty.
   void widen() {
     if (!(high >= low)) low = -1, high = 1;
     const double room = high > low ? 0.05 * (high - low) : std::max(1e-6, 0.1 * std::abs(high));

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kTableFourNetworks = {"cnn", "lstm", "gru"};
 
 std::string figure(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "–"; }
-/// 0.1 of the baseline is green, 1 is red; logarithmic between.
+/// Returns the shade of MSE / baseline: 0.1 is green, 1 is red, logarithmic between.
 double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
 
 std::size_t table_rank(const std::string& table) {
@@ -36,7 +36,7 @@ std::size_t network_rank(const std::string& network) {
                                   kTableFourNetworks.begin());
 }
 
-/// What a row of a block stands for: a network in Table IV, else the generator left out.
+/// Key of a row: a network in Table IV, else the generator left out.
 struct RowKey {
   std::string network;
   int generator = 0;
@@ -50,7 +50,7 @@ std::string thesis(const TableBlock& block, const RowKey& key) {
   return cell ? fmt::format("{:g}", cell->mse) : "–";
 }
 
-/// The thesis's rows, then whatever else was run.
+/// Returns the thesis's rows, then those of other runs.
 std::vector<RowKey> expected_rows(const TableBlock& block) {
   std::vector<RowKey> rows;
   const auto add = [&](const RowKey& key) {
@@ -59,7 +59,7 @@ std::vector<RowKey> expected_rows(const TableBlock& block) {
     };
     if (std::ranges::none_of(rows, same)) rows.push_back(key);
   };
-  if (!block.shuffled)  // a control run is made for a few rows only
+  if (!block.shuffled)  // control runs exist for a few rows only
     for (const auto& cell : kThesisCells)
       if (cell.table == block.table)
         add({block.network.empty() ? std::string(cell.network) : block.network, cell.generator});
@@ -97,7 +97,7 @@ std::vector<Cell> score_row(const TableBlock& block, const RowKey& key) {
   return row;
 }
 
-/// Means over the runs that exist, the thesis's over the same ones.
+/// Returns the row of means over the existing runs; the thesis's mean is over the same rows.
 std::vector<Cell> mean_row(const TableBlock& block) {
   double mse = 0, thesis_mse = 0, baseline = 0, ratio = 0, h = 0, varied = 0;
   bool all_in_thesis = true;
@@ -142,7 +142,7 @@ std::string made_with(const TableBlock& block) {
       "over the parameters of the squared error in raw units (s², pu²).",
       block.preset, block.dataset, block.rows, block.runs.front().dataset_hash, block.seed);
 }
-/// As part of a file's name.
+/// Replaces characters that are unsafe in a file name.
 std::string safe(std::string stem) {
   std::ranges::replace_if(
       stem, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_' && c != '.'; }, '_');
@@ -231,7 +231,7 @@ Table parameter_table(const TableBlock& block) {
 
 namespace {
 
-/// The same words, tables and pictures as a page and as Markdown.
+/// Writer of the same content as a page and as Markdown.
 class Both {
  public:
   Both(std::string_view title, std::string_view subtitle)
@@ -249,7 +249,7 @@ class Both {
     page_.text(paragraph);
     markdown_ += paragraph + "\n\n";
   }
-  void colours(const std::string& meaning) { page_.text(meaning); }  // Markdown has none
+  void colours(const std::string& meaning) { page_.text(meaning); }  // Markdown has no colours
   void note(const std::string& paragraph) {
     page_.note(paragraph);
     markdown_ += fmt::format("> {}\n\n", paragraph);
@@ -269,7 +269,7 @@ class Both {
     markdown_ += "## Provenance\n\n";
     for (const auto& [name, value] : sources)
       if (name != "command")
-        markdown_ += fmt::format("- {}: {}\n", name, value);  // it names a machine's folders
+        markdown_ += fmt::format("- {}: {}\n", name, value);  // the command contains local paths
     return {markdown_, page_.html(), {}, pictures_};
   }
 
@@ -286,7 +286,7 @@ std::string made_of(const Task& task) {
       task.preset, task.dataset, task.rows, task.dataset_hash, against_thesis(task));
 }
 
-/// `stem`: of the names of its pictures.
+/// Adds all tables and plots of a task; `stem` begins the names of the plots' files.
 void add_task(const Task& task, const std::string& stem, Both& to) {
   to.text(made_of(task));
   if (const auto makers = task.makers(); makers.size() > 1)
@@ -329,8 +329,8 @@ void add_scaling(const std::vector<RunResult>& results, const std::string& table
   to.table(scaling_table(series));
 }
 
-/// What recipes were chosen by: every run judged on a generator that its table's run trains on, while the one
-/// that the table leaves out took no part.
+/// Adds the table of recipe selection by nested cross-validation. Its runs are evaluated on a generator that
+/// the table's run trains on, without the generator that the table leaves out.
 void add_choice(const std::vector<RunResult>& results, const std::string& table, Both& to) {
   struct Sum {
     double log_ratio = 0;
@@ -365,7 +365,7 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
   to.table(choice);
 }
 
-/// The control runs of a table, as far as there are any.
+/// Adds the control runs of a table, if there are any.
 void add_controls(const std::vector<RunResult>& results, const std::string& table, Both& to) {
   Table controls{
       "Control runs: labels shuffled before training, so nothing can be learnt, and the ratio must be about 1.",
@@ -391,7 +391,7 @@ std::string remark(const std::string& table) {
   return {};
 }
 
-/// Everything of one table: its tasks, then how the error falls with size.
+/// Adds everything of one table: its tasks, recipe selection, control runs and scaling.
 void add_table(const std::vector<RunResult>& results, const std::vector<Task>& tasks,
                const std::string& table, Both& to) {
   std::vector<const Task*> own;
@@ -410,7 +410,7 @@ void add_table(const std::vector<RunResult>& results, const std::vector<Task>& t
 std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<RunResult>& results,
                                                            const std::vector<Task>& tasks) {
   std::vector<std::pair<std::string, std::string>> files;
-  std::vector<RunResult> whole = results;  // those on a share of the rows belong to the scaling law alone
+  std::vector<RunResult> whole = results;  // runs on a share of the rows are for the scaling law only
   std::erase_if(whole, [](const RunResult& r) { return r.share < 1 || r.judged > 0; });
   for (const auto& block : group_results(std::move(whole))) {
     files.emplace_back(file_stem(block) + ".csv", csv(score_table(block)));
@@ -432,7 +432,7 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
       "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
       "compared with the thesis.");
   const auto tasks = tasks_of(results);
-  std::map<std::string, std::string> others;  // title of each experiment that is none of the thesis's tables
+  std::map<std::string, std::string> others;  // titles of experiments other than the thesis's tables
   for (const auto& r : results)
     if (table_rank(r.table) == kThesisTables.size()) others.emplace(r.table, r.title);
   if (!tasks.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
-// The thesis's Tables IV, V and VI, reproduced: each of our figures beside the thesis's and beside what a
-// constant guess scores. A run that was not made is shown as missing.
+// Tables IV, V and VI of the thesis reproduced: own figures, the thesis's, and those of predicting the mean.
+// A run that was not made is shown as missing.
 #include <string>
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace swingbank::validate::report {
 
-/// The runs of one table made with one network, preset, dataset, noise level and seed.
+/// Runs of one table with the same network, preset, dataset, noise level and seed.
 struct TableBlock {
   std::string table, network, preset, dataset;
   std::int64_t rows = 0, seed = 0;
@@ -17,23 +17,24 @@ struct TableBlock {
   bool shuffled = false;
   std::vector<RunResult> runs;  ///< in order of the generator
 };
-/// Runs grouped and sorted: by table, then control runs last, network, preset, rows and seed.
+/// Groups the runs and sorts them by table, control runs last, then network, preset, dataset, rows, noise and
+/// seed.
 std::vector<TableBlock> group_results(std::vector<RunResult> results);
 
-/// "Table V, cnn": one row per generator or, for Table IV, one; missing ones are named as such.
+/// Table of errors: one row per generator left out, or per network in Table IV; missing runs are marked.
 Table score_table(const TableBlock& block);
-/// Error of each parameter, raw and relative to its variance over the test rows: over the runs the raw one's
-/// mean, the relative one's median and worst.
+/// Table of each parameter's error: mean of the raw MSE over the runs, and median and worst of the MSE
+/// relative to the parameter's variance over the test rows.
 Table parameter_table(const TableBlock& block);
-/// Where the Markdown's pictures lie, beside it.
+/// Folder of the Markdown's pictures, relative to its file.
 inline constexpr const char* kPictureFolder = "tables";
 
 struct TablesReport {
-  std::string markdown, html;                            ///< the same, with pictures as files and inside
+  std::string markdown, html;                            ///< same content; only the page embeds the pictures
   std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content: one per table with results
   std::vector<std::pair<std::string, std::string>> pictures;  ///< SVG, in kPictureFolder
 };
-/// `sources`: for the provenance.
+/// Builds the report; `sources` is its provenance.
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources);
 
 }  // namespace swingbank::validate::report

@@ -1,8 +1,8 @@
 #pragma once
-// What adding an effect does to a trained network: two datasets of the plant in its grid, without and with
-// the effect; a network on each; both asked of the same measured records. Here is what does not need
-// LibTorch: configs of the datasets and experiments, and the comparison. Who generates and trains:
-// jobs/retrain_run.hpp.
+// Effect of an added model component on a trained network. Two datasets of the plant in its grid, without and
+// with the effect, train one network each, and both networks estimate from the same records. This module
+// needs no LibTorch: it writes the configs and compares the estimates. jobs/retrain_run.hpp generates and
+// trains.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -16,67 +16,68 @@
 namespace swingbank::validate::retrain {
 
 struct RetrainOptions {
-  std::filesystem::path dataset;  ///< config of a dataset about this plant without the effect; empty: made
+  std::filesystem::path dataset;  ///< dataset config of this plant without the effect; empty: generated
   std::uint64_t draws = 4000;     ///< events simulated for each network
   std::size_t epochs = 20;
   std::string network = "cnn";
-  double range = 2.0;  ///< the effect's parameters are drawn from value / range to value * range, and those
-                       ///< of the machine where no dataset is given
-  std::uint64_t seed = 1;  ///< of draws and training
+  double range = 2.0;  ///< parameters are drawn from value / range to value * range: those of the effect, and
+                       ///< those of the machine if no dataset is given
+  std::uint64_t seed = 1;  ///< seed of draws and training
 };
 
-/// One network's files, in a folder of their own.
+/// Files of one network, in their own folder.
 struct RetrainSide {
   std::string name;  ///< "without", "with"
   std::filesystem::path folder, dataset, experiment, data, results;
 };
 
-/// Writes a dataset config about the plant behind three lines and a large machine, at the operating point of
-/// an event, with .raw and .dyr; each free parameter of the machine from value / range to value * range.
-/// Returns the config's path. Throws InputError where the plant has no .dyr form.
+/// Writes a dataset config with .raw and .dyr: the plant at the operating point of `event`, connected through
+/// three lines to a large machine. Each free parameter of the machine varies from value / range to
+/// value * range. Returns the config's path. Throws InputError if the plant has no .dyr form.
 std::filesystem::path write_plant_grid(const std::filesystem::path& folder, const plant::PlantModel& model,
                                        const event::FitEvent& event, double range);
 
-/// Writes dataset and experiment of both sides below `folder`, the second with the effect of
-/// `added`: attached at its fitted values and varied about those that the records decide. What the networks
-/// read: P, Q, V, frequency, and speed and Ifd where every record holds them (and `added` compared them), for
-/// up to 8 s after the event. Throws InputError: a base config that is not about one varied plant of this
-/// machine model, an addition that a dataset cannot express, records that end too early.
+/// Writes dataset and experiment configs of both networks below `folder`. The second has the effect of
+/// `added` at its fitted values, and varies the parameters that the records determine. The networks read P,
+/// Q, V and frequency, and speed and Ifd if every record has them and `added` compared them, for up to 8 s
+/// after the event. Throws InputError: a base config without a varied plant of this machine model, an
+/// addition that a dataset cannot express, or records that end too early.
 std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder,
                                                  const plant::PlantModel& before, const add::Addition& added,
                                                  const std::vector<record::Record>& records,
                                                  const RetrainOptions& options);
 
-/// One parameter that both networks learnt, or the network with the effect only.
+/// Parameter that both networks estimate, or only the network with the effect. Pairs: without, with the
+/// effect.
 struct RetrainedParameter {
   std::string name, unit;       ///< "GENROU.H"
-  double reference = 0;         ///< the truth, else the fitted value
-  double deviation = 0;         ///< of the values drawn: the box's width / sqrt(12)
-  bool own = false;             ///< of the effect: only the network with it estimates it
-  double estimate[2] = {0, 0};  ///< without, with: mean over the unseen events
-  double error[2] = {0, 0};     ///< rms over the unseen events, in units of `deviation`
-  double middle = 0;            ///< the same of the box's middle: what needs no network
+  double reference = 0;         ///< true value, else fitted value
+  double deviation = 0;         ///< standard deviation of the drawn values: width of the range / sqrt(12)
+  bool own = false;             ///< parameter of the effect, estimated by the second network only
+  double estimate[2] = {0, 0};  ///< mean over the held-out events
+  double error[2] = {0, 0};     ///< RMS error over the held-out events [deviation]
+  double middle = 0;            ///< error of the middle of the range, as a baseline [deviation]
 };
 struct RetrainedEvent {
   std::string record;
-  bool seen = true;
-  double parameter_error[2] = {0, 0};  ///< rms over the shared parameters, in deviations
-  /// Model with the estimates from the events seen, this event's own instants and start: chi2 per value, and
-  /// rms of P and Q [MW, Mvar]; infinite where that plant cannot be run.
+  bool seen = true;                    ///< false: held out
+  double parameter_error[2] = {0, 0};  ///< RMS over the shared parameters [deviation]
+  /// Reduced chi-square, and RMS error of P and Q [MW, Mvar], of the model with the estimates from the fitted
+  /// events. Switching times and start of the event are fitted. Infinite if that plant cannot be simulated.
   double misfit[2] = {0, 0}, rms[2] = {0, 0};
 };
 struct Retrained {
-  bool truth = false;  ///< reference is the truth
+  bool truth = false;  ///< the reference values are true values
   std::vector<RetrainedParameter> parameters;
   std::vector<RetrainedEvent> events;
-  double error[2] = {0, 0}, middle = 0;  ///< rms over shared parameters and unseen events, in deviations
-  double rms[2] = {0, 0};                ///< of P and Q over the unseen events [MW, Mvar]
+  double error[2] = {0, 0}, middle = 0;  ///< RMS over shared parameters and held-out events [deviation]
+  double rms[2] = {0, 0};                ///< of P and Q over the held-out events [MW, Mvar]
   std::string sentence;
   [[nodiscard]] double fall() const { return error[0] / error[1]; }
 };
 
-/// `estimates`: of all records, in their order, by the two networks. Throws InputError where no event was
-/// held out, or the networks share no learnt parameter with a reference.
+/// Compares the two networks. `estimates` must contain all records in their order. Throws InputError if no
+/// event was held out, or if the networks share no parameter with a reference value.
 Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& estimates,
                            const plant::PlantModel& before, const add::Addition& added,
                            const calibrate::Truth& truth);

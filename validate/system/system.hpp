@@ -1,6 +1,6 @@
 #pragma once
-// A whole grid against records of several of its terminals: the event is simulated in the full grid, and what
-// the model has at each terminal is set beside what was measured there.
+// Validation of a whole grid model: the event is simulated in the full grid, and the response at each
+// recorded terminal is compared with its record.
 #include <optional>
 
 #include "sim/core/trajectory.hpp"
@@ -10,63 +10,66 @@
 
 namespace swingbank::validate::system {
 
-/// Where a record was taken: at a plant's terminal, or at a bus, where only voltage and angle are compared.
+/// Recorded location: a plant's terminal, or a bus, where only voltage and angle are compared.
 struct SystemTerminal {
   std::string name;
   int plant = -1;                              ///< index in the grid's plants; -1: a bus
   int bus = -1;                                ///< index in the network's buses
-  record::Record record;                       ///< P and Q empty at a bus
-  std::vector<sim::plant::Block> instruments;  ///< between the grid and the record, those of the plant first
+  record::Record record;                       ///< P and Q are empty at a bus
+  std::vector<sim::plant::Block> instruments;  ///< instruments of the record, those of the plant first
   std::vector<std::string> warnings;
 };
+/// Treatment of differences before the event.
 enum class SteadyState {
-  judge,  ///< a difference before the event counts: power flow and records must agree
-  shift,  ///< it is told, taken off, and only what the event does is judged
+  judge,  ///< differences count for the verdict: power flow and records must agree
+  shift,  ///< differences are reported and subtracted; only the response to the event is judged
 };
+/// Content of a system file.
 struct SystemCase {
   std::string name;
   std::filesystem::path file, raw, dyr;
-  std::string sha256, raw_sha256, dyr_sha256;  ///< of the files' bytes
+  std::string sha256, raw_sha256, dyr_sha256;  ///< hashes of the files' bytes
   std::vector<std::pair<std::filesystem::path, std::string>> laws;
   sim::grid::Grid grid;
   sim::grid::EventTexts texts;
-  sim::network::Event event;  ///< instants on the records' clock
+  sim::network::Event event;  ///< with times on the records' clock
   record::RecordBase base;
-  int reference = -1;  ///< terminal that the others' angles are relative to; -1: frequencies are compared
-  bool find_instants = false;
+  int reference = -1;          ///< terminal of the reference angle; -1: frequencies are compared
+  bool find_instants = false;  ///< switching times are estimated from the records
   SteadyState steady_state = SteadyState::judge;
-  double tolerance = 1e-8;  ///< of the integrator
+  double tolerance = 1e-8;  ///< relative tolerance of the integrator
   std::vector<SystemTerminal> terminals;
 };
 /// Reads a system file (configs/systems/README.md), its grid and every record. Throws InputError with every
-/// fault of each of them.
+/// error of each of them.
 SystemCase load_system(const std::filesystem::path& file);
 
-/// How one terminal fares.
+/// Result of one terminal.
 struct TerminalRank {
   std::size_t terminal = 0;
-  double worst = 0;   ///< largest of in_noise / bound over its cells: above 1 it fails
-  std::string where;  ///< that cell in words
-  /// Of a plant: its own recorded voltage played into it alone. Then nothing but its own model can be wrong.
+  double worst = 0;   ///< largest normalised RMS / bound of its bins; above 1 the terminal fails
+  std::string where;  ///< name of that bin
+  /// Playback of a plant's recorded voltage into its model alone, which tests that model only.
   std::optional<compare::Adequacy> alone;
-  double alone_worst = 0;   ///< as `worst`
-  std::string alone_where;  ///< as `where`, or why it could not be played
+  double alone_worst = 0;   ///< as `worst`, for the playback alone
+  std::string alone_where;  ///< as `where`, or the reason why the playback failed
 };
 struct SystemComparison {
   std::vector<compare::EventComparison>
       terminals;                 ///< in the order of the case; record.name is the terminal's name
-  std::vector<double> initial;   ///< [terminal * 4 + (V, angle, P, Q)]: model less record before the
-                                 ///< event [pu, rad]; NaN where there is none
-  std::vector<double> instants;  ///< of switching, as used [s]
-  double uncertainty = 0;        ///< of found instants [s]; 0: given
+  std::vector<double> initial;   ///< model - record before the event [pu, rad], NaN: not compared;
+                                 ///< [terminal * 4 + (V, angle, P, Q)]
+  std::vector<double> instants;  ///< switching times used [s]
+  double uncertainty = 0;        ///< half-interval of estimated switching times [s]; 0: given
   sim::Outcome outcome = sim::Outcome::stable;
   double stopped_at = 0;  ///< on the first record's clock [s]
   compare::Adequacy adequacy;
-  std::vector<TerminalRank> ranking;  ///< the one that fails most first; plants that fail alone before others
-  std::string culprit;                ///< what the ranking says, in a sentence
+  std::vector<TerminalRank> ranking;  ///< worst first; plants that fail alone come before all others
+  std::string culprit;                ///< conclusion from the ranking, as a sentence
   std::vector<std::string> notes;
 };
-/// Throws InputError where the event cannot be played on the grid, or a record has no pre-event.
+/// Simulates the event and compares every terminal. Throws InputError if the grid cannot be simulated, or if
+/// a record has no pre-event.
 SystemComparison compare_system(const SystemCase& system);
 
 report::Table ranking_table(const SystemCase& system, const SystemComparison& c);

@@ -1,7 +1,7 @@
 #pragma once
-// Blind cases: records of one plant in which an effect is hidden that its model file lacks, made by a path
-// independent of the one that will judge them - IDA on the unreduced grid, sampled at another rate than any
-// of our integrators, switchings off the sampling grid. The files are described in docs/blind-test.md.
+// Blind cases: records of a plant with an effect that its model file lacks. They are simulated independently
+// of the diagnosis: by IDA on the unreduced grid, at a sampling rate that no other integrator here uses, with
+// switching times off the sampling instants. docs/blind-test.md describes the files.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -16,58 +16,60 @@
 
 namespace swingbank::validate::blind::cases {
 
-/// What is asked of one case; everything else is drawn from (seed, index).
+/// Specification of one case; everything else is drawn from (seed, index).
 struct BlindSpec {
   std::uint64_t seed = 0;
   std::uint64_t index = 0;                 ///< of the case within its run
-  std::vector<const BlindKind*> hidden{};  ///< none: only parameters are wrong; two: both at once
-  double size = 0;                         ///< wanted, in detection limits; 0: drawn
+  std::vector<const BlindKind*> hidden{};  ///< empty: only parameters are wrong; two: both at once
+  double size = 0;                         ///< wanted size in detection limits; 0: drawn
 };
 
+/// Event of a case.
 struct BlindEvent {
-  std::string text;                ///< what happened, with units
-  sim::network::Event event;       ///< indices of the grid it was drawn for
-  std::vector<double> switchings;  ///< instants within the record [s]
-  double seconds = 0;              ///< simulated and, but for a late beginning, recorded
+  std::string text;                ///< description with units
+  sim::network::Event event;       ///< with indices of the grid it was drawn for
+  std::vector<double> switchings;  ///< switching times within the record [s]
+  double seconds = 0;              ///< simulated duration; recorded unless the record starts late [s]
 };
 
-/// One hidden effect at the size it was given.
+/// Hidden effect with its size.
 struct BlindTruth {
   const BlindKind* kind = nullptr;
-  double scale = 0;   ///< 0 neutral, 1 full
-  double wanted = 0;  ///< size asked for [noise]
-  double left = 0;  ///< size reached: what is left of it in P and Q of all events after a linear refit of the
-                    ///< machine's parameters and the switching instants [noise]
-  double visible = 0;  ///< before that refit [noise]
+  double scale = 0;   ///< position on the path: 0 null value, 1 full
+  double wanted = 0;  ///< requested size [noise]
+  double left = 0;    ///< size reached: norm of the residual of P and Q of all events after a linear refit of
+                      ///< the machine's parameters and the switching times [noise]
+  double visible = 0;  ///< size before that refit [noise]
 };
 
+/// Case with its truth.
 struct BlindCase {
   BlindSpec spec;
   int attempts = 0;            ///< draws until every event was stable
-  std::string maker = "grid";  ///< or "second": tests/blind
+  std::string maker = "grid";  ///< simulator: this one, or "second" (tests/blind)
   std::string grid_name, plant_name;
   sim::Conventions conventions;
   sim::plant::Plant truth,
-      model;  ///< with the hidden effects and right parameters; without, and 10-20 % wrong
-  std::optional<sim::plant::Plant> other;  ///< the unit recorded with it, whose model is right
+      model;  ///< truth: with hidden effects; model: without them, parameters wrong by 10-20 %
+  std::optional<sim::plant::Plant> other;  ///< second unit in the record, whose model is correct
   std::vector<BlindEvent> events;
   std::vector<record::Record> records;  ///< with noise, one per event
   std::vector<BlindTruth> hidden;
-  double noise = 0;                     ///< of the machine's MVA [-]
-  double voltage_noise = 0;             ///< of V [pu] and theta [rad]
-  std::vector<std::string> conditions;  ///< what of [conditions] was drawn, in words
+  double noise = 0;                     ///< standard deviation as a share of the machine's MVA [-]
+  double voltage_noise = 0;             ///< standard deviation of V [pu] and theta [rad]
+  std::vector<std::string> conditions;  ///< names of the [conditions] that were drawn
   bool pmu_filter = false, channels = false, controlled = false;
 };
 
-/// Draws and simulates one case. Throws InputError where no stable one is found in 60 draws.
+/// Draws and simulates one case. Throws InputError if none of 60 draws is stable.
 BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec);
 
-/// Writes model.toml and event1.csv ... into `folder`, which appears complete or not at all, and the truth
-/// into the file `truth`, before.
+/// Writes the truth to the file `truth`, then model.toml and event1.csv ... to `folder`, which appears
+/// complete or not at all.
 void write_blind_case(const BlindCase& made, const BlindConfig& config, const std::string& name,
                       const std::filesystem::path& folder, const std::filesystem::path& truth);
 
-/// A record as CSV, with the columns of validate/record/README.md.
+/// Record as CSV with the columns of validate/record/README.md.
 std::string record_csv(const record::Record& record);
 
 }  // namespace swingbank::validate::blind::cases

@@ -1,6 +1,5 @@
 #pragma once
-// Which effects are hidden in which case of a run: drawn from the seed, so that a case's number tells
-// nothing.
+// Plan of a blind run: hidden effects of each case, drawn from the seed in random order.
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -15,19 +14,19 @@ struct BlindPlan {
   std::vector<BlindSpec> cases;
 };
 
-/// `kinds`: names of the config, "A+B", "none", "listed", "odd", "pairs"; cases go round them evenly. Empty:
-/// of every 25 cases 10 of listed kinds (in turn), 10 with nothing hidden, 3 odd, 2 pairs. Throws InputError
-/// naming every unknown kind.
+/// Plans `count` cases. `kinds` holds names of the config, "A+B", "none", "listed", "odd" or "pairs", which
+/// are used in turn. If it is empty, of every 25 cases 10 have a listed kind, 10 no hidden effect, 3 an
+/// unlisted kind and 2 a pair. Throws InputError with every unknown kind.
 BlindPlan plan_blind(const BlindConfig& config, const std::vector<std::string>& kinds, int count,
                      std::uint64_t seed, double size);
 
-/// Writes DIR/plan.json (seed, number of cases, hash of config and plan), or compares with the one that is
-/// there: cases of two plans are never mixed. Throws InputError if they differ.
+/// Writes plan.json (seed, number of cases, hashes of config and plan) to `folder`, or compares with an
+/// existing one, so that cases of two plans are never mixed. Throws InputError if they differ.
 void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::filesystem::path& folder);
 
-/// "c0001": numbers from 1.
+/// Returns the name of a case, "c0001" for index 0.
 std::string case_name(std::size_t index);
-/// "K/N" with 1 <= K <= N.
+/// Reads "K/N" with 1 <= K <= N. Throws InputError otherwise.
 std::pair<int, int> read_part(const std::string& text);
 
 }  // namespace swingbank::validate::blind::cases

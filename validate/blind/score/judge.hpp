@@ -1,5 +1,5 @@
 #pragma once
-// Our own diagnosis as the judge of a blind test.
+// Swingbank's diagnosis as the judge of a blind test.
 #include <filesystem>
 #include <vector>
 
@@ -10,16 +10,15 @@
 
 namespace swingbank::validate::blind::score {
 
-/// What a judge may see of a case: the owner's model and the records of its events.
+/// Input of a judge: the owner's model and the records of its events.
 struct SeenCase {
   plant::PlantModel model;
   std::vector<record::Record> records;
 };
-/// From model.toml and every event*.csv of a case folder. Throws InputError.
+/// Reads model.toml, point.toml if there, and every *.csv of a case folder. Throws InputError.
 SeenCase read_seen_case(const std::filesystem::path& folder);
 
-/// Diagnoses what stands in a case folder. What the diagnosis refuses
-/// (InputError) is the verdict `refused`.
+/// Judge that diagnoses a case folder. If the diagnosis throws InputError, the verdict is `refused`.
 BlindJudge diagnosis_judge(const diagnose::DiagnoseOptions& options = {});
 
 }  // namespace swingbank::validate::blind::score

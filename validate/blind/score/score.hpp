@@ -1,5 +1,5 @@
 #pragma once
-// The score of a blind run: verdicts against the sealed truth, as rates with their 95 % intervals.
+// Score of a blind run: hit rates of the verdicts against the truth, with 95 % intervals.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -12,46 +12,46 @@
 
 namespace swingbank::validate::blind::score {
 
-/// One case: what was hidden and what was said.
+/// Truth and verdict of one case.
 struct ScoredCase {
   std::string name;
   std::vector<std::string> kinds, sides;          ///< of the hidden effects
-  std::vector<std::vector<std::string>> answers;  ///< names that count as right, per hidden effect
+  std::vector<std::vector<std::string>> answers;  ///< accepted names per hidden effect
   bool listed = true;                             ///< every hidden effect is in the list of hypotheses
-  bool value = false;                             ///< nothing is missing: a value of the model is wrong
-  double size = 0;                                ///< smallest of the hidden effects, in detection limits
-  bool channels = false;                          ///< speed and Ifd measured too
-  std::vector<std::string> conditions;            ///< what the case was recorded under, in words
+  bool value = false;                             ///< nothing is missing, but a value of the model is wrong
+  double size = 0;                                ///< smallest size of the hidden effects [detection limits]
+  bool channels = false;                          ///< speed and Ifd are recorded
+  std::vector<std::string> conditions;            ///< names of the recording conditions
   BlindVerdict verdict;
 
-  [[nodiscard]] bool first_right() const;      ///< the first effect named is the hidden one
-  [[nodiscard]] bool right_or_in_set() const;  ///< or it is in the stated confusion set
+  [[nodiscard]] bool first_right() const;      ///< the first effect named is a hidden one
+  [[nodiscard]] bool right_or_in_set() const;  ///< first_right(), or the confusion set contains it
   [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
-  [[nodiscard]] bool all_in_set() const;       ///< or one entry of the stated set ("A + B") names every one
+  [[nodiscard]] bool all_in_set() const;       ///< all_named(), or one set entry ("A + B") names every one
   [[nodiscard]] bool side_right() const;
   [[nodiscard]] bool nothing_missing() const { return kinds.empty() || value; }
   [[nodiscard]] bool values_named()
       const;  ///< nothing is missing, and the wrong values are among those named
-  /// The verdict's probabilities against the truth: right is the explanation that names all that is hidden,
-  /// and nothing else.
+  /// Returns the verdict's probabilities with the truth. An explanation is correct if it names every hidden
+  /// effect and nothing else.
   [[nodiscard]] Forecast forecast() const;
 };
 
-/// What was right of the cases that were recorded under one condition; of single effects from 2 limits up.
+/// Hit rates of the cases under one recording condition; single effects count from 2 detection limits up.
 struct ByCondition {
-  Rate nothing;  ///< nothing hidden: adequate
-  Rate one;      ///< one listed effect: first, or in the set
-  Rate value;    ///< a wrong value: named
-  Rate outside;  ///< outside the list: none of these
+  Rate nothing;  ///< nothing hidden: verdict adequate
+  Rate one;      ///< one listed effect: named first or in the set
+  Rate value;    ///< wrong value: named
+  Rate outside;  ///< unlisted effect: verdict "none of these"
 };
 
 struct BlindScore {
   std::vector<ScoredCase> cases;
   std::vector<std::string> unjudged;  ///< cases without a verdict
-  std::map<std::string, Rate> rates;  ///< by name: see score_blind
+  std::map<std::string, Rate> rates;  ///< by name, see score_blind()
   std::map<std::string, double> targets;
-  std::map<std::string, std::map<std::string, int>> confusion;  ///< [kind][what was said first]
-  std::map<std::string, std::vector<Rate>> by_size;             ///< "PQ", "all": right first, per size class
+  std::map<std::string, std::map<std::string, int>> confusion;  ///< counts [kind][first answer]
+  std::map<std::string, std::vector<Rate>> by_size;             ///< by channels: first_right() per size class
   std::map<std::string, ByCondition> by_condition;
   Reliability reliability;
   double median_seconds = 0, longest_seconds = 0;
@@ -59,8 +59,8 @@ struct BlindScore {
 /// Lower edges of the size classes [detection limits].
 inline constexpr double kSizeEdges[] = {0.0, 1.0, 2.0, 4.0, 7.0};
 
-/// Reads RUN/truth and RUN/verdicts. `targets` (a TOML file's [target]) sets a least rate for each rate it
-/// names. Throws InputError with every fault of the files.
+/// Scores the truth and the verdicts of the folder `run`. `targets` is a TOML file whose [target] holds least
+/// rates by name. Throws InputError with every error of the files.
 BlindScore score_blind(const std::filesystem::path& run, const std::filesystem::path& targets);
 std::string score_markdown(const BlindScore& score);
 nlohmann::json score_json(const BlindScore& score);

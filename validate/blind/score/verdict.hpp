@@ -1,5 +1,5 @@
 #pragma once
-// What a diagnosis said of a blind case, and the seam through which one is asked.
+// Verdict on a blind case, and the interface of a judge.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -11,33 +11,33 @@ namespace swingbank::validate::blind::score {
 
 struct BlindVerdict {
   std::string verdict;                  ///< adequate, missing, confusable, unexplained or refused
-  std::vector<std::string> effects;     ///< what is missing, best first; several where several are missing
-  std::vector<std::string> set;         ///< names that cannot be told apart
+  std::vector<std::string> effects;     ///< missing effects, best first; several if several are missing
+  std::vector<std::string> set;         ///< names of effects that the records do not distinguish
   std::string side = "none";            ///< mechanical, excitation, machine, measurement or none
   double seconds = 0;                   ///< wall time it took [s]
-  std::string why = {};                 ///< optional: the sentence behind it
-  std::vector<std::string> wrong = {};  ///< optional: values that are wrong, as "GENROU.H"
-  /// optional: of each explanation, the most probable first ("SEXS", "A + B", hypothesis::kNothingMissing,
-  /// hypothesis::kNoneOfThese)
+  std::string why = {};                 ///< optional: reason as a sentence
+  std::vector<std::string> wrong = {};  ///< optional: names of wrong values, as "GENROU.H"
+  /// Optional: probability of each explanation, the most probable first. Names are "SEXS", "A + B",
+  /// hypothesis::kNothingMissing or hypothesis::kNoneOfThese.
   std::vector<std::pair<std::string, double>> probabilities = {};
-  nlohmann::json basis = {};  ///< optional, kept as it is: what the verdict rests on
+  nlohmann::json basis = {};  ///< optional: figures behind the verdict, kept unchanged
 };
 
-/// Gets a case folder (model.toml, event1.csv ...), which holds nothing of the truth.
+/// Function that judges a case folder (model.toml, event1.csv ...), which does not contain the truth.
 using BlindJudge = std::function<BlindVerdict(const std::filesystem::path& folder)>;
 
-/// Reads a verdict's JSON: the keys verdict, effects, set, side, seconds and, if there, wrong, why,
-/// probabilities and basis. Throws InputError with every fault.
+/// Reads a verdict's JSON: the keys verdict, effects, set, side and seconds, and the optional keys wrong,
+/// why, probabilities and basis. Throws InputError with every error.
 BlindVerdict read_verdict(const std::filesystem::path& file);
 std::string verdict_json(const BlindVerdict& verdict);
 
-/// A judge that runs `program CASE_FOLDER VERDICT_FILE` and reads the file it writes; `work` is a folder for
-/// that file. The judge throws InputError where the program fails.
+/// Judge that runs `program CASE_FOLDER VERDICT_FILE` and reads the file that it writes in the folder `work`.
+/// The judge throws InputError if the program fails.
 BlindJudge program_judge(const std::string& program, const std::filesystem::path& work);
 
 /// Judges every case of RUN/cases that has no RUN/verdicts/<case>.json yet and belongs to part K of N (from
-/// 1), and tells `progress` (case, verdict) after each. A case whose judge throws is left without a verdict.
-/// Returns the faults.
+/// 1). Calls `progress` (case, verdict) after each. A case whose judge throws InputError has no verdict.
+/// Returns the errors.
 std::vector<std::string> judge_cases(
     const std::filesystem::path& run, const BlindJudge& judge, std::pair<int, int> part,
     const std::function<void(const std::string&, const BlindVerdict&)>& progress);

@@ -11,7 +11,7 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr std::size_t kClassical = 2;  // states of a machine without a field
+constexpr std::size_t kClassical = 2;  // number of states of a machine without a field
 
 bool stands_alone(const sim::plant::Plant& plant) {
   return plant.machine.effect->closed_form && !plant.transformer.effect && plant.controls.empty() &&
@@ -21,7 +21,7 @@ bool shows_enough(const record::Record& r, const sim::Effect& machine) {
   return r.staged.empty() && !r.speed.empty() && (machine.states.size() <= kClassical || !r.Ifd.empty());
 }
 
-/// Per unit on the machine's base.
+/// Converts a record to per unit on the machine's base.
 sim::Recording recording(const event::FitEvent& event, const sim::plant::PlantUnderTest& tested) {
   const record::Record& r = event.record;
   sim::Recording out;
@@ -39,11 +39,11 @@ sim::Recording recording(const event::FitEvent& event, const sim::plant::PlantUn
   return out;
 }
 
-/// Nothing where the events give nothing that the machine's equations allow.
+/// Returns the medians over the events; empty if no event has a closed form or the values are unphysical.
 std::vector<double> medians(const std::vector<sim::Recording>& records, const sim::plant::Plant& model,
                             const std::vector<fit::FreeParameter>& free) {
   sim::plant::Plant plant = model;
-  std::vector<std::vector<double>> found;  // of each event
+  std::vector<std::vector<double>> found;  // per event
   for (const auto& record : records) {
     auto all = plant.machine.effect->closed_form(record, plant.machine.p.data());
     if (!all.empty()) found.push_back(std::move(all.front()));

@@ -1,6 +1,5 @@
 #pragma once
-// A start of the search straight from the records: the machine's closed form, where it has one and the
-// records show what it needs.
+// Closed-form estimates of the machine's parameters from the records, as starts of the search.
 #include <vector>
 
 #include "validate/event/event.hpp"
@@ -8,11 +7,11 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Values of the free parameters by the closed form of the plant's machine: of each event, then the median
-/// over the events; of the records as they are and, for noisy ones, smoothed. None where the machine has no
-/// closed form, where anything stands around it (its torque and its field have to be constant, and its
-/// terminal the record's), where an event lacks speed or field current, or where the values contradict the
-/// machine's equations.
+/// Returns up to two starts: medians over the events of the closed-form values of the free parameters, from
+/// the records as recorded and from smoothed records (for noise). Returns none if the machine has no closed
+/// form, or if the plant has a transformer, controls or instruments: torque and field must be constant, and
+/// the terminal recorded. Returns none either if an event lacks speed, or field current for a machine with a
+/// field. Values that contradict the machine's equations are left out.
 std::vector<std::vector<double>> closed_starts(const sim::plant::PlantUnderTest& tested,
                                                const event::WhitenedEvents& events,
                                                const std::vector<fit::FreeParameter>& free);

@@ -13,10 +13,10 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr double kTriedSeconds = 20.0;  ///< length of an event that is tried
-constexpr double kAt = 2.0;             ///< when it happens [s]
+constexpr double kTriedSeconds = 20.0;  ///< length of a simulated event [s]
+constexpr double kAt = 2.0;             ///< start of its disturbance [s]
 
-/// An event of the same plant, from the same operating point, with a voltage of its own.
+/// Builder of an event of the same plant at the same operating point with a given voltage.
 class Trial {
  public:
   Trial(const event::FitEvent& like, const std::vector<double>& switchings) : event_(like) {
@@ -25,14 +25,14 @@ class Trial {
     r.t.clear();
     for (int k = 0; k * step <= kTriedSeconds; ++k) r.t.push_back(first + k * step);
     event_.switchings.clear();
-    for (const double t : switchings)  // off the samples, as such instants are
+    for (const double t : switchings)  // between samples, as in real records
       event_.switchings.push_back(
           {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
     event_.start.drift = 0;
     event_.smeared.clear();
     event_.left_out.clear();
   }
-  /// V as a multiple of the operating point's, and the frequency deviation [Hz], both of time.
+  /// `voltage(t)`: V as a multiple of the operating point's; `frequency(t)`: frequency deviation [Hz].
   template <class V, class F>
   event::FitEvent with(V voltage, F frequency) {
     record::Record& r = event_.record;
@@ -71,7 +71,7 @@ event::FitEvent voltage_step(const event::FitEvent& like) {
   return Trial(like, {kAt}).with([](double t) { return t <= kAt ? 1.0 : 0.97; }, [](double) { return 0.0; });
 }
 
-/// The voltage rises as after a load rejection.
+/// Voltage rise as after a load rejection.
 event::FitEvent voltage_rise(const event::FitEvent& like) {
   const double end = kAt + 3.0;
   return Trial(like, {kAt, end})
@@ -84,7 +84,7 @@ fit::EventState at_rest(const event::FitEvent& event) {
   return state;
 }
 
-/// The same event with speed, Efd and Ifd in place of what was recorded, measured as well as is usual.
+/// Returns the event with the channels speed, Efd and Ifd in place of the recorded ones.
 event::FitEvent inner_channels(event::FitEvent event) {
   event.channels = {playin::Output::speed, playin::Output::Efd, playin::Output::Ifd};
   for (auto* channel : {&event.record.speed, &event.record.Efd, &event.record.Ifd})
@@ -128,7 +128,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
-  // what else drives a component, or is done to the plant, would have to be made up
+  // the further inputs of a component or a staged test would have to be invented
   if (like.record.component != record::Component::plant || !like.record.staged.empty()) return tried;
   const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
                           const fit::EventState& state) {
@@ -139,7 +139,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                            const fit::EventState& state) {
     try {
       tried.push_back({what, learnt(event, events.noise(0), state)});
-    } catch (const InputError&) {  // the plant does not survive that event: nothing is learnt from it
+    } catch (const InputError&) {  // the plant cannot be simulated through that event
     }
   };
   const double V = std::abs(like.start.voltage);

@@ -1,22 +1,24 @@
 #pragma once
-// What the records cannot tell, and which event could.
+// Identifiability: directions that the records do not determine, and further events that would.
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::calibrate {
 
-/// Directions of the information matrix (in units of belief) that the records decide less than half.
-/// `unit`: axis_unit of each parameter.
+/// Returns the eigenvectors of the information matrix (per prior standard deviation) whose posterior
+/// precision comes from the records by less than half. `unit`: axis_unit() of each parameter.
 std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit);
 
-/// Information of events that were not recorded, made by driving the plant with plain voltages: a frequency
-/// event, a deep fault, a lasting step of the voltage. Where speed, Efd and Ifd were not recorded, the same
-/// events with them follow. `voltage` is the played-in voltage's noise.
+/// Information matrix of an event that was not recorded.
 struct TriedEvent {
   std::string what;
   Eigen::MatrixXd information;
 };
+/// Simulates further events by playback of simple voltages: a frequency event, a deep fault, a lasting
+/// voltage step and a load rejection. Where Ifd was not recorded, the recorded events with speed, Efd and Ifd
+/// follow. Returns none for records of a component other than the plant and for staged tests, whose further
+/// inputs would have to be invented. `voltage` is the noise of the played-in voltage.
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const event::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,

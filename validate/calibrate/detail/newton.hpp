@@ -1,30 +1,31 @@
 #pragma once
-// Newton steps of a calibration along its axes (fit::axis_unit).
+// Newton steps of a calibration in units of fit::axis_unit().
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::calibrate {
 
-/// How far each parameter of `plant` is from where `believed` has it, in units of its spread.
+/// Returns the deviation of each parameter of `plant` from its prior mean in `believed`, in prior standard
+/// deviations.
 Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
                            const std::vector<fit::FreeParameter>& free);
 
-/// Information of each prior, per axis_unit of `plant`: 1 where the fit moves the logarithm; elsewhere the
-/// prior keeps the width that it has about the value of `believed`.
+/// Returns the information of each prior per axis_unit() of `plant`. It is 1 where the fit varies the
+/// logarithm; elsewhere the prior keeps the width that it has at the value of `believed`.
 Eigen::VectorXd prior_information(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
                                   const std::vector<fit::FreeParameter>& free);
 
-/// The plant moved by a step in units of its axes. It stays within the parameters' ranges.
+/// Returns the plant after a step in units of axis_unit(), clamped to the parameters' search ranges.
 sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free,
                           const Eigen::VectorXd& step);
 
-/// Newton steps whose curvature is only the expected one, corrected by what the steps so far have done
-/// (Broyden, Math. Comput. 19, 1965, p. 577).
+/// Quasi-Newton correction of steps whose curvature is only the expected one (Fisher scoring). Secant updates
+/// use the steps taken so far (Broyden, Math. Comput. 19, 1965, p. 577).
 class Secants {
  public:
   explicit Secants(Eigen::Index n) : inverse_(Eigen::MatrixXd::Identity(n, n)) {}
-  /// The step to take where the expected curvature asks for `plain`.
+  /// Returns the corrected step for `plain`, the step by the expected curvature.
   Eigen::VectorXd step(const Eigen::VectorXd& plain);
-  /// What was taken of it.
+  /// Records the step that was actually taken.
   void taken(const Eigen::VectorXd& step) { taken_ = step; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where a calibration may start: parameter sets drawn about the model's own.
+// Random parameter sets about the model's values, as starts of a calibration.
 #include <cstdint>
 #include <vector>
 
@@ -7,12 +7,13 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Parameter sets about the model's own, the best of which are worth a search.
+/// Sampler of parameter sets from the prior about the model's values.
 class Screen {
  public:
   Screen(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free, std::uint64_t seed)
       : plant_(plant), free_(free), seed_(seed) {}
-  /// Values of set k, drawn until they contradict no equation (100 times at most: then the model's own).
+  /// Returns set k. Draws are repeated until the equations accept them; after 100 draws the model's own
+  /// values are returned.
   [[nodiscard]] std::vector<double> draw(std::uint64_t k) const;
   [[nodiscard]] sim::plant::Plant with(const std::vector<double>& values) const;
   [[nodiscard]] std::vector<double> own() const;

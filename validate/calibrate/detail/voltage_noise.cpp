@@ -7,10 +7,10 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-constexpr double kKick = 1e-3;             ///< one sample of V (relative) or theta [rad] is off by so much
-constexpr double kSettle = 3, kFade = 12;  ///< before and after that sample [s]
+constexpr double kKick = 1e-3;             ///< impulse in one sample of V (relative) or theta [rad]
+constexpr double kSettle = 3, kFade = 12;  ///< duration before and after that sample [s]
 
-/// The plant's whitened answer, less what an instrument would have measured, and its slopes.
+/// Whitened residual of the playback, and its sensitivities.
 struct Answer {
   Eigen::VectorXd residual;
   Eigen::MatrixXd slopes;

@@ -1,22 +1,22 @@
 #pragma once
-// What noise of the measured voltage does to a calibration. It goes through the plant into the answer that
-// the record is compared with, and into the slopes along the parameters. A fit is then pulled to where the
-// plant passes least of this noise (reactances too large), and counts slopes that are noise as information.
-// Whitening does not remove either; both are computed here and taken back.
+// Bias of a calibration due to noise of the played-in voltage (errors in variables). The noise passes through
+// the plant into the response and into the sensitivities. It biases the fit towards parameters with low noise
+// transfer (reactances too large), and the noise in the sensitivities counts as information. Whitening
+// removes neither; this file computes both, and the calibration subtracts them.
 #include "validate/fit/noise.hpp"
 #include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::calibrate {
 
 struct VoltagePull {
-  Eigen::VectorXd score;        ///< J'r expected at the truth, summed over the events' samples
-  Eigen::MatrixXd information;  ///< J'J that noise alone makes, as if it were information
-  Eigen::MatrixXd doubt;        ///< covariance of the score for not knowing the noise's variances
+  Eigen::VectorXd score;        ///< expectation of J'r at the true parameters, summed over all samples
+  Eigen::MatrixXd information;  ///< expectation of the part of J'J that noise alone causes
+  Eigen::MatrixXd doubt;        ///< covariance of the score due to uncertain noise variances
 };
 
-/// One sample of V, and one of theta, is moved at the operating point of the first event; every sample of
-/// white noise does as much as that, independently. The residual is whitened as the events are,
-/// which were whitened through the plant `whitening`.
+/// Computes the bias from impulse responses: one sample of V, one of theta, and one step of an integrated
+/// theta, at the operating point of the first event. Samples of white noise act independently, so their
+/// contributions add up. `whitening` is the plant through which the events' residuals were whitened.
 VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
                          const sim::plant::PlantUnderTest& whitening, const event::WhitenedEvents& events,
                          const fit::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free);

@@ -11,8 +11,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// The same as `white` where the noise of the voltage, as the plant answers it, is in the cost; `white`
-/// itself where that hardly matters.
+/// Refits `white` with the plant's response to voltage noise in the noise model. Returns `white` if that
+/// noise is negligible.
 fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const event::WhitenedEvents& events) {
   const auto slow = events.with(fit::remember_noise(white, model.conventions, events));
   if (!slow.noise(0).memory) return white;
@@ -39,7 +39,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.playback.start = event::start_at(event, state);
   playin::take_outputs(r, e.playback);
   e.switchings = event::switchings_at(event, state);
-  e.record.theta = event.record.theta;  // as it was played in
+  e.record.theta = event.record.theta;  // angle as played in
   e.record.notes = event.record.notes;
   e.fitted = true;
   e.left_out = jumps == event::Jumps::spread || event.turns() ? event.left_out : e.record.lost;
@@ -49,14 +49,14 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event::FitEvent event;
   event.record = e.record;
   event.start = e.playback.start;
-  event.smeared = e.left_out;  // those beside a jump too
+  event.smeared = e.left_out;  // includes samples beside a step
   for (std::size_t k = 0; k < e.record.lost.size(); ++k)
-    if (e.record.lost[k]) event.smeared[k] = 0;  // bridged where nothing jumps, so hardly guessed
+    if (e.record.lost[k]) event.smeared[k] = 0;  // lost samples away from steps are interpolated accurately
   for (const playin::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
   event.channels = playin::compared_outputs(e.record, true);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
-  // what the channels' own noise is stands in the map
+  // the error map has the channels' noise, so unit noise is used here
   const event::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
                                .whitening = Eigen::MatrixXd::Identity(n, n)};
   e.doubt.clear();

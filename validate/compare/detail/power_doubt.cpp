@@ -10,7 +10,7 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr std::size_t kRuns = 24;  ///< of P and of Q: of more samples, neighbours move together
+constexpr std::size_t kRuns = 24;  ///< largest number of playbacks for P and for Q; neighbours share one
 
 class PowerDoubt {
  public:
@@ -31,7 +31,7 @@ class PowerDoubt {
   }
 
  private:
-  /// Samples about the switchings, each off by what it is off before the event.
+  /// Adds the pre-event noise to the samples about the switchings.
   void noise(std::vector<double> record::Record::*power) {
     const double deviation = spread(e_.record.*power, e_.playback.start.samples);
     if (!(deviation > 0)) return;
@@ -44,10 +44,10 @@ class PowerDoubt {
       play(moved, e_.switchings, 1);
     }
   }
-  /// Between an instant and the sample beside it P and Q are carried on from that side, and what they do
-  /// there is as uncertain as that sample would be, were it carried on from those behind it.
+  /// Adds the uncertainty between a switching and the samples beside it, where P and Q are extrapolated. It
+  /// is estimated as the error of extrapolating the adjacent sample from those behind it.
   void beside_instants(std::vector<double> record::Record::*power) {
-    constexpr double kOfStep = 0.3;  // of a step's error, rms over wherever in the step the instant lies
+    constexpr double kOfStep = 0.3;  // share of a whole step's error, RMS over the position in the step
     for (const playin::Switching& s : e_.switchings) {
       const auto next =
           static_cast<std::ptrdiff_t>(std::ranges::upper_bound(e_.record.t, s.time) - e_.record.t.begin());
@@ -58,8 +58,8 @@ class PowerDoubt {
       }
     }
   }
-  /// Puts into y[at] what a cubic, or what fewer samples allow, makes of the samples behind it as seen from
-  /// the instant.
+  /// Replaces y[at] by cubic extrapolation (or lower order) from the samples behind it. Returns false if
+  /// there is none.
   [[nodiscard]] bool carry_on(std::vector<double>& y, std::ptrdiff_t at, std::ptrdiff_t side) const {
     constexpr std::array<std::array<double, 4>, 4> kBinomial = {
         {{1, 0, 0, 0}, {2, -1, 0, 0}, {3, -3, 1, 0}, {4, -6, 4, -1}}};
@@ -73,7 +73,7 @@ class PowerDoubt {
     y[static_cast<std::size_t>(at)] = value;
     return true;
   }
-  /// Whether both samples are there and nothing switches between them.
+  /// Returns whether both samples exist and no switching lies between them.
   [[nodiscard]] bool in_one_piece(std::ptrdiff_t a, std::ptrdiff_t b) const {
     const std::ptrdiff_t low = std::min(a, b), high = std::max(a, b);
     const auto& t = e_.record.t;
@@ -82,7 +82,7 @@ class PowerDoubt {
     return std::ranges::none_of(e_.switchings,
                                 [&](const playin::Switching& s) { return from <= s.time && s.time < to; });
   }
-  /// Instants, each off by what an interval tells.
+  /// Shifts each switching time by the standard deviation of a uniform distribution over its interval.
   void instants() {
     for (std::size_t k = 0; k < e_.switchings.size(); ++k) {
       if (!(e_.switchings[k].uncertainty > 0)) continue;
@@ -96,7 +96,7 @@ class PowerDoubt {
     try {
       other = playin::play_in_power(model_.under_test(), moved, switchings, options_);
     } catch (const InputError&) {
-      return;  // no voltage delivers them: nothing is learnt
+      return;  // no voltage yields these P and Q
     }
     const auto add = [&](const char* name, const std::vector<double>& as_is,
                          const std::vector<double>& then) {

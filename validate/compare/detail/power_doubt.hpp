@@ -1,12 +1,12 @@
 #pragma once
-// What the noise and the gaps of P and Q about a switching may do to a voltage that they drive: in a fault it
-// answers to them many times as strongly as elsewhere, and the rotor keeps what it got there.
+// Uncertainty of a playback of P and Q due to their noise and gaps about a switching. During a fault the
+// voltage responds to them many times more strongly than elsewhere, and the rotor angle retains the error.
 #include "validate/compare/compare.hpp"
 
 namespace swingbank::validate::compare {
 
-/// Sets EventComparison::doubt of an event whose playback is that of P and Q: by playing it in again with
-/// each of these moved by what it may be off.
+/// Sets EventComparison::doubt of an event whose P and Q were played in. It repeats the playback with each
+/// uncertain quantity changed by one standard deviation.
 void add_power_doubt(const plant::PlantModel& model, const playin::PlayInOptions& options,
                      EventComparison& e);
 

@@ -14,13 +14,14 @@
 namespace swingbank::validate::report {
 namespace {
 
-/// 0 at `good` or below, 1 at `bad`; logarithmic between.
+/// Returns the shade: 0 at `good` or below, 1 at `bad`, logarithmic between.
 double shade(double value, double good, double bad) {
   return std::clamp(std::log(value / good) / std::log(bad / good), 0.0, 1.0);
 }
-constexpr double kGoodRelative = 0.01;  // of a parameter's variance
+constexpr double kGoodRelative = 0.01;  // green, as a share of a parameter's variance
 
-/// Green is what the thesis reached, under noise what the floor allows; red is no better than the mean.
+/// Returns the shade of a figure: green is the thesis's MSE (with a floor: the floor), red is
+/// predict-the-mean.
 double shade_of(const Task& task, const Of& of, const Figure& f) {
   if (f.over_floor) return shade(f.mse, f.mse / *f.over_floor, f.baseline);
   std::optional<double> good = thesis_mean(task, of.method);
@@ -40,7 +41,7 @@ Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
   return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
 }
 
-/// Methods that have runs at a level, and those of the thesis.
+/// Returns the methods with runs at a noise level, and those of the thesis.
 std::vector<std::string> methods_at(const Task& task, double noise) {
   std::vector<std::string> names;
   for (const auto& m : task.methods())
@@ -62,7 +63,7 @@ std::string range(double low, double high) {
   return low == high ? fmt::format("{:.0f}", low) : fmt::format("{:.0f} – {:.0f}", low, high);
 }
 
-/// The best of the task's networks: of what is trained.
+/// Returns the cell of the task's best network.
 Cell best_network(const Task& task, double noise) {
   std::optional<double> least;
   std::string best;
@@ -117,7 +118,7 @@ Table overview_of(std::span<const Task> tasks, std::string title) {
 }  // namespace
 
 std::vector<Table> overview_tables(const std::vector<Task>& tasks) {
-  constexpr std::size_t kWide = 3;  // columns that a page is wide enough for
+  constexpr std::size_t kWide = 3;  // columns that fit a page
   const auto others = std::ranges::find_if_not(tasks, of_thesis);
   std::vector<Table> tables;
   std::string title = kCellMeaning;

@@ -39,7 +39,7 @@ Size size_of(const std::vector<const RunResult*>& runs) {
   return size;
 }
 
-/// Generators that every size has; 0 where none was left out.
+/// Returns the generators common to all sizes; 0 stands for none left out.
 std::set<int> common(const RunsOfSize& sizes) {
   std::map<int, std::size_t> seen;
   for (const auto& [key, runs] : sizes) {
@@ -99,7 +99,7 @@ PlotSeries law_of(const ScalingSeries& s, double Size::*of, const PowerLaw& fitt
   return line;
 }
 
-/// The header becomes the first column.
+/// Returns the transposed table, with the header as first column.
 Table turned(Table table, const std::vector<std::vector<Cell>>& columns) {
   Table out{std::move(table.caption), {table.header.front()}, {}};
   for (const auto& column : columns) out.header.push_back(column.front().text);

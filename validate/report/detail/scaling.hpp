@@ -1,6 +1,5 @@
 #pragma once
-// How a network's error falls with its training rows and with time: series of runs of several sizes, and the
-// power laws through them.
+// Scaling laws of a network's error against training rows and processor time.
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,26 +10,27 @@
 
 namespace swingbank::validate::report {
 
-/// Means over seeds and over the generators that every size has.
+/// Mean over seeds and over the generators common to all sizes.
 struct Size {
   double rows = 0, core_seconds = 0, mse = 0, epochs = 0;  ///< of one run
-  double low = 0, high = 0;                                ///< of the seeds' means
+  double low = 0, high = 0;                                ///< least and largest mean of a seed
 };
+/// Runs of one network with several numbers of training rows.
 struct ScalingSeries {
   std::string table, network;
   double noise = 0;
-  std::vector<int> generators;  ///< that all sizes left out; empty: none was
-  std::vector<Size> sizes;      ///< by rows
+  std::vector<int> generators;  ///< left out at all sizes; empty: none was left out
+  std::vector<Size> sizes;      ///< sorted by rows
   [[nodiscard]] std::string name() const;
-  /// Against rows, against time; none with fewer sizes than kLeastSizes.
+  /// Error against training rows and against processor time; none with fewer sizes than kLeastSizes.
   [[nodiscard]] std::optional<PowerLaw> by_rows() const;
   [[nodiscard]] std::optional<PowerLaw> by_time() const;
 };
 inline constexpr std::size_t kLeastSizes = 4, kSizesToDraw = 3;
 
-/// Of all trained runs that are no control runs: those with at least kSizesToDraw sizes.
+/// Series with at least kSizesToDraw sizes, from all trained runs except control runs.
 std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results);
-/// Exponents, and when the thesis's size and figure would be reached.
+/// Table of exponents, of the error at the thesis's number of rows, and of the rows for the thesis's error.
 Table scaling_table(const std::vector<ScalingSeries>& series);
 std::string scaling_picture(const std::vector<ScalingSeries>& series);
 

@@ -27,7 +27,7 @@ std::size_t rank_of(const std::string& method) {
   return 50;
 }
 
-/// The floor of the same noise, seed and generator; its rows may be fewer.
+/// Returns the floor run of the same noise, seed and generator, which may have fewer rows; nullptr: none.
 const RunResult* floor_of(const Task& task, const RunResult& r) {
   const auto at = std::ranges::find_if(task.runs, [&](const RunResult& f) {
     return f.network == kFloor && f.noise == r.noise && f.seed == r.seed && f.generator == r.generator;
@@ -142,7 +142,7 @@ std::vector<ParameterFigure> parameter_figures(const Task& task, const Of& of) {
 }
 
 double baseline_of(const Task& task, int generator) {
-  std::map<int, const RunResult*> widest;  // some methods are judged on a part of the test rows
+  std::map<int, const RunResult*> widest;  // run with most test rows; some methods use only a part of them
   for (const auto& r : task.runs) {
     if (generator != kAnyGenerator && r.generator != generator) continue;
     const auto*& best = widest[r.generator];

@@ -1,5 +1,5 @@
 #pragma once
-// The runs of one table, preset and dataset, and what their figures are over seeds and generators.
+// Runs of one table, preset and dataset, and their means over seeds and generators.
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,22 +8,22 @@
 
 namespace swingbank::validate::report {
 
-/// Without control runs, those that recipes are chosen by, and those on a share of the rows.
+/// Runs of one task. Excluded are control runs, runs for recipe selection, and runs on a share of the rows.
 struct Task {
   std::string table, preset, dataset, dataset_hash;
   std::int64_t rows = 0;
   std::vector<RunResult> runs;
-  /// In the tables' order: the thesis's networks, other networks, what is not trained, the floor.
+  /// Methods in the tables' order: the thesis's networks, other networks, untrained methods, the floor.
   [[nodiscard]] std::vector<std::string> methods() const;
-  [[nodiscard]] std::vector<double> levels() const;   ///< of noise, rising
-  [[nodiscard]] std::vector<int> generators() const;  ///< left out; of Table V and VI at least the thesis's
+  [[nodiscard]] std::vector<double> levels() const;   ///< noise levels in rising order
+  [[nodiscard]] std::vector<int> generators() const;  ///< left out; includes the thesis's for Tables V and VI
   [[nodiscard]] std::vector<std::string> makers() const;
 };
-/// In the order of the thesis's tables, then of presets and rows.
+/// Groups the results into tasks, sorted by the thesis's tables, then preset and rows.
 std::vector<Task> tasks_of(const std::vector<RunResult>& results);
 
 constexpr int kAnyGenerator = -1;
-/// Which runs of a task a figure is of.
+/// Selection of a task's runs.
 struct Of {
   std::string method;
   double noise = 0;
@@ -36,7 +36,7 @@ struct Figure {
   double mse = 0, ratio = 0, baseline = 0;
   double spread = 0;  ///< standard deviation of the seeds' means
   std::size_t seeds = 0, generators = 0;
-  std::optional<double> over_floor;  ///< quotient over the runs for which there is a floor
+  std::optional<double> over_floor;  ///< ratio to the floor over the runs that have one
 };
 std::optional<Figure> figure_of(const Task& task, const Of& of);
 
@@ -47,17 +47,17 @@ struct ParameterFigure {
 };
 std::vector<ParameterFigure> parameter_figures(const Task& task, const Of& of);
 
-/// Of predicting the mean, on all test rows; mean over the generators where any will do. NaN without runs.
+/// MSE of predicting the mean on all test rows; mean over the generators for kAnyGenerator. NaN without runs.
 double baseline_of(const Task& task, int generator = kAnyGenerator);
 
-/// The thesis's figure, of a network that it has not its best; mean over the generators of the task.
+/// The thesis's MSE for the method, else for its best network; mean over the task's generators.
 std::optional<double> thesis_mean(const Task& task, const std::string& method);
 
-/// "CNN", "MLP corrects", "closed form".
+/// Name in tables: "CNN", "MLP corrects", "closed form".
 std::string method_name(const std::string& network);
 /// "no noise", "noise 0.1 %".
 std::string level_name(double noise);
-/// Three digits.
+/// Number with three digits; "–" if not finite.
 std::string shown(double v);
 
 }  // namespace swingbank::validate::report

@@ -16,7 +16,7 @@ namespace {
 
 using Mark = PlotSeries::Mark;
 
-/// Marks of one row side by side, not on each other.
+/// Returns the offset of mark i in a row, so that marks do not overlap.
 double aside(std::size_t i, std::size_t count) {
   return count < 2 ? 0 : 0.5 * (static_cast<double>(i) / static_cast<double>(count - 1) - 0.5);
 }
@@ -61,7 +61,7 @@ std::string parameter_picture(const Task& task) {
     plot.width = levels.size() > 1 ? 680.0 / static_cast<double>(levels.size()) : 480;
     plot.y.silent = !panels.empty();
     plot.rules.push_back({1.0, "constant guess"});
-    std::vector<std::string> rows;  // parameters that vary
+    std::vector<std::string> rows;  // varying parameters
     for (const auto& r : task.runs)
       for (const auto& p : r.parameters)
         if (p.relative && std::ranges::find(rows, p.name) == rows.end()) rows.push_back(p.name);
@@ -80,7 +80,7 @@ std::string parameter_picture(const Task& task) {
     }
     panels.push_back(std::move(plot));
   }
-  for (auto& p : panels) p.x.range = {low / 2, high * 2};  // the panels are read against each other
+  for (auto& p : panels) p.x.range = {low / 2, high * 2};  // common range of all panels
   return svg(panels);
 }
 

@@ -1,17 +1,16 @@
 #pragma once
-// A task's figures as pictures: methods beside the thesis, errors per parameter, reliability.
+// Plots of a task: error of each method, error per parameter, and reliability of the intervals.
 #include <string>
 
 #include "validate/report/detail/summary.hpp"
 
 namespace swingbank::validate::report {
 
-/// Raw MSE of each method at each level of noise: the mean as a large mark, each generator as a small one.
+/// Raw MSE of each method per noise level: the mean as a large mark, each generator as a small mark.
 std::string method_picture(const Task& task);
-/// Relative error of each parameter, one panel per level of noise, one mark per method.
+/// Relative error of each parameter: one panel per noise level, one mark per method.
 std::string parameter_picture(const Task& task);
-/// How often the truth lay in the intervals that the methods gave, against how often it should; empty where
-/// none gave any.
+/// Observed against nominal coverage of the methods' intervals; empty if no method gave intervals.
 std::string reliability_picture(const Task& task);
 
 }  // namespace swingbank::validate::report

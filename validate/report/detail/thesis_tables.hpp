@@ -1,6 +1,6 @@
 #pragma once
-// Results of Y. Wu, "Model Parameter Calibration in Power Systems", University of Vermont, 2020, chapter 4:
-// the figures ours stand beside. Mean squared error over the parameters in raw units, on test data.
+// Results of Y. Wu, "Model Parameter Calibration in Power Systems", University of Vermont, 2020, chapter 4,
+// for comparison. Mean squared error over the parameters in raw units, on test data.
 #include <array>
 #include <string_view>
 
@@ -8,9 +8,9 @@ namespace swingbank::validate::report {
 
 struct ThesisTable {
   std::string_view number, title, machine;
-  double train_rows;  ///< of one network: 60 % of the 390,000 stable of 720,000 runs; nine tenths of 60,000
+  double train_rows;  ///< IV: 60 % of the 390,000 stable of 720,000 runs; V, VI: nine tenths of 60,000
 };
-/// Through the training rows.
+/// Epochs of training.
 inline constexpr double kThesisEpochs = 100;
 inline constexpr std::array<ThesisTable, 3> kThesisTables = {{
     {"IV", "IEEE 14-bus, GENROU at one bus", "GENROU", 234e3},
@@ -18,7 +18,7 @@ inline constexpr std::array<ThesisTable, 3> kThesisTables = {{
     {"VI", "IEEE 39-bus, all GENROU, one generator left out", "GENROU", 54e3},
 }};
 
-/// One cell. `generator` is the bus of the generator left out, 0 where none is (Table IV).
+/// Table entry. `generator` is the bus of the generator left out; 0: none (Table IV).
 struct ThesisCell {
   std::string_view table, network;
   int generator;
@@ -37,10 +37,10 @@ inline constexpr std::array<ThesisCell, 23> kThesisCells = {{
 }};
 /// Section 4.1.1: EPRI's PPPD on ten test events of the Table IV data, and the CNN on the same events.
 inline constexpr double kThesisPppd = 2.6, kThesisCnnOnPppdEvents = 0.018;
-/// Section 4.1: the GRU's validation loss on the data of Table VI stopped falling there.
+/// Section 4.1: validation loss at which the GRU stopped improving on the data of Table VI.
 inline constexpr double kThesisGruTableVI = 0.9;
 
-/// The thesis's figure for the network, else its best for that table and generator; nullptr: it has none.
+/// Returns the thesis's entry for the network, else its best for that table and generator; nullptr: none.
 constexpr const ThesisCell* thesis_cell(std::string_view table, std::string_view network, int generator) {
   const ThesisCell* best = nullptr;
   for (const auto& c : kThesisCells) {

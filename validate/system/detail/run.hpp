@@ -1,5 +1,5 @@
 #pragma once
-// The event played in the full grid, and what the model has at every terminal of a system comparison.
+// Simulation of the event in the full grid, with the response at every terminal of a system comparison.
 #include <limits>
 #include <vector>
 
@@ -7,30 +7,29 @@
 
 namespace swingbank::validate::system {
 
-/// What the grid has at one terminal, on the record's instants and base.
+/// Simulated response at one terminal, at the record's sampling times and on its base.
 struct Modelled {
   std::vector<double> V, theta, P, Q, speed, Efd, Ifd;
 };
 
-/// One simulation per set of sampling instants: terminals that share theirs share it, and nothing is
+/// Responses of all terminals. Terminals with equal sampling times share a simulation, so that no response is
 /// interpolated.
 struct SystemRun {
   std::vector<Modelled> answers;  ///< one per terminal
   sim::Outcome outcome = sim::Outcome::stable;
   double stopped_at = std::numeric_limits<double>::infinity();  ///< on the records' clock [s]
 };
-/// Behind instruments with a memory, whose answers need samples between the record's, the grid is sampled so
-/// many times as often.
+/// Oversampling factor of the simulation for instruments with memory (filters).
 constexpr int kFine = 8;
 
-/// What the terminals' instruments show of the event in the grid. Throws InputError as run_reference, and
-/// where a voltage of zero leaves an instrument no current to show.
+/// Simulates the event and applies the terminals' instruments. Throws InputError as run_reference(), if the
+/// run ends early, and if a voltage of zero leaves an instrument's current undefined.
 SystemRun run_system(const SystemCase& system, const sim::network::Event& event);
 
-/// Instants at which something is switched, sorted [s].
+/// Returns the switching times of the event, sorted [s].
 std::vector<double> instants_of(const sim::network::Event& event);
 
-/// The event with every instant moved by `move`.
+/// Returns the event with `move` applied to every switching time.
 template <class Move>
 sim::network::Event moved(sim::network::Event e, Move move) {
   for (auto& f : e.faults) f.t_on = move(f.t_on), f.t_off = move(f.t_off);
@@ -47,15 +46,14 @@ sim::network::Event moved(sim::network::Event e, Move move) {
   return e;
 }
 
-/// Where the records say that the event's instants were: their voltages' jumps tell each to half a sample,
-/// and within that it is moved to where model and records agree best up to one second after the last (V, P
-/// and Q of every terminal; a wrong model cannot move an instant further). Returns one per instant of the
-/// event, and sets `uncertainty` [s]. Throws InputError if no record shows as many jumps as the event has
-/// instants.
+/// Estimates the event's switching times. Voltage steps determine each within half a sampling interval.
+/// Within that interval they are fitted to V, P and Q of every terminal up to one second after the last, so
+/// that a wrong model cannot move them further. Sets `uncertainty` [s]. Throws InputError if no record has as
+/// many voltage steps as the event has switching times.
 std::vector<double> found_instants(const SystemCase& system, double& uncertainty);
 
-/// What contradicts the given instants in a record: as many jumps of the voltage, but at other times. Empty
-/// if nothing does.
+/// Returns a warning if a record has as many voltage steps as there are switching times, but at other times;
+/// otherwise an empty text.
 std::string clock_doubt(const record::Record& record, const std::vector<double>& instants);
 
 }  // namespace swingbank::validate::system

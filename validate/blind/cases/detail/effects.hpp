@@ -1,6 +1,6 @@
 #pragma once
-// Effects as blind cases name them: the compiled ones and the private set of odd drives, which no library
-// holds, so that no hypothesis can name them.
+// Effects of blind cases: the compiled ones and the unlisted ones, which no library contains, so that no
+// hypothesis can name them.
 #include <span>
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace swingbank::validate::blind::cases {
 
-/// The private set.
+/// Unlisted effects.
 std::span<const sim::Effect> odd_effects();
-/// A compiled effect or one of the private set; nullptr if there is none of that name.
+/// Returns the compiled or unlisted effect of that name; nullptr: none.
 const sim::Effect* blind_effect(const std::string& name);
-/// "EFFECT[:PARAM=VALUE,...]"; parameters not named keep the effect's standard value.
+/// Reads "EFFECT[:PARAM=VALUE,...]"; parameters that are not named have their default values.
 sim::plant::Block blind_block(const std::string& text, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::validate::blind::cases
