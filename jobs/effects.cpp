@@ -109,7 +109,7 @@ void describe(const Effect& e) {
     Footnotes sources;
     for (const Parameter& p : e.parameters)
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit), number(p.standard),
-                      number(p.low), number(p.high), number(p.neutral), sources.marks(p),
+                      number(p.low), number(p.high), number(p.null_value), sources.marks(p),
                       std::string(p.meaning)});
     fmt::print("\nparameters (neutral: where the influence vanishes; unit code: a choice)\n");
     print_table(rows);
@@ -146,7 +146,7 @@ Json as_json(const Effect& e) {
                                {"standard", value(p.standard)},
                                {"low", value(p.low)},
                                {"high", value(p.high)},
-                               {"neutral", value(p.neutral)},
+                               {"neutral", value(p.null_value)},
                                {"standard_from", as_text(p.standard_from)},
                                {"bounds_from", as_text(p.bounds_from)},
                                {"meaning", p.meaning}});

@@ -76,12 +76,12 @@ constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
 
-constexpr double kNoNeutral = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 /// Placeholder in a parameter's record, before the bounds' source: the default has the effect's source.
 constexpr Source kAsEffect = {};
 
 /// One parameter of an effect. `low` and `high` bound the usual range (sim/plant/usual.hpp); check() refuses
-/// values that no equation can take. A dataset's sampling box must lie within the range. `neutral` is the
+/// values that no equation can take. A dataset's sampling box must lie within the range. `null_value` is the
 /// null value, at which the effect's influence vanishes; it may lie outside the usual range (NaN: none). The
 /// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
 /// standards_from and bounds_from.
@@ -89,7 +89,7 @@ struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< usual notation: "X'd"
   std::string_view unit;    ///< "pu", "s"
-  double standard, low, high, neutral;
+  double standard, low, high, null_value;
   std::string_view meaning;
   Source standard_from = {}, bounds_from = {};
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }

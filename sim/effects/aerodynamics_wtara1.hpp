@@ -24,7 +24,7 @@ struct Model {
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"Ka", "Ka", "pu/deg^2", 0.007, 0.0, 1.0, 0.0, "power taken from the wind less, by the blades' angle"},
-      {"Theta0", "Theta0", "deg", 0.0, -5.0, 30.0, kNoNeutral, "the blades' angle at the start"}};
+      {"Theta0", "Theta0", "deg", 0.0, -5.0, 30.0, kNoNullValue, "the blades' angle at the start"}};
   static constexpr int dyr_columns[] = {Ka, Theta0};
   enum C { ka, theta0, p0, coefficients };
 

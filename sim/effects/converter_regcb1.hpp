@@ -38,7 +38,7 @@ struct Model : shared::BehindImpedance<Model> {
       kIqrmax,
       kIqrmin,
       kRrpwr,
-      {"Te", "Te", "s", 0.01, 0.0, 0.5, kNoNeutral, "lag of the inner voltage (0: none)",
+      {"Te", "Te", "s", 0.01, 0.0, 0.5, kNoNullValue, "lag of the inner voltage (0: none)",
        literature::own("half of Tg: the inner loop is the faster one")},
       kImax,
       kRe,

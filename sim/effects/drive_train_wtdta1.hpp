@@ -26,13 +26,13 @@ struct Model {
   static constexpr Source standards_from = literature::andes("WTDTA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
-      {"H", "H", "s", 3.0, 0.1, 20.0, kNoNeutral, "inertia constant of both masses"},
+      {"H", "H", "s", 3.0, 0.1, 20.0, kNoNullValue, "inertia constant of both masses"},
       {"DAMP", "DAMP", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per speed of the generator"},
-      {"Htfrac", "Htfrac", "pu/pu", 0.5, 0.0, 1.0, kNoNeutral,
+      {"Htfrac", "Htfrac", "pu/pu", 0.5, 0.0, 1.0, kNoNullValue,
        "the turbine's part of the inertia (0: one mass)"},
-      {"Freq1", "Freq1", "Hz", 1.8, 0.0, 10.0, kNoNeutral, "first torsional frequency",
+      {"Freq1", "Freq1", "Hz", 1.8, 0.0, 10.0, kNoNullValue, "first torsional frequency",
        literature::psse("WTDTA1, a typical value")},
-      {"Dshaft", "Dshaft", "pu", 1.0, 0.0, 20.0, kNoNeutral, "damping of the shaft"}};
+      {"Dshaft", "Dshaft", "pu", 1.0, 0.0, 20.0, kNoNullValue, "damping of the shaft"}};
   static constexpr int dyr_columns[] = {H, DAMP, Htfrac, Freq1, Dshaft};
   enum C { two, iTt, iTg, damp, stiff, dshaft, w0, base, coefficients };
   enum X { wt, wg, twist };

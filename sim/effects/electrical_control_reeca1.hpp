@@ -115,7 +115,7 @@ struct Model {
       renewable::record::Kqi,
       renewable::record::Kvp,
       renewable::record::Kvi,
-      Parameter{"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNeutral, "added to a Qext that is a voltage"},
+      Parameter{"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"},
       renewable::record::Tiq,
       renewable::record::dPmax,
       renewable::record::dPmin,

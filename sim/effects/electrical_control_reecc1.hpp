@@ -99,15 +99,15 @@ struct Model {
       renewable::record::Pmax,      shared::with(renewable::record::Pmin, -1.0),
       renewable::record::Imax,      renewable::record::Tpord};
   static constexpr std::array kBehind = {
-      Parameter{"T", "T", "s", 14400.0, 1.0, 1e6, kNoNeutral,
+      Parameter{"T", "T", "s", 14400.0, 1.0, 1e6, kNoNullValue,
                 "time in which rated power empties it: longer than any run",
                 literature::own("a battery of four hours")},
-      Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNeutral, "state of charge at the start",
+      Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNullValue, "state of charge at the start",
                 literature::own("half full"), literature::derived("a part of the whole")},
-      Parameter{"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNeutral, "largest state of charge",
+      Parameter{"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNullValue, "largest state of charge",
                 literature::own("WECC's typical range, 0.8 to 1"),
                 literature::derived("a part of the whole")},
-      Parameter{"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNeutral, "smallest state of charge",
+      Parameter{"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNullValue, "smallest state of charge",
                 literature::own("WECC's typical range, 0 to 0.2"),
                 literature::derived("a part of the whole")}};
   static constexpr auto parameters =

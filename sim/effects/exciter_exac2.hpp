@@ -27,8 +27,8 @@ struct Model : shared::AlternatorRectifier<Model> {
   static constexpr Source kDefault = literature::openipsl("EXAC2, defaults");
   static constexpr auto parameters = [] {
     constexpr auto common = parameters_with(
-        {"VAMAX", "VAMAX", "pu", 14.5, 0.0, 1000.0, kNoNeutral, "upper limit of the regulator"},
-        {"VAMIN", "VAMIN", "pu", -14.5, -1000.0, 0.0, kNoNeutral, "lower limit of the regulator"});
+        {"VAMAX", "VAMAX", "pu", 14.5, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"},
+        {"VAMIN", "VAMIN", "pu", -14.5, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"});
     std::array<Parameter, all_parameters> all{};
     std::copy(common.begin(), common.end(), all.begin());
     all[VRMAX] = {"VRMAX",
@@ -37,7 +37,7 @@ struct Model : shared::AlternatorRectifier<Model> {
                   95.0,
                   0.0,
                   1000.0,
-                  kNoNeutral,
+                  kNoNullValue,
                   "upper limit of the alternator's field voltage",
                   literature::cim("ExcIEEEAC2A, VRMAX near 105")};
     all[VRMIN] = {"VRMIN",
@@ -46,17 +46,17 @@ struct Model : shared::AlternatorRectifier<Model> {
                   -95.0,
                   -1000.0,
                   0.0,
-                  kNoNeutral,
+                  kNoNullValue,
                   "lower limit of the alternator's field voltage",
                   literature::cim("ExcIEEEAC2A, VRMIN = -95")};
-    all[KB] = {"KB", "KB", "pu", 1.0, 0.01, 1000.0, kNoNeutral, "gain of the second stage", kDefault};
+    all[KB] = {"KB", "KB", "pu", 1.0, 0.01, 1000.0, kNoNullValue, "gain of the second stage", kDefault};
     all[KL] = {"KL",
                "KL",
                "pu",
                1.0,
                0.0,
                1000.0,
-               kNoNeutral,
+               kNoNullValue,
                "gain of the field limiter",
                literature::andes("EXAC2, commit 12dec4e")};
     all[KH] = {"KH",    "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current",
@@ -67,7 +67,7 @@ struct Model : shared::AlternatorRectifier<Model> {
                 20.0,
                 0.0,
                 1000.0,
-                kNoNeutral,
+                kNoNullValue,
                 "field current that the limiter ends at",
                 literature::own("beyond what the standard alternator needs to force")};
     return all;

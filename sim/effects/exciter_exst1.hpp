@@ -28,18 +28,18 @@ struct Model {
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kCase},
-      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNeutral, "upper limit of the voltage error", kCase},
-      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNeutral, "lower limit of the voltage error", kCase},
-      {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNeutral, "lead"},
-      {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNeutral, "lag (0: bypass)"},
-      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNeutral, "gain", kCase},
-      {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNeutral, "regulator time constant (0: none)"},
-      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNeutral, "upper ceiling at rated voltage", kCase},
-      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNeutral, "lower ceiling at rated voltage",
+      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNullValue, "upper limit of the voltage error", kCase},
+      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNullValue, "lower limit of the voltage error", kCase},
+      {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNullValue, "lead"},
+      {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNullValue, "lag (0: bypass)"},
+      {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNullValue, "gain", kCase},
+      {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNullValue, "regulator time constant (0: none)"},
+      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage", kCase},
+      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage",
        literature::own("a bridge inverts a little less than it rectifies")},
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
-      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)"}};
+      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
   enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };
   enum X { Vm, leadlag, Va, rate };

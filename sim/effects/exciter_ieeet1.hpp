@@ -25,7 +25,7 @@ struct Model : shared::RotatingDc<Model> {
   static constexpr Parameter parameters[] = {
       kTR,
       kKA,
-      {"TA", "TA", "s", 0.1, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)",
+      {"TA", "TA", "s", 0.1, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)",
        literature::own("among the case files' 0.001 to 0.2 s")},
       kVRMAX,
       kVRMIN,

@@ -38,17 +38,17 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-      {"KA", "KA", "pu", 120.0, 1.0, 2000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.15, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
-      {"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNeutral, "upper limit of Vr"},
-      {"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNeutral, "lower limit of Vr"},
-      {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNeutral, "exciter time constant"},
+      {"KA", "KA", "pu", 120.0, 1.0, 2000.0, kNoNullValue, "regulator gain"},
+      {"TA", "TA", "s", 0.15, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)"},
+      {"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNullValue, "upper limit of Vr"},
+      {"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNullValue, "lower limit of Vr"},
+      {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNullValue, "exciter time constant"},
       {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "rate feedback"},
-      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNeutral, "rate feedback's time constant (0: with KF = 0)"},
-      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNeutral, "source, from voltage"},
+      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
+      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "source, from voltage"},
       {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
-      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNeutral, "upper limit of what feeds the field"},
-      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNeutral, "exciter's own field"}};
+      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of what feeds the field"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "exciter's own field"}};
   static constexpr int dyr_columns[] = {TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE};
   enum C {
     iTR,

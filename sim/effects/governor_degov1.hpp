@@ -21,7 +21,7 @@ struct Model : shared::Diesel<Model> {
 )";
   enum P { M, T1, T2, T3, K, T4, T5, T6, TD, TMAX, TMIN, DROOP, TE };
   static constexpr Parameter parameters[] = {
-      {"M", "M", "code", 0.0, 0.0, 1.0, kNoNeutral, "droop of: 0 throttle, 1 electrical power", kAsEffect,
+      {"M", "M", "code", 0.0, 0.0, 1.0, kNoNullValue, "droop of: 0 throttle, 1 electrical power", kAsEffect,
        shared::kCode},
       kT1,
       kT2,
@@ -34,7 +34,7 @@ struct Model : shared::Diesel<Model> {
       kTMAX,
       kTMIN,
       {"DROOP", "DROOP", "pu", 0.05, 0.0, 1.0, 0.0, "permanent droop"},
-      {"TE", "TE", "s", 0.1, 0.0, 30.0, kNoNeutral, "power transducer (0: none)"}};
+      {"TE", "TE", "s", 0.1, 0.0, 30.0, kNoNullValue, "power transducer (0: none)"}};
   static constexpr int dyr_columns[] = {M, T1, T2, T3, K, T4, T5, T6, TD, TMAX, TMIN, DROOP, TE};
   enum { droop = own, of_power, iTE, Pref, coefficients };
   enum { power = own_states };

@@ -31,20 +31,20 @@ struct Model {
   static constexpr Source standards_from = literature::cim("GovHydro1");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop",
+      {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop",
        literature::psid("HYGOV/ThreeBus_HYGOV.dyr")},
-      {"r", "r", "pu", 0.3, 0.01, 5.0, kNoNeutral, "temporary droop"},
-      {"Tr", "Tr", "s", 5.0, 0.1, 60.0, kNoNeutral, "governor (dashpot) time constant"},
-      {"Tf", "Tf", "s", 0.05, 0.005, 5.0, kNoNeutral, "filter time constant"},
-      {"Tg", "Tg", "s", 0.5, 0.01, 50.0, kNoNeutral, "servo time constant"},
-      {"VELM", "VELM", "pu/s", 0.2, 0.001, 10.0, kNoNeutral, "gate velocity limit"},
-      {"GMAX", "GMAX", "pu", 1.0, 0.1, 2.0, kNoNeutral, "upper limit of the gate"},
-      {"GMIN", "GMIN", "pu", 0.0, 0.0, 1.0, kNoNeutral, "lower limit of the gate"},
-      {"TW", "TW", "s", 1.0, 0.05, 30.0, kNoNeutral, "water starting time"},
-      {"At", "At", "pu", 1.2, 0.3, 5.0, kNoNeutral, "turbine gain"},
+      {"r", "r", "pu", 0.3, 0.01, 5.0, kNoNullValue, "temporary droop"},
+      {"Tr", "Tr", "s", 5.0, 0.1, 60.0, kNoNullValue, "governor (dashpot) time constant"},
+      {"Tf", "Tf", "s", 0.05, 0.005, 5.0, kNoNullValue, "filter time constant"},
+      {"Tg", "Tg", "s", 0.5, 0.01, 50.0, kNoNullValue, "servo time constant"},
+      {"VELM", "VELM", "pu/s", 0.2, 0.001, 10.0, kNoNullValue, "gate velocity limit"},
+      {"GMAX", "GMAX", "pu", 1.0, 0.1, 2.0, kNoNullValue, "upper limit of the gate"},
+      {"GMIN", "GMIN", "pu", 0.0, 0.0, 1.0, kNoNullValue, "lower limit of the gate"},
+      {"TW", "TW", "s", 1.0, 0.05, 30.0, kNoNullValue, "water starting time"},
+      {"At", "At", "pu", 1.2, 0.3, 5.0, kNoNullValue, "turbine gain"},
       {"Dturb", "Dturb", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed at full gate",
        literature::psid("HYGOV/ThreeBus_HYGOV.dyr")},
-      {"qNL", "qNL", "pu", 0.08, 0.0, 0.5, kNoNeutral, "flow at no load"},
+      {"qNL", "qNL", "pu", 0.08, 0.0, 0.5, kNoNullValue, "flow at no load"},
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {R, r, Tr, Tf, Tg, VELM, GMAX, GMIN, TW, At, Dturb, qNL};

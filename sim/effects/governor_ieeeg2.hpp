@@ -30,12 +30,12 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"K", "K", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::own("a droop of 5 %; CIM has none")},
-      {"T1", "T1", "s", 50.0, 0.0, 500.0, kNoNeutral, "lag of the governor (0: none)"},
-      {"T2", "T2", "s", 5.0, 0.0, 100.0, kNoNeutral, "lead of the governor"},
-      {"T3", "T3", "s", 0.5, 0.0, 100.0, kNoNeutral, "gate actuator (0: bypass)"},
-      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the gate",
+      {"T1", "T1", "s", 50.0, 0.0, 500.0, kNoNullValue, "lag of the governor (0: none)"},
+      {"T2", "T2", "s", 5.0, 0.0, 100.0, kNoNullValue, "lead of the governor"},
+      {"T3", "T3", "s", 0.5, 0.0, 100.0, kNoNullValue, "gate actuator (0: bypass)"},
+      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the gate",
        literature::own("rated power; CIM has none")},
-      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate",
+      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate",
        literature::own("shut; CIM has none")},
       {"T4", "T4", "s", 1.0, 0.0, 30.0, 0.0, "water starting time", literature::cim("GovHydro1, Tw")}};
   static constexpr int dyr_columns[] = {K, T1, T2, T3, PMAX, PMIN, T4};

@@ -29,20 +29,20 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kLossless = literature::kundur("9.1.1: an ideal turbine at rated load");
   static constexpr Parameter parameters[] = {
-      {"TG", "TG", "s", 0.5, 0.001, 50.0, kNoNeutral, "gate servo"},
+      {"TG", "TG", "s", 0.5, 0.001, 50.0, kNoNullValue, "gate servo"},
       {"TP", "TP", "s", 0.03, 0.0, 10.0, 0.0, "pilot valve (0: none)"},
-      {"UO", "UO", "pu/s", 0.1, 0.001, 10.0, kNoNeutral, "fastest opening"},
-      {"UC", "UC", "pu/s", -0.1, -10.0, -0.001, kNoNeutral, "fastest closing, negative"},
-      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the gate"},
-      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the gate"},
-      {"SIGMA", "sigma", "pu", 0.05, 0.0, 1.0, kNoNeutral, "permanent droop"},
+      {"UO", "UO", "pu/s", 0.1, 0.001, 10.0, kNoNullValue, "fastest opening"},
+      {"UC", "UC", "pu/s", -0.1, -10.0, -0.001, kNoNullValue, "fastest closing, negative"},
+      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the gate"},
+      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate"},
+      {"SIGMA", "sigma", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop"},
       {"DELTA", "delta", "pu", 0.5, 0.0, 5.0, 0.0, "temporary droop"},
-      {"TR", "TR", "s", 12.0, 0.0, 100.0, kNoNeutral, "dashpot time constant (0: no temporary droop)"},
+      {"TR", "TR", "s", 12.0, 0.0, 100.0, kNoNullValue, "dashpot time constant (0: no temporary droop)"},
       {"TW", "TW", "s", 2.0, 0.0, 30.0, 0.0, "water starting time"},
-      {"A11", "a11", "-", 0.5, 0.0, 5.0, kNoNeutral, "flow by head", kLossless},
-      {"A13", "a13", "-", 1.0, 0.0, 5.0, kNoNeutral, "flow by gate", kLossless},
-      {"A21", "a21", "-", 1.5, 0.0, 5.0, kNoNeutral, "power by head", kLossless},
-      {"A23", "a23", "-", 1.0, 0.01, 5.0, kNoNeutral, "power by gate", kLossless}};
+      {"A11", "a11", "-", 0.5, 0.0, 5.0, kNoNullValue, "flow by head", kLossless},
+      {"A13", "a13", "-", 1.0, 0.0, 5.0, kNoNullValue, "flow by gate", kLossless},
+      {"A21", "a21", "-", 1.5, 0.0, 5.0, kNoNullValue, "power by head", kLossless},
+      {"A23", "a23", "-", 1.0, 0.01, 5.0, kNoNullValue, "power by gate", kLossless}};
   static constexpr int dyr_columns[] = {TG, TP, UO, UC, PMAX, PMIN, SIGMA, DELTA, TR, TW, A11, A13, A21, A23};
   enum C {
     iTG,

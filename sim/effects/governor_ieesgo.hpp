@@ -27,20 +27,20 @@ struct Model {
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Source kSteam = literature::own("IEEEG1's stages as fractions of what is left");
   static constexpr Parameter parameters[] = {
-      {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNeutral, "controller's lag (0: none)",
+      {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNullValue, "controller's lag (0: none)",
        literature::own("as IEEEG1's")},
-      {"T2", "T2", "s", 0.05, 0.0, 50.0, kNoNeutral, "controller's lead", literature::own("as IEEEG1's")},
-      {"T3", "T3", "s", 0.2, 0.0, 100.0, kNoNeutral, "governor's lag (0: neither lag nor lead)",
+      {"T2", "T2", "s", 0.05, 0.0, 50.0, kNoNullValue, "controller's lead", literature::own("as IEEEG1's")},
+      {"T3", "T3", "s", 0.2, 0.0, 100.0, kNoNullValue, "governor's lag (0: neither lag nor lead)",
        literature::own("as IEEEG1's servo")},
-      {"T4", "T4", "s", 0.5, 0.0, 50.0, kNoNeutral, "steam inlet (0: none)"},
-      {"T5", "T5", "s", 10.0, 0.0, 100.0, kNoNeutral, "reheater (0: none)"},
-      {"T6", "T6", "s", 0.5, 0.0, 100.0, kNoNeutral, "crossover (0: none)"},
+      {"T4", "T4", "s", 0.5, 0.0, 50.0, kNoNullValue, "steam inlet (0: none)"},
+      {"T5", "T5", "s", 10.0, 0.0, 100.0, kNoNullValue, "reheater (0: none)"},
+      {"T6", "T6", "s", 0.5, 0.0, 100.0, kNoNullValue, "crossover (0: none)"},
       {"K1", "K1", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::own("5 % droop")},
-      {"K2", "K2", "-", 0.7, -3.0, 3.0, kNoNeutral, "fraction that passes the reheater", kSteam},
-      {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNeutral, "fraction of it that passes the crossover", kSteam},
-      {"PMAX", "PMAX", "pu", 1.0, 0.1, 10.0, kNoNeutral, "upper limit of power", literature::own("rated")},
-      {"PMIN", "PMIN", "pu", 0.0, -10.0, 1.0, kNoNeutral, "lower limit of power"},
+      {"K2", "K2", "-", 0.7, -3.0, 3.0, kNoNullValue, "fraction that passes the reheater", kSteam},
+      {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNullValue, "fraction of it that passes the crossover", kSteam},
+      {"PMAX", "PMAX", "pu", 1.0, 0.1, 10.0, kNoNullValue, "upper limit of power", literature::own("rated")},
+      {"PMIN", "PMIN", "pu", 0.0, -10.0, 1.0, kNoNullValue, "lower limit of power"},
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {T1, T2, T3, T4, T5, T6, K1, K2, K3, PMAX, PMIN};

@@ -24,14 +24,14 @@ struct Model {
   static constexpr Source standards_from = literature::cim("GovSteam0");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNeutral, "permanent droop"},
-      {"T1", "T1", "s", 0.5, 0.0, 10.0, kNoNeutral, "steam bowl time constant (0: none)"},
-      {"VMAX", "VMAX", "pu", 1.0, 0.1, 5.0, kNoNeutral, "upper limit of the valve"},
-      {"VMIN", "VMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the valve", kAsEffect,
+      {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNullValue, "permanent droop"},
+      {"T1", "T1", "s", 0.5, 0.0, 10.0, kNoNullValue, "steam bowl time constant (0: none)"},
+      {"VMAX", "VMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the valve"},
+      {"VMIN", "VMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the valve", kAsEffect,
        literature::own("no turbine brakes with more than its rating; dynamicsWECC.dyr (GridDyn) has -1.5")},
-      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNeutral, "numerator; T2/T3 is the high-pressure share of power",
+      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNullValue, "numerator; T2/T3 is the high-pressure share of power",
        literature::own("a high-pressure share of 2/7; CIM has 3 of 10 s")},
-      {"T3", "T3", "s", 7.0, 0.0, 60.0, kNoNeutral, "reheater time constant (0: none)",
+      {"T3", "T3", "s", 7.0, 0.0, 60.0, kNoNullValue, "reheater time constant (0: none)",
        literature::own("shorter than CIM's 10 s")},
       {"Dt", "Dt", "pu", 0.0, 0.0, 5.0, 0.0, "turbine damping, power per speed"},
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",

@@ -37,8 +37,8 @@ struct Model {
     constexpr std::string_view names[] = {"TA", "TB", "TC"};
     for (int i = TA; i <= TC; ++i)
       all[static_cast<std::size_t>(i)] = {
-          names[i - TA], names[i - TA], "s",        i == TB ? 0.2 : 0.0,
-          0.0,           100.0,         kNoNeutral, "time of a fast closing; without effect",
+          names[i - TA], names[i - TA], "s",          i == TB ? 0.2 : 0.0,
+          0.0,           100.0,         kNoNullValue, "time of a fast closing; without effect",
           kTimes};
     all[PRMAX] = {"PRMAX",
                   "PRMAX",
@@ -46,7 +46,7 @@ struct Model {
                   1.2,
                   0.1,
                   10.0,
-                  kNoNeutral,
+                  kNoNullValue,
                   "upper limit of the reheater's pressure",
                   literature::own("a fifth above rated")};
     return all;

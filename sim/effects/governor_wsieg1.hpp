@@ -83,7 +83,7 @@ struct Model {
           0.0,
           0.0,
           99.0,
-          kNoNeutral,
+          kNoNullValue,
           (i - GV1) % 2 == 0 ? "opening of the valve (0: point not used)" : "power there",
           shared::kNothing,
           literature::own("99 stands for a point beyond reach")};

@@ -31,7 +31,7 @@ struct Model {
   static constexpr Source standards_from = literature::cim("OverexcLimX1");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNeutral, "rated field voltage",
+      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated field voltage",
        literature::own(
            "field voltage of a loaded machine with Xd = 1.8, in units of the air-gap line; CIM has 1.05")},
       shared::kPickup,
@@ -40,7 +40,7 @@ struct Model {
       shared::kTimeAtMiddle,
       shared::kUpper,
       shared::kTimeAtUpper,
-      {"EFDDES", "EFDDES", "-", 0.9, 0.5, 5.0, kNoNeutral, "field voltage it aims at, of rated"},
+      {"EFDDES", "EFDDES", "-", 0.9, 0.5, 5.0, kNoNullValue, "field voltage it aims at, of rated"},
       {"KMX", "KMX", "pu/pu", 0.01, 0.0, 10.0, 0.0, "gain"},
       shared::kLowest};
   static constexpr int dyr_columns[] = {EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW};

@@ -25,9 +25,9 @@ struct Model {
   static constexpr Source standards_from = literature::cim("OverexcLimX2");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"M", "M", "code", 1.0, 0.0, 1.0, kNoNeutral, "limited quantity: 0 field voltage, 1 field current",
+      {"M", "M", "code", 1.0, 0.0, 1.0, kNoNullValue, "limited quantity: 0 field voltage, 1 field current",
        literature::own("what heats the field"), shared::kCode},
-      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNeutral, "rated field current",
+      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated field current",
        literature::own(
            "field current of a loaded machine with Xd = 1.8, in units of the air-gap line; CIM has 1.05")},
       shared::kPickup,
@@ -36,7 +36,7 @@ struct Model {
       shared::kTimeAtMiddle,
       shared::kUpper,
       shared::kTimeAtUpper,
-      {"EFDDES", "EFDDES", "-", 1.0, 0.5, 5.0, kNoNeutral, "field current it regulates to, of rated"},
+      {"EFDDES", "EFDDES", "-", 1.0, 0.5, 5.0, kNoNullValue, "field current it regulates to, of rated"},
       {"KMX", "KMX", "1/s", 0.02, 0.0, 10.0, 0.0, "gain of the integrator",
        literature::own("ten times CIM's, to act within a record")},
       shared::kLowest};

@@ -33,25 +33,25 @@ struct Model {
   static constexpr Source bounds_from =
       literature::own("more than ten times the load, and powers beyond 10, are no load");
   static constexpr Parameter parameters[] = {
-      {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNeutral, "part of P with V to the power n1"},
+      {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNullValue, "part of P with V to the power n1"},
       {"a2", "a2", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n2"},
       {"a3", "a3", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n3"},
-      {"a4", "a4", "-", 1.0, -10.0, 10.0, kNoNeutral, "part of Q with V to the power n4"},
+      {"a4", "a4", "-", 1.0, -10.0, 10.0, kNoNullValue, "part of Q with V to the power n4"},
       {"a5", "a5", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n5"},
       {"a6", "a6", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n6"},
       {"a7", "a7", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency"},
       {"a8", "a8", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency"},
-      {"n1", "n1", "-", 2.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"n2", "n2", "-", 1.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"n3", "n3", "-", 0.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"n4", "n4", "-", 2.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"n5", "n5", "-", 1.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"n6", "n6", "-", 0.0, 0.0, 10.0, kNoNeutral, "exponent of the voltage"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 1 are impedances",
+      {"n1", "n1", "-", 2.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"n2", "n2", "-", 1.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"n3", "n3", "-", 0.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"n4", "n4", "-", 2.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"n5", "n5", "-", 1.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"n6", "n6", "-", 0.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which terms with n < 1 are impedances",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which terms with n < 2 are impedances",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which terms with n < 2 are impedances",
        shared::kCurrentThreshold, shared::kThreshold},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
   enum X { xr, xi };

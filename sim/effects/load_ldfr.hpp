@@ -44,11 +44,11 @@ struct Model {
       {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power", kAsEffect, shared::kShare},
       {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current", kAsEffect, shared::kShare},
       {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power", kAsEffect, shared::kShare},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part falls",
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part falls",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part falls",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part falls",
        shared::kCurrentThreshold, shared::kThreshold},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {m, n, r, s};
   enum X { xr, xi };

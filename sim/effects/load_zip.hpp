@@ -38,15 +38,15 @@ struct Model {
       {"Pp", "Pp", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant power"},
       {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
       {"Qp", "Qp", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant power"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNeutral, "voltage below which the power part falls",
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part falls",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNeutral, "voltage below which the current part falls",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part falls",
        shared::kCurrentThreshold, shared::kThreshold},
       {"Kpf", "Kpf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency", kAsEffect,
        literature::own("ten per cent of load for each of frequency")},
       {"Kqf", "Kqf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency", kAsEffect,
        literature::own("ten per cent of load for each of frequency")},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNeutral, "lag behind which the frequency is measured",
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   enum X { xr, xi };
   /// The gain from an error of x to P is Kpf/(2 pi f0 Tf), about 0.1.

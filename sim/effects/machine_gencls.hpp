@@ -26,13 +26,13 @@ struct Model {
   static constexpr Source standards_from = literature::kundur("within table 4.2");
   static constexpr Source bounds_from = shared::kBeyondKundur;
   static constexpr Parameter parameters[] = {
-      {"H", "H", "s", 5.0, 0.0, 20.0, kNoNeutral, "inertia constant (0: infinite bus)",
+      {"H", "H", "s", 5.0, 0.0, 20.0, kNoNullValue, "inertia constant (0: infinite bus)",
        literature::kundur("within table 3.2"),
        literature::own("0 is an infinite bus; three times Kundur's table 3.2")},
       {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation", shared::kNothing,
        shared::kDamping},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected},
-      {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNeutral, "transient reactance", kAsEffect,
+      {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNullValue, "transient reactance", kAsEffect,
        literature::own("an infinite bus has hardly any")}};
   enum X { delta, speed };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},

@@ -82,7 +82,7 @@ struct Model {
                     1.0,
                     1.0,
                     1.0,
-                    kNoNeutral,
+                    kNoNullValue,
                     "law of saturation: 1 scaled quadratic",
                     literature::own("WECC's usual choice"),
                     shared::kCode};

@@ -27,7 +27,7 @@ struct Model {
   static constexpr Source bounds_from = literature::own("more and longer than a record that can be used has");
   static constexpr Parameter parameters[] = {
       {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps that begin per second of good record"},
-      {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNeutral, "mean length of a gap",
+      {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNullValue, "mean length of a gap",
        literature::own("six samples of 60 a second")}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

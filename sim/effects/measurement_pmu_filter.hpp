@@ -32,13 +32,13 @@ struct Model {
   static constexpr Source standards_from = literature::own("class P, as it is without a choice");
   static constexpr Source bounds_from = shared::kCode;
   static constexpr Parameter parameters[] = {
-      {"class", "class", "code", 0.0, 0.0, 1.0, kNoNeutral, "0: class P, 1: class M"},
+      {"class", "class", "code", 0.0, 0.0, 1.0, kNoNullValue, "0: class P, 1: class M"},
       {"scale", "s", "-", 1.0, 0.0, 10.0, 0.0, "length of the window over that of the standard",
        literature::c37("annex C"), literature::own("0: no filter; ten times the standard")},
-      {"reports", "Fs", "code", 60.0, 10.0, 120.0, kNoNeutral,
+      {"reports", "Fs", "code", 60.0, 10.0, 120.0, kNoNullValue,
        "reports per second, which choose the window of class M", literature::c37("reporting rates at 60 Hz"),
        literature::c37("reporting rates, 10 to 120")},
-      {"compensation", "comp", "code", 1.0, 0.0, 1.0, kNoNeutral,
+      {"compensation", "comp", "code", 1.0, 0.0, 1.0, kNoNullValue,
        "1: class P corrects the magnitude off nominal frequency, 0: it does not",
        literature::c37("annex C")}};
 

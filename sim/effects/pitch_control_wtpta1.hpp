@@ -31,11 +31,11 @@ struct Model {
       {"Kic", "Kic", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the power, integral gain"},
       {"Kpc", "Kpc", "deg/pu", 0.0, 0.0, 999.0, 0.0, "of the power, proportional gain"},
       {"Kcc", "Kcc", "pu/pu", 0.0, 0.0, 100.0, 0.0, "power that counts as speed"},
-      {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNeutral, "response of the blades (0: none)"},
-      {"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNeutral, "largest angle"},
-      {"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNeutral, "smallest angle"},
-      {"RTetaMax", "RTetaMax", "deg/s", 5.0, 0.0, 99.0, kNoNeutral, "fastest rise"},
-      {"RTetaMin", "RTetaMin", "deg/s", -5.0, -99.0, 0.0, kNoNeutral, "fastest fall"}};
+      {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNullValue, "response of the blades (0: none)"},
+      {"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNullValue, "largest angle"},
+      {"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNullValue, "smallest angle"},
+      {"RTetaMax", "RTetaMax", "deg/s", 5.0, 0.0, 99.0, kNoNullValue, "fastest rise"},
+      {"RTetaMin", "RTetaMin", "deg/s", -5.0, -99.0, 0.0, kNoNullValue, "fastest fall"}};
   static constexpr int dyr_columns[] = {Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin};
   enum C { kiw, kpw, kic, kpc, kcc, iTpi, most, least, rise, fall, pord0, start, coefficients };
   enum X { by_speed, by_power, angle };

@@ -31,12 +31,12 @@ struct Model {
   static constexpr Source standards_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the first move begins", shared::kAfterRest,
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the first move begins", shared::kAfterRest,
        shared::kAnyTime},
-      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNeutral, "from one command to the next",
+      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNullValue, "from one command to the next",
        literature::kundur("11.1.6, every few seconds"),
        literature::own("a tenth of a second, to longer than any record")},
-      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNeutral, "how long one move takes (0: a step)",
+      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNullValue, "how long one move takes (0: a step)",
        literature::own("half of the interval"), shared::kAnyTime},
       {"move1", "dP1", "pu", 0.0, -1.0, 1.0, 0.0, "first move of the governor's reference"},
       {"move2", "dP2", "pu", 0.0, -1.0, 1.0, 0.0, "second move, on top"},

@@ -30,19 +30,19 @@ struct Model {
       literature::own("a few minutes' return of the power, within half of a droop of 5 %; CIM has 0");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"FBF", "FBF", "code", 0.0, 0.0, 1.0, kNoNeutral, "1: the frequency adds to the error",
+      {"FBF", "FBF", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: the frequency adds to the error",
        literature::cim("TurbLCFB1"), shared::kCode},
-      {"PBF", "PBF", "code", 1.0, 0.0, 1.0, kNoNeutral, "1: the power adds to the error", kAsEffect,
+      {"PBF", "PBF", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: the power adds to the error", kAsEffect,
        shared::kCode},
       {"FB", "Fb", "pu/pu", 0.0, 0.0, 1000.0, 0.0, "frequency bias, power by speed",
        literature::cim("TurbLCFB1")},
       {"TPELEC", "Tpelec", "s", 1.0, 0.0, 100.0, 0.0, "lag of the measured power (0: none)"},
       {"DB", "db", "pu", 0.0, 0.0, 1.0, 0.0, "half width of the error's dead-band",
        literature::cim("TurbLCFB1")},
-      {"EMAX", "Emax", "pu", 0.02, 0.0, 10.0, kNoNeutral, "largest error", literature::cim("TurbLCFB1")},
+      {"EMAX", "Emax", "pu", 0.02, 0.0, 10.0, kNoNullValue, "largest error", literature::cim("TurbLCFB1")},
       {"KP", "Kp", "pu", 0.0, 0.0, 100.0, 0.0, "proportional gain", literature::cim("TurbLCFB1")},
       {"KI", "Ki", "1/s", 0.005, 0.0, 100.0, 0.0, "integral gain"},
-      {"IRMAX", "Irmax", "pu", 0.025, 0.0, 10.0, kNoNeutral, "largest move of the reference"}};
+      {"IRMAX", "Irmax", "pu", 0.025, 0.0, 10.0, kNoNullValue, "largest move of the reference"}};
   static constexpr int dyr_columns[] = {FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX};
   enum C { by_speed, by_power, iTpelec, band, largest, kp, ki, most, least, Pset, coefficients };
   enum X { measured, integral };

@@ -31,12 +31,12 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "part of the torque the valves take away", kAsEffect,
        shared::kShare},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the valves begin to close", shared::kAfterRest},
-      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNeutral, "how long they close (0: at once)",
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the valves begin to close", shared::kAfterRest},
+      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNullValue, "how long they close (0: at once)",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNeutral, "how long they stay closed",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "how long they stay closed",
        literature::own("a little longer than they close")},
-      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNeutral, "how long they reopen (0: at once)",
+      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNullValue, "how long they reopen (0: at once)",
        literature::kundur("17.1.5, over seconds")}};
   enum C { coefficients = opening + 1 };
 

@@ -39,14 +39,15 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"drop", "k", "-", 0.3, 0.0, 1.0, 0.0, "part of the torque the valves take away",
        literature::own("some"), shared::kShare},
-      {"dip", "dV", "pu", 0.1, 1e-3, 2.0, kNoNeutral, "fall of V from which the valves are set off",
+      {"dip", "dV", "pu", 0.1, 1e-3, 2.0, kNoNullValue, "fall of V from which the valves are set off",
        literature::own("more than a load does"), literature::own("from noise to more than V")},
-      {"delay", "t1", "s", 0.1, 0.0, 1e5, kNoNeutral, "time from the fault until the valves begin to close"},
-      {"closing", "Tc", "s", 0.15, 1e-3, 100.0, kNoNeutral, "how long they close",
+      {"delay", "t1", "s", 0.1, 0.0, 1e5, kNoNullValue,
+       "time from the fault until the valves begin to close"},
+      {"closing", "Tc", "s", 0.15, 1e-3, 100.0, kNoNullValue, "how long they close",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNeutral, "how long they stay closed",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "how long they stay closed",
        literature::own("a little longer than they close")},
-      {"opening", "To", "s", 3.0, 1e-3, 1e5, kNoNeutral, "how long they reopen",
+      {"opening", "To", "s", 3.0, 1e-3, 1e5, kNoNullValue, "how long they reopen",
        literature::kundur("17.1.5, over seconds")}};
   enum C { begins = opening + 1, level, coefficients };
   enum X { set, since };

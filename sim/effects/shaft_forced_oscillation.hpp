@@ -24,12 +24,12 @@ struct Model {
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
       {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque", kAsEffect, shared::kRating},
-      {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNeutral, "frequency of the oscillation",
+      {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNullValue, "frequency of the oscillation",
        literature::own("between two areas"), literature::own("from minutes to the frequency of the grid")},
-      {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNeutral, "phase at `start`",
+      {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNullValue, "phase at `start`",
        literature::derived("a sine"), literature::derived("a turn either way")},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when it begins", shared::kAfterRest},
-      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it ends (100000: never)", shared::kNever}};
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when it begins", shared::kAfterRest},
+      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "when it ends (100000: never)", shared::kNever}};
   enum C { kA, w, phi, t1, t2, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

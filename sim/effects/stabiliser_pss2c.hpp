@@ -30,14 +30,14 @@ struct Model {
     std::array<Parameter, kCount> list{};
     for (int i = 0; i < B::parameter_count; ++i) list[static_cast<std::size_t>(i)] = B::parameters[i];
     constexpr Source none = shared::kNothing;
-    list[T12] = {"T12", "T12", "s", 0.0, 0.0, 20.0, kNoNeutral, "fourth lead", none};
-    list[T13] = {"T13", "T13", "s", 0.0, 0.0, 20.0, kNoNeutral, "fourth lag (0: bypass)", none};
+    list[T12] = {"T12", "T12", "s", 0.0, 0.0, 20.0, kNoNullValue, "fourth lead", none};
+    list[T13] = {"T13", "T13", "s", 0.0, 0.0, 20.0, kNoNullValue, "fourth lag (0: bypass)", none};
     list[PSSON] = {"PSSON", "PSSON", "pu", 0.0, 0.0, 1.0, 0.0, "power from which the output is whole", none};
     list[PSSOFF] = {"PSSOFF", "PSSOFF", "pu", 0.0, 0.0, 1.0, 0.0, "power up to which there is no output",
                     none};
     list[Xcomp] = {
-        "Xcomp", "Xcomp", "pu", 0.0, 0.0, 2.0, kNoNeutral, "reactance of the compensated frequency", none};
-    list[Tcomp] = {"Tcomp", "Tcomp", "s", 0.0, 0.0, 10.0, kNoNeutral, "its time constant", none};
+        "Xcomp", "Xcomp", "pu", 0.0, 0.0, 2.0, kNoNullValue, "reactance of the compensated frequency", none};
+    list[Tcomp] = {"Tcomp", "Tcomp", "s", 0.0, 0.0, 10.0, kNoNullValue, "its time constant", none};
     return list;
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;

@@ -22,14 +22,14 @@ struct Model {
       "washouts of 4 s and an integral above a tenth of a second; no published sample was found");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNeutral, "gain of each washout"},
-      {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNeutral, "time constant of each washout"},
+      {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNullValue, "gain of each washout"},
+      {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNullValue, "time constant of each washout"},
       {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged way"},
-      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNeutral, "its time constant (0: none)"},
+      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNullValue, "its time constant (0: none)"},
       {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct way"},
       {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
-      {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNeutral, "time constant of each output lag (0: none)"},
-      {"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNeutral, "limit of Vs on either side"}};
+      {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNullValue, "time constant of each output lag (0: none)"},
+      {"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNullValue, "limit of Vs on either side"}};
   static constexpr int dyr_columns[] = {K2, T2, K3, T3, K4, K5, T5, HLIM};
   enum C { k2, iT2, k3, iT3, k4, k5, iT5, limit, coefficients };
   enum X { wash1, wash2, wash3, slow, out1, out2 };

@@ -31,9 +31,9 @@ std::string dyr_record(const plant::Block& block, const std::string& owner, int 
     const auto at = static_cast<std::size_t>(i);
     const Parameter& parameter = effect.parameters[at];
     if (raw && raw->p[at] == block.p[at]) continue;
-    const double dropped = raw                             ? raw->p[at]
-                           : std::isnan(parameter.neutral) ? standard[at]
-                                                           : parameter.neutral;
+    const double dropped = raw                                ? raw->p[at]
+                           : std::isnan(parameter.null_value) ? standard[at]
+                                                              : parameter.null_value;
     if (block.p[at] != dropped)
       problems.add(std::string(parameter.symbol) + " = " + formats::psse::shortest(block.p[at]) + " " +
                        std::string(parameter.unit) + " of " + std::string(effect.name),

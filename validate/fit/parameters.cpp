@@ -28,7 +28,7 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int b
   std::vector<FreeParameter> free;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& p = effect.parameters[i];
-    if (p.is_code() || values[i] == 0.0 || values[i] == p.neutral) continue;
+    if (p.is_code() || values[i] == 0.0 || values[i] == p.null_value) continue;
     if (std::ranges::count(instants, values[i])) continue;
     free.push_back({{block, static_cast<int>(i)}, spread});
   }

@@ -34,9 +34,9 @@ std::vector<Companion> companions_in(const Stage& stage, const sim::plant::Plant
     std::vector<double> moves;
     for (std::size_t i = 0; i < h.free.size(); ++i) {
       double& value = parameter_value(begun, h.free[i].id);
-      const double neutral = parameter_record(begun, h.free[i].id).neutral, start = h.starts.front()[i];
-      value = std::isnan(neutral) ? start : neutral + kChangeShare * (start - neutral);
-      moves.push_back(kChangeShare * (std::isnan(neutral) ? start : start - neutral));
+      const double null_value = parameter_record(begun, h.free[i].id).null_value, start = h.starts.front()[i];
+      value = std::isnan(null_value) ? start : null_value + kChangeShare * (start - null_value);
+      moves.push_back(kChangeShare * (std::isnan(null_value) ? start : start - null_value));
     }
     add(plant, begun);
     for (std::size_t i = 0; i < h.free.size() && h.free.size() > 1; ++i) {

@@ -111,7 +111,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
 
 /// Sets the free parameters and start values of an instrument. Its errors are small, and the response is
 /// linear in them.
-void start_near_neutral(Hypothesis& h, int block) {
+void start_near_null(Hypothesis& h, int block) {
   const sim::Effect& effect = sim::plant::block_effect(h.plant, block);
   for (std::size_t i = 0; i < effect.parameters.size(); ++i)
     if (!effect.parameters[i].is_code()) h.free.push_back({{block, static_cast<int>(i)}, kAddedSpread});
@@ -119,7 +119,7 @@ void start_near_neutral(Hypothesis& h, int block) {
     std::vector<double> values;
     for (const auto& f : h.free) {
       const auto& p = sim::plant::parameter_record(h.plant, f.id);
-      values.push_back(std::clamp(p.neutral + share * (p.high - p.low), p.low, p.high));
+      values.push_back(std::clamp(p.null_value + share * (p.high - p.low), p.low, p.high));
     }
     h.starts.push_back(values);
   }
@@ -131,7 +131,7 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedSpread);
   const auto& parameters = sim::plant::block_effect(plant, block).parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (const auto& p = parameters[i]; p.neutral == p.standard && p.neutral > 0 && !p.is_code())
+    if (const auto& p = parameters[i]; p.null_value == p.standard && p.null_value > 0 && !p.is_code())
       free.push_back({{block, static_cast<int>(i)}, kFactorSpread});
   return free;
 }
@@ -155,7 +155,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   h.conventions = tested.conventions;
   const int block = sim::plant::insert_block(h.plant, {&effect, effect.standard_parameters()});
   if (effect.slot == Slot::measurement) {
-    start_near_neutral(h, block);
+    start_near_null(h, block);
   } else {
     free_by_draws(h, free_of_added(h.plant, block));
   }
@@ -194,19 +194,19 @@ bool is_band(const sim::Effect& effect, const std::vector<int>& group) {
   if (group.size() != 2) return false;
   const auto &lower = effect.parameters[static_cast<std::size_t>(group[0])],
              &upper = effect.parameters[static_cast<std::size_t>(group[1])];
-  return lower.neutral == 0.0 && lower.low < 0.0 && lower.high == 0.0 && upper.neutral == 0.0 &&
+  return lower.null_value == 0.0 && lower.low < 0.0 && lower.high == 0.0 && upper.null_value == 0.0 &&
          upper.low == 0.0 && upper.high > 0.0;
 }
 
 /// Returns a hypothesis for every group of parameters of a block that are at their null values.
-std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested, int b) {
+std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, int b) {
   std::vector<Hypothesis> all;
   const sim::plant::Block& block = sim::plant::block_at(tested.plant, b);
   const sim::Effect& effect = *block.effect;
   std::vector<std::vector<int>> groups;
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
-    if (p.is_code() || block.p[i] != p.neutral) continue;
+    if (p.is_code() || block.p[i] != p.null_value) continue;
     const bool joins =
         !groups.empty() &&
         stem(effect.parameters[static_cast<std::size_t>(groups.back().back())].name) == stem(p.name) &&
@@ -235,10 +235,10 @@ std::vector<Hypothesis> neutral_groups(const sim::plant::PlantUnderTest& tested,
       sim::plant::Block moved = block;
       for (std::size_t k = 0; k < group.size(); ++k) {
         const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
-        const double room = share > 0 ? p.high - p.neutral : p.neutral - p.low;
+        const double room = share > 0 ? p.high - p.null_value : p.null_value - p.low;
         // later points of a curve lie above earlier ones
         const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
-        const double v = p.neutral + (band ? share * (p.high > p.neutral ? p.high : p.low) : curve);
+        const double v = p.null_value + (band ? share * (p.high > p.null_value ? p.high : p.low) : curve);
         values.push_back(v);
         moved.p[static_cast<std::size_t>(group[k])] = v;
       }
@@ -341,7 +341,7 @@ std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
   std::vector<Hypothesis> all;
   add_effects(tested, library, component, all);
   for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b)
-    std::ranges::move(neutral_groups(tested, b), std::back_inserter(all));
+    std::ranges::move(null_groups(tested, b), std::back_inserter(all));
   if (playin::belongs_to(component, Slot::machine) && !tested.plant.machine.effect->converter)
     add_conventions(tested, all);
   if (component == record::Component::plant) add_switches(tested, all);
@@ -375,7 +375,7 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
   const auto is_free = [&](const fit::FreeParameter& part) {
     return std::ranges::find(h.free, part.id, &fit::FreeParameter::id) != h.free.end();
   };
-  for (const Hypothesis& group : neutral_groups(h.under_test(), h.free.front().id.block)) {
+  for (const Hypothesis& group : null_groups(h.under_test(), h.free.front().id.block)) {
     if (std::ranges::any_of(group.free, is_free)) continue;
     const std::string names = group.name.substr(group.name.find(':') + 1);
     for (const bool positive : {true, false}) {

@@ -225,7 +225,7 @@ sim::Phasors probe() {
   return p;
 }
 /// Its parameters away from neutral, beyond what rounding hides.
-std::vector<double> away_from_neutral(const sim::Effect& instrument) {
+std::vector<double> away_from_null(const sim::Effect& instrument) {
   constexpr double kAway = 0.05;  // of the range
   auto p = instrument.standard_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
@@ -239,12 +239,12 @@ std::vector<double> away_from_neutral(const sim::Effect& instrument) {
 bool touches_phasors(const sim::Effect& instrument) {
   const sim::Phasors before = probe();
   sim::Phasors after = before;
-  instrument.measure(away_from_neutral(instrument).data(), 1, after);
+  instrument.measure(away_from_null(instrument).data(), 1, after);
   return after.V != before.V || after.I != before.I;
 }
 
 bool can_be_taken_back(const sim::Effect& instrument) {
-  const auto p = away_from_neutral(instrument);
+  const auto p = away_from_null(instrument);
   sim::Phasors once = probe();
   const auto before = once.V;
   sim::Phasors twice = once;

@@ -19,27 +19,28 @@ struct BehindImpedance : ControlledCurrent<Model> {
   using Core = renewable::ElectricalControl;  // for the checks of check_common()
   static constexpr Source standards_from = literature::own("as REGCA1's");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr Parameter kRateFlag{"rateFlag", "rateFlag",
-                                       "code",     0.0,
-                                       0.0,        1.0,
-                                       kNoNeutral, "0: the active current rises by rrpwr, 1: the power",
-                                       kAsEffect,  renewable::kFlag};
+  static constexpr Parameter kRateFlag{"rateFlag",   "rateFlag",
+                                       "code",       0.0,
+                                       0.0,          1.0,
+                                       kNoNullValue, "0: the active current rises by rrpwr, 1: the power",
+                                       kAsEffect,    renewable::kFlag};
   static constexpr Parameter kPqFlag{
-      "pqFlag",  "pqFlag",        "code", 0.0, 0.0, 1.0, kNoNeutral, "at Imax 0: P yields, 1: Q yields",
+      "pqFlag",  "pqFlag",        "code", 0.0, 0.0, 1.0, kNoNullValue, "at Imax 0: P yields, 1: Q yields",
       kAsEffect, renewable::kFlag};
-  static constexpr Parameter kTg{"Tg", "Tg", "s",        0.02,
-                                 1e-3, 0.5,  kNoNeutral, "time constant of the converter"};
+  static constexpr Parameter kTg{"Tg", "Tg", "s",          0.02,
+                                 1e-3, 0.5,  kNoNullValue, "time constant of the converter"};
   static constexpr Parameter kTfltr{
-      "Tfltr", "Tfltr", "s",        0.2,
-      0.0,     1.0,     kNoNeutral, "measurement of the voltage for rateFlag 1 (0: none)"};
-  static constexpr Parameter kIqrmax{"Iqrmax", "Iqrmax", "pu/s",     100.0,
-                                     0.0,      9999.0,   kNoNeutral, "fastest rise of the reactive current"};
-  static constexpr Parameter kIqrmin{"Iqrmin", "Iqrmin", "pu/s",     -100.0,
-                                     -9999.0,  0.0,      kNoNeutral, "fastest fall of the reactive current"};
+      "Tfltr", "Tfltr", "s",          0.2,
+      0.0,     1.0,     kNoNullValue, "measurement of the voltage for rateFlag 1 (0: none)"};
+  static constexpr Parameter kIqrmax{
+      "Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNullValue, "fastest rise of the reactive current"};
+  static constexpr Parameter kIqrmin{
+      "Iqrmin", "Iqrmin", "pu/s", -100.0, -9999.0, 0.0, kNoNullValue, "fastest fall of the reactive current"};
   static constexpr Parameter kRrpwr{
-      "rrpwr", "rrpwr", "pu/s", 10.0, 0.01, 999.0, kNoNeutral, "fastest rise of the active current or power"};
-  static constexpr Parameter kImax{"Imax", "Imax", "pu", 1.3, 0.1, 99.0, kNoNeutral, "largest current"};
-  static constexpr Parameter kRe{"Re",      "Re", "pu", 0.0, 0.0, 0.5, kNoNeutral, "source resistance",
+      "rrpwr", "rrpwr", "pu/s",       10.0,
+      0.01,    999.0,   kNoNullValue, "fastest rise of the active current or power"};
+  static constexpr Parameter kImax{"Imax", "Imax", "pu", 1.3, 0.1, 99.0, kNoNullValue, "largest current"};
+  static constexpr Parameter kRe{"Re",      "Re", "pu", 0.0, 0.0, 0.5, kNoNullValue, "source resistance",
                                  kNeglected};
   static constexpr Parameter kXe{"Xe",
                                  "Xe",
@@ -47,7 +48,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
                                  0.25,
                                  0.01,
                                  2.0,
-                                 kNoNeutral,
+                                 kNoNullValue,
                                  "source reactance",
                                  literature::own("InterPSS's for aggregated converters")};
   /// Fraction of Imax below which the limit of the second current follows the tangent instead of the circle.

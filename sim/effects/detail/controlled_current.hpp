@@ -19,7 +19,7 @@ struct ControlledCurrent {
                                        0.02,
                                        1e-3,
                                        1.0,
-                                       kNoNeutral,
+                                       kNoNullValue,
                                        "measurement of the terminal's frequency",
                                        literature::own("about a cycle")};
   static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},

@@ -70,11 +70,11 @@ struct DcTypeOne : DcBehindLeadLag<Model> {
   static constexpr Source bounds_from = kBeyondCases;
   static constexpr Parameter parameters[] = {
       Dc::kTR,
-      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNeutral, "regulator gain"},
-      {"TA", "TA", "s", 0.04, 0.0, 10.0, kNoNeutral, "regulator time constant (0: none)"},
-      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNeutral, "lag (0: bypass)",
+      {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNullValue, "regulator gain"},
+      {"TA", "TA", "s", 0.04, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)"},
+      {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNullValue, "lag (0: bypass)",
        literature::own("half the gain in transients; the case files have none")},
-      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNeutral, "lead",
+      {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNullValue, "lead",
        literature::own("half the gain in transients; the case files have none")},
       Dc::kVRMAX,
       Dc::kVRMIN,

@@ -16,25 +16,26 @@ struct Diesel {
       literature::own("a start within PSS/E's usual ranges; no sample was found");
   static constexpr Source bounds_from = kNoCases;
   static constexpr Parameter
-      kT1 = {"T1", "T1",  "s",        0.01,
-             0.0,  100.0, kNoNeutral, "control box, first time constant (0: neither lag nor lead)"},
-      kT2 = {"T2", "T2", "s", 0.02, 0.0, 100.0, kNoNeutral, "control box, second time constant"},
-      kT3 = {"T3", "T3", "s", 0.2, 0.0, 100.0, kNoNeutral, "control box, lead"},
+      kT1 = {"T1", "T1",  "s",          0.01,
+             0.0,  100.0, kNoNullValue, "control box, first time constant (0: neither lag nor lead)"},
+      kT2 = {"T2", "T2", "s", 0.02, 0.0, 100.0, kNoNullValue, "control box, second time constant"},
+      kT3 = {"T3", "T3", "s", 0.2, 0.0, 100.0, kNoNullValue, "control box, lead"},
       kK = {"K",
             "K",
             "1/s",
             18.0,
             0.1,
             1000.0,
-            kNoNeutral,
+            kNoNullValue,
             "actuator's gain",
             literature::psid("DEGOV/ThreeBus_DEGOV_nodelay.dyr")},
-      kT4 = {"T4", "T4", "s", 0.25, 0.0, 100.0, kNoNeutral, "actuator's lead"},
-      kT5 = {"T5", "T5", "s", 0.01, 0.0, 100.0, kNoNeutral, "actuator, first lag (0: neither lag nor lead)"},
-      kT6 = {"T6", "T6", "s", 0.01, 0.0, 100.0, kNoNeutral, "actuator, second lag (0: none)"},
+      kT4 = {"T4", "T4", "s", 0.25, 0.0, 100.0, kNoNullValue, "actuator's lead"},
+      kT5 = {"T5", "T5",  "s",          0.01,
+             0.0,  100.0, kNoNullValue, "actuator, first lag (0: neither lag nor lead)"},
+      kT6 = {"T6", "T6", "s", 0.01, 0.0, 100.0, kNoNullValue, "actuator, second lag (0: none)"},
       kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "time between two firings, a delay (0: none)"},
-      kTMAX = {"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNeutral, "upper limit of the throttle"},
-      kTMIN = {"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNeutral, "lower limit of the throttle"};
+      kTMAX = {"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNullValue, "upper limit of the throttle"},
+      kTMIN = {"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"};
   /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
   /// error is 1e-3 up to s TD = 3j, and it has no direct response to a step.
   static constexpr int kDelayOrder = 4;

@@ -19,7 +19,7 @@ T turbine_rating(const T& given, const Conventions& conventions) {
 /// Openings and powers of the points of a gate's curve; a model has the first of them.
 inline constexpr Source kFarPoint = literature::own("99 stands for a point beyond reach");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
-  return {name, name, "pu", 0.0, 0.0, 99.0, kNoNeutral, meaning, kAsEffect, kFarPoint};
+  return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};
 }
 inline constexpr std::array kCurvePoints = {curve_point("GV1", "first opening (all 0: no curve)"),
                                             curve_point("PGV1", "power there"),

@@ -17,7 +17,7 @@ inline constexpr double kFieldVoltageLag = 0.01;
 
 /// Parameters of a Model in this order, starting with EFDRATED.
 enum InverseTimePoint { rated, efd1, time1, efd2, time2, efd3, time3, efddes, gain_of_it, vlow };
-inline constexpr Parameter kPickup{"EFD1",    "EFD1",  "-", 1.1, 0.5, 5.0, kNoNeutral, "pickup, of rated",
+inline constexpr Parameter kPickup{"EFD1",    "EFD1",  "-", 1.1, 0.5, 5.0, kNoNullValue, "pickup, of rated",
                                    kAsEffect, kNoCases};
 inline constexpr Parameter kTimeAtPickup{"TIME1",
                                          "TIME1",
@@ -25,7 +25,7 @@ inline constexpr Parameter kTimeAtPickup{"TIME1",
                                          60.0,
                                          0.1,
                                          1000.0,
-                                         kNoNeutral,
+                                         kNoNullValue,
                                          "time to operate there",
                                          literature::own("half of CIM's 120 s"),
                                          kNoCases};
@@ -35,7 +35,7 @@ inline constexpr Parameter kMiddle{"EFD2",
                                    1.25,
                                    0.5,
                                    5.0,
-                                   kNoNeutral,
+                                   kNoNullValue,
                                    "middle point, of rated",
                                    literature::own("between its neighbours; CIM has 1.2"),
                                    kNoCases};
@@ -45,14 +45,14 @@ inline constexpr Parameter kTimeAtMiddle{"TIME2",
                                          30.0,
                                          0.1,
                                          1000.0,
-                                         kNoNeutral,
+                                         kNoNullValue,
                                          "time to operate there",
                                          literature::own("half of TIME1; CIM has 40 s"),
                                          kNoCases};
 inline constexpr Parameter kUpper{
-    "EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNeutral, "upper point, of rated", kAsEffect, kNoCases};
-inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",        15.0,
-                                        0.01,      1000.0,  kNoNeutral, "time to operate there and beyond",
+    "EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNullValue, "upper point, of rated", kAsEffect, kNoCases};
+inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",          15.0,
+                                        0.01,      1000.0,  kNoNullValue, "time to operate there and beyond",
                                         kAsEffect, kNoCases};
 inline constexpr Parameter kLowest{"VLOW",
                                    "VLOW",
@@ -60,7 +60,7 @@ inline constexpr Parameter kLowest{"VLOW",
                                    -0.1,
                                    -10.0,
                                    0.0,
-                                   kNoNeutral,
+                                   kNoNullValue,
                                    "lower limit of the output",
                                    literature::own("a tenth of the voltage"),
                                    kNoCases};

@@ -22,23 +22,24 @@ struct SalientPole {
   /// Returns all parameters; `s10`, `s12`: meaning of the saturation factors.
   static constexpr std::array<Parameter, parameter_count> parameters_with(std::string_view s10,
                                                                           std::string_view s12) {
-    return {{{"Tdop", "T'do", "s", 6.0, 0.5, 20.0, kNoNeutral, "d-axis transient open-circuit time constant"},
-             {"Tdopp", "T''do", "s", 0.05, 0.005, 999.0, kNoNeutral,
-              "d-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
-             {"Tqopp", "T''qo", "s", 0.08, 0.005, 999.0, kNoNeutral,
-              "q-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
-             {"H", "H", "s", 4.0, 0.1, 20.0, kNoNeutral, "inertia constant",
-              literature::kundur("within table 3.2, hydraulic units")},
-             {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation",
-              literature::cim("RotatingMachineDynamics"), kDamping},
-             {"Xd", "Xd", "pu", 1.2, 0.1, 4.0, kNoNeutral, "d-axis synchronous reactance"},
-             {"Xq", "Xq", "pu", 0.75, 0.1, 4.0, kNoNeutral, "q-axis synchronous reactance"},
-             {"Xdp", "X'd", "pu", 0.35, 0.02, 2.5, kNoNeutral, "d-axis transient reactance"},
-             {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNeutral, "subtransient reactance, both axes"},
-             {"Xl", "Xl", "pu", 0.15, 0.0, 0.9, kNoNeutral, "stator leakage reactance"},
-             {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, s10, kAsRound, kSaturation},
-             {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
-             {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
+    return {
+        {{"Tdop", "T'do", "s", 6.0, 0.5, 20.0, kNoNullValue, "d-axis transient open-circuit time constant"},
+         {"Tdopp", "T''do", "s", 0.05, 0.005, 999.0, kNoNullValue,
+          "d-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
+         {"Tqopp", "T''qo", "s", 0.08, 0.005, 999.0, kNoNullValue,
+          "q-axis subtransient open-circuit time constant", kAsEffect, kNoDamper},
+         {"H", "H", "s", 4.0, 0.1, 20.0, kNoNullValue, "inertia constant",
+          literature::kundur("within table 3.2, hydraulic units")},
+         {"D", "D", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per unit speed deviation",
+          literature::cim("RotatingMachineDynamics"), kDamping},
+         {"Xd", "Xd", "pu", 1.2, 0.1, 4.0, kNoNullValue, "d-axis synchronous reactance"},
+         {"Xq", "Xq", "pu", 0.75, 0.1, 4.0, kNoNullValue, "q-axis synchronous reactance"},
+         {"Xdp", "X'd", "pu", 0.35, 0.02, 2.5, kNoNullValue, "d-axis transient reactance"},
+         {"Xdpp", "X''d", "pu", 0.25, 0.01, 1.0, kNoNullValue, "subtransient reactance, both axes"},
+         {"Xl", "Xl", "pu", 0.15, 0.0, 0.9, kNoNullValue, "stator leakage reactance"},
+         {"S10", "S1.0", "-", 0.1, 0.0, 2.0, 0.0, s10, kAsRound, kSaturation},
+         {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
+         {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
   }
   /// As for the round-rotor machine: above a steep saturation knee the gain from a flux error to the field
   /// current is about 10.

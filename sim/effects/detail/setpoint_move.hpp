@@ -33,9 +33,9 @@ template <class Model>
 struct SetpointStep : SetpointMove {
   enum P { amount, start, end };
   static constexpr Parameter kStart = {
-      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the step comes", kAfterRest, kAnyTime};
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the step comes", kAfterRest, kAnyTime};
   static constexpr Parameter kEnd = {
-      "end", "t2", "s", 1e5, 0.0, 1e5, kNoNeutral, "when it goes (100000: never)", kNever, kAnyTime};
+      "end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "when it goes (100000: never)", kNever, kAnyTime};
   enum C { coefficients = end + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -62,9 +62,9 @@ template <class Model>
 struct SetpointRamp : SetpointMove {
   enum P { amount, start, duration };
   static constexpr Parameter kStart = {
-      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNeutral, "when the ramp begins", kAfterRest, kAnyTime};
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the ramp begins", kAfterRest, kAnyTime};
   static constexpr Parameter kDuration = {
-      "duration",  "T",     "s", 5.0, 0.0, 1e5, kNoNeutral, "how long the ramp lasts (0: a step)",
+      "duration",  "T",     "s", 5.0, 0.0, 1e5, kNoNullValue, "how long the ramp lasts (0: a step)",
       kFewSeconds, kAnyTime};
   enum C { coefficients = duration + 1 };
 

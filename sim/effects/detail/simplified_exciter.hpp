@@ -18,11 +18,11 @@ struct SimplifiedExciter {
   static constexpr Source bounds_from = kBeyondCases;
   static constexpr Parameter kTAoverTB = {"TAoverTB", "TA/TB", "-", 0.1,
                                           0.0,        10.0,    1.0, "lead over lag time constant"},
-                             kTB = {"TB", "TB",  "s",        10.0,
-                                    0.0,  100.0, kNoNeutral, "lag time constant (0: none)"},
-                             kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNeutral, "gain"},
-                             kTE = {"TE", "TE", "s",        0.1,
-                                    0.0,  5.0,  kNoNeutral, "exciter time constant (0: none)"};
+                             kTB = {"TB", "TB",  "s",          10.0,
+                                    0.0,  100.0, kNoNullValue, "lag time constant (0: none)"},
+                             kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNullValue, "gain"},
+                             kTE = {"TE", "TE", "s",          0.1,
+                                    0.0,  5.0,  kNoNullValue, "exciter time constant (0: none)"};
   // An error of the lead-lag persists for TB and is amplified to Efd about 100 times; one of Efd decays with
   // TE.
   static constexpr State kLeadLag = {"leadlag", "pu", "state of the lead-lag", 20.0, -1, -1, {iTB}};

@@ -11,9 +11,9 @@ constexpr Source kPage = literature::kundur("table 4.2"), kChosen = literature::
 struct Model {
   static constexpr Source standards_from = kPage, bounds_from = kChosen;
   static constexpr Parameter parameters[] = {
-      {"a", "a", "s", 1.0, 0.0, 2.0, kNoNeutral, "of the effect"},
-      {"b", "b", "s", 1.0, 0.0, 2.0, kNoNeutral, "standard of its own", literature::cim("GovGAST")},
-      {"c", "c", "s", 1.0, 0.0, 2.0, kNoNeutral, "bounds of their own", kAsEffect,
+      {"a", "a", "s", 1.0, 0.0, 2.0, kNoNullValue, "of the effect"},
+      {"b", "b", "s", 1.0, 0.0, 2.0, kNoNullValue, "standard of its own", literature::cim("GovGAST")},
+      {"c", "c", "s", 1.0, 0.0, 2.0, kNoNullValue, "bounds of their own", kAsEffect,
        literature::derived("a time")}};
 };
 

@@ -100,8 +100,9 @@ TEST(Conformance, RecordsAreComplete) {
       EXPECT_LE(r.standard, r.high) << e.name << "." << r.name;
       EXPECT_FALSE(r.unit.empty() || r.meaning.empty()) << e.name << "." << r.name;
       EXPECT_TRUE(r.standard_from.given() && r.bounds_from.given()) << e.name << "." << r.name;
-      if (r.neutral == r.neutral) {  // not NaN: it has one
-        EXPECT_TRUE(std::min(r.low, 0.0) <= r.neutral && r.neutral <= r.high) << e.name << "." << r.name;
+      if (r.null_value == r.null_value) {  // not NaN: it has one
+        EXPECT_TRUE(std::min(r.low, 0.0) <= r.null_value && r.null_value <= r.high)
+            << e.name << "." << r.name;
       }
     }
     for (int column : e.dyr_columns) EXPECT_LT(column, static_cast<int>(e.parameters.size())) << e.name;
@@ -253,15 +254,16 @@ TEST(Conformance, DualsEqualCentralDifferences) {
 TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
   // All parameters with a neutral value at neutral, then a hair away: outputs may move by that hair only.
   for (const Effect* e : machines()) {
-    auto neutral = e->standard_parameters();
-    for (std::size_t i = 0; i < neutral.size(); ++i)
-      if (e->parameters[i].neutral == e->parameters[i].neutral) neutral[i] = e->parameters[i].neutral;
+    auto null_value = e->standard_parameters();
+    for (std::size_t i = 0; i < null_value.size(); ++i)
+      if (e->parameters[i].null_value == e->parameters[i].null_value)
+        null_value[i] = e->parameters[i].null_value;
     const std::vector<double> still(e->states.size(), 0.0);
-    const auto base = moved<double>(*e, neutral, still);
+    const auto base = moved<double>(*e, null_value, still);
     for (const double hair : {1e-5, 1e-7}) {
-      auto near = neutral;
+      auto near = null_value;
       for (std::size_t i = 0; i < near.size(); ++i)
-        if (e->parameters[i].neutral == e->parameters[i].neutral)
+        if (e->parameters[i].null_value == e->parameters[i].null_value)
           near[i] += hair * (1.0 + 0.5 * static_cast<double>(i));
       const auto out = moved<double>(*e, near, still);
       for (std::size_t i = 0; i < out.size(); ++i)

@@ -17,19 +17,20 @@ std::vector<const Effect*> instruments() {
   return list;
 }
 
-std::vector<double> neutral(const Effect& e) {
+std::vector<double> null_value(const Effect& e) {
   auto p = e.standard_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (!std::isnan(e.parameters[i].neutral)) p[i] = e.parameters[i].neutral;
+    if (!std::isnan(e.parameters[i].null_value)) p[i] = e.parameters[i].null_value;
   return p;
 }
 
 /// Parameters at which the instrument does something: away from neutral by a fiftieth of the way to the
 /// highest value.
 std::vector<double> busy(const Effect& e) {
-  auto p = neutral(e);
+  auto p = null_value(e);
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (!std::isnan(e.parameters[i].neutral)) p[i] += 0.02 * (e.parameters[i].high - e.parameters[i].neutral);
+    if (!std::isnan(e.parameters[i].null_value))
+      p[i] += 0.02 * (e.parameters[i].high - e.parameters[i].null_value);
   return p;
 }
 
@@ -77,7 +78,7 @@ TEST(MeasurementConformance, VanishesAtNeutral) {
   ASSERT_FALSE(instruments().empty());
   for (const Effect* e : instruments()) {
     ASSERT_NE(e->measure, nullptr) << e->name;
-    const auto p = neutral(*e);
+    const auto p = null_value(*e);
     EXPECT_TRUE(same_bits(measured(*e, p, swing(120.0)), swing(120.0))) << e->name;
     EXPECT_EQ(e->memory ? e->memory(p.data()) : 0.0, 0.0) << e->name;
   }
@@ -88,10 +89,10 @@ TEST(MeasurementConformance, EachParameterWithANeutralValueActs) {
     int acting = 0;
     for (std::size_t i = 0; i < e->parameters.size(); ++i) {
       const Parameter& r = e->parameters[i];
-      if (std::isnan(r.neutral)) continue;
+      if (std::isnan(r.null_value)) continue;
       ++acting;
-      auto p = neutral(*e);
-      p[i] += 0.02 * (r.high - r.neutral);
+      auto p = null_value(*e);
+      p[i] += 0.02 * (r.high - r.null_value);
       EXPECT_FALSE(same_bits(measured(*e, p, swing(120.0)), swing(120.0))) << e->name << "." << r.name;
     }
     EXPECT_GT(acting, 0) << e->name << ": nothing says how it is switched off";

@@ -239,9 +239,9 @@ TEST(PlantConformance, VanishesAtNeutral) {
     plant::Block& own = own_block(with, *e);
     bool any = false;
     for (std::size_t i = 0; i < own.p.size(); ++i) {
-      const double neutral = e->parameters[i].neutral;
-      if (neutral != neutral) continue;
-      own.p[i] = neutral;
+      const double null_value = e->parameters[i].null_value;
+      if (null_value != null_value) continue;
+      own.p[i] = null_value;
       any = true;
     }
     if (!any) continue;

@@ -29,7 +29,7 @@ BlindPath read_path(Config& config, const std::string& key, const std::string& t
   if (dot != text.npos && equal != text.npos && colon != text.npos) {
     path.target = text.substr(0, dot);
     path.parameter = text.substr(dot + 1, equal - dot - 1);
-    if (parse(text.substr(equal + 1, colon - equal - 1), path.neutral) &&
+    if (parse(text.substr(equal + 1, colon - equal - 1), path.null_value) &&
         parse(text.substr(colon + 1), path.full))
       return path;
   }
@@ -104,7 +104,7 @@ BlindKind read_kind(Config& config, const std::string& name) {
   for (const auto& text : config.require<std::vector<std::string>>(at + "path")) {
     kind.path.push_back(read_path(config, at + "path", text));
     check_path(config, at + "path", kind.path.back());
-    if (kind.logarithmic && !(kind.path.back().neutral * kind.path.back().full > 0))
+    if (kind.logarithmic && !(kind.path.back().null_value * kind.path.back().full > 0))
       config.problem(at + "path", "'" + text + "'", "a logarithmic path cannot pass through 0",
                      "give both ends the same sign, or spacing = \"linear\"");
   }

@@ -13,7 +13,7 @@ namespace swingbank::validate::blind::cases {
 struct BlindPath {
   std::string target;     ///< "machine", "conventions" or the name of an effect
   std::string parameter;  ///< name of a parameter of the target
-  double neutral, full;
+  double null_value, full;
 };
 
 /// Kind of hidden effect with the one-dimensional path of its size.

@@ -28,8 +28,8 @@ struct Sawtooth : Odd {
   enum P { A, f, start, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.01, -1.0, 1.0, 0.0, "amplitude"},
-      {"f", "f", "Hz", 0.37, 0.01, 20.0, sim::kNoNeutral, "frequency"},
-      {"start", "t1", "s", 2.7, 0.0, 1e5, sim::kNoNeutral, "when it begins"}};
+      {"f", "f", "Hz", 0.37, 0.01, 20.0, sim::kNoNullValue, "frequency"},
+      {"start", "t1", "s", 2.7, 0.0, 1e5, sim::kNoNullValue, "when it begins"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> instants(const double* p) {
     std::vector<double> all;
@@ -54,9 +54,9 @@ struct RandomWalk : Odd {
   enum P { A, step, start, number, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.005, 0.0, 1.0, 0.0, "largest change from knot to knot"},
-      {"step", "dt", "s", 0.4, 0.01, 60.0, sim::kNoNeutral, "time between knots"},
-      {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNeutral, "when it begins"},
-      {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNeutral, "which walk"}};
+      {"step", "dt", "s", 0.4, 0.01, 60.0, sim::kNoNullValue, "time between knots"},
+      {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "when it begins"},
+      {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "which walk"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> instants(const double* p) {
     std::vector<double> all;
@@ -113,8 +113,8 @@ struct LimitCycle : Odd {
   enum P { A, f, growth, V0, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.1, 0.0, 5.0, 0.0, "half its amplitude"},
-      {"f", "f", "Hz", 0.55, 0.01, 20.0, sim::kNoNeutral, "frequency"},
-      {"growth", "mu", "-", 1.0, 0.01, 10.0, sim::kNoNeutral, "how far from a sine"}};
+      {"f", "f", "Hz", 0.55, 0.01, 20.0, sim::kNoNullValue, "frequency"},
+      {"growth", "mu", "-", 1.0, 0.01, 10.0, sim::kNoNullValue, "how far from a sine"}};
   static constexpr sim::State states[] = {{"a", "-", "cycle"}, {"b", "-", "its rate"}};
   template <class T>
   static void evaluate(const T* c, const T* x, sim::Signals<T>& s, T* dx) {
@@ -138,7 +138,7 @@ struct FieldLoss : Odd {
   enum P { part, start, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"part", "k", "-", 0.1, 0.0, 1.0, 0.0, "part of Efd that is lost"},
-      {"start", "t1", "s", 5.3, 0.0, 1e5, sim::kNoNeutral, "when"}};
+      {"start", "t1", "s", 5.3, 0.0, 1e5, sim::kNoNullValue, "when"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> instants(const double* p) { return {p[start]}; }
   template <class T>
@@ -159,7 +159,7 @@ struct StickSlip : Odd {
   enum P { A, speed, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.01, 0.0, 1.0, 0.0, "friction while it slips; twice that while it sticks"},
-      {"speed", "ws", "pu", 0.001, 1e-5, 0.1, sim::kNoNeutral, "speed deviation at which it comes loose"}};
+      {"speed", "ws", "pu", 0.001, 1e-5, 0.1, sim::kNoNullValue, "speed deviation at which it comes loose"}};
   static constexpr std::array<sim::State, 0> states{};
   template <class T>
   static void evaluate(const T* c, const T*, sim::Signals<T>& s, T*) {

@@ -58,8 +58,8 @@ void take_machine(sim::plant::Plant& plant, sim::plant::Block machine) {
 }
 
 double along(const BlindPath& path, double scale, bool logarithmic) {
-  if (logarithmic) return path.neutral * std::pow(path.full / path.neutral, scale);
-  return path.neutral + (path.full - path.neutral) * scale;
+  if (logarithmic) return path.null_value * std::pow(path.full / path.null_value, scale);
+  return path.null_value + (path.full - path.null_value) * scale;
 }
 
 bool set(sim::plant::Block& block, const BlindPath& path, double value) {
