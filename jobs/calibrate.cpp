@@ -127,7 +127,7 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
       write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
-  result["standard_values"] = model.standard;
+  result["standard_values"] = model.defaults;
   result["records"] = told;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
@@ -234,7 +234,7 @@ int run(Arguments& a, plant::PlantModel& model) {
                      compare::error_text(played, unseen_of(c.events));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
-  result["standard_values"] = model.standard;
+  result["standard_values"] = model.defaults;
   result["records"] = told;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);

@@ -70,7 +70,7 @@ class Footnotes {
  public:
   /// Returns the source numbers of a parameter: "1", or "1 2" if default and bounds have different sources.
   std::string marks(const Parameter& p) {
-    const auto standard = number_of(p.standard_from), bounds = number_of(p.bounds_from);
+    const auto standard = number_of(p.default_from), bounds = number_of(p.bounds_from);
     return standard == bounds ? fmt::format("{}", standard) : fmt::format("{} {}", standard, bounds);
   }
   void print() const {
@@ -108,9 +108,9 @@ void describe(const Effect& e) {
         {"name", "symbol", "unit", "standard", "lowest", "highest", "neutral", "sources", "meaning"}};
     Footnotes sources;
     for (const Parameter& p : e.parameters)
-      rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit), number(p.standard),
-                      number(p.low), number(p.high), number(p.null_value), sources.marks(p),
-                      std::string(p.meaning)});
+      rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit),
+                      number(p.default_value), number(p.low), number(p.high), number(p.null_value),
+                      sources.marks(p), std::string(p.meaning)});
     fmt::print("\nparameters (neutral: where the influence vanishes; unit code: a choice)\n");
     print_table(rows);
     sources.print();
@@ -143,11 +143,11 @@ Json as_json(const Effect& e) {
     j["parameters"].push_back({{"name", p.name},
                                {"symbol", p.symbol},
                                {"unit", p.unit},
-                               {"standard", value(p.standard)},
+                               {"standard", value(p.default_value)},
                                {"low", value(p.low)},
                                {"high", value(p.high)},
                                {"neutral", value(p.null_value)},
-                               {"standard_from", as_text(p.standard_from)},
+                               {"standard_from", as_text(p.default_from)},
                                {"bounds_from", as_text(p.bounds_from)},
                                {"meaning", p.meaning}});
   for (const State& s : e.states)
@@ -209,7 +209,7 @@ void print_toml(const Effect& e) {
   fmt::print("{}\n", is_shared(e.slot) ? "[[" + slot + "]]" : "[" + slot + "]");
   fmt::print("effect = \"{}\"  # {}\n", e.name, e.title);
   for (const Parameter& p : e.parameters) {
-    std::string value = fmt::format("{}", p.standard);
+    std::string value = fmt::format("{}", p.default_value);
     if (value.find_first_of(".e") == std::string::npos) value += ".0";
     fmt::print("{:<28} # [{}] {}, from {:g} to {:g}\n", fmt::format("{} = {}", p.name, value), p.unit,
                p.meaning, p.low, p.high);

@@ -178,8 +178,8 @@ inline nlohmann::json records_json(const validate::check::RecordSet& set) {
 inline void tell(const validate::plant::PlantModel& model) {
   if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
-  if (!model.standard.empty())
-    fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.standard, ", "));
+  if (!model.defaults.empty())
+    fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.defaults, ", "));
 }
 
 /// Returns a progress callback. It updates one line if standard error is a terminal, and prints a line every

@@ -8,7 +8,7 @@ struct CubicDamping {  // Tm = Tm - K w^3 (w: speed deviation)
   static constexpr std::string_view name = "CUBEDAMP", title = "cubic damping", source = "example",
                                     description = "Tm = Tm - K w^3";
   static constexpr Slot slot = Slot::shaft;
-  static constexpr Source standards_from = literature::own("example"), bounds_from = standards_from;
+  static constexpr Source defaults_from = literature::own("example"), bounds_from = defaults_from;
   static constexpr Parameter parameters[] = {{"K", "K", "pu", 1e4, 0, 1e7, 0, "torque at w = 1"}};
   enum { coefficients = 1 };
   static void check(const double*, const std::string&, Problems&) {}

@@ -13,7 +13,7 @@ int main(int argc, char** argv) try {
   const record::Record record = record::read_record(argv[2], model.record_base, model.reading);
   const double before = compare::compare_event(model, record).channels.front().whole.rms;
   const sim::Effect& effect = model.library.add(sim::make_effect<CubicDamping>());
-  sim::plant::insert_block(model.plant, {&effect, effect.standard_parameters()});
+  sim::plant::insert_block(model.plant, {&effect, effect.default_parameters()});
   const double after = compare::compare_event(model, record).channels.front().whole.rms;
   std::printf("RMS error of P: %.5f pu, with %s %.5f pu\n", before, effect.name.data(), after);
 } catch (const std::exception& error) {

@@ -29,9 +29,9 @@ int Effect::parameter_index(std::string_view parameter) const {
   return -1;
 }
 
-std::vector<double> Effect::standard_parameters() const {
+std::vector<double> Effect::default_parameters() const {
   std::vector<double> p;
-  for (const auto& record : parameters) p.push_back(record.standard);
+  for (const auto& record : parameters) p.push_back(record.default_value);
   return p;
 }
 

@@ -4,7 +4,7 @@
 //   name, title, source, slot     identity, source of the equations, place in the plant
 //   description                   block diagram and equations as text; printed by `swingbank effects NAME`
 //   parameters[], states[]        one record each; the only declaration of a parameter
-//   standards_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
+//   defaults_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check(), unphysical()         singular values (always refused), orderings (refused in physical draws)
 //   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
@@ -84,14 +84,14 @@ constexpr Source kAsEffect = {};
 /// values that no equation can take. A dataset's sampling box must lie within the range. `null_value` is the
 /// null value, at which the effect's influence vanishes; it may lie outside the usual range (NaN: none). The
 /// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
-/// standards_from and bounds_from.
+/// defaults_from and bounds_from.
 struct Parameter {
   std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;  ///< usual notation: "X'd"
   std::string_view unit;    ///< "pu", "s"
-  double standard, low, high, null_value;
+  double default_value, low, high, null_value;
   std::string_view meaning;
-  Source standard_from = {}, bounds_from = {};
+  Source default_from = {}, bounds_from = {};
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
@@ -298,7 +298,7 @@ struct Effect {
     return std::get<Ops<T>>(ops);
   }
   [[nodiscard]] int parameter_index(std::string_view parameter) const;  ///< -1 if unknown
-  [[nodiscard]] std::vector<double> standard_parameters() const;
+  [[nodiscard]] std::vector<double> default_parameters() const;
 };
 
 /// Returns the name of the effect's slot; "converter" for a source that is one.
@@ -344,8 +344,8 @@ constexpr auto sourced_parameters() {
   std::array<Parameter, std::size(M::parameters)> all{};
   std::copy(std::begin(M::parameters), std::end(M::parameters), all.begin());
   for (Parameter& p : all) {
-    if constexpr (requires { M::standards_from; })
-      if (!p.standard_from.given()) p.standard_from = M::standards_from;
+    if constexpr (requires { M::defaults_from; })
+      if (!p.default_from.given()) p.default_from = M::defaults_from;
     if constexpr (requires { M::bounds_from; })
       if (!p.bounds_from.given()) p.bounds_from = M::bounds_from;
   }
@@ -357,7 +357,7 @@ inline constexpr auto kSourced = sourced_parameters<M>();
 template <class M>
 Effect make_effect() {
   static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
-                            [](const Parameter& p) { return p.standard_from.given(); }),
+                            [](const Parameter& p) { return p.default_from.given(); }),
                 "a standard value has no source: give standards_from, or one in the parameter's record");
   static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
                             [](const Parameter& p) { return p.bounds_from.given(); }),

@@ -20,7 +20,7 @@ struct Model {
   Paero = P0 - Ka pitch (pitch - Theta0)       pitch [degrees], Theta0 at the operating point
 )";
   enum P { Ka, Theta0 };
-  static constexpr Source standards_from = literature::andes("WTARA1, but 0.007 for its gain");
+  static constexpr Source defaults_from = literature::andes("WTARA1, but 0.007 for its gain");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"Ka", "Ka", "pu/deg^2", 0.007, 0.0, 1.0, 0.0, "power taken from the wind less, by the blades' angle"},

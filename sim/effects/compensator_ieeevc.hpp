@@ -17,7 +17,7 @@ struct Model {
   XC > 0: droop, a machine that shares reactive power; XC < 0: regulates a point behind part of the transformer
 )";
   enum P { RC, XC };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("no resistance; half the reactance of the standard step-up transformer");
   static constexpr Source bounds_from =
       literature::own("half of the 1 pu at which the compensated voltage vanishes");

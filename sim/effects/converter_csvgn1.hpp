@@ -26,7 +26,7 @@ struct Model : shared::ControlledCurrent<Model> {
   It takes no commands: beside it stands no control of a converter.
 )";
   enum P { K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE, Tfreq };
-  static constexpr Source standards_from = literature::psid("CSVGN1, in its test 49");
+  static constexpr Source defaults_from = literature::psid("CSVGN1, in its test 49");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kWider = literature::own("wider than the reactor's range, which then is the limit");
   static constexpr Parameter parameters[] = {

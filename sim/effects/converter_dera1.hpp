@@ -97,7 +97,7 @@ struct Model : shared::ControlledCurrent<Model> {
     Iql1,
     parameter_count
   };
-  static constexpr Source standards_from = literature::psid("DERA, in its test 42");
+  static constexpr Source defaults_from = literature::psid("DERA, in its test 42");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Source kActs = literature::own("narrow enough for a fault to leave it");
   static constexpr Source kTrips = literature::own("where IEEE Std 1547-2018 has category II trip");

@@ -46,7 +46,7 @@ struct Model : shared::ControlledCurrent<Model> {
     Accel,
     Tfreq
   };
-  static constexpr Source standards_from = literature::psid("RENA/ThreeBus_REN_A_DEFAULT_FLAG.dyr");
+  static constexpr Source defaults_from = literature::psid("RENA/ThreeBus_REN_A_DEFAULT_FLAG.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"Lvplsw", "Lvplsw", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: low-voltage limit of the active current",

@@ -23,7 +23,7 @@ struct Model {
   Htfrac = 0: one mass. Without WTARA1 the wind's power stays; without WTTQA1 the speed is rated at the start.
 )";
   enum P { H, DAMP, Htfrac, Freq1, Dshaft };
-  static constexpr Source standards_from = literature::andes("WTDTA1");
+  static constexpr Source defaults_from = literature::andes("WTDTA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"H", "H", "s", 3.0, 0.1, 20.0, kNoNullValue, "inertia constant of both masses"},

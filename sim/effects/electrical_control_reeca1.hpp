@@ -85,7 +85,7 @@ struct Model {
     Vp4,
     Ip4
   };
-  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr std::array kBefore = {
       renewable::record::RemoteBus,

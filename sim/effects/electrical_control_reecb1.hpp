@@ -59,7 +59,7 @@ struct Model {
     Imax,
     Tpord
   };
-  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       renewable::record::RemoteBus, renewable::record::PFFLAG, renewable::record::VFLAG,

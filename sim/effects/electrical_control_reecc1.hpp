@@ -80,7 +80,7 @@ struct Model {
     SOCmax,
     SOCmin
   };
-  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr std::array kBefore = {
       renewable::record::RemoteBus, renewable::record::PFFLAG,

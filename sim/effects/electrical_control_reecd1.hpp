@@ -87,7 +87,7 @@ struct Model {
     Tblk,
     parameter_count
   };
-  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Source kOff = literature::own("off, as in REECA1");
   static constexpr std::array kBefore = {

@@ -54,7 +54,7 @@ struct Model : shared::Alternator<Model> {
     E2,
     SE2
   };
-  static constexpr Source standards_from = literature::cim("ExcIEEEAC6A");
+  static constexpr Source defaults_from = literature::cim("ExcIEEEAC6A");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},

@@ -26,7 +26,7 @@ struct Model {
 )";
   static constexpr std::span<const Parameter> parameters{B::parameters};
   static constexpr std::span<const int> dyr_columns{B::dyr_columns};
-  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
   static constexpr int coefficients = B::coefficients;
   static constexpr auto kStates = [] {
     std::array<State, std::size(B::states)> all{};

@@ -46,7 +46,7 @@ struct Model {
     ILR
   };
   static constexpr Source kNone = literature::own("off; 999 stands for none in the case files");
-  static constexpr Source standards_from = literature::own("as EXST1's");
+  static constexpr Source defaults_from = literature::own("as EXST1's");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNullValue, "where an under-excitation limiter enters",

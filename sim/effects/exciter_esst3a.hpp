@@ -50,7 +50,7 @@ struct Model {
     VMMAX,
     VMMIN
   };
-  static constexpr Source standards_from = literature::cim("ExcIEEEST3A");
+  static constexpr Source defaults_from = literature::cim("ExcIEEEST3A");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",

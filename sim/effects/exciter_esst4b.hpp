@@ -30,7 +30,7 @@ struct Model {
   enum P { TR, KPR, KIR, VRMAX, VRMIN, TA, KPM, KIM, VMMAX, VMMIN, KG, KP, KI, VBMAX, KC, XL, THETAP };
   static constexpr Source kCase = literature::openipsl("test of ESST4B");
   static constexpr Source kRange = literature::sienna("ESST4B");
-  static constexpr Source standards_from = literature::cim("ExcIEEEST4B");
+  static constexpr Source defaults_from = literature::cim("ExcIEEEST4B");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",

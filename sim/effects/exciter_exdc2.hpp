@@ -24,7 +24,7 @@ struct Model : shared::DcBehindLeadLag<Model> {
   KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
 )";
   static constexpr bool ends_at_zero = false;
-  static constexpr Source standards_from = literature::andes("EXDC2, commit 29076bd");
+  static constexpr Source defaults_from = literature::andes("EXDC2, commit 29076bd");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       kTR,

@@ -58,7 +58,7 @@ struct Model {
     KI,
     KC
   };
-  static constexpr Source standards_from = literature::cim("ExcPIC");
+  static constexpr Source defaults_from = literature::cim("ExcPIC");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kUsed = literature::own("an exciter of its kind, where TE > 0 uses it; CIM has 0");
   static constexpr Parameter parameters[] = {

@@ -24,7 +24,7 @@ struct Model {
 )";
   enum P { TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF };
   static constexpr Source kCase = literature::psid("EXST1/TVC_System.dyr");
-  static constexpr Source standards_from = literature::cim("ExcST1A");
+  static constexpr Source defaults_from = literature::cim("ExcST1A");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kCase},

@@ -20,7 +20,7 @@ struct Model : shared::RotatingDc<Model> {
   KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
 )";
   enum P { TR, KA, TA, VRMAX, VRMIN, KE, TE, KF, TF, SWITCH, E1, SE1, E2, SE2 };
-  static constexpr Source standards_from = literature::andes("IEEET1, commit 066781b");
+  static constexpr Source defaults_from = literature::andes("IEEET1, commit 066781b");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       kTR,

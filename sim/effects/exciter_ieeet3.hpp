@@ -33,7 +33,7 @@ struct Model {
   TE dEfd/dt = VB - KE Efd                                  Vf = s KF/(1 + s TF) Efd
 )";
   enum P { TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::openipsl("IEEET3, defaults (fork of marcelofcastro, c482ff5)");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {

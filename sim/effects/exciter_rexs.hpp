@@ -74,7 +74,7 @@ struct Model : shared::Alternator<Model> {
     SE2,
     FLIMF
   };
-  static constexpr Source standards_from = literature::cim("ExcREXS");
+  static constexpr Source defaults_from = literature::cim("ExcREXS");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)",

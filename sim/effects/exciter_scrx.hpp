@@ -20,7 +20,7 @@ struct Model : shared::SimplifiedExciter<Model> {
   While the field current is negative and rc/rfd > 0, Efd = -(rc/rfd) Ifd: it flows through the crowbar.
 )";
   enum { CSWITCH = own_parameters, RATIO };
-  static constexpr Source standards_from = literature::openipsl("SCRX, defaults");
+  static constexpr Source defaults_from = literature::openipsl("SCRX, defaults");
   static constexpr Parameter parameters[] = {
       kTAoverTB,
       shared::with(kTB, 1.0),

@@ -15,7 +15,7 @@ struct Model : shared::SimplifiedExciter<Model> {
   TB dx1/dt = u - x1            y = x1 + (TA/TB)(u - x1)
   TE dEfd/dt = K y - Efd        TE = 0: Efd = K y
 )";
-  static constexpr Source standards_from = literature::cim("ExcSEXS");
+  static constexpr Source defaults_from = literature::cim("ExcSEXS");
   static constexpr Parameter parameters[] = {
       kTAoverTB,
       kTB,

@@ -27,7 +27,7 @@ struct Model {
   limiters add to the error.
 )";
   enum P { TR, TC1, TB1, TC2, TB2, KR, VRMAX, VRMIN, T1, KC, TUC1, TUB1, TUC2, TUB2, TOC1, TOB1, TOC2, TOB2 };
-  static constexpr Source standards_from = literature::cim("ExcIEEEST5B");
+  static constexpr Source defaults_from = literature::cim("ExcIEEEST5B");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",

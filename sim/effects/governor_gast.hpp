@@ -22,7 +22,7 @@ struct Model {
   T2 dflow/dt = fuel - flow      T3 dexhaust/dt = flow - exhaust      Pm = flow - Dturb w
 )";
   enum P { R, T1, T2, T3, AT, KT, VMAX, VMIN, Dturb, db };
-  static constexpr Source standards_from = literature::gridpack("240busWECC_2018_PSS_mod.dyr");
+  static constexpr Source defaults_from = literature::gridpack("240busWECC_2018_PSS_mod.dyr");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNullValue, "permanent droop",

@@ -70,7 +70,7 @@ struct Model {
     Rup,
     Rdown
   };
-  static constexpr Source standards_from = literature::openipsl("test of GGOV1");
+  static constexpr Source defaults_from = literature::openipsl("test of GGOV1");
   static constexpr Source bounds_from = literature::own(
       "the sign the equations need; at the far end five times CIM's GovCT1 or more, or 99 and 999 (none)");
   static constexpr Parameter parameters[] = {

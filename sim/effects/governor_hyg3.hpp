@@ -85,7 +85,7 @@ struct Model {
   };
   static constexpr int kGates[] = {GV1, GV2, GV3, GV4, GV5, GV6},
                        kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5, PGV6};
-  static constexpr Source standards_from = literature::cim("GovHydro3");
+  static constexpr Source defaults_from = literature::cim("GovHydro3");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kCurve = literature::own("nearly straight; CIM has none");
   static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any band a governor is given");

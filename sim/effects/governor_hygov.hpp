@@ -28,7 +28,7 @@ struct Model {
   Pm = At h (q - qNL) - Dturb w g
 )";
   enum P { R, r, Tr, Tf, Tg, VELM, GMAX, GMIN, TW, At, Dturb, qNL, db };
-  static constexpr Source standards_from = literature::cim("GovHydro1");
+  static constexpr Source defaults_from = literature::cim("GovHydro1");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop",

@@ -30,7 +30,7 @@ struct Model {
   static constexpr Source kNone = literature::derived("there is no low-pressure generator");
   static constexpr Source kStageShare =
       literature::own("a share, half as much again where shares do not make 1");
-  static constexpr Source standards_from = literature::cim("GovSteamIEEE1");
+  static constexpr Source defaults_from = literature::cim("GovSteamIEEE1");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: there is none)",

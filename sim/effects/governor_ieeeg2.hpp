@@ -24,7 +24,7 @@ struct Model {
 )";
   enum P { K, T1, T2, T3, PMAX, PMIN, T4 };
   /// CIM's values are those of a steam turbine's governor and would be unstable with a water column.
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("a dashpot of 5 s: T2 = TR, T1 = TR delta/sigma, droops of 5 and 50 %");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {

@@ -25,7 +25,7 @@ struct Model {
   g --> [ a23 (1 + (a11 - a13 a21/a23) s TW)/(1 + a11 s TW) ] --> Pm
 )";
   enum P { TG, TP, UO, UC, PMAX, PMIN, SIGMA, DELTA, TR, TW, A11, A13, A21, A23 };
-  static constexpr Source standards_from = literature::cim("GovHydroIEEE2");
+  static constexpr Source defaults_from = literature::cim("GovHydroIEEE2");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kLossless = literature::kundur("9.1.1: an ideal turbine at rated load");
   static constexpr Parameter parameters[] = {

@@ -23,7 +23,7 @@ struct Model {
   b(w): 0 within +-db, beyond it the distance to the edge (db = 0 is IEESGO)
 )";
   enum P { T1, T2, T3, T4, T5, T6, K1, K2, K3, PMAX, PMIN, db };
-  static constexpr Source standards_from = literature::andes("IEESGO, commit 0cbe377");
+  static constexpr Source defaults_from = literature::andes("IEESGO, commit 0cbe377");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Source kSteam = literature::own("IEEEG1's stages as fractions of what is left");
   static constexpr Parameter parameters[] = {

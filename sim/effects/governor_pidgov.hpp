@@ -54,7 +54,7 @@ struct Model {
   static constexpr Source kTuned =
       literature::own("a droop of 5 % and a gate that moves within seconds; CIM has 0");
   static constexpr Source kCurve = literature::own("an eighth of the stroke at no load, nearly straight");
-  static constexpr Source standards_from = kTuned;
+  static constexpr Source defaults_from = kTuned;
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"FLAG", "Flag", "code", 1.0, 0.0, 1.0, kNoNullValue,

@@ -21,7 +21,7 @@ struct Model {
   T3 dx/dt = valve - x        Pm = x + (T2/T3)(valve - x) - Dt w
 )";
   enum P { R, T1, VMAX, VMIN, T2, T3, Dt, db };
-  static constexpr Source standards_from = literature::cim("GovSteam0");
+  static constexpr Source defaults_from = literature::cim("GovSteam0");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.05, 0.005, 1.0, kNoNullValue, "permanent droop"},

@@ -23,7 +23,7 @@ struct Model {
   TA, TB and TC time a fast closing of the intercept valve that a person starts: kept for files, without effect.
 )";
   enum P { K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, T5, K2, T6, K3, TA, TB, TC, PRMAX, parameter_count };
-  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
   /// Per leading parameter: the corresponding parameter of IEEEG1.
   static constexpr int kAs[] = {B::K,    B::T1, B::T2, B::T3, B::UO, B::UC, B::PMAX,
                                 B::PMIN, B::T4, B::K1, B::T5, B::K3, B::T6, B::K5};

@@ -67,7 +67,7 @@ struct Model {
     TRATE
   };
   static constexpr int kGates[] = {GV1, GV2, GV3, GV4, GV5}, kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5};
-  static constexpr Source standards_from = literature::cim("GovHydroPID");
+  static constexpr Source defaults_from = literature::cim("GovHydroPID");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kStroke = literature::own("a tenth of the stroke");
   static constexpr Parameter parameters[] = {

@@ -45,7 +45,7 @@ struct Model {
     parameter_count
   };
   static constexpr int kGates[] = {GV1, GV2, GV3, GV4, GV5}, kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5};
-  static constexpr Source standards_from = B::standards_from;
+  static constexpr Source defaults_from = B::defaults_from;
   static constexpr Source bounds_from = B::bounds_from;
   static constexpr Source kOpening = literature::own("five times the rated opening");
   static constexpr auto parameters = [] {

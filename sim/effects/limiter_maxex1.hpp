@@ -28,7 +28,7 @@ struct Model {
 )";
   using Timing = shared::InverseTime;
   enum P { EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW };
-  static constexpr Source standards_from = literature::cim("OverexcLimX1");
+  static constexpr Source defaults_from = literature::cim("OverexcLimX1");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated field voltage",

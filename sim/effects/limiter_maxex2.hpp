@@ -22,7 +22,7 @@ struct Model {
 )";
   using Timing = shared::InverseTime;
   enum P { M, EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW };
-  static constexpr Source standards_from = literature::cim("OverexcLimX2");
+  static constexpr Source defaults_from = literature::cim("OverexcLimX2");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"M", "M", "code", 1.0, 0.0, 1.0, kNoNullValue, "limited quantity: 0 field voltage, 1 field current",

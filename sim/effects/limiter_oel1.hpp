@@ -38,7 +38,7 @@ struct Model {
   A .dyr is read in the order of PSLF's .dyd, the only one that is public.
 )";
   enum P { Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm };
-  static constexpr Source standards_from = literature::own("no public file has the model");
+  static constexpr Source defaults_from = literature::own("no public file has the model");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"Ifdset", "Ifdset", "pu", 2.86, 0.5, 20.0, kNoNullValue, "pickup",

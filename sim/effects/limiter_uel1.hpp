@@ -24,7 +24,7 @@ struct Model {
 )";
   using Regulator = shared::UnderExcitation<Model>;
   enum P { KUR, KUC, KUF, VURMAX, VUCMAX, KUI, KUL, VUIMAX, VUIMIN, TU1, TU2, TU3, TU4, VULMAX, VULMIN };
-  static constexpr Source standards_from = literature::cim("UnderexcLimIEEE1");
+  static constexpr Source defaults_from = literature::cim("UnderexcLimIEEE1");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"KUR", "KUR", "pu", 1.95, 0.0, 100.0, kNoNullValue, "radius"},

@@ -61,7 +61,7 @@ struct Model {
     VULMIN,
     parameter_count
   };
-  static constexpr Source standards_from = literature::cim("UnderexcLimIEEE2");
+  static constexpr Source defaults_from = literature::cim("UnderexcLimIEEE2");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kUnused = literature::derived("a point that is not used");
   static constexpr Parameter parameters[] = {

@@ -79,7 +79,7 @@ struct Model {
   static constexpr Source kNoRelay = literature::derived("without effect, for the relay is not modelled");
   static constexpr Source kSteep = literature::own("twice the flux, and steeper than a motor saturates");
   static constexpr Source kTorque = literature::own("five times the torque; the fifth power");
-  static constexpr Source standards_from = literature::own("off: no second cage, no saturation, no relay");
+  static constexpr Source defaults_from = literature::own("off: no second cage, no saturation, no relay");
   static constexpr Source bounds_from = literature::own(
       "the sign the equations need; the far end several times that of the task force's motors");
   static constexpr Parameter parameters[] = {

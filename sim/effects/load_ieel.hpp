@@ -28,7 +28,7 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6, Vp, Vi, Tf };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("a constant impedance; the other exponents are those of current and power");
   static constexpr Source bounds_from =
       literature::own("more than ten times the load, and powers beyond 10, are no load");

@@ -31,7 +31,7 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { m, n, r, s, Pi, Pp, Qi, Qp, Vp, Vi, Tf };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("half of the load at constant power, each part with its own power of the frequency");
   static constexpr Source bounds_from =
       literature::own("at 1.05 of the frequency the power 20 is 2.7 times the load");

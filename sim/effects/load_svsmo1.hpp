@@ -99,7 +99,7 @@ struct Model {
   /// The record has two flags, and eight mechanically switched shunts that are not modelled. Source of the
   /// form with an id: InterPSS, PsseSvsmo1t2ModelTest.
   static constexpr ShuntRecord at_shunt = {"SVSMO1T2", "SVSMO1T3", RemoteBus, 3, 8};
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kUnread = literature::derived("nothing here reads it");

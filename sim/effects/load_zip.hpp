@@ -31,7 +31,7 @@ struct Model {
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { Pi, Pp, Qi, Qp, Vp, Vi, Kpf, Kqf, Tf };
-  static constexpr Source standards_from = literature::own("a constant impedance");
+  static constexpr Source defaults_from = literature::own("a constant impedance");
   static constexpr Source bounds_from = shared::kShare;
   static constexpr Parameter parameters[] = {
       {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current"},

@@ -23,7 +23,7 @@ struct Model {
   H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
 )";
   enum P { H, D, Ra, Xdp };
-  static constexpr Source standards_from = literature::kundur("within table 4.2");
+  static constexpr Source defaults_from = literature::kundur("within table 4.2");
   static constexpr Source bounds_from = shared::kBeyondKundur;
   static constexpr Parameter parameters[] = {
       {"H", "H", "s", 5.0, 0.0, 20.0, kNoNullValue, "inertia constant (0: infinite bus)",

@@ -60,7 +60,7 @@ struct Model {
     SatFunc,
     parameter_count
   };
-  static constexpr Source standards_from = J::standards_from, bounds_from = J::bounds_from;
+  static constexpr Source defaults_from = J::defaults_from, bounds_from = J::bounds_from;
   static constexpr Source kElsewhere = literature::derived("0 only: IEEEVC is the compensator");
   static constexpr Source kActs = literature::own("not 0, so that the current acts on the field's");
   static constexpr auto parameters = [] {

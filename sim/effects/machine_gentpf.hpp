@@ -26,7 +26,7 @@ struct Model {
     return all;
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;
-  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
   static constexpr std::span<const State> states{B::states};
   static constexpr std::span<const int> dyr_columns{B::dyr_columns, static_cast<std::size_t>(B::Kis)};
   static constexpr int raw_resistance = B::Kis, raw_reactance = -1;

@@ -40,7 +40,7 @@ struct Model {
    Without saturation this is GENROU with Xl = X'' in its rotor circuits.
 )";
   enum P { Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xqpp, Xl, S10, S12, Kis, Ra };
-  static constexpr Source standards_from = literature::kundur("within table 4.2, thermal units");
+  static constexpr Source defaults_from = literature::kundur("within table 4.2, thermal units");
   static constexpr Source bounds_from = shared::kBeyondKundur;
   static constexpr Parameter parameters[] = {
       {"Tdop", "T'do", "s", 7.0, 0.5, 20.0, kNoNullValue, "d-axis transient open-circuit time constant"},

@@ -19,7 +19,7 @@ struct Model {
   On P and Q alone gain is a wrong machine base; only the phase is told apart from it.
 )";
   enum P { gain, phase };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kBeyondClass;
   static constexpr Parameter parameters[] = {
       {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the current's magnitude, of itself"},

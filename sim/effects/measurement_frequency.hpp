@@ -24,7 +24,7 @@ struct Model {
   V and I are not touched. At the record's ends the difference is taken over what there is.
 )";
   enum P { span, smoothing };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
       literature::own("longer than an instrument may take; no time is negative");
   static constexpr Parameter parameters[] = {

@@ -23,7 +23,7 @@ struct Model {
   there.
 )";
   enum P { rate, length };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = literature::own("more and longer than a record that can be used has");
   static constexpr Parameter parameters[] = {
       {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps that begin per second of good record"},

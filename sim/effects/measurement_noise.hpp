@@ -23,7 +23,7 @@ struct Model {
   gives the same noise. White at the rate of the samples it is applied to: a filter after it colours it.
 )";
   enum P { relative, V, I, angle, frequency };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kNoMeasurement;
   static constexpr Parameter parameters[] = {
       {"relative", "sr", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of either magnitude, of itself"},

@@ -29,7 +29,7 @@ struct Model {
   are.
 )";
   enum P { klass, scale, reports, compensation };
-  static constexpr Source standards_from = literature::own("class P, as it is without a choice");
+  static constexpr Source defaults_from = literature::own("class P, as it is without a choice");
   static constexpr Source bounds_from = shared::kCode;
   static constexpr Parameter parameters[] = {
       {"class", "class", "code", 0.0, 0.0, 1.0, kNoNullValue, "0: class P, 1: class M"},

@@ -18,7 +18,7 @@ struct Model {
   Class 0.5 allows gain = 0.005 pu and phase = 0.0058 rad (20 minutes of arc) at rated voltage.
 )";
   enum P { gain, phase };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kBeyondClass;
   static constexpr Parameter parameters[] = {
       {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the voltage's magnitude, of itself"},

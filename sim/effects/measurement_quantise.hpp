@@ -20,7 +20,7 @@ struct Model {
   a frequency 0.001 Hz.
 )";
   enum P { V, I, angle, frequency };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kNoMeasurement;
   static constexpr Parameter parameters[] = {
       {"V", "qV", "pu", 0.0, 0.0, 0.1, 0.0, "step of the voltage's magnitude"},

@@ -21,7 +21,7 @@ struct Model {
   jump is smeared. Outside the record the current stands still.
 )";
   enum P { skew };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
       literature::own("beyond a second two records are of different events");
   static constexpr Parameter parameters[] = {

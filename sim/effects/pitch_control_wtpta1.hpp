@@ -23,7 +23,7 @@ struct Model {
   Both integrals move within the limits; the second one begins at 0 or the limit that is nearest to it.
 )";
   enum P { Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin };
-  static constexpr Source standards_from = literature::andes("WTPTA1");
+  static constexpr Source defaults_from = literature::andes("WTPTA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"Kiw", "Kiw", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the speed, integral gain"},

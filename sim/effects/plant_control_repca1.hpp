@@ -61,7 +61,7 @@ struct Model {
     Ddn,
     Dup
   };
-  static constexpr Source standards_from = literature::psid("FourBus_multigen.dyr");
+  static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"RemoteBus", "remote bus", "code", 0.0, 0.0, 999997.0, 0.0, "regulated bus (0: the terminal)",

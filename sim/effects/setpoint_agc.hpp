@@ -28,7 +28,7 @@ struct Model {
 )";
   enum P { start, interval, duration, move1, move2, move3, move4, move5, move6 };
   static constexpr int kMoves = 6;
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
       {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the first move begins", shared::kAfterRest,

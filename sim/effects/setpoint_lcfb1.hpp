@@ -26,7 +26,7 @@ struct Model {
   dGref moves the governor's reference in the governor's own unit: speed where a droop follows it, else power.
 )";
   enum P { FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("a few minutes' return of the power, within half of a droop of 5 %; CIM has 0");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {

@@ -26,7 +26,7 @@ struct Model {
   Before `start` exactly nothing is changed.
 )";
   enum P { drop, start, closing, hold, opening };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
       {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "part of the torque the valves take away", kAsEffect,

@@ -33,7 +33,7 @@ struct Model {
   Until V has fallen by `dip` nothing is changed.
 )";
   enum P { drop, dip, delay, closing, hold, opening };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("a fault that is felt, and valves that follow at once");
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {

@@ -20,7 +20,7 @@ struct Model {
   Before `start` and from `end` on exactly nothing is added.
 )";
   enum P { amplitude, frequency, phase, start, end };
-  static constexpr Source standards_from = shared::kNothing;
+  static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
       {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque", kAsEffect, shared::kRating},

@@ -31,7 +31,7 @@ struct Model {
 )";
   enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL, Tf };
   static constexpr Source kCase = literature::psid("IEEEST/ThreeBus_IEEEST.dyr");
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("of the speed, two equal leads of five; no published sample was found");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {

@@ -32,7 +32,7 @@ struct Model {
     return list;
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;
-  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
   static constexpr auto kColumns = [] {
     std::array<int, kCount> list{};
     for (int i = 0; i < kCount; ++i) list[static_cast<std::size_t>(i)] = i;

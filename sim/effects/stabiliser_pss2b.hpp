@@ -62,7 +62,7 @@ struct Model {
     parameter_count
   };
   static constexpr Source kRange = literature::sienna("PSS2B");
-  static constexpr Source standards_from = literature::cim("PssIEEE2B");
+  static constexpr Source defaults_from = literature::cim("PssIEEE2B");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"IC1", "IC1", "code", 1.0, 1.0, 6.0, kNoNullValue,

@@ -25,7 +25,7 @@ struct Model {
 )";
   /// The parameters of PSS2B, then these.
   enum P { T12 = B::parameter_count, T13, PSSON, PSSOFF, Xcomp, Tcomp, kCount };
-  static constexpr Source standards_from = B::standards_from, bounds_from = B::bounds_from;
+  static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
   static constexpr auto kParameters = [] {
     std::array<Parameter, kCount> list{};
     for (int i = 0; i < B::parameter_count; ++i) list[static_cast<std::size_t>(i)] = B::parameters[i];

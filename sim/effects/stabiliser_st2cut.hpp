@@ -44,7 +44,7 @@ struct Model {
     VCL
   };
   static constexpr Source kInput = literature::own("speed alone, as IEEEST");
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("of the speed, two equal leads of five; no published sample was found");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {

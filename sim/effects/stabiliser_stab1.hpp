@@ -20,7 +20,7 @@ struct Model {
   given as K/T, T, T1/T3, T3, T2/T4, T4; T3 = 0 or T4 = 0: bypass
 )";
   enum P { KT, TW, T1_T3, T3, T2_T4, T4, HLIM };
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("leads of 0.25/0.05 s and 0.16/0.04 s; no published sample was found");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {

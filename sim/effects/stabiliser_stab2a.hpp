@@ -18,7 +18,7 @@ struct Model {
   P: electrical power on the machine's base
 )";
   enum P { K2, T2, K3, T3, K4, K5, T5, HLIM };
-  static constexpr Source standards_from = literature::own(
+  static constexpr Source defaults_from = literature::own(
       "washouts of 4 s and an integral above a tenth of a second; no published sample was found");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {

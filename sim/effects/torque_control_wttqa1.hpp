@@ -22,7 +22,7 @@ struct Model {
   per unit of TRATE (0: the converter's base)
 )";
   enum P { Tflag, Kpp, Kip, Tp, Twref, Temax, Temin, p1, spd1, p2, spd2, p3, spd3, p4, spd4, TRATE };
-  static constexpr Source standards_from = literature::andes("WTTQA1");
+  static constexpr Source defaults_from = literature::andes("WTTQA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
       {"Tflag", "Tflag", "code", 0.0, 0.0, 1.0, kNoNullValue, "0: regulates the speed, 1: the power",

@@ -17,7 +17,7 @@ struct Model {
   R, X per unit on the machine's base; no charging, no magnetising current.
 )";
   enum P { R, X, ratio };
-  static constexpr Source standards_from = literature::own("no losses, nominal ratio");
+  static constexpr Source defaults_from = literature::own("no losses, nominal ratio");
   static constexpr Source bounds_from = literature::own("far beyond a power transformer");
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.0, 0.0, 0.1, 0.0, "resistance on the machine's base"},

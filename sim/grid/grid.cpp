@@ -413,7 +413,7 @@ class GridMaker {
     for (std::size_t i = 0; i < grid_.network.loads.size(); ++i) {
       const network::Load& l = grid_.network.loads[i];
       if (l.kind != network::LoadKind::device || l.power == Complex{}) continue;
-      plant::Block block{zip, zip->standard_parameters()};
+      plant::Block block{zip, zip->default_parameters()};
       for (const char* part : {"Pp", "Qp"})
         block.p[static_cast<std::size_t>(zip->parameter_index(part))] = 1.0;
       set_load(grid_, static_cast<int>(i), std::move(block), bus_text(l.bus), problems_);

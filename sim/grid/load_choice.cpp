@@ -119,7 +119,7 @@ void loads_as_composed(Grid& grid, Problems& problems) {
     if (l.power == Complex{} && l.current == Complex{}) continue;
     if (std::ranges::count(grid.loads, static_cast<int>(i), &plant::Consumer::load)) continue;
     const std::string where = "load " + load_name(grid.network, i);
-    plant::Block block{zip, zip->standard_parameters()};
+    plant::Block block{zip, zip->default_parameters()};
     compose(grid, static_cast<int>(i), block, where, problems);
     set_load(grid, static_cast<int>(i), std::move(block), where, problems);
   }
@@ -139,7 +139,7 @@ void choose_load(Grid& grid, const std::string& text, const std::string& where, 
                  "the load models are " + grid.library.names(Slot::load), "choose one of these");
     return;
   }
-  plant::Block block{effect, effect->standard_parameters()};
+  plant::Block block{effect, effect->default_parameters()};
   if (second != text.npos) plant::set_parameters(block, text.substr(second + 1), where, problems);
   const std::vector<int> chosen = text.starts_with("*:")
                                       ? loads_without_model(grid, where, problems)

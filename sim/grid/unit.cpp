@@ -235,8 +235,8 @@ class UnitReader {
           "{}: {} has no end, '/': it ends where the next record begins or the file does", where, given));
     record = plain(record, *effect);
     if (other && record.values.size() != effect->dyr_columns.size()) {
-      block = {effect, effect->standard_parameters()};
-      unit_.standard.emplace_back(effect->name);
+      block = {effect, effect->default_parameters()};
+      unit_.defaults.emplace_back(effect->name);
       unit_.notes.push_back(fmt::format(
           "{} of line {} replaced by {} with its standard values: {} parameters are not the {} of {}", given,
           record.line, effect->dyr_name, record.values.size(), effect->dyr_columns.size(), effect->dyr_name));
@@ -416,7 +416,7 @@ class UnitReader {
     plant::Block& block = unit_.plant.transformer;
     if (!block.effect) {
       block = {library::compiled().find("STEPUP"), {}};
-      block.p = block.effect->standard_parameters();
+      block.p = block.effect->default_parameters();
     }
     const double scale = unit_.plant.mva / net().base_mva;
     at(block, "R") = way.z.real() * scale;

@@ -45,7 +45,7 @@ struct Unit {
   double frequency = 60.0, system_mva = 100.0;
   std::optional<Dispatch> dispatch = {};  ///< none if out of service or without a voltage in the case
   double kv = 0.0;                        ///< nominal voltage of the measured bus [kV]; 0: not given
-  std::vector<std::string> standard;      ///< names of effects that have default values
+  std::vector<std::string> defaults;      ///< names of effects that have default values
   std::vector<std::string> notes;         ///< sentences on interpreted and on dropped data
 };
 

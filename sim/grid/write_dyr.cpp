@@ -24,7 +24,7 @@ std::string dyr_record(const plant::Block& block, const std::string& owner, int 
                  "remove it before writing");
     return {};
   }
-  const auto standard = effect.standard_parameters();
+  const auto standard = effect.default_parameters();
   for (int i = 0; i < static_cast<int>(block.p.size()); ++i) {
     if (i == effect.raw_resistance || i == effect.raw_reactance || std::ranges::count(effect.dyr_columns, i))
       continue;
@@ -119,7 +119,7 @@ void write_dyr(const Grid& grid, const std::filesystem::path& file) {
       text += shunt_record(load.block, bus.number, l.id);
       continue;
     }
-    plant::Block raw{load.block.effect, load.block.effect->standard_parameters()};
+    plant::Block raw{load.block.effect, load.block.effect->default_parameters()};
     if (is_composed(*raw.effect)) compose(grid, load.load, raw, file.string(), problems);
     text += dyr_record(load.block, "load " + load.name,
                        grid.network.buses[static_cast<std::size_t>(load.bus)].number, l.id, file.string(),

@@ -81,7 +81,7 @@ Attachment read_attachment(const std::string& text, const library::EffectLibrary
                  suggestion(name, names, "use one of " + library.names() + ", or give its file with --law"));
     return {};
   }
-  Block block{effect, effect->standard_parameters()};
+  Block block{effect, effect->default_parameters()};
   Problems found;
   if (second != text.npos) set_parameters(block, text.substr(second + 1), where, found);
   if (found.empty()) effect->check(effect->law.get(), block.p.data(), where, found);

@@ -65,7 +65,7 @@ std::optional<Block> read_measurement(const std::string& text, const library::Ef
                  "write EFFECT[:PARAM=VALUE,...] with one of these");
     return {};
   }
-  Block block{effect, effect->standard_parameters()};
+  Block block{effect, effect->default_parameters()};
   Problems found;
   if (colon != text.npos) set_parameters(block, text.substr(colon + 1), where, found);
   if (found.empty()) effect->check(effect->law.get(), block.p.data(), where, found);

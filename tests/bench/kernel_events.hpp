@@ -32,7 +32,7 @@ inline grid::Grid controlled(grid::Grid grid) {
   for (plant::Plant& plant : grid.plants)
     for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
       const Effect& e = *library::compiled().find(name);
-      plant.controls.push_back({&e, e.standard_parameters()});
+      plant.controls.push_back({&e, e.default_parameters()});
     }
   return grid;
 }

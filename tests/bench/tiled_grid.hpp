@@ -108,7 +108,7 @@ inline std::vector<formats::DyrRecord> tiled_dynamics(const std::filesystem::pat
     for (std::size_t i = 0, machines = one.size(); i < machines; ++i)
       for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
         const Effect& effect = *library::compiled().find(name);
-        const auto standard = effect.standard_parameters();
+        const auto standard = effect.default_parameters();
         formats::DyrRecord record = one[i];
         record.model = name;
         record.values.clear();

@@ -96,7 +96,7 @@ record::Record record_of(const second::Output& out) {
 
 sim::plant::Block block(const std::string& name, const std::map<std::string, double>& values) {
   sim::plant::Block b{sim::library::compiled().find(name), {}};
-  b.p = b.effect->standard_parameters();
+  b.p = b.effect->default_parameters();
   for (const auto& [key, value] : values)
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(key))) = value;
   return b;

@@ -34,7 +34,7 @@ second::Setup base() {
 
 sim::plant::Block block(const std::string& name, const std::map<std::string, double>& values) {
   sim::plant::Block b{sim::library::compiled().find(name), {}};
-  b.p = b.effect->standard_parameters();
+  b.p = b.effect->default_parameters();
   for (const auto& [parameter, value] : values)
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(parameter))) = value;
   return b;

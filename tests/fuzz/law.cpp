@@ -15,8 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sim::plant::Plant plant;
   plant.name = "fuzzed";
   plant.generation = {0.5, 0.1};  // [pu on 100 MVA]
-  plant.machine = {machine, machine->standard_parameters()};
-  plant.controls = {{&law, law.standard_parameters()}};
+  plant.machine = {machine, machine->default_parameters()};
+  plant.controls = {{&law, law.default_parameters()}};
   sim::plant::Operating point;
   if (!fuzz::accepted(
           [&] { point = sim::plant::operating_point(plant, 1.0, 100.0, sim::Conventions::psse()); }))

@@ -60,7 +60,7 @@ class Rows {
                      "use the version of the software that made the dataset");
     problems.raise();
     for (std::size_t g = 0; g < d.generators.size(); ++g) {
-      auto& known = known_[d.generators[g]] = effect_->standard_parameters();
+      auto& known = known_[d.generators[g]] = effect_->default_parameters();
       for (std::size_t k = 0; k < d.held_names.size(); ++k)
         known[static_cast<std::size_t>(effect_->parameter_index(d.held_names[k]))] = d.held[g][k];
     }

@@ -201,8 +201,8 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
           model.conventions.speed_voltage ? "speed in the stator voltage" : "no speed in the stator voltage",
           model.conventions.mechanical_power ? "mechanical power held" : "mechanical torque held",
           model.conventions.frequency));
-  if (!model.standard.empty())
-    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
+  if (!model.defaults.empty())
+    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.defaults, ", ")));
   for (const auto& e : events)
     rows.emplace_back("record", e.record.name + (e.record.epoch ? ", begins " + record::beginning(e.record)
                                                                 : std::string()));

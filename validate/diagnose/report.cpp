@@ -298,8 +298,8 @@ report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Di
                                         const std::string& command_line) {
   report::Provenance rows = {
       {"command", command_line}, {"software", "swingbank " SWINGBANK_VERSION}, {"model", model.origin}};
-  if (!model.standard.empty())
-    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.standard, ", ")));
+  if (!model.defaults.empty())
+    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.defaults, ", ")));
   for (const auto& e : d.events) rows.emplace_back("record", e.record.name);
   return rows;
 }

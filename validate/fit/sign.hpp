@@ -11,7 +11,7 @@ namespace swingbank::validate::fit {
 /// spans decades keeps its sign.
 inline bool may_change_sign(const sim::Parameter& p) {
   constexpr double kDecade = 10;
-  return p.low < 0 && p.high > 0 && p.high <= kDecade * std::abs(p.standard);
+  return p.low < 0 && p.high > 0 && p.high <= kDecade * std::abs(p.default_value);
 }
 /// Returns whether a fit moves the logarithm of a parameter that starts at `start`, instead of the value.
 inline bool moves_by_logarithm(const sim::Parameter& p, double start) {

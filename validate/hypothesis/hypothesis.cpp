@@ -131,7 +131,7 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedSpread);
   const auto& parameters = sim::plant::block_effect(plant, block).parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (const auto& p = parameters[i]; p.null_value == p.standard && p.null_value > 0 && !p.is_code())
+    if (const auto& p = parameters[i]; p.null_value == p.default_value && p.null_value > 0 && !p.is_code())
       free.push_back({{block, static_cast<int>(i)}, kFactorSpread});
   return free;
 }
@@ -153,7 +153,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
   h.plant = tested.plant;
   h.conventions = tested.conventions;
-  const int block = sim::plant::insert_block(h.plant, {&effect, effect.standard_parameters()});
+  const int block = sim::plant::insert_block(h.plant, {&effect, effect.default_parameters()});
   if (effect.slot == Slot::measurement) {
     start_near_null(h, block);
   } else {

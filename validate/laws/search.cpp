@@ -128,7 +128,7 @@ class Searcher {
     h.plant = with_law(case_.model.plant, *f.effect, block);
     for (std::size_t i = 0; i < law.parameters.size(); ++i)
       h.free.push_back({{block, static_cast<int>(i)}, kLawSpread});
-    h.starts = {f.effect->standard_parameters()};
+    h.starts = {f.effect->default_parameters()};
     const auto free = hypothesis::free_of(h, case_.trial.spread);
     fit::FitOptions o;
     o.iterations = 10;
@@ -177,7 +177,7 @@ class Searcher {
 
 sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block) {
   sim::plant::Plant with = plant;
-  block = sim::plant::insert_block(with, {&effect, effect.standard_parameters()});
+  block = sim::plant::insert_block(with, {&effect, effect.default_parameters()});
   return with;
 }
 

@@ -46,10 +46,10 @@ std::string comment(const std::string& text) {
 }
 
 /// Whether the model leaves this parameter to its standard value, and it still has it.
-bool left_standard(const PlantModel& model, const sim::plant::Block& block, std::size_t i) {
+bool left_default(const PlantModel& model, const sim::plant::Block& block, std::size_t i) {
   const auto& p = block.effect->parameters[i];
-  return block.p[i] == p.standard &&
-         std::ranges::count(model.standard, fmt::format("{}.{}", block.effect->name, p.name)) > 0;
+  return block.p[i] == p.default_value &&
+         std::ranges::count(model.defaults, fmt::format("{}.{}", block.effect->name, p.name)) > 0;
 }
 
 void append_block(std::string& text, const PlantModel& model, const sim::plant::Block& block) {
@@ -58,12 +58,12 @@ void append_block(std::string& text, const PlantModel& model, const sim::plant::
   text += sim::is_shared(effect.slot) ? "\n[[" + slot + "]]" : "\n[" + slot + "]";
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
   bool standard = false;
-  for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_standard(model, block, i);
+  for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_default(model, block, i);
   if (standard) text += "standard = true  # what stands behind # alone has its standard value\n";
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
     const std::string entry =
-        fmt::format("{}{} = {}", left_standard(model, block, i) ? "# " : "", p.name, number(block.p[i]));
+        fmt::format("{}{} = {}", left_default(model, block, i) ? "# " : "", p.name, number(block.p[i]));
     text += fmt::format("{:<28} ", entry) + comment(fmt::format("[{}] {}", p.unit, p.meaning));
   }
 }

@@ -64,8 +64,8 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   for (const auto& p : block.effect->parameters) {
     const std::string key = fmt::format("{}.{}", section, p.name);
     if (may_miss && !config.has(key)) {
-      block.p.push_back(p.standard);
-      model.standard.push_back(fmt::format("{}.{}", block.effect->name, p.name));
+      block.p.push_back(p.default_value);
+      model.defaults.push_back(fmt::format("{}.{}", block.effect->name, p.name));
     } else {
       block.p.push_back(config.require<double>(key));
     }
@@ -213,10 +213,10 @@ sim::Conventions read_conventions(Config& config, double hz) {
 }
 
 /// Whole blocks that a replacement left to their standard values.
-void note_standard(PlantModel& model, const std::vector<std::string>& effects) {
+void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
   for (const auto& name : effects)
     for (const auto& p : model.library.find(name)->parameters)
-      model.standard.push_back(fmt::format("{}.{}", name, p.name));
+      model.defaults.push_back(fmt::format("{}.{}", name, p.name));
 }
 
 void read_from_grid(Config& config, PlantModel& model) {
@@ -247,7 +247,7 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.bus = unit.bus;
   model.id = unit.id;
   model.dispatch = unit.dispatch;
-  note_standard(model, unit.standard);
+  note_defaults(model, unit.defaults);
   model.warnings = unit.notes;
 }
 
@@ -351,7 +351,7 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
   constexpr double kPerUnitCase = 1.0;
   if (unit.kv > kPerUnitCase) model.record_base.kv = unit.kv;
-  note_standard(model, unit.standard);
+  note_defaults(model, unit.defaults);
   if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
     model.warnings.push_back(fmt::format("{}: {}; {}", base->what, base->why, base->remedy));
   for (const auto& o : sim::plant::violated(model.plant.machine))

@@ -27,7 +27,7 @@ struct PlantModel {
   /// What it delivers in its case; none: not known. Records are held against it, nothing starts from it.
   std::optional<sim::grid::Dispatch> dispatch = {};
   /// Parameters ("SEXS.TE") that the file leaves to their standard values (`standard = true`).
-  std::vector<std::string> standard = {};
+  std::vector<std::string> defaults = {};
   /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.
   std::optional<sim::plant::Plant> submitted = {};
   /// Where `plant` is one component of it only: the plant.

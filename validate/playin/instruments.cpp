@@ -227,7 +227,7 @@ sim::Phasors probe() {
 /// Its parameters away from neutral, beyond what rounding hides.
 std::vector<double> away_from_null(const sim::Effect& instrument) {
   constexpr double kAway = 0.05;  // of the range
-  auto p = instrument.standard_parameters();
+  auto p = instrument.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
     if (const auto& record = instrument.parameters[i]; !record.is_code())
       p[i] = std::clamp(p[i] + kAway * (record.high - record.low), record.low, record.high);

@@ -17,7 +17,7 @@ struct AlternatorRectifier : Alternator<Model> {
   using Behind = Alternator<Model>;
   enum P { TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF, TF, KC, KD, KE, E1, SE1, E2, SE2, parameter_count };
   static constexpr Source kRange = literature::sienna("ESAC1A");
-  static constexpr Source standards_from = literature::cim("ExcIEEEAC1A");
+  static constexpr Source defaults_from = literature::cim("ExcIEEEAC1A");
   static constexpr Source bounds_from = kBeyondCases;
   /// Returns the parameters; `upper` and `lower`: the regulator's limits.
   static constexpr std::array<Parameter, parameter_count> parameters_with(const Parameter& upper,

@@ -17,7 +17,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
   using Core = renewable::ElectricalControl;  // for the checks of check_common()
-  static constexpr Source standards_from = literature::own("as REGCA1's");
+  static constexpr Source defaults_from = literature::own("as REGCA1's");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter kRateFlag{"rateFlag",   "rateFlag",
                                        "code",       0.0,

@@ -66,7 +66,7 @@ template <class Model>
 struct DcTypeOne : DcBehindLeadLag<Model> {
   using Dc = RotatingDc<Model>;
   using B = DcBehindLeadLag<Model>;
-  static constexpr Source standards_from = literature::openipsl("IEEEX1, defaults");
+  static constexpr Source defaults_from = literature::openipsl("IEEEX1, defaults");
   static constexpr Source bounds_from = kBeyondCases;
   static constexpr Parameter parameters[] = {
       Dc::kTR,

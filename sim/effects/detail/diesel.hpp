@@ -12,7 +12,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct Diesel {
   static constexpr Slot slot = Slot::governor;
-  static constexpr Source standards_from =
+  static constexpr Source defaults_from =
       literature::own("a start within PSS/E's usual ranges; no sample was found");
   static constexpr Source bounds_from = kNoCases;
   static constexpr Parameter

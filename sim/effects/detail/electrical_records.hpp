@@ -94,7 +94,7 @@ constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p
     const double current = active ? most_p : most_q;
     Parameter& record = all[static_cast<std::size_t>(i)];
     record = {name, name, "pu", 0.0, voltage ? -1.0 : 0.0, 99.0, kNoNullValue, ""};
-    if (k < 4) record.standard = !voltage ? current : k == 0 ? -1.0 : 2.0;
+    if (k < 4) record.default_value = !voltage ? current : k == 0 ? -1.0 : 2.0;
     if (voltage)
       record.meaning =
           active ? "voltage of a point of the limit of Ip" : "voltage of a point of the limit of Iq";

@@ -13,8 +13,8 @@ constexpr Parameter renamed(Parameter record, std::string_view name) {
 }
 /// Returns the record with another default. `from`: its source; none: the effect's own source.
 constexpr Parameter with(Parameter record, double standard, Source from = kAsEffect) {
-  record.standard = standard;
-  record.standard_from = from;
+  record.default_value = standard;
+  record.default_from = from;
   return record;
 }
 

@@ -12,7 +12,7 @@ template <class Model, class Saturation>
 struct RoundRotor {
   static constexpr Slot slot = Slot::machine;
   enum P { Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12, Ra };
-  static constexpr Source standards_from = literature::kundur("within table 4.2, thermal units");
+  static constexpr Source defaults_from = literature::kundur("within table 4.2, thermal units");
   static constexpr Source bounds_from = kBeyondKundur;
   static constexpr Parameter parameters[] = {
       {"Tdop", "T'do", "s", 7.0, 0.5, 20.0, kNoNullValue, "d-axis transient open-circuit time constant"},

@@ -17,7 +17,7 @@ struct SalientPole {
   static constexpr Source kAsRound = literature::own("as the round rotor's");
   static constexpr Source kNoDamper =
       literature::psid("EXAC1/TVC_System.dyr, where 999 stands for no damper");
-  static constexpr Source standards_from = literature::kundur("within table 4.2, hydraulic units");
+  static constexpr Source defaults_from = literature::kundur("within table 4.2, hydraulic units");
   static constexpr Source bounds_from = kBeyondKundur;
   /// Returns all parameters; `s10`, `s12`: meaning of the saturation factors.
   static constexpr std::array<Parameter, parameter_count> parameters_with(std::string_view s10,

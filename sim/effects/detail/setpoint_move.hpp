@@ -13,7 +13,7 @@ namespace swingbank::sim::effects::shared {
 
 struct SetpointMove {
   static constexpr std::string_view source = "disturbance drive: no model explains it; shape by definition";
-  static constexpr Source standards_from = kNothing;
+  static constexpr Source defaults_from = kNothing;
   static constexpr Slot slot = Slot::setpoint;
 
   static void check_start(double start, const std::string& where, Problems& problems) {

@@ -57,7 +57,7 @@ std::vector<std::string> standard_names(std::string_view user_written) {
 }
 /// Returns the effect of a model that is user-written in some versions of PSS/E and standard in others
 /// (GENTPJU1 is GENTPJ1), or nullptr.
-const Effect* effect_since_standard(const std::string& model) {
+const Effect* effect_since_default(const std::string& model) {
   for (const Effect& e : library::compiled_effects())
     for (const std::string& name : standard_names(e.dyr_name))
       if (name == model) return &e;
@@ -79,7 +79,7 @@ Known known_by(std::string model) {
     known.order = other->order;
   }
   known.effect = effect_named(model);
-  if (!known.effect) known.effect = effect_since_standard(model);
+  if (!known.effect) known.effect = effect_since_default(model);
   for (std::size_t i = 1; i < kEndings.size() && !known.effect; ++i) {
     if (!model.ends_with(kEndings[i])) continue;
     const Effect* effect = effect_named(model.substr(0, model.size() - 2) + kEndings[0]);
@@ -243,7 +243,7 @@ std::string_view symbol_of_column(const Effect& effect, std::size_t column) {
 }
 /// Appends the missing values at the end. Returns them as text.
 std::string fill(const Effect& effect, std::vector<double>& values, Lacking lacking) {
-  const std::vector<double> standard = effect.standard_parameters();
+  const std::vector<double> standard = effect.default_parameters();
   std::string text;
   for (std::size_t i = values.size(); i < effect.dyr_columns.size(); ++i) {
     values.push_back(lacking == Lacking::zero ? 0.0
@@ -280,7 +280,7 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
           fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {
-  plant::Block block{&effect, effect.standard_parameters()};
+  plant::Block block{&effect, effect.default_parameters()};
   for (std::size_t i = 0; i < record.values.size(); ++i)
     block.p[static_cast<std::size_t>(effect.dyr_columns[i])] = record.values[i];
   return block;
@@ -301,7 +301,7 @@ std::string fault_of(const Effect& effect, formats::DyrRecord record, const netw
 plant::Block transformer_of(const network::Generator& g) {
   if (g.rt == 0.0 && g.xt == 0.0) return {};
   plant::Block block{library::compiled().find("STEPUP"), {}};
-  block.p = block.effect->standard_parameters();
+  block.p = block.effect->default_parameters();
   block.p[static_cast<std::size_t>(block.effect->parameter_index("R"))] = g.rt;
   block.p[static_cast<std::size_t>(block.effect->parameter_index("X"))] = g.xt;
   return block;
@@ -347,7 +347,7 @@ std::string remark_on(const plant::Block& block, const std::string& where, const
 }
 bool reads_field_voltage(const Effect& machine) {
   const auto& ops = machine.get<double>();
-  const auto p = machine.standard_parameters();
+  const auto p = machine.default_parameters();
   std::vector<double> c(static_cast<std::size_t>(machine.coefficients)), x(machine.states.size()),
       m(static_cast<std::size_t>(machine.scratch)), before(x.size()), after(x.size());
   ops.prepare(p.data(), Conventions::psse(), c.data());

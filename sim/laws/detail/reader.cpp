@@ -104,12 +104,12 @@ void Reader::read_parameters() {
     p.low = config_.require<double>(key + "low");
     p.high = config_.require<double>(key + "high", {p.low});
     const Range range{p.low, std::max(p.low, p.high), std::string(p.unit)};
-    p.standard = config_.require<double>(key + "standard", range);
+    p.default_value = config_.require<double>(key + "standard", range);
     p.null_value = config_.has(key + "neutral") ? config_.require<double>(key + "neutral", range)
                                                 : config_.optional<double>(key + "neutral", kNoNullValue);
     p.meaning = keep(config_.require<std::string>(key + "meaning"));
     const auto source = config_.optional<std::string>(key + "source", file_);
-    p.standard_from = p.bounds_from = literature::law(keep(source));
+    p.default_from = p.bounds_from = literature::law(keep(source));
     parameter_.emplace(name, static_cast<int>(law_.parameters.size()));
     law_.parameters.push_back(p);
   }

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 Databank draw(const DatasetConfig& c, std::uint64_t points) {
   sim::plant::Plant plant;
-  plant.machine = {&c.effect(), c.effect().standard_parameters()};
+  plant.machine = {&c.effect(), c.effect().default_parameters()};
   return draw_databank(c, plant, points);
 }
 
@@ -34,7 +34,7 @@ double closest_pair(const Databank& b) {
 
 /// The definition itself: every admissible candidate in order, against every point so far.
 std::vector<double> brute_force(const DatasetConfig& c, std::uint64_t points) {
-  std::vector<double> values, full = c.effect().standard_parameters(), x(c.box.size());
+  std::vector<double> values, full = c.effect().default_parameters(), x(c.box.size());
   const std::size_t n = x.size();
   for (std::uint64_t k = 0; values.size() < points * n; ++k) {
     Random random(c.seed, Stream::databank, k);
@@ -65,7 +65,7 @@ TEST(DatabankDraw, EveryPairKeepsItsDistance) {
 TEST(DatabankDraw, PointsArePhysicalAndInTheBox) {
   const DatasetConfig c = test::genrou_box();
   const Databank b = draw(c, 2000);
-  std::vector<double> full = c.effect().standard_parameters();
+  std::vector<double> full = c.effect().default_parameters();
   for (std::size_t i = 0; i < b.points(); ++i) {
     for (std::size_t k = 0; k < b.dimensions; ++k) {
       EXPECT_GE(b.point(i)[k], c.box[k].low);

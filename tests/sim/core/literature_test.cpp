@@ -9,7 +9,7 @@ namespace {
 constexpr Source kPage = literature::kundur("table 4.2"), kChosen = literature::own("for this test");
 
 struct Model {
-  static constexpr Source standards_from = kPage, bounds_from = kChosen;
+  static constexpr Source defaults_from = kPage, bounds_from = kChosen;
   static constexpr Parameter parameters[] = {
       {"a", "a", "s", 1.0, 0.0, 2.0, kNoNullValue, "of the effect"},
       {"b", "b", "s", 1.0, 0.0, 2.0, kNoNullValue, "standard of its own", literature::cim("GovGAST")},
@@ -19,11 +19,11 @@ struct Model {
 
 TEST(Literature, ARecordsSourceStandsBeforeTheEffects) {
   const auto& [a, b, c] = kSourced<Model>;
-  EXPECT_EQ(as_text(a.standard_from), "Kundur: table 4.2");
+  EXPECT_EQ(as_text(a.default_from), "Kundur: table 4.2");
   EXPECT_EQ(as_text(a.bounds_from), "own choice: for this test");
-  EXPECT_EQ(as_text(b.standard_from), "CIM: GovGAST");
+  EXPECT_EQ(as_text(b.default_from), "CIM: GovGAST");
   EXPECT_EQ(as_text(b.bounds_from), "own choice: for this test");
-  EXPECT_EQ(as_text(c.standard_from), "Kundur: table 4.2");
+  EXPECT_EQ(as_text(c.default_from), "Kundur: table 4.2");
   EXPECT_EQ(as_text(c.bounds_from), "derived: a time");
 }
 

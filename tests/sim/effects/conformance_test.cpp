@@ -68,7 +68,7 @@ bool beyond_limits(const Effect& e, const MachineCase<double>& k) {
 std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(0.95, 1.05);
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    auto p = e.standard_parameters();
+    auto p = e.default_parameters();
     for (std::size_t i = 0; i < p.size(); ++i) {
       const auto& r = e.parameters[i];
       if (r.is_code()) continue;
@@ -77,7 +77,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     if (e.unphysical(p.data()).empty()) return p;
   }
   ADD_FAILURE() << e.name << ": standard values are not physical";
-  return e.standard_parameters();
+  return e.default_parameters();
 }
 
 std::vector<const Effect*> machines() {
@@ -96,10 +96,10 @@ TEST(Conformance, RecordsAreComplete) {
     std::set<std::string_view> parameters;
     for (const auto& r : e.parameters) {
       EXPECT_TRUE(parameters.insert(r.name).second) << e.name << "." << r.name << " twice";
-      EXPECT_LE(r.low, r.standard) << e.name << "." << r.name;
-      EXPECT_LE(r.standard, r.high) << e.name << "." << r.name;
+      EXPECT_LE(r.low, r.default_value) << e.name << "." << r.name;
+      EXPECT_LE(r.default_value, r.high) << e.name << "." << r.name;
       EXPECT_FALSE(r.unit.empty() || r.meaning.empty()) << e.name << "." << r.name;
-      EXPECT_TRUE(r.standard_from.given() && r.bounds_from.given()) << e.name << "." << r.name;
+      EXPECT_TRUE(r.default_from.given() && r.bounds_from.given()) << e.name << "." << r.name;
       if (r.null_value == r.null_value) {  // not NaN: it has one
         EXPECT_TRUE(std::min(r.low, 0.0) <= r.null_value && r.null_value <= r.high)
             << e.name << "." << r.name;
@@ -107,7 +107,7 @@ TEST(Conformance, RecordsAreComplete) {
     }
     for (int column : e.dyr_columns) EXPECT_LT(column, static_cast<int>(e.parameters.size())) << e.name;
     Problems problems;
-    e.check(nullptr, e.standard_parameters().data(), "test", problems);
+    e.check(nullptr, e.default_parameters().data(), "test", problems);
     EXPECT_TRUE(problems.empty()) << e.name << ": standard values are refused";
   }
 }
@@ -186,7 +186,7 @@ TEST(Conformance, StatesStandStillWithoutTheirMovers) {
       if (first < 0) continue;
       ASSERT_TRUE(is_control(e.slot)) << e.name << ": this test knows controls only";
       const auto& ops = e.get<double>();
-      std::vector<double> p = e.standard_parameters(), x(e.states.size()), dx(x.size());
+      std::vector<double> p = e.default_parameters(), x(e.states.size()), dx(x.size());
       std::vector<double> c(static_cast<std::size_t>(e.coefficients));
       Signals<double> s;
       s.Vr = s.V = s.Vc = s.Efd = 1.0;
@@ -254,7 +254,7 @@ TEST(Conformance, DualsEqualCentralDifferences) {
 TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
   // All parameters with a neutral value at neutral, then a hair away: outputs may move by that hair only.
   for (const Effect* e : machines()) {
-    auto null_value = e->standard_parameters();
+    auto null_value = e->default_parameters();
     for (std::size_t i = 0; i < null_value.size(); ++i)
       if (e->parameters[i].null_value == e->parameters[i].null_value)
         null_value[i] = e->parameters[i].null_value;

@@ -32,7 +32,7 @@ class ControlBench {
   explicit ControlBench(const Effect& effect, const Changes& changes = {}, Signals<double> at = rated(),
                         Conventions conventions = Conventions::psse())
       : effect_(&effect), in(at) {
-    p = effect_->standard_parameters();
+    p = effect_->default_parameters();
     for (const auto& [parameter, value] : changes)
       p.at(static_cast<std::size_t>(effect_->parameter_index(parameter))) = value;
     effect_->check(effect_->law.get(), p.data(), std::string(effect.name), problems);

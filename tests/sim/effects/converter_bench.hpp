@@ -18,7 +18,7 @@ using Changes = std::vector<std::pair<const char*, double>>;
 struct BehindImpedance {
   BehindImpedance(const char* name, const Changes& changes, std::complex<double> power = {0.6, 0.2})
       : effect(*library::compiled().find(name)), ops(effect.get<double>()) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     for (const auto& [parameter, value] : changes)
       p.at(static_cast<std::size_t>(effect.parameter_index(parameter))) = value;
     c.resize(static_cast<std::size_t>(effect.coefficients));

@@ -13,7 +13,7 @@ namespace {
 struct Compensator {
   explicit Compensator(std::vector<std::pair<const char*, double>> changes, std::complex<double> v,
                        std::complex<double> i) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     for (const auto& [name, value] : changes)
       p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
     c.resize(static_cast<std::size_t>(effect.coefficients));

@@ -18,7 +18,7 @@ constexpr double kActive = 0.6, kReactive = 0.15;  ///< at the start [pu]
 
 struct Distributed {
   explicit Distributed(const DeraChanges& changes = {}, std::complex<double> power = {kActive, kReactive}) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     p.at(static_cast<std::size_t>(effect.parameter_index("vtripFlag"))) = 1.0;
     for (const auto& [name, value] : changes)
       p.at(static_cast<std::size_t>(effect.parameter_index(name))) = value;

@@ -234,8 +234,8 @@ TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
   for (const auto& [name, values] : drives) {
     grid::Grid grid = test::two_machine_grid(Conventions::psse());
     grid.plants[1].controls = {
-        {library::compiled().find("SEXS"), library::compiled().find("SEXS")->standard_parameters()},
-        {library::compiled().find("TGOV1"), library::compiled().find("TGOV1")->standard_parameters()}};
+        {library::compiled().find("SEXS"), library::compiled().find("SEXS")->default_parameters()},
+        {library::compiled().find("TGOV1"), library::compiled().find("TGOV1")->default_parameters()}};
     grid::Grid silent = grid;
     add(grid.plants[1], name, values.first);
     add(silent.plants[1], name, values.second);

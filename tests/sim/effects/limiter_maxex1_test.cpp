@@ -72,7 +72,7 @@ TEST(LimiterMaxex1, MeasuresWhatTheExciterMakesNow) {
   plant.generation = {0.6, 0.15};
   const auto standard = [](const char* name) {
     const Effect* effect = library::compiled().find(name);
-    return plant::Block{effect, effect->standard_parameters()};
+    return plant::Block{effect, effect->default_parameters()};
   };
   plant.machine = standard("GENROU");
   plant.controls = {standard("MAXEX1"), standard("SEXS")};

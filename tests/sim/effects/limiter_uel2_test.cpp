@@ -129,7 +129,7 @@ TEST(LimiterUel2, RefusesUnsupportedParameters) {
                 .size(),
             1u);
   const Effect& uel2 = *library::compiled().find("UEL2");
-  std::vector<double> p = uel2.standard_parameters();
+  std::vector<double> p = uel2.default_parameters();
   EXPECT_EQ(uel2.remark(p.data()), "");
   p[static_cast<std::size_t>(uel2.parameter_index("Q4"))] = -0.1;
   EXPECT_NE(uel2.remark(p.data()).find("stays -0.1 pu"), std::string::npos);

@@ -24,7 +24,7 @@ struct Motor {
   explicit Motor(const Changes& changes, Complex power = {0.8, 0.3}) {
     load.name = "1";
     load.consumption = power;
-    load.block = {library::compiled().find("CIM5"), library::compiled().find("CIM5")->standard_parameters()};
+    load.block = {library::compiled().find("CIM5"), library::compiled().find("CIM5")->default_parameters()};
     at("Mbase") = 100.0;
     for (const auto& [name, value] : changes) at(name) = value;
     o = plant::load_operating_point(load, load.block.p, kV0, 100.0, Conventions::psse());
@@ -149,7 +149,7 @@ TEST(LoadCim5, RefusesParametersThatCannotBeIntegrated) {
                                     {"R1", 0.0},
                                     {"Pmult", 0.0},
                                     {"S1", 0.9}}) {
-    auto p = effect.standard_parameters();
+    auto p = effect.default_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
     Problems problems;
     effect.check(nullptr, p.data(), "test", problems);

@@ -17,7 +17,7 @@ Complex drawn(const char* name, const Changes& changes, Complex v) {
   plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {library::compiled().find(name), library::compiled().find(name)->standard_parameters()};
+  load.block = {library::compiled().find(name), library::compiled().find(name)->default_parameters()};
   for (const auto& [parameter, value] : changes)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(parameter))] = value;
   const auto o =
@@ -73,7 +73,7 @@ TEST(LoadIeel, RefusesParametersThatCannotBeIntegrated) {
     }
   const Effect& effect = *library::compiled().find("IEEL");
   for (const auto& [name, value] : {std::pair{"n2", -1.0}, {"Tf", 0.0}, {"Vi", 0.0}}) {
-    auto p = effect.standard_parameters();
+    auto p = effect.default_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
     p[static_cast<std::size_t>(effect.parameter_index("a7"))] = 1.0;
     Problems problems;

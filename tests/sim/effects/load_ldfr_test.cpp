@@ -14,7 +14,7 @@ plant::Consumer consumer(const char* effect, const std::vector<std::pair<const c
   plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {library::compiled().find(effect), library::compiled().find(effect)->standard_parameters()};
+  load.block = {library::compiled().find(effect), library::compiled().find(effect)->default_parameters()};
   for (const auto& [name, value] : values)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))] = value;
   return load;

@@ -35,7 +35,7 @@ class Bench {
     load.name = "1";
     load.consumption = {0.0, -delivers};
     load.block = {library::compiled().find("SVSMO1"),
-                  library::compiled().find("SVSMO1")->standard_parameters()};
+                  library::compiled().find("SVSMO1")->default_parameters()};
     for (const auto& [parameter, value] : changes)
       load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(parameter))] = value;
     return load;

@@ -19,7 +19,7 @@ plant::Consumer consumer(std::vector<std::pair<const char*, double>> values) {
   plant::Consumer load;
   load.name = "1";
   load.consumption = {0.8, 0.3};
-  load.block = {library::compiled().find("ZIP"), library::compiled().find("ZIP")->standard_parameters()};
+  load.block = {library::compiled().find("ZIP"), library::compiled().find("ZIP")->default_parameters()};
   for (const auto& [name, value] : values)
     load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))] = value;
   return load;

@@ -15,7 +15,7 @@ namespace {
 struct ExponentialMachine {
   ExponentialMachine(const char* name, double s10, double s12, double ir, double ii)
       : effect(*library::compiled().find(name)) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     at("S10") = s10;
     at("S12") = s12;
     c.resize(static_cast<std::size_t>(effect.coefficients));
@@ -81,7 +81,7 @@ TEST(ExponentialSaturation, SingularValuesAreRefused) {
     for (const auto& [parameter, value] :
          {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"Xd", 0.1}, {"H", 0.0}, {"S12", 0.0}}) {
       const Effect& effect = *library::compiled().find(name);
-      auto p = effect.standard_parameters();
+      auto p = effect.default_parameters();
       p[static_cast<std::size_t>(effect.parameter_index(parameter))] = value;
       Problems problems;
       effect.check(nullptr, p.data(), "test", problems);

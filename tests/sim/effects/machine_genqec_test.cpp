@@ -15,7 +15,7 @@ using Settings = std::vector<std::pair<const char*, double>>;
 
 plant::Block block_with(const char* name, const Settings& changes) {
   const Effect* effect = library::compiled().find(name);
-  plant::Block block{effect, effect->standard_parameters()};
+  plant::Block block{effect, effect->default_parameters()};
   for (const auto& [parameter, value] : changes)
     block.p[static_cast<std::size_t>(effect->parameter_index(parameter))] = value;
   return block;

@@ -14,7 +14,7 @@ namespace {
 /// triangle, so cos delta = 0.8, sin delta = 0.6; Id = 0.6, Iq = 0.8, Vq = 0.8.
 struct SalientMachine {
   explicit SalientMachine(double s10, double s12) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     p[static_cast<std::size_t>(effect.parameter_index("S10"))] = s10;
     p[static_cast<std::size_t>(effect.parameter_index("S12"))] = s12;
     c.resize(static_cast<std::size_t>(effect.coefficients));
@@ -51,7 +51,7 @@ TEST(MachineGensal, SaturationAddsToTheFieldOfTheDirectAxisOnly) {
 TEST(MachineGensal, SingularValuesAreRefused) {
   const Effect& effect = *library::compiled().find("GENSAL");
   for (const auto& [name, value] : {std::pair{"Tdopp", 0.0}, {"Xdp", 0.1}, {"H", 0.0}, {"S12", 0.05}}) {
-    auto p = effect.standard_parameters();
+    auto p = effect.default_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
     Problems problems;
     effect.check(nullptr, p.data(), "test", problems);

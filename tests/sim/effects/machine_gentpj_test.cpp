@@ -20,7 +20,7 @@ struct TypeJMachine {
   TypeJMachine(const char* name, const Changes& changes, Complex v, Complex i,
                Conventions conventions = Conventions::psse())
       : effect(*library::compiled().find(name)) {
-    p = effect.standard_parameters();
+    p = effect.default_parameters();
     for (const auto& [parameter, value] : changes) at(parameter) = value;
     c.resize(static_cast<std::size_t>(effect.coefficients));
     x.resize(effect.states.size());
@@ -178,7 +178,7 @@ grid::Grid every_second() {
   grid::Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const Effect& gentpj = *library::compiled().find("GENTPJ");
   for (std::size_t i = 1; i < grid.plants.size(); i += 2)
-    grid.plants[i].machine = {&gentpj, gentpj.standard_parameters()};
+    grid.plants[i].machine = {&gentpj, gentpj.default_parameters()};
   return grid;
 }
 TEST(MachineGentpj, LanesEqualTheReference) { expect_lanes_equal_the_reference(every_second()); }
@@ -195,7 +195,7 @@ TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
   plant.transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   grid::Grid mine = linear;
   const auto set = [](plant::Plant& p, const char* effect, const Changes& changes) {
-    p.machine = {library::compiled().find(effect), library::compiled().find(effect)->standard_parameters()};
+    p.machine = {library::compiled().find(effect), library::compiled().find(effect)->default_parameters()};
     for (const auto& [name, value] : changes)
       p.machine.p[static_cast<std::size_t>(p.machine.effect->parameter_index(name))] = value;
   };
@@ -222,7 +222,7 @@ TEST(MachineGentpj, SingularValuesAreRefused) {
                                     {"Tqop", 0.0},
                                     {"Xl", 0.26},
                                     {"Kis", -0.1}}) {
-    auto p = effect.standard_parameters();
+    auto p = effect.default_parameters();
     p[static_cast<std::size_t>(effect.parameter_index(name))] = value;
     Problems problems;
     effect.check(nullptr, p.data(), "test", problems);

@@ -18,7 +18,7 @@ std::vector<const Effect*> instruments() {
 }
 
 std::vector<double> null_value(const Effect& e) {
-  auto p = e.standard_parameters();
+  auto p = e.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i)
     if (!std::isnan(e.parameters[i].null_value)) p[i] = e.parameters[i].null_value;
   return p;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kBase = 100.0;
 const Complex kVoltage = std::polar(1.02, 0.1), kPower(0.6, 0.15);
 
-plant::Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
+plant::Block standard(const Effect& effect) { return {&effect, effect.default_parameters()}; }
 plant::Block standard(const char* name) { return standard(*library::compiled().find(name)); }
 
 plant::Plant converter_host(plant::Plant plant, const Effect& effect) {
@@ -68,7 +68,7 @@ std::vector<const Effect*> loads() {
 std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(0.95, 1.05);
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    auto p = e.standard_parameters();
+    auto p = e.default_parameters();
     for (std::size_t i = 0; i < p.size(); ++i)
       if (!e.parameters[i].is_code()) p[i] *= u(random);
     Problems problems;
@@ -76,7 +76,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     if (problems.empty() && e.unphysical(p.data()).empty()) return p;
   }
   ADD_FAILURE() << e.name << ": standard values are refused when moved by 5 %";
-  return e.standard_parameters();
+  return e.default_parameters();
 }
 
 std::vector<std::vector<double>> parameters(const plant::Plant& plant) {
@@ -302,7 +302,7 @@ TEST(LoadConformance, StandsStillAndLanesEqualDouble) {
       for (std::size_t i = 0; i < o.c.size(); ++i) together.c[i].set(l, o.c[i]);
       for (std::size_t i = 0; i < states.size(); ++i) x[i].set(l, states[i]);
     }
-    const auto out = load_outputs<P8>(consumer(*e, e->standard_parameters()), together, x);
+    const auto out = load_outputs<P8>(consumer(*e, e->default_parameters()), together, x);
     for (int l = 0; l < P8::lanes; ++l)
       for (std::size_t i = 0; i < out.size(); ++i)  // rounding
         EXPECT_NEAR(out[i][l], alone[static_cast<std::size_t>(l)][i],

@@ -132,7 +132,7 @@ TEST(ZeroTimeConstant, OfTheRegulatorPassesInEXST1) {
 
 /// Current and derivatives of a load whose voltage has moved since its steady state.
 std::vector<double> moved_load(const Effect& e, const Changes& changes) {
-  std::vector<double> p = e.standard_parameters();
+  std::vector<double> p = e.default_parameters();
   for (const auto& [name, value] : changes) p.at(static_cast<std::size_t>(e.parameter_index(name))) = value;
   Problems problems;
   e.check(nullptr, p.data(), "load", problems);
@@ -163,7 +163,7 @@ TEST(LoadWithoutFrequencyDependence, NeedsNoLag) {
     one["Tf"] = 1.0;
     EXPECT_EQ(moved_load(e, zero), moved_load(e, one)) << name;
     Problems problems;
-    std::vector<double> p = e.standard_parameters();
+    std::vector<double> p = e.default_parameters();
     p[static_cast<std::size_t>(e.parameter_index("Tf"))] = 0.0;
     for (const char* dependence : {"Kpf", "a7", "m"})
       if (const int i = e.parameter_index(dependence); i >= 0) p[static_cast<std::size_t>(i)] = 1.5;

@@ -123,7 +123,7 @@ TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
   options.complete_records = Lacking::standard;
   const Grid standard = make({}, dyr, options);
   const plant::Block& machine = standard.plants[0].machine;
-  EXPECT_EQ(machine.p[1], machine.effect->standard_parameters()[1]);
+  EXPECT_EQ(machine.p[1], machine.effect->default_parameters()[1]);
 }
 
 TEST(FoundCase, TheSameFaultOfSeveralRecordsIsOneSentence) {

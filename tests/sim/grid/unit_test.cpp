@@ -78,12 +78,12 @@ TEST_F(UnitTest, RecordsAreDroppedAndReplaced) {
   const Unit six = read_unit(c);
   ASSERT_EQ(six.plant.controls.size(), 1u);
   EXPECT_THAT(six.plant.controls[0].p, Contains(-5.0));  // as many parameters: its values
-  EXPECT_THAT(six.standard, ElementsAre());
+  EXPECT_THAT(six.defaults, ElementsAre());
   EXPECT_THAT(six.notes, Contains(HasSubstr("no record of OTHER")));
   c.models.map = {{"X6", "IEEET1"}};
   const Unit other = read_unit(c);
-  EXPECT_THAT(other.standard, ElementsAre("IEEET1"));
-  EXPECT_EQ(other.plant.controls[0].p, other.plant.controls[0].effect->standard_parameters());
+  EXPECT_THAT(other.defaults, ElementsAre("IEEET1"));
+  EXPECT_EQ(other.plant.controls[0].p, other.plant.controls[0].effect->default_parameters());
   c.models.ignore = {"GOV8"};
   EXPECT_THAT(complaints(c), HasSubstr("no model GOV8 to drop"));
   EXPECT_THAT(complaints(c), HasSubstr("the unit has GENROU, GOV9, X6"));

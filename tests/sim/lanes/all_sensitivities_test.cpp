@@ -12,7 +12,7 @@ namespace {
 constexpr int kPlant = 1;
 constexpr int kAtOnce = kDirections;
 
-plant::Block standard(const Effect& effect) { return {&effect, effect.standard_parameters()}; }
+plant::Block standard(const Effect& effect) { return {&effect, effect.default_parameters()}; }
 
 /// The plant behind two lines (reference_support.hpp) with the effect and what reads its signal.
 grid::Grid host(const Effect& effect) {
@@ -66,7 +66,7 @@ bool falls_short(const Effect& e, const Parameter& record) {
 std::vector<Seed> seeds(const grid::Grid& grid, const Effect& e) {
   std::vector<Seed> list;
   const int block = block_index(grid, e);
-  const auto p = e.standard_parameters();
+  const auto p = e.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Parameter& record = e.parameters[i];
     // At zero a time constant is a bypass, a limit or a stage is off: there is no derivative across its

@@ -25,7 +25,7 @@ struct Outfit {
 
 plant::Block block_of(const std::string& name, const Values& changes) {
   const Effect& effect = *library::compiled().find(name);
-  plant::Block block{&effect, effect.standard_parameters()};
+  plant::Block block{&effect, effect.default_parameters()};
   for (const auto& [parameter, value] : changes)
     block.p.at(static_cast<std::size_t>(effect.parameter_index(parameter))) = value;
   return block;

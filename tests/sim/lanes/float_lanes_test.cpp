@@ -31,7 +31,7 @@ grid::Grid with_controls() {
   for (plant::Plant& plant : grid.plants)
     for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {
       const Effect& e = *library::compiled().find(name);
-      plant.controls.push_back({&e, e.standard_parameters()});
+      plant.controls.push_back({&e, e.default_parameters()});
     }
   return grid;
 }
@@ -84,8 +84,8 @@ TEST(FloatLanes, AgreeWithDoublesOnRandomFaults) {
 TEST(FloatLanes, AgreeWithDoublesOnWhatElseHappens) {
   grid::Grid grid = with_controls();
   const Effect &step = *library::compiled().find("VREFSTEP"), &ramp = *library::compiled().find("PREFRAMP");
-  grid.plants[2].controls.insert(grid.plants[2].controls.begin(), {&step, step.standard_parameters()});
-  grid.plants[5].controls.insert(grid.plants[5].controls.begin(), {&ramp, ramp.standard_parameters()});
+  grid.plants[2].controls.insert(grid.plants[2].controls.begin(), {&step, step.default_parameters()});
+  grid.plants[5].controls.insert(grid.plants[5].controls.begin(), {&ramp, ramp.default_parameters()});
   std::vector<Job> jobs(4);
   for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].id = i;
   jobs[0].event.trips = {{3, 1.0, {}}};
@@ -114,7 +114,7 @@ TEST(FloatLanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
 
 TEST(FloatLanes, RefuseAllThatTheyCannotRun) {
   grid::Grid grid = round_rotors();
-  const auto block = [](const Effect& e) { return plant::Block{&e, e.standard_parameters()}; };
+  const auto block = [](const Effect& e) { return plant::Block{&e, e.default_parameters()}; };
   grid.plants[3].machine = block(*library::compiled().find("GENTPJ"));
   Effect law = *library::compiled().find("SEXS");
   law.name = "OWNLAW";

@@ -57,7 +57,7 @@ grid::Grid nonlinear_grid() {
   grid::Grid grid =
       test::with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
   const Effect& law = laws::load_law(test::kNonlinear, "n", grid.library);
-  grid.plants[1].controls.insert(grid.plants[1].controls.begin(), {&law, law.standard_parameters()});
+  grid.plants[1].controls.insert(grid.plants[1].controls.begin(), {&law, law.default_parameters()});
   return grid;
 }
 
@@ -87,7 +87,7 @@ TEST(LawInLanes, APlantWithAnExampleStandsStillAndRunsThroughAFault) {
         test::with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
     auto& controls = grid.plants[1].controls;
     if (law.slot == Slot::exciter) controls.clear();
-    controls.push_back({&law, law.standard_parameters()});
+    controls.push_back({&law, law.default_parameters()});
     std::ranges::stable_sort(controls, {}, [](const plant::Block& b) { return b.effect->slot; });
     const Trajectory run = lanes_run(grid, 8);
     EXPECT_EQ(run.outcome, Outcome::stable) << file.path();

@@ -53,7 +53,7 @@ inline plant::Block draw_block(Slot slot, Draws& draws) {
   const Effect& e = *list[draws.index(list.size())];
   constexpr int attempts = 3000;  // values are drawn one by one, orderings among them by luck
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    plant::Block block{&e, e.standard_parameters()};
+    plant::Block block{&e, e.default_parameters()};
     for (std::size_t i = 0; i < block.p.size(); ++i)
       block.p[i] = draw_value(e.parameters[i], block.p[i], draws);
     Problems problems;

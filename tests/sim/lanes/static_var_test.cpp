@@ -32,7 +32,7 @@ grid::Grid with_compensator(const Values& changes, double susceptance) {
   for (plant::Plant& plant : grid.plants)
     plant.generation = grid.flow.generation[static_cast<std::size_t>(plant.generator)];
   const Effect& effect = *library::compiled().find("SVSMO1");
-  plant::Block block{&effect, effect.standard_parameters()};
+  plant::Block block{&effect, effect.default_parameters()};
   for (const auto& [parameter, value] : changes)
     block.p.at(static_cast<std::size_t>(effect.parameter_index(parameter))) = value;
   Problems problems;

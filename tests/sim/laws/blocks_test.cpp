@@ -82,7 +82,7 @@ T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
 // operating point
 std::string refusal(const std::string& text, Signals<double> s = test::ControlBench::rated()) {
   const Effect law = make_law(text, "x.toml");
-  const auto p = law.standard_parameters();
+  const auto p = law.default_parameters();
   std::vector<double> c(static_cast<std::size_t>(law.coefficients)), x(law.states.size());
   law.get<double>().prepare(p.data(), Conventions::psse(), c.data());
   return law.get<double>().control.steady(law.law.get(), p.data(), c.data(), s, x.data());

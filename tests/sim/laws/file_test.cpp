@@ -167,9 +167,9 @@ TEST(LawFile, AValuesSourceIsWhatTheParameterSaysOrTheFile) {
 a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
 b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law"),
                               "plant.toml");
-  EXPECT_EQ(as_text(law.parameters[0].standard_from), "a plant's data sheet");
+  EXPECT_EQ(as_text(law.parameters[0].default_from), "a plant's data sheet");
   EXPECT_EQ(as_text(law.parameters[0].bounds_from), "a plant's data sheet");
-  EXPECT_EQ(as_text(law.parameters[1].standard_from), "plant.toml");
+  EXPECT_EQ(as_text(law.parameters[1].default_from), "plant.toml");
 }
 
 TEST(LawFile, InstantsAreThoseOfTheParameters) {

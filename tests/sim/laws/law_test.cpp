@@ -128,7 +128,7 @@ TEST(LawFile, PacksEqualDouble) {
     std::vector<std::vector<double>> each;
     std::vector<P8> packed(law->parameters.size());
     for (int lane = 0; lane < 8; ++lane) {
-      auto p = law->standard_parameters();
+      auto p = law->default_parameters();
       for (double& v : p) v *= u(random);
       for (std::size_t i = 0; i < p.size(); ++i) packed[i].set(lane, p[i]);
       each.push_back(outputs<double>(*law, p, test::ControlBench::rated(), disturbed()));
@@ -146,7 +146,7 @@ TEST(LawFile, PacksEqualDouble) {
 TEST(LawFile, DualsEqualCentralDifferences) {
   const Effect nonlinear = make_law(kNonlinear, "n"), transfer = make_law(kByTransferFunction, "t");
   for (const Effect* law : {&sexs_law(), &nonlinear, &transfer}) {
-    const auto p = law->standard_parameters();
+    const auto p = law->default_parameters();
     for (std::size_t j = 0; j < p.size(); ++j) {
       std::vector<D8> dual(p.begin(), p.end());
       dual[j].d[0] = 1.0;
@@ -196,7 +196,7 @@ TEST(LawFile, TheExamplesAreSound) {
     library::EffectLibrary library;
     const Effect& law = load_law(file.path(), library);
     Problems problems;
-    law.check(law.law.get(), law.standard_parameters().data(), file.path().string(), problems);
+    law.check(law.law.get(), law.default_parameters().data(), file.path().string(), problems);
     EXPECT_TRUE(problems.empty()) << file.path();
     EXPECT_FALSE(law.description.empty());
     ++count;

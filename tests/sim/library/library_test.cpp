@@ -30,7 +30,7 @@ K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, mea
 )law",
                      factor);
 }
-double standard(const EffectLibrary& library) { return library.find("MINE")->standard_parameters().at(0); }
+double standard(const EffectLibrary& library) { return library.find("MINE")->default_parameters().at(0); }
 
 TEST(EffectLibrary, AVariantNamesAnEffectOfItsSlotThatIsNone) {
   int variants = 0;
@@ -78,7 +78,7 @@ TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
     laws::load_law(later, "later.toml", first);
   }
   EXPECT_EQ(copy.find("MINE"), shared);  // it lives although the library that read it does not
-  EXPECT_EQ(shared->standard_parameters(), std::vector<double>{2.0});
+  EXPECT_EQ(shared->default_parameters(), std::vector<double>{2.0});
   EXPECT_EQ(copy.find("LATER"), nullptr);
 }
 

@@ -12,7 +12,7 @@ namespace {
 /// Values about the standard ones, by up to a factor of four either way.
 Block drawn(const Effect& effect, std::mt19937& random) {
   std::uniform_real_distribution<double> factor(-1.4, 1.4);
-  Block block{&effect, effect.standard_parameters()};
+  Block block{&effect, effect.default_parameters()};
   for (double& value : block.p) value = std::max(value, 0.01) * std::exp(factor(random));
   return block;
 }
@@ -23,7 +23,7 @@ TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
   for (const Effect& effect : library::compiled_effects()) {
     if (effect.slot != Slot::machine) continue;
     ++machines;
-    EXPECT_TRUE(violated({&effect, effect.standard_parameters()}).empty()) << effect.name;
+    EXPECT_TRUE(violated({&effect, effect.default_parameters()}).empty()) << effect.name;
     for (int k = 0; k < 20000; ++k) {
       const Block block = drawn(effect, random);
       const bool physical = effect.unphysical(block.p.data()).empty();
@@ -38,7 +38,7 @@ TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
 
 TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
   const Effect& round = *library::compiled().find("GENROU");
-  Block block{&round, round.standard_parameters()};
+  Block block{&round, round.default_parameters()};
   const auto set = [&](const char* name, double value) {
     block.p[static_cast<std::size_t>(round.parameter_index(name))] = value;
   };

@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 const Effect& effect(const char* name) { return *library::compiled().find(name); }
-Block standard(const char* name) { return {&effect(name), effect(name).standard_parameters()}; }
+Block standard(const char* name) { return {&effect(name), effect(name).default_parameters()}; }
 ParameterId id_of(int block, const char* effect_name, const char* parameter) {
   return {block, effect(effect_name).parameter_index(parameter)};
 }

@@ -18,7 +18,7 @@ constexpr std::array kPss2Leads = {"T1", "T3", "T8", "T10", "T12"};
 
 Block tgov1() {
   const Effect* effect = library::compiled().find("TGOV1");
-  return {effect, effect->standard_parameters()};
+  return {effect, effect->default_parameters()};
 }
 
 TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
@@ -33,7 +33,7 @@ TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
 
 TEST(Usual, StandardValuesOfEveryEffectAreUsual) {
   for (const Effect& e : library::compiled_effects())
-    EXPECT_THAT(unusual({&e, e.standard_parameters()}), ElementsAre()) << e.name;
+    EXPECT_THAT(unusual({&e, e.default_parameters()}), ElementsAre()) << e.name;
 }
 
 TEST(Usual, ASearchMayMoveBeyondAValueThatIsOutsideTheRange) {
@@ -83,7 +83,7 @@ TEST(Usual, ChecksRefuseNegativeTimesAndCodesThatAreNone) {
       const std::string name = std::string(e.name) + "." + std::string(record.name);
       if ((!time && !record.is_code()) || is_lead(name) || is_unread(name)) continue;
       for (const double value : {time ? -1.0 : 0.5, time ? -1e-3 : record.high + 1}) {
-        auto p = e.standard_parameters();
+        auto p = e.default_parameters();
         p[i] = value;
         Problems problems;
         e.check(e.law.get(), p.data(), "x", problems);

@@ -47,7 +47,7 @@ TEST(PsseGovernor, DeadBandIsNotLostInADyr) {
   grid::Grid grid =
       grid::load_grid(configs / "ieee39_genrou.raw", configs / "ieee39_genrou.dyr", Conventions::psse());
   const Effect* hygov = library::compiled().find("HYGOV");
-  grid.plants[0].controls.push_back({hygov, hygov->standard_parameters()});
+  grid.plants[0].controls.push_back({hygov, hygov->default_parameters()});
   const auto file =
       std::filesystem::temp_directory_path() / ("swingbank-band-" + std::to_string(getpid()) + ".dyr");
   grid::write_dyr(grid, file);

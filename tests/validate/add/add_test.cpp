@@ -93,7 +93,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
   const plant::PlantModel sexs = example(true);
   plant::PlantModel exst1 = example(false);
   const sim::Effect* effect = sim::library::compiled().find("EXST1");
-  exst1.plant.controls.push_back({effect, effect->standard_parameters()});
+  exst1.plant.controls.push_back({effect, effect->default_parameters()});
   exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("KF"))] = KF;
   exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("TF"))] = kFast;
   std::vector<record::Record> changed = records(model);

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
 TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
   plant::PlantModel model;
   model.plant.machine = {sim::library::compiled().find("GENROU"),
-                         sim::library::compiled().find("GENROU")->standard_parameters()};
+                         sim::library::compiled().find("GENROU")->default_parameters()};
   model.plant.measurements = {test::instrument("PMUFILTER"), test::instrument("SKEW:skew=0.002")};
   for (const auto& f : chosen_parameters(model.plant, 0.2, {}))
     EXPECT_STRNE(sim::plant::block_effect(model.plant, f.id.block).name.data(), "PMUFILTER");

@@ -13,7 +13,7 @@ struct SelfExcitation {
   std::vector<fit::FreeParameter> free;
   SelfExcitation() {
     const sim::Effect* effect = sim::library::compiled().find("IEEET1");
-    believed.controls.push_back({effect, effect->standard_parameters()});
+    believed.controls.push_back({effect, effect->default_parameters()});
     for (const auto& f : fit::free_parameters(believed, 0.5))
       if (sim::plant::parameter_record(believed, f.id).name == "KE") free.push_back(f);
   }

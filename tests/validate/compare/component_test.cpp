@@ -135,9 +135,8 @@ TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
 
 TEST(CompareComponentTest, ReportsAndRestoresOmittedBlocks) {
   plant::PlantModel model;
-  model.plant.machine = test::standard_block("GENROU");
-  for (const auto* name : {"TGOV1", "SEXS"})
-    sim::plant::insert_block(model.plant, test::standard_block(name));
+  model.plant.machine = test::default_block("GENROU");
+  for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(model.plant, test::default_block(name));
   const plant::PlantModel part = event::component_model(model, Component::governor);
   ASSERT_EQ(part.warnings.size(), 1u);
   EXPECT_THAT(part.warnings.front(), HasSubstr("governor alone: GENROU, SEXS"));

@@ -13,7 +13,7 @@ using ::testing::Contains;
 
 TEST(ComponentHypotheses, OnlyBlocksOfTheComponentJoin) {
   plant::PlantModel model;
-  model.plant.machine = test::standard_block("GENROU");
+  model.plant.machine = test::default_block("GENROU");
   model.conventions = sim::Conventions::psse();
   for (const auto component :
        {record::Component::exciter, record::Component::governor, record::Component::machine}) {

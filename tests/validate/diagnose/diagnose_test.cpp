@@ -39,7 +39,7 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
 TEST(Hypotheses, NoneFillsAnOccupiedSlot) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const auto* sexs = sim::library::compiled().find("SEXS");
-  model.plant.controls.push_back({sexs, sexs->standard_parameters()});
+  model.plant.controls.push_back({sexs, sexs->default_parameters()});
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
     EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
 }
@@ -101,7 +101,7 @@ std::vector<record::Record> records_with_exst1(
   constexpr double kNoise = 0.002;  // of P and Q [pu]
   sim::plant::Plant truth = model.plant;
   const sim::Effect* exst1 = sim::library::compiled().find("EXST1");
-  sim::plant::Block exciter{exst1, exst1->standard_parameters()};
+  sim::plant::Block exciter{exst1, exst1->default_parameters()};
   for (const auto& [name, value] : values) {
     const auto at = std::ranges::find(exst1->parameters, name, &sim::Parameter::name);
     exciter.p[static_cast<std::size_t>(at - exst1->parameters.begin())] = value;

@@ -66,7 +66,7 @@ struct Quiet {
     model = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     if (*exciter) {
       const auto* effect = sim::library::compiled().find(exciter);
-      auto p = effect->standard_parameters();
+      auto p = effect->default_parameters();
       p[static_cast<std::size_t>(effect->parameter_index("K"))] = 200;
       model.plant.controls.push_back({effect, p});
     }

@@ -18,7 +18,7 @@ struct Played {
 Played with_exciter(const char* name) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const sim::Effect* effect = sim::library::compiled().find(name);
-  sim::plant::insert_block(model.plant, {effect, effect->standard_parameters()});
+  sim::plant::insert_block(model.plant, {effect, effect->default_parameters()});
   const auto events = prepare_events(
       model,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base)},

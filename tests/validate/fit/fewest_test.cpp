@@ -78,7 +78,7 @@ std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
 TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
   const auto exciter = [](sim::grid::Grid& grid) {
     const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
-    sim::plant::Block block{&esst4b, esst4b.standard_parameters()};
+    sim::plant::Block block{&esst4b, esst4b.default_parameters()};
     for (const char* limit : {"VRMAX", "VRMIN", "VMMAX", "VMMIN"})  // far off: the exchange is exact
       block.p[static_cast<std::size_t>(esst4b.parameter_index(limit))] *= 50;
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)->controls.push_back(std::move(block));

@@ -39,7 +39,7 @@ class SelfExcited : public ::testing::TestWithParam<bool> {};
 
 TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
   ExciterExample example(0.2);
-  example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").standard_parameters()};
+  example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").default_parameters()};
   sim::plant::Plant truth = example.model.plant;
   parameter(truth.controls.back(), "KE") = -0.1;
   const event::WhitenedEvents events = answered(example, truth);
@@ -108,7 +108,7 @@ TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
 /// values are where a search ended in a public case, before it was dropped for them.
 TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {
   ExciterExample example(0.2);
-  sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").standard_parameters()};
+  sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};
   for (const auto& [name, value] : {std::pair("TR", 6.5606997582993224e-4),
                                     {"TB", 0.011302250967048622},
                                     {"TC", 0.13017661277444859},

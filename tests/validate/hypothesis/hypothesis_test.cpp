@@ -111,7 +111,7 @@ TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
     sim::plant::Plant plant;
     const auto standard = [](const char* name) {
       const sim::Effect* effect = sim::library::compiled().find(name);
-      return sim::plant::Block{effect, effect->standard_parameters()};
+      return sim::plant::Block{effect, effect->default_parameters()};
     };
     plant.machine = standard(source);
     for (const char* control : controls) plant.controls.push_back(standard(control));
@@ -131,7 +131,7 @@ TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
 TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
   const auto standard = [](const char* name) {
     const sim::Effect* effect = sim::library::compiled().find(name);
-    return sim::plant::Block{effect, effect->standard_parameters()};
+    return sim::plant::Block{effect, effect->default_parameters()};
   };
   sim::plant::Plant plant;
   plant.machine = standard("REGCA1");

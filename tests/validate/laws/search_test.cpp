@@ -112,7 +112,7 @@ TEST(LawText, EveryFileDoesWhatWasRanked) {
       EXPECT_EQ(law_words(law).find('{'), std::string::npos) << law_words(law);
       std::vector<double> values;
       for (const auto& p : law.parameters) values.push_back(p.value);
-      EXPECT_EQ(effect.standard_parameters(), values);
+      EXPECT_EQ(effect.default_parameters(), values);
       const auto course = regression.by_event(regression.at_knots(law_course(effect, values, kind, traces)));
       double difference = 0, size = 0;
       for (std::size_t e = 0; e < course.size(); ++e)
@@ -229,7 +229,7 @@ TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
   // the file that is offered is the law that was judged
   const sim::Effect read = sim::laws::make_law(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)
-    EXPECT_DOUBLE_EQ(read.parameters[i].standard, f.law.parameters[i].value) << read.parameters[i].name;
+    EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.law.parameters[i].value) << read.parameters[i].name;
 }
 
 TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {

@@ -20,7 +20,7 @@ PlantModel example() { return load_plant_model(test::source("configs/plants/ieee
 
 /// Values that need all 17 digits, consistent because they hardly differ from the standard ones.
 std::vector<double> awkward(const sim::Effect& effect) {
-  std::vector<double> p = effect.standard_parameters();
+  std::vector<double> p = effect.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const auto& record = effect.parameters[i];
     if (!record.is_code()) p[i] = std::clamp(p[i] * (1 + 1e-9 / 3), record.low, record.high);
@@ -46,7 +46,7 @@ TEST_F(PlantFileTest, EveryEffectReadsBackToTheLastBit) {
     const sim::plant::Block block{effect, awkward(*effect)};
     if (sim::is_of_converter(effect->slot)) {
       const sim::Effect* converter = sim::library::compiled().find("REGCA1");
-      m.plant.machine = {converter, converter->standard_parameters()};
+      m.plant.machine = {converter, converter->default_parameters()};
     }
     switch (effect->slot) {
       case sim::Slot::load:

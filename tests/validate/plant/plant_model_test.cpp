@@ -99,7 +99,7 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
   for (std::size_t k = 0; k < depths.size(); ++k) {
     const sim::Effect* effect = models[k].plant.controls.at(0).effect;
     EXPECT_EQ(models[k].library.find("MINE"), effect);
-    EXPECT_EQ(effect->standard_parameters().at(0), std::stod(depths[k]));
+    EXPECT_EQ(effect->default_parameters().at(0), std::stod(depths[k]));
   }
   EXPECT_NE(difference(models[0], models[1]), "") << "laws of other texts are other effects";
   EXPECT_EQ(load_plant_model(test::source("configs/plants/ieee14_bus2.toml")).library.find("MINE"), nullptr);
@@ -176,7 +176,7 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
   const PlantModel m = load(text + sexs);
   ASSERT_EQ(m.plant.controls.size(), plain.plant.controls.size() + 1);
   EXPECT_EQ(m.plant.machine.p, plain.plant.machine.p);
-  EXPECT_EQ(m.standard.size(), 5u);
+  EXPECT_EQ(m.defaults.size(), 5u);
   EXPECT_EQ(m.bus, 31);
   // What stands there already is named, and how it is dropped.
   const std::string dyr =
@@ -264,14 +264,14 @@ TEST_F(PlantModelTest, StandardValuesAreTakenWhereTheBlockSaysSo) {
   EXPECT_THAT(faults(example_text() + block), Contains(HasSubstr("exciter.TE")));
   const PlantModel m = load(example_text() + block + "standard = true\n");
   const auto& sexs = m.plant.controls.at(0);
-  const auto standard = sexs.effect->standard_parameters();
+  const auto standard = sexs.effect->default_parameters();
   for (std::size_t i = 0; i < sexs.p.size(); ++i)
     EXPECT_EQ(sexs.p[i], sexs.effect->parameters[i].name == "K" ? 150.0 : standard[i]);
-  EXPECT_THAT(m.standard, ::testing::UnorderedElementsAre("SEXS.TAoverTB", "SEXS.TB", "SEXS.TE", "SEXS.EMIN",
+  EXPECT_THAT(m.defaults, ::testing::UnorderedElementsAre("SEXS.TAoverTB", "SEXS.TB", "SEXS.TE", "SEXS.EMIN",
                                                           "SEXS.EMAX"));
   const std::string written = plant_text(m, {});
   EXPECT_THAT(written, AllOf(HasSubstr("standard = true"), HasSubstr("\n# TE = "), HasSubstr("\nK = 150.0")));
-  EXPECT_EQ(load(written).standard, m.standard);
+  EXPECT_EQ(load(written).defaults, m.defaults);
 }
 
 }  // namespace

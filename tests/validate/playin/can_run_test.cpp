@@ -10,7 +10,7 @@ namespace {
 
 sim::plant::Block standard(const std::string& name) {
   const sim::Effect* effect = sim::library::compiled().find(name);
-  return {effect, effect->standard_parameters()};
+  return {effect, effect->default_parameters()};
 }
 double& value(sim::plant::Block& block, const std::string& name) {
   return block.p.at(static_cast<std::size_t>(block.effect->parameter_index(name)));

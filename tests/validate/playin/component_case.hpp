@@ -11,9 +11,9 @@
 
 namespace swingbank::validate::test {
 
-inline sim::plant::Block standard_block(const std::string& name) {
+inline sim::plant::Block default_block(const std::string& name) {
   const sim::Effect* effect = sim::library::compiled().find(name);
-  return {effect, effect->standard_parameters()};
+  return {effect, effect->default_parameters()};
 }
 
 /// Generator 2 of IEEE 14 with controls, and what a fault makes of it.
@@ -56,7 +56,7 @@ inline ComponentCase simulated_component(const std::vector<sim::plant::Block>& c
 inline ComponentCase simulated_component(const std::vector<std::string>& names,
                                          const ComponentEvent& e = {}) {
   std::vector<sim::plant::Block> controls;
-  for (const auto& name : names) controls.push_back(standard_block(name));
+  for (const auto& name : names) controls.push_back(default_block(name));
   return simulated_component(controls, e);
 }
 

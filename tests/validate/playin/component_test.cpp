@@ -21,7 +21,7 @@ using ::testing::UnorderedElementsAre;
 using Words = std::vector<std::string>;
 
 using Case = test::ComponentCase;
-using test::standard_block;
+using test::default_block;
 constexpr double kOn = test::ComponentEvent{}.on, kOff = test::ComponentEvent{}.off;
 
 /// Largest difference between what was simulated and what the component answers [pu].
@@ -138,8 +138,8 @@ TEST(ComponentTest, SlopesAreThoseOfDifferences) {
 
 Words needed(const std::vector<std::string>& controls, Component component) {
   sim::plant::Plant plant;
-  plant.machine = standard_block("GENROU");
-  for (const auto& name : controls) sim::plant::insert_block(plant, standard_block(name));
+  plant.machine = default_block("GENROU");
+  for (const auto& name : controls) sim::plant::insert_block(plant, default_block(name));
   Words all;
   const sim::Conventions conventions = sim::Conventions::psse();
   for (const auto& any : needed_columns({component_of(plant, component), conventions}, component)) {
@@ -161,12 +161,12 @@ TEST(ComponentTest, BlocksSayWhatTheyNeed) {
 
 TEST(ComponentTest, GoesBackWhereItCameFrom) {
   sim::plant::Plant plant;
-  plant.machine = standard_block("GENROU");
-  for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(plant, standard_block(name));
+  plant.machine = default_block("GENROU");
+  for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(plant, default_block(name));
   sim::plant::Plant part = component_of(plant, Component::exciter);
   ASSERT_EQ(part.controls.size(), 1u);
   part.controls.front().p[2] = 123;
-  sim::plant::insert_block(part, standard_block("STAB1"));
+  sim::plant::insert_block(part, default_block("STAB1"));
   const sim::plant::Plant back = put_back(plant, part, Component::exciter);
   ASSERT_EQ(back.controls.size(), 3u);
   EXPECT_EQ(back.machine.effect->name, "GENROU");

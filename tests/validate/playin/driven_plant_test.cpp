@@ -21,7 +21,7 @@ class DrivenPlantTest : public ::testing::Test {
     model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     for (const char* name : {"TGOV1", "SEXS"}) {
       const auto* effect = sim::library::compiled().find(name);
-      model_.plant.controls.push_back({effect, effect->standard_parameters()});
+      model_.plant.controls.push_back({effect, effect->default_parameters()});
     }
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
     switchings_ = detect_switchings(record_);
@@ -192,7 +192,7 @@ TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
 /// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
 TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
-  model_.plant.machine = {gentpj, gentpj->standard_parameters()};
+  model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   std::vector<Direction> directions = {{.kind = Kind::switching, .index = 1, .scale = 1e-5},
                                        {.kind = Kind::P, .scale = 1e-5},

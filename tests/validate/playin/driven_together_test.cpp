@@ -18,7 +18,7 @@ class DrivenTogether : public ::testing::Test {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
     model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     const auto* effect = sim::library::compiled().find("SEXS");
-    model_.plant.controls.push_back({effect, effect->standard_parameters()});
+    model_.plant.controls.push_back({effect, effect->default_parameters()});
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
     switchings_ = detect_switchings(record_);
     for (Switching& s : switchings_) s.turn = 0.1;

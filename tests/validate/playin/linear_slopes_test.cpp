@@ -26,7 +26,7 @@ class LinearSlopesTest : public ::testing::Test {
   }
   void add(const char* name) {
     const auto* effect = sim::library::compiled().find(name);
-    model_.plant.controls.push_back({effect, effect->standard_parameters()});
+    model_.plant.controls.push_back({effect, effect->default_parameters()});
   }
   double& parameter(const char* block, const char* name) {
     for (int b = 0; b < sim::plant::block_count(model_.plant); ++b)
@@ -179,7 +179,7 @@ TEST_F(Limited, AnInstantHasSlopes) {
 }
 TEST_F(LinearSlopesTest, WithASaturatedStatorBehindATransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
-  model_.plant.machine = {gentpj, gentpj->standard_parameters()};
+  model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   EXPECT_LT(worst(all()), 0.02);
 }

@@ -33,8 +33,8 @@ inline StagedCase simulated_staged(const std::vector<std::string>& controls, con
   const auto plant = std::ranges::find(c.grid.plants, "32", &sim::plant::Plant::name);
   c.index = static_cast<std::size_t>(plant - c.grid.plants.begin());
   plant->controls.clear();
-  if (what.machine != "GENROU") plant->machine = standard_block(what.machine);
-  for (const auto& name : controls) sim::plant::insert_block(*plant, standard_block(name));
+  if (what.machine != "GENROU") plant->machine = default_block(what.machine);
+  for (const auto& name : controls) sim::plant::insert_block(*plant, default_block(name));
   sim::network::Event event;
   if (what.open < what.end) {
     const auto& branches = c.grid.network.branches;
@@ -60,7 +60,7 @@ inline StagedCase simulated_staged(const std::vector<std::string>& controls, con
 inline sim::plant::Plant unloaded_plant() {
   sim::plant::Plant plant;
   plant.name = "unloaded";
-  plant.machine = standard_block("GENROU");
+  plant.machine = default_block("GENROU");
   for (const char* name : {"S10", "S12"})
     plant.machine.p[static_cast<std::size_t>(plant.machine.effect->parameter_index(name))] = 0;
   plant.controls = {{sim::library::compiled().find("SEXS"), {1.0, 0.0, 60.0, 0.1, -20.0, 20.0}}};

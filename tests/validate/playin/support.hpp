@@ -37,7 +37,7 @@ std::vector<std::string> messages(F action) {
 inline sim::plant::Block block(const char* name, const char* values) {
   Problems problems;
   const sim::Effect* effect = sim::library::compiled().find(name);
-  sim::plant::Block b{effect, effect->standard_parameters()};
+  sim::plant::Block b{effect, effect->default_parameters()};
   sim::plant::set_parameters(b, values, name, problems);
   problems.raise();
   return b;
@@ -98,7 +98,7 @@ inline Simulated simulate(const std::string& name, sim::Conventions conventions,
 inline void put_behind_transformers(sim::grid::Grid& grid) {
   for (sim::plant::Plant& plant : grid.plants) {
     const sim::Effect* gentpj = sim::library::compiled().find("GENTPJ");
-    plant.machine = {gentpj, gentpj->standard_parameters()};
+    plant.machine = {gentpj, gentpj->default_parameters()};
     plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   }
 }

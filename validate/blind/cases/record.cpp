@@ -39,7 +39,7 @@ std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double 
 /// The reference filter of class M for these reports per second.
 void m_class(sim::Phasors& p, double reports) {
   const sim::Effect& filter = *sim::library::compiled().find("PMUFILTER");
-  std::vector<double> values = filter.standard_parameters();
+  std::vector<double> values = filter.default_parameters();
   values[static_cast<std::size_t>(filter.parameter_index("class"))] = 1.0;
   values[static_cast<std::size_t>(filter.parameter_index("reports"))] = reports;
   filter.measure(values.data(), 0, p);

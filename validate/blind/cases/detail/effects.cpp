@@ -19,7 +19,7 @@ sim::plant::Block blind_block(const std::string& text, const std::string& where,
                  "there are " + sim::library::compiled().names(), "choose one of these");
     return {};
   }
-  block.p = block.effect->standard_parameters();
+  block.p = block.effect->default_parameters();
   if (colon != text.npos) sim::plant::set_parameters(block, text.substr(colon + 1), where, problems);
   return block;
 }
