@@ -116,7 +116,7 @@ void train_as_judged(TrainingRecipe& t) {
   t.posterior_epochs = t.set_aside = 0;
 }
 
-void refuse_unknown_beliefs(Config& c, const std::string& at, const TrainingRecipe& t) {
+void refuse_unknown_posteriors(Config& c, const std::string& at, const TrainingRecipe& t) {
   if (t.corrects.empty() || (!t.noise_levels && t.posterior_epochs == 0)) return;
   c.problem(at + ".corrects", "many levels of noise, or a posterior, of a network that corrects",
             "the estimates that it corrects are made once, of records with one noise",
@@ -167,7 +167,7 @@ Preset read_preset(Config& c, const std::string& name) {
     read_training(c, own, false, p.training[network]);
     read_judging(c, own, false, p.judging[network]);
     read_noise_levels(c, own, p.training[network], p.input[network]);
-    refuse_unknown_beliefs(c, own, p.training[network]);
+    refuse_unknown_posteriors(c, own, p.training[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
       c.problem(at + "." + network + ".training_rows", "no rows that only train",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");

@@ -19,39 +19,41 @@ std::size_t bin_of(double probability) {
   return std::min(static_cast<std::size_t>(probability * kRankBins), kRankBins - 1);
 }
 
-ParameterCoverage of_parameter(const Beliefs& beliefs, const Recalibration& recalibration,
+ParameterCoverage of_parameter(const Posteriors& posteriors, const Recalibration& recalibration,
                                std::span<const double> all_scores, std::size_t p) {
   ParameterCoverage c;
-  const auto share = 1.0 / static_cast<double>(beliefs.rows);
-  for (std::size_t r = 0; r < beliefs.rows; ++r) {
-    const double below = normal_cdf(recalibration.right(all_scores[r * beliefs.parameters + p]));
+  const auto share = 1.0 / static_cast<double>(posteriors.rows);
+  for (std::size_t r = 0; r < posteriors.rows; ++r) {
+    const double below = normal_cdf(recalibration.right(all_scores[r * posteriors.parameters + p]));
     ++c.ranks.count[bin_of(below)];
     if (below > 0.25 && below < 0.75) c.within_50 += share;
     if (below > 0.05 && below < 0.95) c.within_90 += share;
-    const Mixture& belief = beliefs.of(r, p);
-    c.width_50 += share * (quantile(belief, recalibration, 0.75) - quantile(belief, recalibration, 0.25));
-    c.width_90 += share * (quantile(belief, recalibration, 0.95) - quantile(belief, recalibration, 0.05));
+    const Mixture& posterior = posteriors.of(r, p);
+    c.width_50 +=
+        share * (quantile(posterior, recalibration, 0.75) - quantile(posterior, recalibration, 0.25));
+    c.width_90 +=
+        share * (quantile(posterior, recalibration, 0.95) - quantile(posterior, recalibration, 0.05));
   }
   return c;
 }
 
 /// Draws one sample of a row's posterior, as positions in the box. `seed`: of the row.
-void draw(const Beliefs& beliefs, std::span<const Recalibration> recalibrations, std::size_t row,
+void draw(const Posteriors& posteriors, std::span<const Recalibration> recalibrations, std::size_t row,
           std::uint64_t seed, std::size_t sample, std::span<double> out) {
-  const double* F = beliefs.factor.data() + row * beliefs.parameters * kFactors;
+  const double* F = posteriors.factor.data() + row * posteriors.parameters * kFactors;
   std::array<double, kFactors> common{};
   for (std::size_t k = 0; k < kFactors; k += 2) {
     const auto pair = sim::normal_pair(seed, kFactorStream, sample * kFactors + k);
     common[k] = pair[0];
     common[k + 1] = pair[1];
   }
-  for (std::size_t p = 0; p < beliefs.parameters; ++p) {
-    double sum = sim::normal_pair(seed, kOwnStream, sample * beliefs.parameters + p)[0], variance = 1.0;
+  for (std::size_t p = 0; p < posteriors.parameters; ++p) {
+    double sum = sim::normal_pair(seed, kOwnStream, sample * posteriors.parameters + p)[0], variance = 1.0;
     for (std::size_t k = 0; k < kFactors; ++k) {
       sum += F[p * kFactors + k] * common[k];
       variance += F[p * kFactors + k] * F[p * kFactors + k];
     }
-    out[p] = quantile_of_score(beliefs.of(row, p), recalibrations[p], sum / std::sqrt(variance));
+    out[p] = quantile_of_score(posteriors.of(row, p), recalibrations[p], sum / std::sqrt(variance));
   }
 }
 
@@ -62,15 +64,15 @@ double square_distance(std::span<const double> a, std::span<const double> b) {
 }
 
 /// Returns the rank of the truth's distance from a random point among the samples' distances.
-std::size_t tarp_rank(const Beliefs& beliefs, std::span<const Recalibration> recalibrations, std::size_t row,
-                      std::span<const double> truth, std::uint64_t seed) {
+std::size_t tarp_rank(const Posteriors& posteriors, std::span<const Recalibration> recalibrations,
+                      std::size_t row, std::span<const double> truth, std::uint64_t seed) {
   std::vector<double> reference(truth.size()), sample(truth.size());
   for (std::size_t p = 0; p < truth.size(); ++p)
     reference[p] = sim::uniform_pair(seed, kReferenceStream, p)[0];
   const double distance = square_distance(truth, reference);
   std::size_t nearer = 0;
   for (std::size_t s = 0; s < kRankDraws; ++s) {
-    draw(beliefs, recalibrations, row, seed, s, sample);
+    draw(posteriors, recalibrations, row, seed, s, sample);
     if (square_distance(sample, reference) < distance) ++nearer;
   }
   return nearer;
@@ -107,39 +109,39 @@ double Coverage::mean(double ParameterCoverage::*of) const {
   return sum / static_cast<double>(parameters.size());
 }
 
-double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score) {
+double quantile_of_score(const Mixture& posterior, const Recalibration& recalibration, double score) {
   constexpr double kFarthest = 6.0;  // largest score; beyond it a probability is rounding
   return place_of_logit(
-      belief.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
+      posterior.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
 }
 
-double quantile(const Mixture& belief, const Recalibration& recalibration, double p) {
-  return quantile_of_score(belief, recalibration, normal_quantile(p));
+double quantile(const Mixture& posterior, const Recalibration& recalibration, double p) {
+  return quantile_of_score(posterior, recalibration, normal_quantile(p));
 }
 
-std::vector<double> scores(const Beliefs& beliefs, std::span<const double> places) {
+std::vector<double> scores(const Posteriors& posteriors, std::span<const double> places) {
   std::vector<double> all(places.size());
   for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] = normal_quantile(beliefs.marginal[i].cdf(logit_of_place(places[i])));
+    all[i] = normal_quantile(posteriors.marginal[i].cdf(logit_of_place(places[i])));
   return all;
 }
 
-Coverage coverage(const Beliefs& beliefs, std::span<const Recalibration> recalibrations,
+Coverage coverage(const Posteriors& posteriors, std::span<const Recalibration> recalibrations,
                   std::span<const double> places, std::uint64_t seed) {
-  const std::vector<double> all_scores = scores(beliefs, places);
+  const std::vector<double> all_scores = scores(posteriors, places);
   Coverage c;
-  c.parameters.resize(beliefs.parameters);
+  c.parameters.resize(posteriors.parameters);
   in_parallel(
-      beliefs.parameters,
-      [&](std::size_t p) { c.parameters[p] = of_parameter(beliefs, recalibrations[p], all_scores, p); },
+      posteriors.parameters,
+      [&](std::size_t p) { c.parameters[p] = of_parameter(posteriors, recalibrations[p], all_scores, p); },
       [](int) {});
-  std::vector<std::size_t> rank(beliefs.rows);
+  std::vector<std::size_t> rank(posteriors.rows);
   in_parallel(
-      beliefs.rows,
+      posteriors.rows,
       [&](std::size_t r) {
-        rank[r] =
-            tarp_rank(beliefs, recalibrations, r, places.subspan(r * beliefs.parameters, beliefs.parameters),
-                      sim::seed_of(seed, r));
+        rank[r] = tarp_rank(posteriors, recalibrations, r,
+                            places.subspan(r * posteriors.parameters, posteriors.parameters),
+                            sim::seed_of(seed, r));
       },
       [](int) {});
   for (const std::size_t r : rank) ++c.tarp.count[r * kRankBins / (kRankDraws + 1)];

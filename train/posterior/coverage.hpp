@@ -40,13 +40,13 @@ struct Coverage {
 
 /// Computes the coverage. places: rows x parameters, positions of the truths in their boxes; recalibrations:
 /// one per parameter.
-Coverage coverage(const Beliefs& beliefs, std::span<const Recalibration> recalibrations,
+Coverage coverage(const Posteriors& posteriors, std::span<const Recalibration> recalibrations,
                   std::span<const double> places, std::uint64_t seed);
 
 /// Returns the normal scores of the truths under the posteriors, rows x parameters.
-std::vector<double> scores(const Beliefs& beliefs, std::span<const double> places);
+std::vector<double> scores(const Posteriors& posteriors, std::span<const double> places);
 /// Return the position in the box with normal score `score` or with cumulative probability `p`.
-double quantile_of_score(const Mixture& belief, const Recalibration& recalibration, double score);
-double quantile(const Mixture& belief, const Recalibration& recalibration, double p);
+double quantile_of_score(const Mixture& posterior, const Recalibration& recalibration, double score);
+double quantile(const Mixture& posterior, const Recalibration& recalibration, double p);
 
 }  // namespace swingbank::train::posterior

@@ -30,7 +30,7 @@ Tensor drawn(std::int64_t in, std::int64_t out) {
 
 /// Returns the initial posterior: components centred on the estimate, each about as wide as the box, without
 /// correlation.
-std::vector<float> first_belief(std::size_t parameters) {
+std::vector<float> first_posterior(std::size_t parameters) {
   std::vector<float> all;
   for (std::size_t p = 0; p < parameters; ++p) {
     for (std::size_t k = 0; k < kComponents; ++k) all.push_back(0.0f);
@@ -87,7 +87,7 @@ Head::Head(networks::Network& trained, std::int64_t inputs, std::vector<HeadPara
   l.second = drawn(kUnits, kUnits);
   l.second_bias = zeros({kUnits});
   l.last = zeros({kUnits, out});
-  l.last_bias = at::tensor(first_belief(parameters_.size()), at::kFloat).requires_grad_(true);
+  l.last_bias = at::tensor(first_posterior(parameters_.size()), at::kFloat).requires_grad_(true);
   l.low = constant(parameters_, &HeadParameter::low);
   l.width = constant(parameters_, &HeadParameter::high) - l.low;
   l.unit = constant(parameters_, &HeadParameter::unit);
@@ -144,9 +144,9 @@ Tensor Head::loss(const Tensor& numbers, const Tensor& targets) const {
   return -(marginal + copula(score, parts.factor)).mean() / static_cast<double>(p);
 }
 
-Beliefs Head::beliefs(std::span<const float> numbers) const {
+Posteriors Head::posteriors(std::span<const float> numbers) const {
   const std::size_t per_parameter = 3 * kComponents + kFactors;
-  Beliefs b;
+  Posteriors b;
   b.parameters = parameters_.size();
   b.rows = numbers.size() / (b.parameters * per_parameter);
   for (std::size_t i = 0; i < b.rows * b.parameters; ++i) {

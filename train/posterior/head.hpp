@@ -37,7 +37,7 @@ class Head final : public networks::Network {
 
   [[nodiscard]] const std::vector<HeadParameter>& of() const;
   /// Converts the output of forward() to posteriors.
-  [[nodiscard]] Beliefs beliefs(std::span<const float> numbers) const;
+  [[nodiscard]] Posteriors posteriors(std::span<const float> numbers) const;
   /// Returns the positions in the box of raw values (rows x all outputs): rows x of().
   [[nodiscard]] std::vector<double> places(std::span<const double> raw, std::size_t outputs) const;
 

@@ -21,7 +21,7 @@ struct Mixture {
 
 /// Posteriors of rows x parameters. The correlation matrix of a row's normal scores is F F^T + 1, scaled to a
 /// unit diagonal.
-struct Beliefs {
+struct Posteriors {
   std::size_t rows = 0, parameters = 0;
   std::vector<Mixture> marginal;
   std::vector<double> factor;  ///< rows x parameters x kFactors: F

@@ -24,11 +24,11 @@ void add_log_density(const Mixture& m, std::vector<double>& log_density) {
 }
 }  // namespace
 
-std::vector<double> together(const Beliefs& beliefs, std::span<const std::size_t> rows) {
+std::vector<double> together(const Posteriors& posteriors, std::span<const std::size_t> rows) {
   std::vector<double> means;
-  for (std::size_t p = 0; p < beliefs.parameters; ++p) {
+  for (std::size_t p = 0; p < posteriors.parameters; ++p) {
     std::vector<double> log_density(kPlaces, 0.0);
-    for (const std::size_t row : rows) add_log_density(beliefs.of(row, p), log_density);
+    for (const std::size_t row : rows) add_log_density(posteriors.of(row, p), log_density);
     const double most = std::ranges::max(log_density);
     double sum = 0.0, weighted = 0.0;
     for (std::size_t i = 0; i < kPlaces; ++i) {

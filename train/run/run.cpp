@@ -247,7 +247,7 @@ class NetworkRun {
     const json believed = posterior_->head ? judge_posterior(*posterior_, context()) : json();
     const json several =
         several_json(stream_.labels(), split_.test, found,
-                     posterior_->head ? product_of_beliefs(*posterior_, context()) : FromSeveral());
+                     posterior_->head ? product_of_posteriors(*posterior_, context()) : FromSeveral());
     const RunParts parts = {split_, &features_, report_, score, seen, believed, several};
     write_text(result, result_json(stream_, request_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})

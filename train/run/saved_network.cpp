@@ -326,12 +326,13 @@ void SavedNetwork::add_intervals(const at::Tensor& x, double noise, Estimate& e)
   if (!posterior_->head) return;
   posterior::Head& head = *posterior_->head;
   const at::Tensor numbers = head.forward(x, false).contiguous();
-  const auto beliefs = head.beliefs({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
+  const auto posteriors =
+      head.posteriors({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
   const auto maps = maps_at(posterior_->levels, noise);
   for (std::size_t i = 0; i < head.of().size(); ++i) {
     const posterior::HeadParameter& p = head.of()[i];
     const auto at = [&](double below) {
-      return p.low + (p.high - p.low) * posterior::quantile(beliefs.of(0, i), maps[i], below);
+      return p.low + (p.high - p.low) * posterior::quantile(posteriors.of(0, i), maps[i], below);
     };
     e.intervals[p.output] = Interval{at(0.05), at(0.5), at(0.95)};
   }

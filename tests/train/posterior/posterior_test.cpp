@@ -43,8 +43,8 @@ TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
   sure.deviation = {0.1, 1.0, 1.0, 1.0};
   vague.mean = {0.5, 0.0, 0.0, 0.0};
   sure.mean = {-0.2, 0.0, 0.0, 0.0};
-  const Beliefs beliefs{3, 1, {vague, sure, sure}, std::vector<double>(3 * kFactors, 0.0)};
-  const auto of = [&](std::vector<std::size_t> rows) { return together(beliefs, rows).front(); };
+  const Posteriors posteriors{3, 1, {vague, sure, sure}, std::vector<double>(3 * kFactors, 0.0)};
+  const auto of = [&](std::vector<std::size_t> rows) { return together(posteriors, rows).front(); };
   EXPECT_NEAR(of({0}), place_of_logit(0.5), 0.01);  // the logistic is nearly straight there
   EXPECT_NEAR(of({1}), place_of_logit(-0.2), 0.002);
   const double both = (0.5 / 0.16 - 0.2 / 0.01) / (1 / 0.16 + 1 / 0.01);
@@ -55,13 +55,13 @@ TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
 /// Beliefs about truths that are drawn from them, with their scores' deviation `too_sure` times what is
 /// stated.
 struct World {
-  Beliefs beliefs;
+  Posteriors posteriors;
   std::vector<double> places;
   World(std::size_t rows, double too_sure, double correlated, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    beliefs.rows = rows;
-    beliefs.parameters = 2;
+    posteriors.rows = rows;
+    posteriors.parameters = 2;
     for (std::size_t r = 0; r < rows; ++r) {
       const double common = normal(random);
       for (std::size_t p = 0; p < 2; ++p) {
@@ -70,10 +70,10 @@ struct World {
         const double z =
             too_sure * (correlated * common + std::sqrt(1 - correlated * correlated) * normal(random));
         places.push_back(place_of_logit(m.quantile_of_score(z)));
-        beliefs.marginal.push_back(m);
+        posteriors.marginal.push_back(m);
         // F F^T + 1, scaled, has the correlation f^2 / (1 + f^2)
         const double f = correlated / std::sqrt(1 - correlated * correlated);
-        beliefs.factor.insert(beliefs.factor.end(), {f, 0, 0, 0});
+        posteriors.factor.insert(posteriors.factor.end(), {f, 0, 0, 0});
       }
     }
   }
@@ -81,7 +81,7 @@ struct World {
 
 TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
   const World w(4000, 1.0, 0.8, 3);
-  const Coverage c = coverage(w.beliefs, std::vector<Recalibration>(2), w.places, 1);
+  const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_50), 0.5, 0.025);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_90), 0.9, 0.015);
   for (const auto& p : c.parameters) {
@@ -96,11 +96,11 @@ TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
 TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
   const World known(4000, 1.6, 0.8, 4), other(4000, 1.6, 0.8, 5);
   const std::vector<Recalibration> none(2);
-  const Coverage proud = coverage(other.beliefs, none, other.places, 1);
+  const Coverage proud = coverage(other.posteriors, none, other.places, 1);
   EXPECT_LT(proud.mean(&ParameterCoverage::within_90), 0.75);
   EXPECT_LT(proud.parameters[0].ranks.by_chance(), 1e-6);
   EXPECT_LT(proud.tarp.by_chance(), 1e-6);
-  const auto all = scores(known.beliefs, known.places);
+  const auto all = scores(known.posteriors, known.places);
   std::vector<Recalibration> maps;
   for (std::size_t p = 0; p < 2; ++p) {
     std::vector<double> own;
@@ -108,7 +108,7 @@ TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
     maps.push_back(Recalibration::fit(own));
     EXPECT_NEAR(maps[p].right(maps[p].wrong(0.4)), 0.4, 1e-9);
   }
-  const Coverage honest = coverage(other.beliefs, maps, other.places, 1);
+  const Coverage honest = coverage(other.posteriors, maps, other.places, 1);
   EXPECT_NEAR(honest.mean(&ParameterCoverage::within_50), 0.5, 0.025);
   EXPECT_NEAR(honest.mean(&ParameterCoverage::within_90), 0.9, 0.015);
   EXPECT_GT(honest.tarp.by_chance(), 1e-4);
@@ -116,8 +116,8 @@ TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
 
 TEST(CoverageFull, TarpSeesCorrelationsThatTheMarginsDoNot) {
   World w(4000, 1.0, 0.95, 6);
-  std::ranges::fill(w.beliefs.factor, 0.0);
-  const Coverage c = coverage(w.beliefs, std::vector<Recalibration>(2), w.places, 1);
+  std::ranges::fill(w.posteriors.factor, 0.0);
+  const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
   EXPECT_GT(c.parameters[0].ranks.by_chance(), 1e-4);
   EXPECT_LT(c.tarp.by_chance(), 1e-6);
 }
@@ -161,18 +161,18 @@ TEST(HeadFull, LearnsASpreadThatGrowsWithTheInputAndACorrelation) {
   at::NoGradGuard no_gradients;
   rows(4000, x, y);
   const at::Tensor numbers = head.forward(x, false).contiguous();
-  const Beliefs beliefs =
-      head.beliefs({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
-  ASSERT_EQ(beliefs.rows, 4000u);
+  const Posteriors posteriors =
+      head.posteriors({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
+  ASSERT_EQ(posteriors.rows, 4000u);
   const at::Tensor wide = y.to(at::kDouble).contiguous();
   const auto places = head.places({wide.data_ptr<double>(), 8000}, 2);
-  const Coverage c = coverage(beliefs, std::vector<Recalibration>(2), places, 1);
+  const Coverage c = coverage(posteriors, std::vector<Recalibration>(2), places, 1);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_90), 0.9, 0.02);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_50), 0.5, 0.03);
   EXPECT_LT(c.tarp.largest_distance(), 0.04);
   double narrow = 0, broad = 0;
   for (std::size_t r = 0; r < 4000; ++r) {
-    const Mixture& m = beliefs.of(r, 0);
+    const Mixture& m = posteriors.of(r, 0);
     const double width = m.quantile_of_score(1.645) - m.quantile_of_score(-1.645);
     (x.data_ptr<float>()[r] < 0.4f ? narrow : broad) += width;
     if (x.data_ptr<float>()[r] > 0.79f) {

@@ -45,9 +45,9 @@ std::vector<double> places_of(const posterior::Head& head, const data::Labels& l
   return head.places(raw, labels.parameters);
 }
 
-posterior::Beliefs beliefs_of(posterior::Head& head, const PosteriorContext& c,
-                              std::span<const std::uint64_t> rows, const data::Noise& noise) {
-  return head.beliefs(loop::predict(head, c.stream, c.features, rows, {}, noise));
+posterior::Posteriors posteriors_of(posterior::Head& head, const PosteriorContext& c,
+                                    std::span<const std::uint64_t> rows, const data::Noise& noise) {
+  return head.posteriors(loop::predict(head, c.stream, c.features, rows, {}, noise));
 }
 
 /// Returns the rows of generators that did not train; if none was set aside, the validation rows.
@@ -59,12 +59,12 @@ LevelMaps calibrate(posterior::Head& head, const PosteriorContext& c, double lev
                     std::span<const std::uint64_t> rows) {
   const data::Noise noise =
       c.stream.noise().training ? data::Noise{level, kCalibrationDraw} : c.stream.judged();
-  const posterior::Beliefs beliefs = beliefs_of(head, c, rows, noise);
-  const std::vector<double> scores = posterior::scores(beliefs, places_of(head, c.stream.labels(), rows));
+  const posterior::Posteriors posteriors = posteriors_of(head, c, rows, noise);
+  const std::vector<double> scores = posterior::scores(posteriors, places_of(head, c.stream.labels(), rows));
   LevelMaps all{level, {}};
-  for (std::size_t p = 0; p < beliefs.parameters; ++p) {
+  for (std::size_t p = 0; p < posteriors.parameters; ++p) {
     std::vector<double> own;
-    for (std::size_t r = 0; r < beliefs.rows; ++r) own.push_back(scores[r * beliefs.parameters + p]);
+    for (std::size_t r = 0; r < posteriors.rows; ++r) own.push_back(scores[r * posteriors.parameters + p]);
     all.maps.push_back(posterior::Recalibration::fit(own));
   }
   return all;
@@ -103,9 +103,9 @@ json coverage_json(const posterior::Coverage& c, const PosteriorContext& context
 
 json judged_on(const Posterior& posterior, const PosteriorContext& c, std::span<const std::uint64_t> rows,
                const std::vector<posterior::Recalibration>& maps) {
-  const posterior::Beliefs beliefs = beliefs_of(*posterior.head, c, rows, c.stream.judged());
+  const posterior::Posteriors posteriors = posteriors_of(*posterior.head, c, rows, c.stream.judged());
   const auto found =
-      posterior::coverage(beliefs, maps, places_of(*posterior.head, c.stream.labels(), rows), c.seed);
+      posterior::coverage(posteriors, maps, places_of(*posterior.head, c.stream.labels(), rows), c.seed);
   return coverage_json(found, c, *posterior.head, rows.size());
 }
 
@@ -176,16 +176,16 @@ json judge_posterior(const Posterior& posterior, const PosteriorContext& c) {
   return all;
 }
 
-std::function<std::vector<double>(std::span<const std::size_t>)> product_of_beliefs(
+std::function<std::vector<double>(std::span<const std::size_t>)> product_of_posteriors(
     const Posterior& posterior, const PosteriorContext& c) {
-  const auto beliefs =
-      std::make_shared<posterior::Beliefs>(beliefs_of(*posterior.head, c, c.split.test, c.stream.judged()));
+  const auto posteriors = std::make_shared<posterior::Posteriors>(
+      posteriors_of(*posterior.head, c, c.split.test, c.stream.judged()));
   const mpi::store::Dataset& d = c.stream.dataset();
-  return [beliefs, &d, head = posterior.head.get()](std::span<const std::size_t> rows) {
+  return [posteriors, &d, head = posterior.head.get()](std::span<const std::size_t> rows) {
     std::vector<double> all;
     for (std::size_t p = 0; p < d.parameter_low.size(); ++p)
       all.push_back(0.5 * (d.parameter_low[p] + d.parameter_high[p]));
-    const std::vector<double> places = posterior::together(*beliefs, rows);
+    const std::vector<double> places = posterior::together(*posteriors, rows);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const posterior::HeadParameter& of = head->of()[i];
       all[of.output] = of.low + (of.high - of.low) * places[i];

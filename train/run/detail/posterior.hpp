@@ -51,7 +51,7 @@ nlohmann::json judge_posterior(const Posterior& posterior, const PosteriorContex
 
 /// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product
 /// of their posteriors. Constant parameters are at the middle of their box.
-std::function<std::vector<double>(std::span<const std::size_t>)> product_of_beliefs(
+std::function<std::vector<double>(std::span<const std::size_t>)> product_of_posteriors(
     const Posterior& posterior, const PosteriorContext& context);
 
 /// Convert the maps to JSON for the network file, and back. Throw nlohmann::json's exceptions.
