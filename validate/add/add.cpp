@@ -224,11 +224,11 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
       },
       [&](int done) { bench.tell(event::Phase::sensitivities, done, static_cast<int>(fits.size())); });
   const auto n = static_cast<Eigen::Index>(free.size());
-  const Eigen::MatrixXd belief = Eigen::MatrixXd::Identity(n, n);
-  Eigen::MatrixXd all = belief;
+  const Eigen::MatrixXd prior = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd all = prior;
   for (std::size_t e = 0; e < known.size(); ++e)
     if (bench.is_seen(e)) all += known[e];
-  const Eigen::MatrixXd covariance = all.ldlt().solve(belief);
+  const Eigen::MatrixXd covariance = all.ldlt().solve(prior);
   std::vector<double> added;
   for (std::size_t e = 0; e < known.size(); ++e)
     added.push_back(

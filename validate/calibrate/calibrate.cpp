@@ -265,16 +265,15 @@ class Calibrating {
       pull_ = voltage_pull({plant, model_.conventions}, {whitened_through_, model_.conventions}, seen_,
                            noise_, free_);
       Eigen::VectorXd missing = pull_.score;
-      const Eigen::MatrixXd belief = belief_at(plant);
+      const Eigen::MatrixXd prior = prior_at(plant);
       if (options_.spread > 0)
-        missing -=
-            (off_belief(model_.plant, plant, free_).array() * belief.diagonal().array().sqrt()).matrix();
+        missing -= (off_prior(model_.plant, plant, free_).array() * prior.diagonal().array().sqrt()).matrix();
       Eigen::MatrixXd data = Eigen::MatrixXd::Zero(missing.size(), missing.size());
       for (const auto& s : slopes_seen(plant)) {
         data += fit::information(s);
         missing -= s.score;
       }
-      const Eigen::MatrixXd known = real(data) + belief;
+      const Eigen::MatrixXd known = real(data) + prior;
       const Eigen::VectorXd plain = known.ldlt().solve(missing);
       const double off = std::sqrt(plain.dot(missing));
       if (off < nearest) c_.fit.plant = plant;
@@ -307,7 +306,7 @@ class Calibrating {
            eigen.eigenvectors().transpose();
   }
   /// Returns the information of the priors per axis_unit() of `plant`.
-  Eigen::MatrixXd belief_at(const sim::plant::Plant& plant) const {
+  Eigen::MatrixXd prior_at(const sim::plant::Plant& plant) const {
     const auto n = static_cast<Eigen::Index>(free_.size());
     if (options_.spread <= 0) return Eigen::MatrixXd::Zero(n, n);
     return prior_information(model_.plant, plant, free_).asDiagonal();
@@ -324,7 +323,7 @@ class Calibrating {
         },
         [&](int done) { tell(event::Phase::sensitivities, done, static_cast<int>(slopes.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd belief = belief_at(c_.fit.plant);
+    const Eigen::MatrixXd prior = prior_at(c_.fit.plant);
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
     if (pull_.score.size() > 0) {
@@ -340,8 +339,8 @@ class Calibrating {
           slopes[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())), mean);
     }
     data = real(data);
-    const Eigen::MatrixXd inverse = (data + belief).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-    const Eigen::MatrixXd robust = inverse * (scores + belief) * inverse;
+    const Eigen::MatrixXd inverse = (data + prior).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd robust = inverse * (scores + prior) * inverse;
     Eigen::VectorXd unit(n), widening(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       unit[i] = fit::axis_unit(c_.fit.plant, free_[static_cast<std::size_t>(i)]);
@@ -349,7 +348,7 @@ class Calibrating {
     }
     fill_parameters(inverse, unit, widening);
     c_.blurs = find_blurs(data, unit);
-    if (!options_.only_given) try_others(data + belief, inverse, unit, widening);
+    if (!options_.only_given) try_others(data + prior, inverse, unit, widening);
     for (std::size_t e = 0; e < slopes.size(); ++e)  // effect of parameter uncertainty on held-out events
       allowance_.push_back(
           out_[e] ? unseen_allowance(fit::information(slopes[e]), robust, c_.prepared[e].values()) : 0.0);

@@ -75,7 +75,7 @@ class Search {
     bounds_ = std::make_unique<AtBounds>(*problem_);
     for (std::size_t e = 0; e < events.size(); ++e) states_.push_back(start_of(e));
     for (std::size_t e = 0; e < events.size(); ++e) add_event(e);
-    if (!z_.empty()) add_beliefs();
+    if (!z_.empty()) add_priors();
   }
 
   Fit run() {
@@ -111,7 +111,7 @@ class Search {
     collect_parameters(fit);
     for (FittedParameter& p : fit.parameters) p.error = p.low = p.high = std::nan("");
     fit.converged = false;
-    fit.chi2 = reached_ - fit.belief;
+    fit.chi2 = reached_ - fit.prior_cost;
     for (std::size_t e = 0; e < costs_.size(); ++e) fit.values += (*setting_.events)[e].values();
     throw InterruptedFit{{}, std::move(fit)};
   }
@@ -186,7 +186,8 @@ class Search {
     if (!z_.empty()) blocks.push_back(z_.data());
     blocks.push_back(states_[e].data());
     problem_->AddResidualBlock(cost, nullptr, blocks);
-    problem_->AddResidualBlock(new Belief(state_beliefs(event), &discrepancy_), nullptr, {states_[e].data()});
+    problem_->AddResidualBlock(new GaussianPrior(state_priors(event), &discrepancy_), nullptr,
+                               {states_[e].data()});
     // A switching time must not reach a sample, because the sample would change sides.
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
@@ -203,7 +204,7 @@ class Search {
       fixed.push_back(static_cast<int>(switching_numbers(event)) + k);
     bounds_->fix(states_[e].data(), fixed);
   }
-  void add_beliefs() {
+  void add_priors() {
     std::vector<double> spread;
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
       const Axis& a = setting_.axes[i];
@@ -212,7 +213,7 @@ class Search {
       problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
     }
     bounds_->fix(z_.data(), {});
-    problem_->AddResidualBlock(new Belief(spread, &discrepancy_), nullptr, {z_.data()});
+    problem_->AddResidualBlock(new GaussianPrior(spread, &discrepancy_), nullptr, {z_.data()});
     auto walls = std::make_unique<Walls>(setting_, &discrepancy_);
     if (!walls->empty()) problem_->AddResidualBlock(walls.release(), nullptr, {z_.data()});
   }
@@ -257,17 +258,17 @@ class Search {
   void collect_parameters(Fit& fit) const {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;
-    Eigen::MatrixXd with_belief = Eigen::MatrixXd::Zero(n, n);
-    for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e) add_curvature(e, with_belief);
+    Eigen::MatrixXd with_prior = Eigen::MatrixXd::Zero(n, n);
+    for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e) add_curvature(e, with_prior);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
-      if (spread > 0) with_belief(i, i) += 1 / (spread * spread);
-      fit.belief += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
+      if (spread > 0) with_prior(i, i) += 1 / (spread * spread);
+      fit.prior_cost += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
     }
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, std::nan(""));
     fit.occam = std::nan("");
     if (options_.errors) {
-      const auto known = with_belief.ldlt();
+      const auto known = with_prior.ldlt();
       covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
       fit.occam = known.vectorD().array().log().sum();
       for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
@@ -306,7 +307,7 @@ class Search {
     costs_[e]->renew();
     if (!costs_[e]->Evaluate(blocks, residuals.data(), jacobians)) return;
     Eigen::MatrixXd s = by_state.transpose() * by_state;
-    const std::vector<double> priors = state_beliefs((*setting_.events)[e]);
+    const std::vector<double> priors = state_priors((*setting_.events)[e]);
     for (std::size_t k = 0; k < priors.size(); ++k)
       if (priors[k] > 0) s.diagonal()[static_cast<Eigen::Index>(k)] += 1 / (priors[k] * priors[k]);
     const Eigen::MatrixXd cross = by_state.transpose() * by_z;
@@ -335,7 +336,7 @@ void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
 }  // namespace
 
 double penalised(const Fit& f) {
-  return f.failed.empty() ? f.chi2 + f.belief : std::numeric_limits<double>::infinity();
+  return f.failed.empty() ? f.chi2 + f.prior_cost : std::numeric_limits<double>::infinity();
 }
 double criterion(const Fit& f) { return penalised(f) + f.occam + f.passes_less; }
 double data_cost(const Fit& f) {

@@ -64,8 +64,8 @@ struct Fit {
   sim::plant::Plant plant;  ///< with the fitted values
   std::vector<FittedParameter> parameters;
   std::vector<EventFit> events;
-  event::NoiseModel noise;      ///< noise model in which chi2 is computed
-  double chi2 = 0, belief = 0;  ///< chi2 of the data, and of the priors
+  event::NoiseModel noise;          ///< noise model in which chi2 is computed
+  double chi2 = 0, prior_cost = 0;  ///< chi2 of the data, and of the priors
   int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
   /// that the records do not determine contributes 0. NaN without errors.

@@ -20,7 +20,7 @@ std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
       along.push_back(
           {.kind = Kind::switching, .index = static_cast<int>(k), .scale = event.switchings[k].uncertainty});
   for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
-    along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale * kTurnBelief});
+    along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale * kTurnPrior});
   for (std::size_t k = 0; k < std::size(kStateKind); ++k)
     along.push_back({.kind = kStateKind[k], .scale = kStateSpread[k]});
   return along;
@@ -34,7 +34,7 @@ Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& st
       all.push_back(k < state.switchings.size() ? (state.switchings[k] - s.time) / s.uncertainty : 0.0);
   for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
     all.push_back(k < state.turns.size()
-                      ? (state.turns[k] - event.switchings[k].turn) / (kTurnScale * kTurnBelief)
+                      ? (state.turns[k] - event.switchings[k].turn) / (kTurnScale * kTurnPrior)
                       : 0.0);
   const double values[kStates] = {state.P, state.Q, state.angle, state.speed};
   for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStateSpread[k]);

@@ -19,7 +19,7 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
 inline constexpr double kSwitchScale = 1e-3;
 /// One unit of an angle jump [rad], and its prior standard deviation in such units. An error of one fifth in
 /// a reactance causes a jump error of this size.
-inline constexpr double kTurnScale = 1e-3, kTurnBelief = 100;
+inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
 inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
@@ -29,19 +29,19 @@ inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
 /// Prior standard deviation of the initial state, in those units: a plant is nearly in steady state before an
 /// event.
-inline constexpr std::array<double, kStates> kStateBelief = {20, 20, 20, 20};
+inline constexpr std::array<double, kStates> kStatePrior = {20, 20, 20, 20};
 /// The same in physical units.
 inline constexpr std::array<double, kStates> kStateSpread = [] {
   std::array<double, kStates> spread{};
-  for (std::size_t k = 0; k < kStates; ++k) spread[k] = kStateScale[k] * kStateBelief[k];
+  for (std::size_t k = 0; k < kStates; ++k) spread[k] = kStateScale[k] * kStatePrior[k];
   return spread;
 }();
 
 /// Returns the prior standard deviation of each state variable, in units of the search; 0: no prior.
-inline std::vector<double> state_beliefs(const event::FitEvent& event) {
+inline std::vector<double> state_priors(const event::FitEvent& event) {
   std::vector<double> all(event.switchings.size(), 0.0);
-  all.resize(switching_numbers(event), kTurnBelief);
-  all.insert(all.end(), kStateBelief.begin(), kStateBelief.end());
+  all.resize(switching_numbers(event), kTurnPrior);
+  all.insert(all.end(), kStatePrior.begin(), kStatePrior.end());
   return all;
 }
 

@@ -77,7 +77,7 @@ double Polish::prior_cost(const Identified& h, const Point& point) const {
   for (std::size_t i = 0; i < h.trial.free.size(); ++i)
     add(point.own[static_cast<Index>(i)], h.trial.free[i].spread);
   for (std::size_t e = 0; e < point.states.size(); ++e) {
-    const auto spreads = fit::state_beliefs(stage_.events[e]);
+    const auto spreads = fit::state_priors(stage_.events[e]);
     for (std::size_t k = 0; k < spreads.size(); ++k) add(point.states[e][static_cast<Index>(k)], spreads[k]);
   }
   return cost;

@@ -360,7 +360,7 @@ class Inferring {
 
 std::vector<double> own_priors(const event::FitEvent& event) {
   constexpr double kKnown = 1e-6;  // of the units
-  std::vector<double> priors = fit::state_beliefs(event);
+  std::vector<double> priors = fit::state_priors(event);
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     priors[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
   return priors;

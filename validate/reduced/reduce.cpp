@@ -161,7 +161,7 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
     if (s.changes.cols() > 0)
       all.topRows(values).middleCols(states + s.plant.cols(), s.changes.cols()) = s.changes;
     all.topRows(values).rightCols(all.cols() - states - plant) << s.torque, s.field, residual;
-    const auto priors = fit::state_beliefs(events[e]);
+    const auto priors = fit::state_priors(events[e]);
     for (Index k = 0; k < states; ++k)
       if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
         all(values + k, k) = 1 / b;

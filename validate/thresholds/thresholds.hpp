@@ -183,8 +183,8 @@ struct Parameters {
   Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "what one parameter's standard error costs"};
   Threshold moved{"parameters.moved", 2, "standard errors",
                   "a parameter that calibration moved by more is named in the verdict"};
-  Threshold beyond_belief{"parameters.beyond_belief", 2.5, "standard deviations of the belief",
-                          "a fitted value further from the model's is noted"};
+  Threshold beyond_prior{"parameters.beyond_belief", 2.5, "standard deviations of the belief",
+                         "a fitted value further from the model's is noted"};
 };
 inline constexpr Parameters parameters;
 

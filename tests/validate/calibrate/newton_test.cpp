@@ -26,7 +26,7 @@ struct SelfExcitation {
 
 TEST(CalibrateNewton, KE_KeepsItsPriorBelowZero) {
   const SelfExcitation s;
-  EXPECT_DOUBLE_EQ(off_belief(s.believed, s.with(-0.2), s.free)[0], -2.4);
+  EXPECT_DOUBLE_EQ(off_prior(s.believed, s.with(-0.2), s.free)[0], -2.4);
   EXPECT_DOUBLE_EQ(prior_information(s.believed, s.with(-0.2), s.free)[0], 0.04);
   EXPECT_DOUBLE_EQ(prior_information(s.believed, s.believed, s.free)[0], 1);
 }

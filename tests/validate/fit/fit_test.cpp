@@ -26,7 +26,7 @@ TEST(FitEvidence, AParameterDecidedToSigmaAddsTheLogOfWhatWasBelieved) {
   const double sigma = H.error / H.value;  // H is fitted as a logarithm
   EXPECT_LT(sigma, 0.1 * kSpread);         // or the records decide nothing
   EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
-  EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.belief + f.occam);
+  EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }
 TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
   const ExciterExample example(kSpread);

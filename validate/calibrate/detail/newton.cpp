@@ -8,8 +8,8 @@
 
 namespace swingbank::validate::calibrate {
 
-Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
-                           const std::vector<fit::FreeParameter>& free) {
+Eigen::VectorXd off_prior(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
+                          const std::vector<fit::FreeParameter>& free) {
   Eigen::VectorXd off(static_cast<Eigen::Index>(free.size()));
   for (Eigen::Index i = 0; i < off.size(); ++i) {
     const auto& f = free[static_cast<std::size_t>(i)];

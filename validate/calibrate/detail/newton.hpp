@@ -6,8 +6,8 @@ namespace swingbank::validate::calibrate {
 
 /// Returns the deviation of each parameter of `plant` from its prior mean in `believed`, in prior standard
 /// deviations.
-Eigen::VectorXd off_belief(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
-                           const std::vector<fit::FreeParameter>& free);
+Eigen::VectorXd off_prior(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
+                          const std::vector<fit::FreeParameter>& free);
 
 /// Returns the information of each prior per axis_unit() of `plant`. It is 1 where the fit varies the
 /// logarithm; elsewhere the prior keeps the width that it has at the value of `believed`.

@@ -36,9 +36,9 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
 }
 
 /// Gaussian priors: one residual z/spread per parameter, scaled by the reduced chi-square reached.
-class Belief : public ceres::CostFunction {
+class GaussianPrior : public ceres::CostFunction {
  public:
-  Belief(std::vector<double> spread, const double* discrepancy)
+  GaussianPrior(std::vector<double> spread, const double* discrepancy)
       : spread_(std::move(spread)), discrepancy_(discrepancy) {
     set_num_residuals(static_cast<int>(spread_.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(spread_.size()));
