@@ -24,7 +24,7 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
   const std::string sentence = fmt::format(
       "Interrupted: the best values until then, with chi2 per value {:.4g}. The fit has not ended and is not "
       "judged.",
-      reached.misfit());
+      reached.reduced_chi2());
   validate::plant::PlantModel model = before;
   model.plant = reached.plant;
   of.keep_laws(model);
@@ -38,7 +38,7 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
                            {"interrupted", true},
                            {"command", command_line},
                            {"sentence", sentence},
-                           {"chi2_per_value", reached.misfit()},
+                           {"chi2_per_value", reached.reduced_chi2()},
                            {"parameters", nlohmann::json::array()}};
   for (const auto& p : reached.parameters)
     result["parameters"].push_back(

@@ -15,7 +15,7 @@ std::string_view kind_name(const Effect& effect) {
   return effect.converter ? "converter" : slot_name(effect.slot);
 }
 
-std::string misfit(const Effect& source, const Effect& control) {
+std::string slot_conflict(const Effect& source, const Effect& control) {
   if (!is_control(control.slot) || control.slot == Slot::setpoint) return {};
   if (is_of_converter(control.slot) == source.converter) return {};
   return std::string(slot_name(control.slot)) + " is part of a " +

@@ -305,7 +305,7 @@ struct Effect {
 std::string_view kind_name(const Effect& effect);
 /// Returns why a control cannot belong to a source ("governor is part of a synchronous machine, ..."), empty
 /// if it can.
-std::string misfit(const Effect& source, const Effect& control);
+std::string slot_conflict(const Effect& source, const Effect& control);
 
 // ---- used by the generated registry only -------------------------------------------------------------
 template <class M, class T>

@@ -203,10 +203,10 @@ Refined refine_best(const Effect& machine, const Recording& record,
       const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
       r.p[i] = candidates.front()[i];
     }
-    if (r.misfit < best.misfit) best = r;
+    if (r.rms_error < best.rms_error) best = r;
   };
-  for (std::size_t k = 0; k < candidates.size() && best.misfit > enough; ++k) take(candidates[k]);
-  for (std::uint32_t k = 0; k < kFurtherStarts && best.misfit > enough; ++k)
+  for (std::size_t k = 0; k < candidates.size() && best.rms_error > enough; ++k) take(candidates[k]);
+  for (std::uint32_t k = 0; k < kFurtherStarts && best.rms_error > enough; ++k)
     take(drawn_about(best.p, k, free, low, high));
   return best;
 }

@@ -12,7 +12,7 @@ namespace swingbank::sim::direct {
 
 struct Refined {
   std::vector<double> p;  ///< all parameters of the effect
-  double misfit = 0;      ///< root mean square of the residuals [pu]
+  double rms_error = 0;   ///< root mean square of the residuals [pu]
   int iterations = 0;
   std::vector<int> idle = {};  ///< positions in `free` without influence on the fluxes; kept
 };

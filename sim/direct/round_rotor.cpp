@@ -200,8 +200,8 @@ RoundRotor chain(const Turning& t, const DirectAxis& d, const Minimum& angle, co
   // The steady state gives a second estimate of the angle.
   const double k = (r.Xq - r.Xdpp) / (1 + q.ks * se(f.A, f.B, std::abs(t.flux0)));
   const double steady = std::arg(t.flux0 + std::complex<double>(0, k) * t.current0);
-  r.misfit = std::log(angle.value + 1e-7) + std::log(f.left + 1e-5) + std::log(q.left + 1e-6) +
-             std::log(std::abs(steady - r.angle) + 1e-3);
+  r.rms_error = std::log(angle.value + 1e-7) + std::log(f.left + 1e-5) + std::log(q.left + 1e-6) +
+                std::log(std::abs(steady - r.angle) + 1e-3);
   return r;
 }
 
@@ -225,7 +225,7 @@ std::vector<RoundRotor> round_rotor(const Recording& record, double Ra, double X
   std::vector<RoundRotor> all;
   for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 3); ++k)
     all.push_back(chain(t, d, found[k], known));
-  std::ranges::sort(all, {}, &RoundRotor::misfit);
+  std::ranges::sort(all, {}, &RoundRotor::rms_error);
   return all;
 }
 

@@ -12,8 +12,9 @@ namespace swingbank::sim::direct {
 struct RoundRotor {
   double Tdop = 0, Tdopp = 0, Tqop = 0, Tqopp = 0, H = 0, D = 0, Xd = 0, Xq = 0, Xdp = 0, Xqp = 0;
   double Xdpp = 0, Xl = 0, S10 = 0, S12 = 0;
-  double angle = 0;   ///< rotor relative to terminal at the first sample [rad]
-  double misfit = 0;  ///< sum of the logarithms of the chain's residuals; compares candidates of one record
+  double angle = 0;  ///< rotor relative to terminal at the first sample [rad]
+  double rms_error =
+      0;  ///< sum of the logarithms of the chain's residuals; compares candidates of one record
 };
 
 /// Returns the candidates, best first; the d axis alone may fit at several angles. The segment starts after

@@ -50,7 +50,7 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
                    "it is a " + std::string(slot_name(effect.slot)) + ", not something to add to a plant",
                    effect.slot == Slot::load ? "use --load BUS:EFFECT" : "give it in the .dyr"};
   if (plant.machine.effect)
-    if (const std::string why = misfit(*plant.machine.effect, effect); !why.empty())
+    if (const std::string why = slot_conflict(*plant.machine.effect, effect); !why.empty())
       return Problem{std::string(effect.name) + " for plant " + plant.name, where, why,
                      "leave it out, or attach it to another plant"};
   auto& list = effect.slot == Slot::measurement ? plant.measurements : plant.controls;

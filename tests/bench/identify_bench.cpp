@@ -59,8 +59,8 @@ int main(int argc, char** argv) {
     const reduced::Inference& found = inferences.back();
     fmt::print("{}{}{}: {:.3f} s, {} steps, chi2 per value {:.4f} of {} values, criterion {:.1f}:",
                inputs.torque ? "torque" : "", inputs.torque && inputs.field ? " and " : "",
-               inputs.field ? "field" : "", seconds() - start, found.steps, found.misfit(), found.values,
-               found.criterion);
+               inputs.field ? "field" : "", seconds() - start, found.steps, found.reduced_chi2(),
+               found.values, found.criterion);
     for (std::size_t i = 0; i < free.size(); ++i)
       fmt::print("  {} {:.3f}", parameter_name(model.plant, free[i].id).parameter,
                  parameter_value(found.plant, free[i].id) / parameter_value(model.plant, free[i].id));
@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
     const reduced::Inference beside =
         reduced::linear_about(leader, model.under_test(), events, free, states, {.field = true}, 1);
     fmt::print("about {}: {:.3f} s, {} steps, chi2 per value {:.4f}\n", lead->name, seconds() - start,
-               beside.steps, beside.misfit());
+               beside.steps, beside.reduced_chi2());
     reduction = reduced::Reduction(beside, events, model.conventions);
     round(reduction);
     fmt::print("after {:.2f} s\n", seconds() - begin);

@@ -72,8 +72,8 @@ void tell(const fs::path& run, const std::string& name, const diagnose::Diagnose
     fmt::print("{} {}: not fitted\n", name, what);
   } else {
     const fit::Fit best = from_truth(*ended, d.events, calibrate::read_truth(file, seen.model));
-    fmt::print("{} {}: {:.1f}, {:.4f} of {:.4f}{}\n", name, what, fit::gain(*ended->fit, best), best.misfit(),
-               ended->fit->misfit(), best.converged ? "" : ", not converged");
+    fmt::print("{} {}: {:.1f}, {:.4f} of {:.4f}{}\n", name, what, fit::gain(*ended->fit, best),
+               best.reduced_chi2(), ended->fit->reduced_chi2(), best.converged ? "" : ", not converged");
   }
   std::fflush(stdout);
 }

@@ -42,7 +42,7 @@ class Bench {
   [[nodiscard]] const event::WhitenedEvents& seen() const { return seen_; }
   /// Measures the noise again through a fit to the seen events, if its reduced chi-square is low enough.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
-    if (seen.misfit() >= thresholds::noise.measurable) return false;
+    if (seen.reduced_chi2() >= thresholds::noise.measurable) return false;
     fit::Fit whole = seen;
     whole.events = each({seen.plant, conventions}, event::Phase::noise_again);
     all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
@@ -343,7 +343,7 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
     AddedEvent event{
         calibrate::score_event(bench.all().whitened(e), before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
-        refitted[e].misfit()};
+        refitted[e].reduced_chi2()};
     event.score.limit += allowed[e];
     scores.push_back(event.score);
     a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());

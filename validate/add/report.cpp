@@ -90,8 +90,8 @@ json addition_json(const Addition& a) {
             {"adequacy", thresholds::ruling_json(a.ruling)},
             {"evidence_needed", thresholds::addition.strong.value},
             {"evidence", a.evidence},
-            {"misfit_refitted_without", a.without.misfit()},
-            {"misfit_with", a.with.misfit()},
+            {"misfit_refitted_without", a.without.reduced_chi2()},
+            {"misfit_with", a.with.reduced_chi2()},
             {"seconds", a.seconds},
             {"events", json::array()},
             {"parameters", json::array()}};

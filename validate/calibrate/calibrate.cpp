@@ -79,9 +79,9 @@ class Calibrating {
     before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
     search();
     shift_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
-    if (c_.fit.misfit() <= thresholds::noise.measurable) {
+    if (c_.fit.reduced_chi2() <= thresholds::noise.measurable) {
       whiten_voltage_noise();
-      if (c_.fit.misfit() <= thresholds::noise.taken_back) undo_voltage_noise();
+      if (c_.fit.reduced_chi2() <= thresholds::noise.taken_back) undo_voltage_noise();
     }
     after_ = each_alone(c_.fit.plant, event::Phase::fitted_model);
     c_.model.plant = c_.fit.plant;
@@ -138,7 +138,7 @@ class Calibrating {
     for (const auto& g : options_.given) starts.push_back(start(g.name, fit::values_of(g.plant, free_)));
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);
-    if (!straight || !fits.front().failed.empty() || fits.front().misfit() > options_.adequate)
+    if (!straight || !fits.front().failed.empty() || fits.front().reduced_chi2() > options_.adequate)
       refine(drawn(screen, states), states, fits);
     choose(fits);
   }
@@ -204,7 +204,7 @@ class Calibrating {
     for (std::size_t k = 0; k < fits.size(); ++k) {
       auto& start = c_.started[k];
       start.before /= values;
-      start.after = fits[k].failed.empty() ? fits[k].misfit() : std::numeric_limits<double>::infinity();
+      start.after = fits[k].failed.empty() ? fits[k].reduced_chi2() : std::numeric_limits<double>::infinity();
       start.agrees = fit::gain(fits[k], *best) <= near;
       c_.agreeing += start.agrees;
     }

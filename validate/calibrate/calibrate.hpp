@@ -28,7 +28,7 @@ struct CalibrateOptions {
   bool only_given = false;                    ///< use only `given` as starts and simulate no further events
   std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
   /// Least limit of the reduced chi-square; it allows for interpolation of the played-in voltage.
-  double adequate = thresholds::adequacy.misfit;
+  double adequate = thresholds::adequacy.reduced_chi2;
   event::FitEventOptions events = {};
   event::Progress progress = {};
 };
@@ -134,7 +134,8 @@ int pre_event_samples(const event::WhitenedEvents& events);
 /// Returns the limit of an event's reduced chi-square that noise alone exceeds with probability 0.001, at
 /// least `least`. It allows for the autocorrelation of the pre-event residual (Bartlett) and for a noise
 /// level estimated from `pre_event` samples.
-double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least);
+double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event,
+                          double least);
 
 /// Returns what parameter uncertainty adds to the reduced chi-square of a held-out event: the mean plus 3.09
 /// standard deviations. The probability of exceeding it is about 0.001 if many directions are uncertain, and

@@ -16,7 +16,7 @@ struct CurveFitOptions {
   std::vector<std::string> fixed;      ///< names of fixed parameters, e.g. "GENROU.Xl"
   event::FitEventOptions events = {};  ///< measured_states is ignored: only P and Q are fitted
   int iterations = 200;
-  double adequate = thresholds::adequacy.misfit;  ///< as CalibrateOptions::adequate
+  double adequate = thresholds::adequacy.reduced_chi2;  ///< as CalibrateOptions::adequate
 };
 
 struct CurveFit {

@@ -46,7 +46,8 @@ double rms(const event::FitEvent& event, const fit::EventFit& fitted, std::size_
 
 }  // namespace
 
-double misfit_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event, double least) {
+double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event,
+                          double least) {
   double spread = 1;  // variance of a sum of squares of coloured noise / that of white noise (Bartlett)
   const int n = std::max(2, event.start.samples);
   for (const double r : correlations(event, fitted))
@@ -77,9 +78,9 @@ EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& befor
   s.record = event.record.name;
   s.seen = seen;
   fit::require_same_noise(before, after);
-  s.before = before.misfit();
-  s.after = after.misfit();
-  s.limit = misfit_limit(event, after, pre_event, least);
+  s.before = before.reduced_chi2();
+  s.after = after.reduced_chi2();
+  s.limit = reduced_chi2_limit(event, after, pre_event, least);
   s.colour = correlations(event, after).front();
   for (std::size_t c = 0; c < event.channels.size(); ++c) {
     ChannelScore channel;

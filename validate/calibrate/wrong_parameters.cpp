@@ -54,8 +54,9 @@ std::string wrong_sentence(const fit::Fewest& found, double adequate) {
   return fmt::format(
       "{} {} must change: {}. {} {:.3f} with {} ({}).{}",
       one ? "One parameter" : fmt::format("{} parameters", found.wrong.size()),
-      found.fit.misfit() <= adequate ? "and no more" : "at least, though more than noise is left,", names,
-      "Chi2 per value is", found.fit.misfit(), one ? "it" : "them", left, alternatives_text(found));
+      found.fit.reduced_chi2() <= adequate ? "and no more" : "at least, though more than noise is left,",
+      names, "Chi2 per value is", found.fit.reduced_chi2(), one ? "it" : "them", left,
+      alternatives_text(found));
 }
 
 std::string wrong_text(const WrongParameters& w) {
@@ -96,7 +97,9 @@ nlohmann::json wrong_json(const WrongParameters& w) {
           {"wrong", all},
           {"alternatives", alternatives},
           {"chi2_per_value",
-           {{"model", w.found.before}, {"these_changed", w.found.fit.misfit()}, {"all_free", w.found.best}}},
+           {{"model", w.found.before},
+            {"these_changed", w.found.fit.reduced_chi2()},
+            {"all_free", w.found.best}}},
           {"statistically_complete", w.holds()}};
 }
 

@@ -14,7 +14,7 @@ struct WrongParameters {
   plant::PlantModel model;  ///< with these parameters changed and all others unchanged
   double adequate = 0;      ///< limit of the reduced chi-square for noise alone
   std::string sentence;
-  [[nodiscard]] bool holds() const { return found.fit.misfit() <= adequate; }
+  [[nodiscard]] bool holds() const { return found.fit.reduced_chi2() <= adequate; }
 };
 
 /// Selects the parameters that must change. Held-out records are not used. Of the other options it uses

@@ -310,12 +310,12 @@ class Check : Findings {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
     // Where the angle hardly jumps it fits in either unit, and that says nothing.
-    return fits(radians) && 3 * radians.misfit < fit_jumps(other, jumps_, delay).misfit;
+    return fits(radians) && 3 * radians.reduced_chi2 < fit_jumps(other, jumps_, delay).reduced_chi2;
   }
   /// Jumps of sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
   [[nodiscard]] bool fits(const JumpFit& fit) const {
     const double noise = noise_share(fit);
-    return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 3 * noise;
+    return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 3 * noise;
   }
 
   void angle() {
@@ -368,14 +368,14 @@ class Check : Findings {
       const std::vector<Jump> there = clear_jumps(alternative);
       const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
       const double noise = noise_share(fit);
-      if (!(fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.01 + 2 * noise)) continue;
+      if (!(fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.01 + 2 * noise)) continue;
       if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
         continue;
       // Sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
-      const bool sound =
-          same.reactance > 0 && (same.misfit < m.sound + 2 * noise || same.misfit < 5 * fit.misfit);
+      const bool sound = same.reactance > 0 && (same.reduced_chi2 < m.sound + 2 * noise ||
+                                                same.reduced_chi2 < 5 * fit.reduced_chi2);
       // Of two mistakes that explain the jumps about as well, the commoner one is taken, which stands first.
-      if (!sound && fit.misfit < least / 2) best = &m, least = fit.misfit;
+      if (!sound && fit.reduced_chi2 < least / 2) best = &m, least = fit.reduced_chi2;
     }
     if (best && apart())
       warn("time_skew", "voltage and current jump up to a sample apart", "one of them is late",
@@ -397,7 +397,7 @@ class Check : Findings {
         if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
       const JumpFit fit = fit_jumps(r_, wide, 0);
       const double noise = noise_share(fit);
-      return fit.reactance > 0 && noise < 0.1 && fit.misfit < 0.03 + 2 * noise;
+      return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 2 * noise;
     });
   }
   /// How far the angle as written jumps [rad].

@@ -115,7 +115,7 @@ class Diagnoser {
   /// If the refitted model's residual is noise, searches for a small set of wrong parameters.
   void few_wrong() {
     result_.wrong.reset();
-    if (result_.base.misfit() > options_.adequate) return;
+    if (result_.base.reduced_chi2() > options_.adequate) return;
     const auto free = fit::free_parameters(model_.plant, options_.spread);
     fit::FewestOptions o;
     o.progress = options_.progress;
@@ -123,7 +123,7 @@ class Diagnoser {
     o.all = &result_.base;
     o.least = -hypothesis::out_of_reach();
     fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
-    if (found.wrong.empty() || found.fit.misfit() > options_.adequate) return;
+    if (found.wrong.empty() || found.fit.reduced_chi2() > options_.adequate) return;
     result_.wrong_evidence =
         fit::gain(result_.base, found.fit, fit::criterion) - o.each * static_cast<double>(found.wrong.size());
     result_.wrong = std::move(found);
@@ -131,7 +131,7 @@ class Diagnoser {
   }
   /// If no addition reduces the residual to noise, tries to replace a control by one of another kind.
   void try_replacements() {
-    const auto fits = [&](const fit::Fit& f) { return f.misfit() <= options_.adequate; };
+    const auto fits = [&](const fit::Fit& f) { return f.reduced_chi2() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
     const hypothesis::Stage stage = model_stage();
     auto others = hypothesis::try_hypotheses(
@@ -143,9 +143,9 @@ class Diagnoser {
   /// continues all fits with it. A hypothesis whose fit fails then is dropped, because its cost has the units
   /// of the former noise. Returns whether the noise was measured.
   bool measure_noise_again() {
-    if (result_.ranked.empty() || result_.base.misfit() < thresholds::noise.measurable) return false;
+    if (result_.ranked.empty() || result_.base.reduced_chi2() < thresholds::noise.measurable) return false;
     const hypothesis::Judgement& best = result_.ranked.front();
-    if (!best.fitted || best.fit.misfit() >= thresholds::noise.measurable) return false;
+    if (!best.fitted || best.fit.reduced_chi2() >= thresholds::noise.measurable) return false;
     result_.events = result_.events.with(
         fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
     const auto go_on = [&](const sim::plant::PlantUnderTest& tested,

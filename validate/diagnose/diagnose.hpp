@@ -56,7 +56,7 @@ struct DiagnoseOptions {
   /// Prior standard deviation of the model's parameters, relative.
   double spread = thresholds::parameters.spread;
   /// Reduced chi-square up to which the residual counts as noise.
-  double adequate = thresholds::adequacy.misfit;
+  double adequate = thresholds::adequacy.reduced_chi2;
   int threads = 0;                     ///< 0: number of cores
   event::FitEventOptions events = {};  ///< preparation of the records
   int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events

@@ -22,7 +22,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const reduced::FreeInput* better_input(const Diagnosis& d) {
   const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
-  if (torque && (!field || d.torque.misfit() <= d.field.misfit())) return &d.torque;
+  if (torque && (!field || d.torque.reduced_chi2() <= d.field.reduced_chi2())) return &d.torque;
   return field ? &d.field : nullptr;
 }
 
@@ -113,7 +113,7 @@ nlohmann::json parameters_json(const fit::Fit& fit) {
 
 nlohmann::json input_json(const Diagnosis& d, const reduced::FreeInput& input) {
   if (input.fit.events.empty()) return nullptr;
-  nlohmann::json j = {{"normalised_rms", std::sqrt(input.misfit())},
+  nlohmann::json j = {{"normalised_rms", std::sqrt(input.reduced_chi2())},
                       {"evidence", input.evidence},
                       {"events", nlohmann::json::array()}};
   for (std::size_t e = 0; e < input.fit.events.size(); ++e)
@@ -175,7 +175,7 @@ nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
       {"why_not", h.why_not},
       {"evidence", h.gain},
       {"size", h.size},
-      {"normalised_rms", h.fit.values > 0 ? nlohmann::json(std::sqrt(h.fit.misfit())) : nullptr},
+      {"normalised_rms", h.fit.values > 0 ? nlohmann::json(std::sqrt(h.fit.reduced_chi2())) : nullptr},
       {"unseen", nlohmann::json::array()}};
   for (const auto& u : h.held_out)
     j["unseen"].push_back({{"record", u.record},
@@ -213,8 +213,8 @@ ReportFigures report_figures(const Diagnosis& d) {
       doubts.after = fit::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
-    r.before = std::sqrt(d.base.events[e].misfit());
-    r.after = figures.after ? std::sqrt(figures.after->events[e].misfit()) : kNaN;
+    r.before = std::sqrt(d.base.events[e].reduced_chi2());
+    r.after = figures.after ? std::sqrt(figures.after->events[e].reduced_chi2()) : kNaN;
     r.unseen_before = r.unseen_after = kNaN;
     if (best && figures.after == &best->fit && e < best->held_out.size()) {
       r.unseen_before = std::sqrt(best->held_out[e].before);
@@ -245,12 +245,12 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
       {"model",
        {{"name", model.name}, {"file", model.origin}, {"sha256", model.sha256}, {"mva", model.plant.mva}}}};
   j["before"] = {
-      {"normalised_rms", std::sqrt(d.base.misfit())},
+      {"normalised_rms", std::sqrt(d.base.reduced_chi2())},
       {"parameters", d.verdict == Verdict::interrupted && !d.ruling.adequate ? nlohmann::json::array()
                                                                              : parameters_json(d.base)}};
   if (figures.after)
     j["after"] = {{"with", figures.after_name},
-                  {"normalised_rms", std::sqrt(figures.after->misfit())},
+                  {"normalised_rms", std::sqrt(figures.after->reduced_chi2())},
                   {"parameters", parameters_json(*figures.after)}};
   else
     j["after"] = nullptr;

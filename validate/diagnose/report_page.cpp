@@ -166,13 +166,13 @@ class DiagnosisPage {
         "model such "
         "that it answers as measured. The one that leaves less is the side where something is missing.");
     report::Bars bars{"Normalised RMS", "×", 1.0, "noise alone", {}};
-    const auto add = [&](const std::string& name, double misfit) {
-      const double left = std::sqrt(misfit);
+    const auto add = [&](const std::string& name, double reduced_chi2) {
+      const double left = std::sqrt(reduced_chi2);
       bars.bars.push_back({name, left, left < 1.5});
     };
-    add("as it is", d_.base.misfit());
-    if (!d_.torque.fit.events.empty()) add("with a free torque", d_.torque.misfit());
-    if (!d_.field.fit.events.empty()) add("with a free field voltage", d_.field.misfit());
+    add("as it is", d_.base.reduced_chi2());
+    if (!d_.torque.fit.events.empty()) add("with a free torque", d_.torque.reduced_chi2());
+    if (!d_.field.fit.events.empty()) add("with a free field voltage", d_.field.reduced_chi2());
     page_.bars(bars);
     if (d_.side != hypothesis::Side::none)
       page_.text(fmt::format("Side: {}.", hypothesis::side_name(d_.side)));
@@ -206,7 +206,7 @@ class DiagnosisPage {
       table.rows.push_back({hypothesis::full_name(h.hypothesis), h.hypothesis.what,
                             std::string(hypothesis::side_name(h.hypothesis.side)),
                             fmt::format("{:.1f}", h.gain),
-                            h.fit.values > 0 ? compare::times_noise(std::sqrt(h.fit.misfit())) : "–",
+                            h.fit.values > 0 ? compare::times_noise(std::sqrt(h.fit.reduced_chi2())) : "–",
                             h.held_out.empty() ? "–" : "≤ " + compare::times_noise(worst),
                             h.accepted ? "accepted" : h.why_not});
     }
@@ -217,7 +217,7 @@ class DiagnosisPage {
   void few_wrong() {
     if (!d_.wrong) return;
     page_.section("Which parameters are wrong");
-    page_.text(calibrate::wrong_sentence(*d_.wrong, thresholds::adequacy.misfit));
+    page_.text(calibrate::wrong_sentence(*d_.wrong, thresholds::adequacy.reduced_chi2));
     report::Table table{
         "Every other parameter keeps its value. Evidence: by how much the cost rises if this one keeps its value too "
         "and the others are refitted; of the error: that rise as a share of what the model leaves beyond them all.",

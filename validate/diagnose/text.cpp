@@ -21,7 +21,7 @@ void add_inputs(const Diagnosis& d, std::string& text) {
       "\n"
       "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "
       "{:.2f} with a torque free in time, {:.2f} with a field voltage free in time.\n",
-      d.base.misfit(), d.torque.misfit(), d.field.misfit());
+      d.base.reduced_chi2(), d.torque.reduced_chi2(), d.field.reduced_chi2());
 }
 void add_probabilities(const Diagnosis& d, std::string& text) {
   if (d.probabilities.empty()) return;
@@ -49,7 +49,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
       after += h.after / static_cast<double>(j.held_out.size());
     }
     text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10.3f} {:>22}  {}\n", hypothesis::full_name(j.hypothesis),
-                        hypothesis::side_name(j.hypothesis.side), j.gain, j.fit.misfit(),
+                        hypothesis::side_name(j.hypothesis.side), j.gain, j.fit.reduced_chi2(),
                         j.held_out.empty() ? "" : fmt::format("{:.2f}, {:.3f}", before, after),
                         j.accepted ? "accepted" : j.why_not);
   }

@@ -54,8 +54,8 @@ class Selection {
     Refit chosen = refit({});
     back.fit = chosen.fit;
     back.events = events_;
-    back.before = back.fit.misfit();
-    back.best = all_.misfit();
+    back.before = back.fit.reduced_chi2();
+    back.best = all_.reduced_chi2();
     grow();
     if (hopeless()) return back;
     Set set;

@@ -87,13 +87,13 @@ class Search {
       return fit;
     }
     for (int left = options_.iterations; left > 0;) {
-      const double before = discrepancy_ = misfit();
+      const double before = discrepancy_ = reduced_chi2();
       const int most = before > thresholds::noise.believed ? std::min(left, kRound) : left;
       fit.converged = solve(most, fit.iterations);
       left = options_.iterations - fit.iterations;
       if (interruption_asked()) interrupt(std::move(fit));
       if (out_of_reach_) break;
-      if (before <= thresholds::noise.believed || misfit() > 0.95 * before) break;
+      if (before <= thresholds::noise.believed || reduced_chi2() > 0.95 * before) break;
     }
     fit.plant = moved(setting_, z_.data());
     collect_events(fit);
@@ -117,7 +117,7 @@ class Search {
   }
 
   /// Returns the reduced chi-square, at least 1.
-  double misfit() const {
+  double reduced_chi2() const {
     double chi2 = 0;
     int values = 0;
     for (std::size_t e = 0; e < costs_.size(); ++e) {

@@ -40,7 +40,7 @@ struct EventFit {
   std::vector<std::vector<double>> residual;
   event::NoiseModel noise;  ///< noise model in which chi2 and residual are computed
   /// Reduced chi-square [-]; 1 if the residual is noise only.
-  [[nodiscard]] double misfit() const { return chi2 / values; }
+  [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
 /// A fitted parameter with standard error and 95 % interval.
@@ -76,7 +76,7 @@ struct Fit {
   int iterations = 0;
   bool converged = false;
   std::string failed;  ///< reason why the start could not be evaluated; empty: it could
-  [[nodiscard]] double misfit() const { return chi2 / values; }
+  [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
 /// Returns for example "GENROU.Xdpp (held by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is not

@@ -429,7 +429,7 @@ event::NoiseModel remember_noise(const Fit& fit, const sim::Conventions& convent
 event::NoiseModel measure_noise_through(const Fit& fit, const sim::Conventions& conventions,
                                         const event::WhitenedEvents& events) {
   event::WhitenedEvents measured = events;
-  if (fit.misfit() < thresholds::noise.measurable)
+  if (fit.reduced_chi2() < thresholds::noise.measurable)
     measured = measured.with(event::measure_noise({fit.plant, conventions}, measured));
   measured = measured.with(sharpen_noise(fit, measured));
   return remember_noise(fit, conventions, measured);

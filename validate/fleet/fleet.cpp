@@ -105,7 +105,7 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
   for (std::size_t k = 0; k < hypothesis::credible(d.probabilities); ++k)
     row.probabilities[d.probabilities[k].name] = d.probabilities[k].probability;
   row.side = hypothesis::side_name(d.side);
-  row.left = std::sqrt(d.base.misfit());
+  row.left = std::sqrt(d.base.reduced_chi2());
   row.events = static_cast<int>(d.events.size());
   row.sentence = d.sentence;
   row.evidence = row.unseen_before = row.unseen_after = row.chance = kNaN;

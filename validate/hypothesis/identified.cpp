@@ -70,7 +70,7 @@ class Identifying {
   /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
   /// is skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
   void begin() {
-    if (stage_.fit.misfit() >= thresholds::noise.measurable) return infer();
+    if (stage_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
     for (const auto& e : stage_.fit.events) states.push_back(e.state);
     for (const InputKind kind : {InputKind::torque, InputKind::field}) {

@@ -43,7 +43,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
     fit::FitOptions unseen;
     const fit::Fit f = fit::fit({seen.failed.empty() ? seen.plant : tested.plant, tested.conventions},
                                 trial.events.alone(left), {}, unseen);
-    out[left].after = f.failed.empty() ? f.misfit() : 1e300;
+    out[left].after = f.failed.empty() ? f.reduced_chi2() : 1e300;
     out[left].cost_after = seen.failed.empty() ? fit::gain(whole, seen) / whole.events[left].values
                                                : std::numeric_limits<double>::infinity();
   }
@@ -87,8 +87,8 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   }
   j.why_not = objection(j.held_out, j.gain, trial.adequate);
   if (!j.why_not.empty()) return;
-  if (j.fit.misfit() > trial.adequate) {
-    j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.misfit());
+  if (j.fit.reduced_chi2() > trial.adequate) {
+    j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.reduced_chi2());
     return;
   }
   j.accepted = true;

@@ -141,7 +141,7 @@ class Searcher {
     return f;
   }
   void settle(LawFinding& f) const {
-    const double left = f.judgement.fit.misfit();
+    const double left = f.judgement.fit.reduced_chi2();
     if (left > thresholds::laws.judged_below) {
       f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", left);
       return;
@@ -182,15 +182,17 @@ sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& ef
 }
 
 LawSearch search_laws(const Unexplained& case_, const event::Progress& report) {
-  const bool torque = case_.torque.misfit() < case_.field.misfit();
+  const bool torque = case_.torque.reduced_chi2() < case_.field.reduced_chi2();
   const reduced::FreeInput &first = torque ? case_.torque : case_.field,
                            &second = torque ? case_.field : case_.torque;
   const auto explains = [&](const reduced::FreeInput& m) {
-    return m.misfit() < std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.misfit());
+    return m.reduced_chi2() <
+           std::max(case_.trial.adequate, thresholds::laws.explains * case_.base.reduced_chi2());
   };
   if (!explains(first)) return {};
   LawSearch found = Searcher(case_, first, report).run();
-  if (found.found() || !explains(second) || second.misfit() > thresholds::laws.as_much * first.misfit())
+  if (found.found() || !explains(second) ||
+      second.reduced_chi2() > thresholds::laws.as_much * first.reduced_chi2())
     return found;
   LawSearch other = Searcher(case_, second, report).run();
   other.seconds += found.seconds;

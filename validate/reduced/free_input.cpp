@@ -6,8 +6,8 @@
 
 namespace swingbank::validate::reduced {
 
-double FreeInput::misfit() const {
-  return fit.values > 0 && fit.failed.empty() ? fit.misfit() : std::numeric_limits<double>::infinity();
+double FreeInput::reduced_chi2() const {
+  return fit.values > 0 && fit.failed.empty() ? fit.reduced_chi2() : std::numeric_limits<double>::infinity();
 }
 
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
@@ -17,7 +17,7 @@ FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& te
   input.kind = kind;
   std::vector<event::EventState> states;
   for (const auto& e : without.events) states.push_back(e.state);
-  const bool near = without.misfit() < thresholds::noise.measurable;
+  const bool near = without.reduced_chi2() < thresholds::noise.measurable;
   const bool torque = kind == event::InputKind::torque;
   try {
     SmoothInference found = infer_smooth(tested, events, free, {.torque = torque, .field = !torque}, threads,

@@ -21,7 +21,7 @@ struct FreeInput {
   std::shared_ptr<const Inference> inference;  ///< at the prior intensity
 
   /// Reduced chi-square; infinite if the plant cannot be simulated.
-  [[nodiscard]] double misfit() const;
+  [[nodiscard]] double reduced_chi2() const;
   [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
     return fit.events[event].state.input(kind);
   }

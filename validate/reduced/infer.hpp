@@ -52,7 +52,7 @@ struct Inference {
   double criterion = 0;
   double intensity = 1.0;  ///< intensity of the inputs' random walk, relative to the prior's [-]
   int values = 0, steps = 0;
-  [[nodiscard]] double misfit() const { return chi2 / values; }
+  [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
 /// A change of the simulated plant outside its free parameters: a parameter at its null value, an error of an

@@ -82,12 +82,12 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
 }
 
 /// What a plant leaves of an event that has a state of its own.
-void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& alone, double& misfit,
+void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& alone, double& reduced_chi2,
            double& rms) {
-  misfit = rms = kInfinity;
+  reduced_chi2 = rms = kInfinity;
   const fit::Fit own = fit::fit(tested, alone, {});
   if (!own.failed.empty()) return;
-  misfit = own.misfit();
+  reduced_chi2 = own.reduced_chi2();
   const event::FitEvent& event = alone.front();
   const auto& model = own.events.front().model;
   double sum = 0;
@@ -167,7 +167,8 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
     for (std::size_t side = 0; side < 2; ++side) {
       auto& event = r.events[e];
       event.parameter_error[side] = std::sqrt(event.parameter_error[side]);
-      leave({plants[side], conventions[side]}, added.prepared.alone(e), event.misfit[side], event.rms[side]);
+      leave({plants[side], conventions[side]}, added.prepared.alone(e), event.reduced_chi2[side],
+            event.rms[side]);
       if (!event.seen) r.rms[side] += event.rms[side] * event.rms[side] / static_cast<double>(unseen);
     }
   for (auto& rms : r.rms) rms = std::sqrt(rms);
@@ -196,7 +197,7 @@ std::string terminal_report(const Retrained& r) {
     events.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN",
                            fmt::format("{:.2f}", e.parameter_error[0]),
                            fmt::format("{:.2f}", e.parameter_error[1]), power(e.rms[0]), power(e.rms[1]),
-                           figure(e.misfit[0]), figure(e.misfit[1])});
+                           figure(e.reduced_chi2[0]), figure(e.reduced_chi2[1])});
   return r.sentence +
          "\n\nEstimates on the unseen events; errors in standard deviations of the values drawn:\n" +
          calibrate::aligned(t) + "\nP and Q with each network's estimates from the fitted events:\n" +
@@ -224,7 +225,7 @@ json retrained_json(const Retrained& r) {
     for (std::size_t side = 0; side < 2; ++side)
       one[kSides[side]] = {{"parameter_error", e.parameter_error[side]},
                            {"rms_mw_mvar", e.rms[side]},
-                           {"misfit", e.misfit[side]}};
+                           {"misfit", e.reduced_chi2[side]}};
     j["events"].push_back(one);
   }
   return j;

@@ -64,7 +64,7 @@ struct RetrainedEvent {
   double parameter_error[2] = {0, 0};  ///< RMS over the shared parameters [deviation]
   /// Reduced chi-square, and RMS error of P and Q [MW, Mvar], of the model with the estimates from the fitted
   /// events. Switching times and start of the event are fitted. Infinite if that plant cannot be simulated.
-  double misfit[2] = {0, 0}, rms[2] = {0, 0};
+  double reduced_chi2[2] = {0, 0}, rms[2] = {0, 0};
 };
 struct Retrained {
   bool truth = false;  ///< the reference values are true values

@@ -52,7 +52,7 @@ class InstantFit {
         double low = middle[k] - reach, high = middle[k] + reach;
         if (k > 0) low = std::max(low, best_[k - 1] + 1e-4);
         if (k + 1 < best_.size()) high = std::min(high, best_[k + 1] - 1e-4);
-        best_[k] = golden_section([&](double at) { return misfit(k, at); }, low, high,
+        best_[k] = golden_section([&](double at) { return reduced_chi2(k, at); }, low, high,
                                   [](int step, double width) { return step < kSteps || width > kEnough; })
                        .at;
       }
@@ -73,7 +73,7 @@ class InstantFit {
     }
   }
   /// Sum of squares over every terminal, in units of the pre-event's spread, with instant k at t.
-  double misfit(std::size_t k, double t) {
+  double reduced_chi2(std::size_t k, double t) {
     auto instants = best_;
     instants[k] = t;
     const sim::network::Event event = moved(s_.event, [&](double at) {

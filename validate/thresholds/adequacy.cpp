@@ -32,14 +32,14 @@ double event_limit(double spread, double least) {
 }
 
 Ruling judged_by_remainder(const Refitted& r, double least) {
-  const Ruling misfit{Criterion::misfit, r.misfit <= least, r.misfit, least},
+  const Ruling reduced_chi2{Criterion::reduced_chi2, r.reduced_chi2 <= least, r.reduced_chi2, least},
       slow{Criterion::slow, r.slow < adequacy.slow, r.slow, adequacy.slow},
       line{Criterion::line, r.line <= adequacy.line, r.line, adequacy.line},
       torque{Criterion::free_input, r.torque <= evidence.accepted, r.torque, evidence.accepted, "torque"},
       field{Criterion::free_input, r.field <= evidence.accepted, r.field, evidence.accepted, "field voltage"};
-  for (const Ruling& one : {misfit, slow, line, torque, field})
+  for (const Ruling& one : {reduced_chi2, slow, line, torque, field})
     if (!one.adequate) return one;
-  return misfit;
+  return reduced_chi2;
 }
 
 Ruling judged_by_evidence(const std::string& effect, double strength) {

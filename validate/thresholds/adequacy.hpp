@@ -21,7 +21,7 @@ namespace swingbank::validate::thresholds {
 enum class Criterion {
   cells,         ///< compare: no bin of the error maps exceeds its limit
   events,        ///< calibrate, add: no event's reduced chi-square exceeds its limit
-  misfit,        ///< diagnose: reduced chi-square over all events
+  reduced_chi2,  ///< diagnose: reduced chi-square over all events
   slow,          ///< diagnose: slow remainder of the residual
   line,          ///< diagnose: reduction of chi2 by a steady oscillation
   free_input,    ///< diagnose: evidence of a torque or field voltage that is free in time
@@ -39,7 +39,7 @@ const CriterionRecord& criterion_record(Criterion criterion);
 
 /// One applied criterion, which decided a verdict.
 struct Ruling {
-  Criterion by = Criterion::misfit;
+  Criterion by = Criterion::reduced_chi2;
   bool adequate = false;
   double value = 0, limit = 0;  ///< [criterion_record(by).unit]
   std::string where = {};       ///< record, bin or input; empty: all together
@@ -49,7 +49,7 @@ struct Ruling {
 Ruling judged_by_cells(int exceeding, int cells);
 
 /// Returns whether an event's reduced chi-square is within its limit.
-inline bool within_limit(double misfit, double limit) { return misfit <= limit; }
+inline bool within_limit(double reduced_chi2, double limit) { return reduced_chi2 <= limit; }
 /// Returns an event's limit of the reduced chi-square. `spread`: its standard deviation due to noise alone;
 /// `least`: lower bound of the limit, due to the interpolation of the voltage.
 double event_limit(double spread, double least);
@@ -69,7 +69,7 @@ Ruling judged_by_events(const Events& events) {
 
 /// Measures of the residual of a refitted model.
 struct Refitted {
-  double misfit;         ///< reduced chi-square over all events
+  double reduced_chi2;   ///< reduced chi-square over all events
   double slow;           ///< slow remainder [standard deviations]
   double line;           ///< reduction of chi2 by a steady oscillation, less its penalty [chi2]
   double torque, field;  ///< evidence of each input, free in time [chi2]

@@ -79,7 +79,7 @@ inline constexpr HeldOut held_out;
 
 /// Limits of a residual that counts as noise; adequacy.hpp lists the commands that use them.
 struct Adequacy {
-  Threshold misfit{
+  Threshold reduced_chi2{
       "adequacy.misfit", 1.12, "chi2 per value",
       "splines through noisy samples of the played-in voltage leave up to this (decisions 16 and 17)"};
   Threshold slow{

@@ -378,7 +378,7 @@ std::vector<std::string> idle_controls(const plant::Plant& plant) {
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems) {
   if (!plant.machine.effect) return;
   for (const plant::Block& block : plant.controls)
-    if (const std::string why = misfit(*plant.machine.effect, *block.effect); !why.empty())
+    if (const std::string why = slot_conflict(*plant.machine.effect, *block.effect); !why.empty())
       problems.add(fmt::format("{} for generator {}", block.effect->name, plant.name), where, why,
                    "remove the record, or correct the source's");
 }

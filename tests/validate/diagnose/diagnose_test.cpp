@@ -31,7 +31,7 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
         e.slot == sim::Slot::measurement && playin::can_be_taken_back(e) && playin::touches_phasors(e);
     const bool joins = (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) &&
                        e.instants == nullptr && sim::library::variant_of(e) == nullptr;
-    const bool suits = sim::misfit(*model.plant.machine.effect, e).empty();
+    const bool suits = sim::reduced_chi2(*model.plant.machine.effect, e).empty();
     EXPECT_EQ(std::ranges::count(names, e.name), joins && suits ? 1 : 0) << e.name;
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"GENROU:D", "GENROU:S10,S12", "GENROU:Ra", "speed-voltage"}));
@@ -73,8 +73,8 @@ TEST(DiagnoseFull, TheMissingExciterIsNamed) {
   EXPECT_EQ(d.side, hypothesis::Side::excitation);
   EXPECT_THAT(d.effects, testing::ElementsAre("SEXS"));
   // A free field voltage closes the gap, a free torque does not.
-  EXPECT_LT(d.field.misfit(), 1.1);
-  EXPECT_GT(d.torque.misfit(), 100);
+  EXPECT_LT(d.field.reduced_chi2(), 1.1);
+  EXPECT_GT(d.torque.reduced_chi2(), 100);
   const hypothesis::Judgement& best = d.ranked.front();
   for (const auto& h : best.held_out) {
     EXPECT_GT(h.before, 100) << h.record;
@@ -130,7 +130,7 @@ TEST(DiagnoseNight, AnExciterWithARateFeedbackIsNotLost) {
   const auto found = std::ranges::find(d.ranked, "EXST1", [](const auto& j) { return j.hypothesis.name; });
   ASSERT_NE(found, d.ranked.end());
   EXPECT_TRUE(found->accepted) << found->why_not;
-  EXPECT_LT(found->fit.misfit(), 1.05);
+  EXPECT_LT(found->fit.reduced_chi2(), 1.05);
   const bool first = std::ranges::count(d.effects, "EXST1") > 0;
   const bool in_set = std::ranges::count(d.equivalent, "EXST1") > 0;
   EXPECT_TRUE(first || in_set) << d.sentence;

@@ -55,7 +55,7 @@ TEST(BetterStart, ALimitThatIsNeverMetIsTried) {
   ASSERT_TRUE(better);
   const fit::Fit found = fit::fit(model.under_test(), d.events, free, *better);
   EXPECT_NEAR(std::ranges::find(found.parameters, "Imax", &fit::FittedParameter::name)->value, 0.9, 0.005);
-  EXPECT_LT(found.misfit(), 0.5 * d.base.misfit());
+  EXPECT_LT(found.reduced_chi2(), 0.5 * d.base.reduced_chi2());
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
   const Fit white = fit(model.under_test(), events, {});
   const auto slow = events.with(remember_noise(white, model.conventions, events));
   const Fit f = fit(model.under_test(), slow, {});
-  EXPECT_LT(f.misfit(), 1.2);
+  EXPECT_LT(f.reduced_chi2(), 1.2);
   // of a sample interval of 16.7 ms; the middles are 5.7 and 8.3 ms off
   EXPECT_NEAR(f.events[0].state.switchings[0], s.t_on, 1e-3);
   EXPECT_NEAR(f.events[0].state.switchings[1], s.t_off, 1e-3);

@@ -40,7 +40,7 @@ struct Known {
       EXPECT_GT(w.evidence, 10) << names.back();
       EXPECT_GT(w.fit.error, 0) << names.back();
     }
-    EXPECT_LT(found.fit.misfit(), 1.12);
+    EXPECT_LT(found.fit.reduced_chi2(), 1.12);
     std::ranges::sort(names);
     return names;
   }

@@ -15,7 +15,7 @@ namespace {
 struct Residuals {
   event::WhitenedEvents events;
   Fit fit;
-  [[nodiscard]] double misfit() const {
+  [[nodiscard]] double reduced_chi2() const {
     double sum = 0, count = 0;
     for (const EventFit& e : fit.events)
       for (const auto& channel : e.residual)
@@ -56,7 +56,7 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
 
 TEST(Lines, AWaveBelowWhatChi2ShowsIsFoundAtItsFrequency) {
   const Residuals c = with_wave(0.2, 0.37, 1);
-  EXPECT_LT(c.misfit(), thresholds::adequacy.misfit);
+  EXPECT_LT(c.reduced_chi2(), thresholds::adequacy.reduced_chi2);
   const Line line = strongest_line(c.fit, c.events);
   EXPECT_EQ(line.channel, playin::Output::Q);
   EXPECT_NEAR(line.frequency, 0.37, 0.02);  // half of 1 / 20 s is resolved

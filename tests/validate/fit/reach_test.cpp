@@ -53,7 +53,7 @@ TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
   ASSERT_NE(KE, f.parameters.end());
   EXPECT_NEAR(KE->value, -0.1, 3 * KE->error);
   EXPECT_LT(KE->error, 0.3);
-  EXPECT_LT(f.misfit(), 0.05);
+  EXPECT_LT(f.reduced_chi2(), 0.05);
 }
 /// It lies at the end of a curved valley; lenient steps, with slopes linear about each step, come as far in
 /// as many steps more.
@@ -68,7 +68,7 @@ TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
   const event::WhitenedEvents events = answered(example, example.model.plant);
   const Fit f = fit(example.model.under_test(), events, free_parameters(example.model.plant, example.spread));
   ASSERT_EQ(f.failed, "");
-  EXPECT_LT(f.misfit(), 1e-3);
+  EXPECT_LT(f.reduced_chi2(), 1e-3);
   sim::plant::Block found = f.plant.machine;
   EXPECT_LT(parameter(found, "Xdpp"), 0.8 * parameter(found, "Xl"));
 }

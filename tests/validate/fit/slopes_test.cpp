@@ -41,7 +41,7 @@ struct Slopes : ::testing::TestWithParam<const char*> {
 TEST_P(Slopes, ResidualIsThatOfTheFit) {
   const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
-  EXPECT_LT(f.misfit(), 1.2);  // the plant and its instruments are the true ones
+  EXPECT_LT(f.reduced_chi2(), 1.2);  // the plant and its instruments are the true ones
   const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), f.events.front().state, {});
   EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
 }

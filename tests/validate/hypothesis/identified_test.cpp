@@ -47,7 +47,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
   const Judgement& best = all.front();
   EXPECT_EQ(best.hypothesis.name, "SEXS");
   ASSERT_TRUE(best.fitted);
-  EXPECT_LT(best.fit.misfit(), 1.05);
+  EXPECT_LT(best.fit.reduced_chi2(), 1.05);
   // values of the plant that made the records
   const auto free = free_of(best.hypothesis, stage_.spread);
   fit::FitOptions truth{.iterations = 20, .lenient = true};

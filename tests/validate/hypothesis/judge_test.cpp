@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double kAdequate = thresholds::adequacy.misfit;
+constexpr double kAdequate = thresholds::adequacy.reduced_chi2;
 
 /// An event of 1,000 values whose cost per value goes from `before` to `after`.
 HeldOut event(const std::string& name, double before, double after) {

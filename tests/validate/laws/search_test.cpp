@@ -148,7 +148,8 @@ struct Case {
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   reduced::FreeInput torque, field;
-  static constexpr double kSpread = thresholds::parameters.spread, kAdequate = thresholds::adequacy.misfit;
+  static constexpr double kSpread = thresholds::parameters.spread,
+                          kAdequate = thresholds::adequacy.reduced_chi2;
 
   template <class Change>
   Case(const std::vector<int>& numbers, const sim::Effect* law, Change change) {
@@ -201,19 +202,20 @@ sim::Effect torque_law(const std::string& value) {
 TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
   const sim::Effect law = torque_law("-0.02 * clamp(speed / 0.001, -1, 1)");
   Case c({1, 3}, &law, [](int, playin::Drive&) {});
-  ASSERT_GT(c.base.misfit(), 5);
-  ASSERT_LT(c.torque.misfit(), 1.2);
+  ASSERT_GT(c.base.reduced_chi2(), 5);
+  ASSERT_LT(c.torque.reduced_chi2(), 1.2);
   const LawSearch s = c.search();
   std::string tried;
   for (const auto& f : s.findings)
-    tried += fmt::format("{} leaves {:.3f}: {}\n", f.words, f.judgement.fit.misfit(), f.judgement.why_not);
+    tried +=
+        fmt::format("{} leaves {:.3f}: {}\n", f.words, f.judgement.fit.reduced_chi2(), f.judgement.why_not);
   ASSERT_NE(s.found(), nullptr) << tried;
   const LawFinding& f = *s.found();
   EXPECT_EQ(f.law.signal, "speed");
   EXPECT_THAT(f.law.family, testing::StartsWith("limited"));
   for (const auto& h : f.judgement.held_out) {
     EXPECT_GT(h.before, 5) << h.record;
-    EXPECT_LT(h.after, thresholds::adequacy.misfit.value)
+    EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value)
         << h.record;  // chi2 per value of 1802 numbers: 1 + 3.6 standard deviations
   }
   for (const auto& p : f.judgement.fit.parameters) {
@@ -238,7 +240,7 @@ TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
   ASSERT_NE(s.found(), nullptr);
   EXPECT_THAT(s.found()->law.family, testing::StartsWith("pulse"));
   for (const auto& h : s.found()->judgement.held_out)
-    EXPECT_LT(h.after, thresholds::adequacy.misfit.value) << h.record;
+    EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value) << h.record;
 }
 TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
   const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
@@ -262,8 +264,8 @@ TEST(LawSearchFull, ARandomTorqueGivesNoLaw) {
       value += 0.005 * normal(generator);
     }
   });
-  ASSERT_GT(c.base.misfit(), 2);
-  ASSERT_LT(c.torque.misfit(), thresholds::adequacy.misfit.value);
+  ASSERT_GT(c.base.reduced_chi2(), 2);
+  ASSERT_LT(c.torque.reduced_chi2(), thresholds::adequacy.reduced_chi2.value);
   const LawSearch s = c.search();
   EXPECT_GT(s.ranked.size(), 60u);
   EXPECT_EQ(s.found(), nullptr) << s.found()->words;

@@ -42,7 +42,7 @@ Reduction* Reduced::reduction_;
 
 TEST_F(Reduced, BothInputsFreeLeaveNothingButNoiseFromTheSubmittedModel) {
   EXPECT_LE(reduction_->inference().steps, 5);
-  EXPECT_LT(reduction_->inference().misfit(), 1.05);
+  EXPECT_LT(reduction_->inference().reduced_chi2(), 1.05);
 }
 
 TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
@@ -52,8 +52,8 @@ TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
     return free_input(kind, model_->under_test(), *events_, free, without, 2);
   };
   const FreeInput field = input(event::InputKind::field), torque = input(event::InputKind::torque);
-  EXPECT_LT(field.misfit(), 1.05);
-  EXPECT_GT(torque.misfit(), 100);
+  EXPECT_LT(field.reduced_chi2(), 1.05);
+  EXPECT_GT(torque.reduced_chi2(), 100);
   EXPECT_GT(field.evidence, torque.evidence + 1e6);
   for (std::size_t e = 0; e < events_->size(); ++e) {
     ASSERT_EQ(field.deviation[e].size(), static_cast<Eigen::Index>(field.of(e).t.size()));
@@ -73,7 +73,7 @@ TEST_F(Reduced, AnInputThatTheRecordsDoNotAskForHasNoEvidence) {
   }
   const auto free = fit::free_parameters(h.plant, 0.3);
   const fit::Fit fitted = fit::fit(h.under_test(), *events_, free, {});
-  ASSERT_LT(fitted.misfit(), 1.05);
+  ASSERT_LT(fitted.reduced_chi2(), 1.05);
   for (const auto kind : {event::InputKind::torque, event::InputKind::field}) {
     const FreeInput input = free_input(kind, h.under_test(), *events_, free, fitted, 2);
     EXPECT_LT(input.evidence, 10);

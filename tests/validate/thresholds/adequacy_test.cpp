@@ -45,13 +45,13 @@ TEST(Adequacy, AnEventThatCannotBeComparedIsNotAdequate) {
 }
 
 TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
-  const Refitted good{.misfit = 1.12, .slow = 7.9, .line = 39, .torque = 0, .field = 39};
-  const auto by = [](Refitted r) { return judged_by_remainder(r, adequacy.misfit); };
+  const Refitted good{.reduced_chi2 = 1.12, .slow = 7.9, .line = 39, .torque = 0, .field = 39};
+  const auto by = [](Refitted r) { return judged_by_remainder(r, adequacy.reduced_chi2); };
   EXPECT_TRUE(by(good).adequate);
-  EXPECT_EQ(by(good).by, Criterion::misfit);
+  EXPECT_EQ(by(good).by, Criterion::reduced_chi2);
   Refitted r = good;
-  r.misfit = 1.13;
-  EXPECT_EQ(by(r).by, Criterion::misfit);
+  r.reduced_chi2 = 1.13;
+  EXPECT_EQ(by(r).by, Criterion::reduced_chi2);
   EXPECT_FALSE(by(r).adequate);
   r = good;
   r.slow = 8;

@@ -24,11 +24,12 @@ std::vector<fs::path> event_files(const fs::path& folder) {
 /// Every evidence, so that what is made of them can be tried again without the records.
 nlohmann::json basis_of(const diagnose::Diagnosis& d) {
   const auto input = [&](const reduced::FreeInput& m) {
-    return nlohmann::json{
-        {"evidence", m.evidence}, {"chi2", fit::gain(d.base, m.fit, fit::data_cost)}, {"misfit", m.misfit()}};
+    return nlohmann::json{{"evidence", m.evidence},
+                          {"chi2", fit::gain(d.base, m.fit, fit::data_cost)},
+                          {"misfit", m.reduced_chi2()}};
   };
   nlohmann::json j = {{"values", d.base.values},
-                      {"misfit", d.base.misfit()},
+                      {"misfit", d.base.reduced_chi2()},
                       {"slow", fit::slow_remainder(d.base, d.events)},
                       {"line", fit::strongest_line(d.base, d.events).explains},
                       {"torque", input(d.torque)},
@@ -40,7 +41,7 @@ nlohmann::json basis_of(const diagnose::Diagnosis& d) {
                           {"slot", h.hypothesis.slot},
                           {"evidence", h.gain},
                           {"chi2", fit::gain(d.base, h.fit, fit::data_cost)},
-                          {"misfit", h.fit.misfit()},
+                          {"misfit", h.fit.reduced_chi2()},
                           {"free", h.hypothesis.free.size()},
                           {"accepted", h.accepted},
                           {"why_not", h.why_not}};

@@ -22,8 +22,8 @@ std::vector<Jump> clear_jumps(const record::Record& record);
 
 /// What the jumps say, from dV = -jX dI by least squares.
 struct JumpFit {
-  double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' if all is well
-  double misfit = 1;     ///< share of sum |dV|^2 that this leaves: below 0.01 for sound records
+  double reactance = 0;     ///< X [pu on the record's base], current out of the machine; X'' if all is well
+  double reduced_chi2 = 1;  ///< share of sum |dV|^2 that this leaves: below 0.01 for sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a jump [pu^2]
 };
 /// P and Q are taken `delay` samples later than the voltage. NaN where there is nothing to divide by.

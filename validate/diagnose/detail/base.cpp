@@ -21,7 +21,7 @@ constexpr int kMeasured = 3;
 
 /// Returns whether further steps of the model's fit might reduce the residual to noise.
 bool unfinished(const fit::Fit& f) {
-  return f.failed.empty() && !f.converged && f.misfit() < thresholds::noise.believed;
+  return f.failed.empty() && !f.converged && f.reduced_chi2() < thresholds::noise.believed;
 }
 
 /// Returns the given model as a hypothesis without free parameters of its own.
@@ -79,7 +79,8 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
     d.events = d.events.with(fit::measure_noise_through(d.base, model.conventions, d.events));
     for (int round = 0; round == 0 || (round < kBaseRounds && unfinished(d.base)); ++round)
       d.base = fit::fit(model.under_test(), d.events, free, fit::continued({.lenient = true}, d.base, free));
-    if (d.base.misfit() <= options.adequate || d.base.misfit() > thresholds::noise.believed) break;
+    if (d.base.reduced_chi2() <= options.adequate || d.base.reduced_chi2() > thresholds::noise.believed)
+      break;
   }
   require_fitted(d.base, model);
 }

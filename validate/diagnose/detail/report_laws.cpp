@@ -66,7 +66,7 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
                         {"accepted", j.accepted},
                         {"why_not", j.why_not},
                         {"evidence", j.gain},
-                        {"normalised_rms", std::sqrt(j.fit.misfit())},
+                        {"normalised_rms", std::sqrt(j.fit.reduced_chi2())},
                         {"explained_of_input", f.law.explained},
                         {"law_file", f.toml},
                         {"parameters", nlohmann::json::array()},
@@ -105,7 +105,7 @@ void laws_on_page(const Diagnosis& d, report::Page& page) {
   for (const auto& f : s.findings)
     table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.law.explained),
                           fmt::format("{:.1f}", f.judgement.gain),
-                          fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.misfit())), unseen_words(f),
+                          fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.reduced_chi2())), unseen_words(f),
                           f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words});
   if (!table.rows.empty()) page.table(table);
 }
@@ -128,7 +128,7 @@ std::string laws_text(const Diagnosis& d) {
   std::string text = fmt::format("\nLaws for the {} ({} ranked; evidence, chi2 per value left, judgement):\n",
                                  input_name(s), s.ranked.size());
   for (const auto& f : s.findings)
-    text += fmt::format("  {:>10.1f} {:>8.3f}  {}: {}\n", f.judgement.gain, f.judgement.fit.misfit(),
+    text += fmt::format("  {:>10.1f} {:>8.3f}  {}: {}\n", f.judgement.gain, f.judgement.fit.reduced_chi2(),
                         f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words);
   if (!s.found()) text += "  none predicts events that it was not fitted to\n";
   return text;

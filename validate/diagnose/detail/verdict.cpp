@@ -49,13 +49,13 @@ void weigh(Diagnosis& d) {
 /// Returns the measures of the refitted model's residual; `torque` and `field`: evidence of the inputs, if
 /// known yet.
 thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
-  return {d.base.misfit(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
+  return {d.base.reduced_chi2(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
           torque, field};
 }
 /// Returns " What is left oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
 /// because any residual has a frequency at which it is strongest.
 std::string line_sentence(const Diagnosis& d) {
-  if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.misfit).by !=
+  if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.reduced_chi2).by !=
       thresholds::Criterion::line)
     return "";
   const fit::Line line = strongest_line(d.base, d.events);
@@ -84,7 +84,7 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
     return fmt::format(
         "it shows in {} alone, so that no other event foretells it; fitted there too, the normalised RMS falls from "
         "{:.2f} to {:.2f}",
-        most->record, std::sqrt(base.events[e].misfit()), std::sqrt(best.fit.events[e].misfit()));
+        most->record, std::sqrt(base.events[e].reduced_chi2()), std::sqrt(best.fit.events[e].reduced_chi2()));
   return fmt::format("on events it was not fitted to, the normalised RMS falls from {:.1f} to {:.2f}",
                      std::sqrt(before), std::sqrt(after));
 }
@@ -104,11 +104,11 @@ std::string adequate_sentence(const Diagnosis& d) {
         "Nothing is missing ({}), but {} of the model's values {} wrong: {}. With {} changed nothing but noise is left "
         "(chi2 per value {:.3f}), and no effect in the list improves it.",
         probable, d.wrong->wrong.size(), d.wrong->wrong.size() == 1 ? "is" : "are", wrong_names(d),
-        d.wrong->wrong.size() == 1 ? "it" : "them", d.wrong->fit.misfit());
+        d.wrong->wrong.size() == 1 ? "it" : "them", d.wrong->fit.reduced_chi2());
   return fmt::format(
       "The model is adequate ({}): after refitting its parameters nothing but noise is left (chi2 per value {:.3f}), and "
       "no effect in the list improves it.",
-      probable, d.base.misfit());
+      probable, d.base.reduced_chi2());
 }
 
 /// Returns for example "SEXS (62 %), EXST1 (21 %)".
@@ -209,27 +209,27 @@ std::string first_sentence(const Diagnosis& d, double adequate) {
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
     return fmt::format(
         "So far: with the parameters refitted the residual is noise (reduced chi-square {:.3f}).",
-        d.base.misfit());
+        d.base.reduced_chi2());
   return fmt::format(
       "So far: something is missing; reduced chi-square {:.2f} with the parameters refitted, slow drift {:.1f} "
       "standard deviations above noise.{}",
-      d.base.misfit(), slow, line_sentence(d));
+      d.base.reduced_chi2(), slow, line_sentence(d));
 }
 
 std::string wrong_sentence(const Diagnosis& d) {
-  return "So far: " + calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.misfit);
+  return "So far: " + calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.reduced_chi2);
 }
 
 std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
   if (!d.wrong) return std::nullopt;
   return calibrate::WrongParameters{*d.wrong,
                                     {},
-                                    thresholds::adequacy.misfit,
-                                    calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.misfit)};
+                                    thresholds::adequacy.reduced_chi2,
+                                    calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.reduced_chi2)};
 }
 
 std::string side_sentence(const Diagnosis& d) {
-  const double t = d.torque.misfit(), f = d.field.misfit();
+  const double t = d.torque.reduced_chi2(), f = d.field.reduced_chi2();
   const bool explains = std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
   const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
   return fmt::format(
@@ -263,7 +263,7 @@ std::string_view verdict_name(Verdict verdict) {
 
 void interrupt(Diagnosis& d) {
   d.verdict = Verdict::interrupted;
-  d.ruling = thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.misfit);
+  d.ruling = thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.reduced_chi2);
   for (hypothesis::Judgement& j : d.ranked) {
     j.accepted = false;
     if (j.why_not.empty()) j.why_not = "not judged: interrupted";
@@ -276,7 +276,7 @@ void interrupt(Diagnosis& d) {
   d.sentence = fmt::format(
       "Interrupted: what was fitted until then. The model with its parameters refitted leaves chi2 of {:.2f} per "
       "value; {}.",
-      d.base.misfit(), leading.empty() ? "no effect had explained anything yet" : leading);
+      d.base.reduced_chi2(), leading.empty() ? "no effect had explained anything yet" : leading);
 }
 
 void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
@@ -292,12 +292,12 @@ void settle(const laws::Unexplained& judged, const event::Progress& progress, Di
     return;
   }
   d.verdict = Verdict::unexplained;
-  const double t = d.torque.misfit(), f = d.field.misfit();
+  const double t = d.torque.reduced_chi2(), f = d.field.reduced_chi2();
   d.side = t < f ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
   d.sentence = fmt::format(
       "None of the {} known effects explains the records (chi2 per value {:.2f} at best {:.2f}). A missing "
       "{} would (chi2 per value {:.2f}); its course is shown.{}",
-      r.size(), d.base.misfit(), r.empty() ? d.base.misfit() : r.front().fit.misfit(),
+      r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
   d.laws = laws::search_laws(judged, progress);
   if (d.laws.found()) {

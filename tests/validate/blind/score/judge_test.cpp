@@ -19,7 +19,7 @@ double left_by(const cases::BlindCase& made, const fs::path& folder) {
   SeenCase seen = read_seen_case(folder);
   seen.model.plant.machine.p = made.truth.machine.p;
   const event::WhitenedEvents events = event::prepare_events(seen.model, seen.records);
-  return fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).misfit();
+  return fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).reduced_chi2();
 }
 
 TEST(SeenCase, TheUnitThatIsRecordedWithItIsTakenOff) {
