@@ -96,14 +96,14 @@ class Diagnoser {
   /// Judges the hypotheses and sets the verdict. Returns false if the user has stopped.
   bool judge_all() {
     const bool again = measure_noise_again();
-    passed_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions}, result_.events,
-                    fit::voltage_noise(result_.base, result_.events));
+    noise_transfer_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions},
+                            result_.events, fit::voltage_noise(result_.base, result_.events));
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs();
     keep();
     for (reduced::FreeInput* m : {&result_.torque, &result_.field}) {
-      fit::count_passed(&*passed_, model_.conventions, m->fit);
-      m->evidence -= m->fit.passes_less;
+      fit::correct_noise_transfer(&*noise_transfer_, model_.conventions, m->fit);
+      m->evidence -= m->fit.transfer_deficit;
     }
     if (stopped()) return false;
     search();
@@ -303,7 +303,7 @@ class Diagnoser {
       hypothesis::Judgement j = hypothesis::crossed(stage, *next);
       report(event::Phase::pair_crossings, hypothesis::full_name(j.hypothesis), 0, 1);
       hypothesis::try_begun(stage, j);
-      fit::count_passed(trial().passed, j.hypothesis.conventions, j.fit);
+      fit::correct_noise_transfer(trial().noise_transfer, j.hypothesis.conventions, j.fit);
       if (j.fit.failed.empty()) j.gain = fit::gain(result_.base, j.fit, fit::criterion);
       tried.push_back(j);
       if (!j.fit.failed.empty() || !in_set(j.gain)) continue;
@@ -433,7 +433,7 @@ class Diagnoser {
 
   [[nodiscard]] hypothesis::Trial trial() const {
     return {result_.events, options_.spread, options_.adequate, thresholds::evidence.accepted,
-            passed_ ? &*passed_ : nullptr};
+            noise_transfer_ ? &*noise_transfer_ : nullptr};
   }
 
   void tell(const std::string& sentence) const {
@@ -448,7 +448,7 @@ class Diagnoser {
   Diagnosis result_;
   std::optional<Diagnosis> kept_;
   std::vector<hypothesis::HeldOut> held_out_base_;
-  std::optional<fit::PassedNoise> passed_;
+  std::optional<fit::NoiseTransfer> noise_transfer_;
   int threads_;
 };
 

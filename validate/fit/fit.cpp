@@ -338,9 +338,9 @@ void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
 double penalised(const Fit& f) {
   return f.failed.empty() ? f.chi2 + f.prior_cost : std::numeric_limits<double>::infinity();
 }
-double criterion(const Fit& f) { return penalised(f) + f.occam + f.passes_less; }
+double criterion(const Fit& f) { return penalised(f) + f.occam + f.transfer_deficit; }
 double data_cost(const Fit& f) {
-  return f.failed.empty() ? f.chi2 + f.passes_less : std::numeric_limits<double>::infinity();
+  return f.failed.empty() ? f.chi2 + f.transfer_deficit : std::numeric_limits<double>::infinity();
 }
 
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&)) {

@@ -71,8 +71,9 @@ struct Fit {
   /// that the records do not determine contributes 0. NaN without errors.
   double occam = 0;
   /// Part of the fall of chi2 that comes only from lower transfer of the voltage noise than in the reference
-  /// structure. It explains nothing, so data_cost() and criterion() add it back. 0 until count_passed().
-  double passes_less = 0;
+  /// structure. It explains nothing, so data_cost() and criterion() add it back. 0 until
+  /// correct_noise_transfer().
+  double transfer_deficit = 0;
   int iterations = 0;
   bool converged = false;
   std::string failed;  ///< reason why the start could not be evaluated; empty: it could
@@ -92,9 +93,9 @@ double penalised(const Fit& f);
 /// \f[ \chi^2 + \sum_i (z_i / \sigma_i)^2 + \ln\det(\Sigma H) \f]
 ///
 /// H: half the Hessian of the cost; \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$: prior covariance.
-/// Fit::passes_less is added back. Requires a fit with errors.
+/// Fit::transfer_deficit is added back. Requires a fit with errors.
 double criterion(const Fit& f);
-/// Returns chi2 of the data alone, with Fit::passes_less added back; infinite if the fit failed.
+/// Returns chi2 of the data alone, with Fit::transfer_deficit added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
 /// Returns the reduction of `cost` between two fits; negative if the cost rises. Every comparison of two fits

@@ -73,7 +73,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);
       f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);
-  fit::count_passed(trial.passed, j.hypothesis.conventions, j.fit);
+  fit::correct_noise_transfer(trial.noise_transfer, j.hypothesis.conventions, j.fit);
   j.gain = fit::gain(base, j.fit, fit::criterion);
   j.size = std::sqrt(std::max(0.0, fit::gain(base, j.fit, fit::data_cost)));
   if (j.gain < trial.evidence) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "validate/fit/fit.hpp"
-#include "validate/fit/passed_noise.hpp"
+#include "validate/fit/noise_transfer.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -50,7 +50,7 @@ struct Trial {
   double adequate;  ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
   /// Noise transfer of the base model: a lower noise transfer is no evidence. Null: it is ignored.
-  const fit::PassedNoise* passed = nullptr;
+  const fit::NoiseTransfer* noise_transfer = nullptr;
 };
 
 /// Predicts each event with the structure fitted to the other events. Empty `free` means the plant's own

@@ -8,12 +8,12 @@
 namespace swingbank::validate::fit {
 
 /// Noise transfer of a reference structure, with which other structures are compared.
-class PassedNoise {
+class NoiseTransfer {
  public:
   /// Sets the reference structure. Noise of these variances is played in for one minute at the first event's
   /// operating point and whitened as the residual of this structure.
-  PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-              const VoltageNoise& voltage);
+  NoiseTransfer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                const VoltageNoise& voltage);
   /// Returns the fall of chi2 over all events due to the lower noise transfer of another structure. Negative
   /// if its transfer is higher, 0 if it cannot be simulated.
   [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;
@@ -22,7 +22,7 @@ class PassedNoise {
 
  private:
   /// Returns chi2 due to a plant's noise transfer; NaN if it cannot be simulated.
-  [[nodiscard]] double passed(const sim::plant::PlantUnderTest& tested) const;
+  [[nodiscard]] double chi2_of(const sim::plant::PlantUnderTest& tested) const;
 
   event::FitEvent quiet_, noisy_;
   event::EventNoise noise_;  ///< of both
@@ -30,9 +30,10 @@ class PassedNoise {
   double own_ = 0;
 };
 
-/// Sets Fit::passes_less of another structure's fit, at least 0: a higher noise transfer earns no credit.
-/// Every explanation that competes with another must be corrected here, a free input's refitted plant
+/// Sets Fit::transfer_deficit of another structure's fit, at least 0: a higher noise transfer earns no
+/// credit. Every explanation that competes with another must be corrected here, a free input's refitted plant
 /// included. Null: the noise transfer is ignored.
-void count_passed(const PassedNoise* passed, const sim::Conventions& conventions, Fit& fit);
+void correct_noise_transfer(const NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
+                            Fit& fit);
 
 }  // namespace swingbank::validate::fit

@@ -1,12 +1,12 @@
-#include "validate/fit/passed_noise.hpp"
+#include "validate/fit/noise_transfer.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace swingbank::validate::fit {
 
-PassedNoise::PassedNoise(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-                         const VoltageNoise& voltage)
+NoiseTransfer::NoiseTransfer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+                             const VoltageNoise& voltage)
     : quiet_(minute_of_noise(events.front(), Eigen::Vector3d::Zero())),
       noisy_(minute_of_noise(events.front(), voltage.variance)),
       noise_(events.noise(0)) {
@@ -14,15 +14,15 @@ PassedNoise::PassedNoise(const sim::plant::PlantUnderTest& tested, const event::
   double values = 0;
   for (const event::FitEvent& e : events) values += e.values();
   times_ = values / noisy_.values();
-  own_ = passed(tested);
+  own_ = chi2_of(tested);
 }
 
-double PassedNoise::less_with(const sim::plant::PlantUnderTest& tested) const {
-  const double less = own_ - passed(tested);
+double NoiseTransfer::less_with(const sim::plant::PlantUnderTest& tested) const {
+  const double less = own_ - chi2_of(tested);
   return std::isnan(less) ? 0.0 : less;
 }
 
-double PassedNoise::passed(const sim::plant::PlantUnderTest& tested) const {
+double NoiseTransfer::chi2_of(const sim::plant::PlantUnderTest& tested) const {
   try {
     event::RowMatrix moved = noisy_.collected(event::play(tested, noisy_, {}).value, false);
     moved -= quiet_.collected(event::play(tested, quiet_, {}).value, false);
@@ -33,9 +33,10 @@ double PassedNoise::passed(const sim::plant::PlantUnderTest& tested) const {
   }
 }
 
-void count_passed(const PassedNoise* passed, const sim::Conventions& conventions, Fit& fit) {
-  if (passed && fit.failed.empty())
-    fit.passes_less = std::max(0.0, passed->less_with({fit.plant, conventions}));
+void correct_noise_transfer(const NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
+                            Fit& fit) {
+  if (noise_transfer && fit.failed.empty())
+    fit.transfer_deficit = std::max(0.0, noise_transfer->less_with({fit.plant, conventions}));
 }
 
 }  // namespace swingbank::validate::fit

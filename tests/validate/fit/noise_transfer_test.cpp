@@ -1,5 +1,5 @@
 // Noise of the played-in voltage in the answers of two structures.
-#include "validate/fit/passed_noise.hpp"
+#include "validate/fit/noise_transfer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace swingbank::validate::fit {
 namespace {
 
-class PassedNoiseTest : public ::testing::Test {
+class NoiseTransferTest : public ::testing::Test {
  protected:
   /// The example's plant whose current is late by that many samples.
   sim::plant::Plant late(double samples) const {
@@ -24,44 +24,44 @@ class PassedNoiseTest : public ::testing::Test {
     return plant;
   }
   double less_with(const sim::plant::Plant& plant) const {
-    return passed_.less_with({plant, example_.model.conventions});
+    return noise_transfer_.less_with({plant, example_.model.conventions});
   }
   const ExciterExample example_{0.2};
-  const PassedNoise passed_{example_.model.under_test(), example_.events,
-                            VoltageNoise{.variance = {4e-8, 4e-8, 0}}};
+  const NoiseTransfer noise_transfer_{example_.model.under_test(), example_.events,
+                                      VoltageNoise{.variance = {4e-8, 4e-8, 0}}};
 };
 
-TEST_F(PassedNoiseTest, ACurrentReadBetweenSamplesPassesLess) {
-  ASSERT_GT(passed_.own(), 0.0);
+TEST_F(NoiseTransferTest, ACurrentReadBetweenSamplesPassesLess) {
+  ASSERT_GT(noise_transfer_.own(), 0.0);
   // a spline's weights at mid-interval are 0.60 twice, -0.13 twice, 0.03 ...: their squares sum to 0.76
-  EXPECT_NEAR(less_with(late(0.5)) / passed_.own(), 0.24, 0.03);
+  EXPECT_NEAR(less_with(late(0.5)) / noise_transfer_.own(), 0.24, 0.03);
 }
-TEST_F(PassedNoiseTest, AWholeSamplePassesAsMuch) {
+TEST_F(NoiseTransferTest, AWholeSamplePassesAsMuch) {
   // but for what V and current of one moment have in common
-  EXPECT_NEAR(less_with(late(1.0)) / passed_.own(), 0.0, 0.02);
+  EXPECT_NEAR(less_with(late(1.0)) / noise_transfer_.own(), 0.0, 0.02);
 }
-TEST_F(PassedNoiseTest, ALargerReactancePassesLess) {
-  EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * passed_.own());
+TEST_F(NoiseTransferTest, ALargerReactancePassesLess) {
+  EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * noise_transfer_.own());
 }
-TEST_F(PassedNoiseTest, AssumesFullNoiseTransferWhenSimulationFails) {
+TEST_F(NoiseTransferTest, AssumesFullNoiseTransferWhenSimulationFails) {
   EXPECT_EQ(less_with(with_reactance(std::nan(""))), 0.0);
 }
 
-TEST_F(PassedNoiseTest, AddsLowerNoiseTransferBackToEveryCost) {
+TEST_F(NoiseTransferTest, AddsLowerNoiseTransferBackToEveryCost) {
   Fit f = example_.fitted({"H"}, {.iterations = 0});
   f.plant = with_reactance(1.1);
   const double evidence = criterion(f), data = data_cost(f), searched = penalised(f);
-  count_passed(&passed_, example_.model.conventions, f);
-  EXPECT_GT(f.passes_less, 0.05 * passed_.own());
-  EXPECT_DOUBLE_EQ(criterion(f), evidence + f.passes_less);
-  EXPECT_DOUBLE_EQ(data_cost(f), data + f.passes_less);
+  correct_noise_transfer(&noise_transfer_, example_.model.conventions, f);
+  EXPECT_GT(f.transfer_deficit, 0.05 * noise_transfer_.own());
+  EXPECT_DOUBLE_EQ(criterion(f), evidence + f.transfer_deficit);
+  EXPECT_DOUBLE_EQ(data_cost(f), data + f.transfer_deficit);
   EXPECT_EQ(penalised(f), searched) << "a search minimises what is there";
 }
-TEST_F(PassedNoiseTest, GivesNoCreditForHigherNoiseTransfer) {
+TEST_F(NoiseTransferTest, GivesNoCreditForHigherNoiseTransfer) {
   Fit f = example_.fitted({"H"}, {.iterations = 0});
   f.plant = with_reactance(0.9);
-  count_passed(&passed_, example_.model.conventions, f);
-  EXPECT_EQ(f.passes_less, 0.0);
+  correct_noise_transfer(&noise_transfer_, example_.model.conventions, f);
+  EXPECT_EQ(f.transfer_deficit, 0.0);
   EXPECT_LT(less_with(f.plant), 0.0);
 }
 
