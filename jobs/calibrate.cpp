@@ -29,7 +29,7 @@ constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.t
 struct Arguments {
   jobs::AnalysisOptions of{"calibration"};
   std::string method = "fit", truth, network, start, command;
-  bool fewest = false;
+  bool sparse = false;
   calibrate::CalibrateOptions options;
   std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
 };
@@ -174,7 +174,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 /// Runs the sparse parameter selection (--fewest) and writes the model with the selected parameters changed.
-int run_fewest(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
+int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
                const nlohmann::json& told) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);
   a.fitted = w.found.fit;
@@ -211,11 +211,11 @@ int run(Arguments& a, plant::PlantModel& model) {
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
-  if (a.fewest && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
+  if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
     throw InputError({"a method or a start of its own", "--fewest", "it is a way of its own",
                       "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, records, truth, told);
-  if (a.fewest) return run_fewest(a, model, records, told);
+  if (a.sparse) return run_sparse(a, model, records, told);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -287,7 +287,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
            "baseline; both: side by side")
       .shows_default()
       .one_of({"fit", "curve-fit", "both"});
-  line.add_flag("--fewest", a.fewest,
+  line.add_flag("--fewest", a.sparse,
                 "which parameters are wrong: the fewest that must change for the model to explain the "
                 "records, while every other one stays as it is; writes the model with these changed");
   line.add("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
@@ -317,7 +317,7 @@ int main(int argc, char** argv) {
   declare(line, a);
   if (!line.parse(argc, argv)) return line.end();
   if (a.of.model.empty()) return line.lacks("--model with --records");
-  a.options.progress = jobs::progress_line(a.fewest ? jobs::kFewestCourse : jobs::kCalibrateCourse);
+  a.options.progress = jobs::progress_line(a.sparse ? jobs::kSparseCourse : jobs::kCalibrateCourse);
   a.options.events = a.of.events();
   a.options.spread = a.of.spread;
   a.options.held_out = a.of.held_out;

@@ -123,7 +123,7 @@ inline const Course kAddCourse = {
 };
 /// Phases of `calibrate --fewest`, measured with twelve events of a unit with four controls behind its
 /// transformer (480 s).
-inline const Course kFewestCourse = {
+inline const Course kSparseCourse = {
     {Phase::every_parameter, 0, 0.12},
     {Phase::parameter_subsets, 0.12, 0.75},
     {Phase::subsets_less_one, 0.75, 0.98},

@@ -34,10 +34,10 @@ double along(const Held& from, const Held& to, double x) {
 Recalibration::Recalibration() : held_(standard()) {}
 
 Recalibration Recalibration::fit(std::span<const double> scores) {
-  constexpr std::size_t kFewestRows = 20;
+  constexpr std::size_t kMinRows = 20;
   constexpr double kClosest = 1e-3;  // least distance of neighbouring points, so that the map has an inverse
   Recalibration r;
-  if (scores.size() < kFewestRows) return r;
+  if (scores.size() < kMinRows) return r;
   std::vector<double> sorted(scores.begin(), scores.end());
   std::ranges::sort(sorted);
   for (std::size_t i = 0; i < kHeld; ++i) {

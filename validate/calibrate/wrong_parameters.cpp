@@ -14,10 +14,10 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
     if (!out[k]) seen.push_back(std::move(records[k]));
   const auto free = chosen_parameters(model.plant, options.spread, options.fixed);
   const auto events = event::prepare_events(model, std::move(seen), options.events);
-  fit::FewestOptions o;
+  fit::SparseOptions o;
   o.progress = options.progress;
   WrongParameters w;
-  w.found = fit::fewest(model.under_test(), events, free, o);
+  w.found = fit::select_parameters(model.under_test(), events, free, o);
   w.model = model;
   w.model.plant = w.found.fit.plant;
   w.adequate = options.adequate;
@@ -27,7 +27,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 
 namespace {
 /// "KPR and KIR together would do in place of KPM", for all alternatives.
-std::string alternatives_text(const fit::Fewest& found) {
+std::string alternatives_text(const fit::SparseSelection& found) {
   std::string text;
   for (const auto& a : found.alternatives)
     text += fmt::format(" {} together would do in place of {}: the records cannot tell.",
@@ -36,7 +36,7 @@ std::string alternatives_text(const fit::Fewest& found) {
 }
 }  // namespace
 
-std::string wrong_sentence(const fit::Fewest& found, double adequate) {
+std::string wrong_sentence(const fit::SparseSelection& found, double adequate) {
   const std::string left = fmt::format(
       "chi2 per value {:.3f} as the model is, {:.3f} with every parameter free", found.before, found.best);
   if (found.wrong.empty())

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "validate/calibrate/calibrate.hpp"
-#include "validate/fit/fewest.hpp"
+#include "validate/fit/sparse_selection.hpp"
 
 namespace swingbank::validate::calibrate {
 
 /// Smallest set of parameters that must change for the model to explain the events.
 struct WrongParameters {
-  fit::Fewest found;
+  fit::SparseSelection found;
   plant::PlantModel model;  ///< with these parameters changed and all others unchanged
   double adequate = 0;      ///< limit of the reduced chi-square for noise alone
   std::string sentence;
@@ -24,7 +24,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 
 /// "GENROU.Xd 1.44 -> 1.80 pu (or GENROU.Tdop: the records cannot tell)" for each parameter, or that none
 /// must change.
-std::string wrong_sentence(const fit::Fewest& found, double adequate);
+std::string wrong_sentence(const fit::SparseSelection& found, double adequate);
 /// The sentence and a table: old and new value, interval, evidence, and share of the error.
 std::string wrong_text(const WrongParameters& w);
 nlohmann::json wrong_json(const WrongParameters& w);

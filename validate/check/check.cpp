@@ -64,9 +64,9 @@ class Check : Findings {
   /// Records that were not read from a file may hold anything.
   bool complete() {
     const std::size_t n = r_.t.size();
-    if (r_.samples() < record::kFewestSamples)
+    if (r_.samples() < record::kMinSamples)
       refuse("too_short", fmt::format("{} samples", n),
-             fmt::format("at least {} are needed", record::kFewestSamples), "give a longer record");
+             fmt::format("at least {} are needed", record::kMinSamples), "give a longer record");
     else if (const double length = r_.t.back() - r_.t.front(); length < kShortestChecked)
       refuse("too_short", fmt::format("{:.3g} s is too short", length),
              "the response to an event takes seconds, and this record holds less than half a second",
@@ -130,9 +130,9 @@ class Check : Findings {
 
   /// False where the record shows no state that the model could start from.
   bool beginning() {
-    constexpr double kFewestBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
+    constexpr double kMinBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
-    const bool few = !signals_.slow && (n < kFewestBefore || before < kLeastBefore);
+    const bool few = !signals_.slow && (n < kMinBefore || before < kLeastBefore);
     // A short stretch before a jump may be one of a fault, and a record without jumps may begin in a swing.
     const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
     const bool doubtful = !few && (signals_.slow || before < kShort);

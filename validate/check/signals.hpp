@@ -36,7 +36,7 @@ struct Signals {
               hold_at = 0;  ///< samples that repeat the one before, in all of V, theta, P, Q
 };
 
-/// Of a record with at least kFewestSamples finite samples.
+/// Of a record with at least kMinSamples finite samples.
 Signals record_signals(const record::Record& record);
 
 double median_of(std::vector<double> values);

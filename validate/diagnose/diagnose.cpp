@@ -117,12 +117,12 @@ class Diagnoser {
     result_.wrong.reset();
     if (result_.base.reduced_chi2() > options_.adequate) return;
     const auto free = fit::free_parameters(model_.plant, options_.spread);
-    fit::FewestOptions o;
+    fit::SparseOptions o;
     o.progress = options_.progress;
     o.stop = options_.stop;
     o.all = &result_.base;
     o.least = -hypothesis::out_of_reach();
-    fit::Fewest found = fit::fewest(model_.under_test(), result_.events, free, o);
+    fit::SparseSelection found = fit::select_parameters(model_.under_test(), result_.events, free, o);
     if (found.wrong.empty() || found.fit.reduced_chi2() > options_.adequate) return;
     result_.wrong_evidence =
         fit::gain(result_.base, found.fit, fit::criterion) - o.each * static_cast<double>(found.wrong.size());

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "validate/event/progress.hpp"
-#include "validate/fit/fewest.hpp"
+#include "validate/fit/sparse_selection.hpp"
 #include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/posterior.hpp"
@@ -41,7 +41,7 @@ struct Diagnosis {
   fit::Fit base;                      ///< the given structure, refitted
   /// Sparse parameter selection: the smallest set of parameters that explains the records. Empty if no small
   /// set reduces the residual to noise.
-  std::optional<fit::Fewest> wrong;
+  std::optional<fit::SparseSelection> wrong;
   double wrong_evidence = 0;  ///< evidence that only these are wrong, over a refit of every parameter [chi2]
   reduced::FreeInput torque, field;  ///< each inferred without any added effect
   laws::LawSearch laws;              ///< user-defined models tried if no known effect explains the records

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHighestLine = 5.0;  ///< [Hz]; faster oscillations of a plant are damped quickly
 constexpr double kOfNyquist = 0.8;    ///< above this share of the Nyquist frequency an instrument filters
-constexpr int kFewestPeriods = 2;     ///< minimum number of periods in the longest record
+constexpr int kMinPeriods = 2;        ///< minimum number of periods in the longest record
 constexpr int kPerResolved = 2;       ///< number of examined frequencies per resolvable one
 
 /// Returns the reduction of chi2 of a whitened residual by a sine of this frequency; 2 on average for white
@@ -38,7 +38,7 @@ Line strongest_line(const Fit& fit, const event::WhitenedEvents& events) {
     longest = std::max(longest, e.record.t.back() - e.record.t.front());
     highest = std::min(highest, kOfNyquist / (2 * e.record.step()));
   }
-  const double lowest = kFewestPeriods / longest, apart = 1 / (kPerResolved * longest);
+  const double lowest = kMinPeriods / longest, apart = 1 / (kPerResolved * longest);
   const int frequencies = static_cast<int>(std::floor((highest - lowest) / apart)) + 1;
   const auto& channels = events.front().channels;
   Line best;

@@ -15,7 +15,7 @@ namespace {
 
 /// A limit that is met within a step bends it, and no step is short enough for that [s].
 constexpr double kLeastStep = 1e-7;
-constexpr int kFewestSteady = 5;  ///< samples that make a mean and a spread
+constexpr int kMinSteady = 5;  ///< samples that make a mean and a spread
 
 /// Slope of theta over the first n samples [rad/s], or 0 if it is below five times its own standard error.
 double angle_drift(const record::Record& r, int n) {
@@ -104,9 +104,9 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
          record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
     ++point.samples;
   const int n = point.samples;
-  if (n < kFewestSteady)
+  if (n < kMinSteady)
     throw InputError({fmt::format("{} samples before the event", n), record.name,
-                      fmt::format("the operating point is a mean over at least {}", kFewestSteady),
+                      fmt::format("the operating point is a mean over at least {}", kMinSteady),
                       "give a record that starts earlier, or a longer --pre-event"});
   if (start_on_course(record, point)) return point;
   point.drift = angle_drift(record, n);

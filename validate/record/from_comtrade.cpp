@@ -20,7 +20,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kFewestPerCycle = 8;  ///< samples of a waveform
+constexpr double kMinPerCycle = 8;  ///< samples of a waveform
 
 /// The positive sequence of three waveforms [kV to neutral, kA].
 struct Sequence {
@@ -142,9 +142,9 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   if (t.size() < 2)
     problems.add(fmt::format("waveforms of {} sample", t.size()), comtrade.file,
                  "a phasor takes the samples of a cycle", "export the stretch around the event");
-  else if (!(sampled >= kFewestPerCycle * base.frequency))
+  else if (!(sampled >= kMinPerCycle * base.frequency))
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
-                 fmt::format("a cycle needs at least {:g} samples", kFewestPerCycle),
+                 fmt::format("a cycle needs at least {:g} samples", kMinPerCycle),
                  "export the record at a higher rate");
   faults.tell(problems, comtrade.file);
   problems.raise();
@@ -227,7 +227,7 @@ Record record_of_comtrade(const Comtrade& given, const std::string& name, const 
     if (const auto w = wave_of(c)) (w->voltage ? voltage : current) = true;
   const bool waveforms = voltage && current && options.columns.empty();
   Problems problems;
-  make_even(comtrade, waveforms ? kFewestPerCycle * base.frequency : 0, problems);
+  make_even(comtrade, waveforms ? kMinPerCycle * base.frequency : 0, problems);
   problems.raise();
   about.notes = comtrade.notes;
   if (!waveforms) return from_phasors(comtrade, std::move(about), base, options);

@@ -170,9 +170,9 @@ Record stretch(Record r, double from, double until) {
   const auto last = static_cast<std::size_t>(std::ranges::upper_bound(r.t, until + slack) - r.t.begin());
   if (first == 0 && last == r.t.size()) return r;
   const std::size_t kept = last > first ? last - first : 0;
-  if (kept < kFewestSamples)
+  if (kept < kMinSamples)
     throw InputError({fmt::format("{} samples", kept), r.name,
-                      fmt::format("the stretch asked for leaves fewer than {}", kFewestSamples),
+                      fmt::format("the stretch asked for leaves fewer than {}", kMinSamples),
                       "give an earlier --from or a later --until"});
   if (const double length = r.t[last - 1] - r.t[first]; length < kShortestRecord)
     throw InputError({fmt::format("{:.3g} s is too short", length), r.name,

@@ -106,7 +106,7 @@ std::vector<double> angle_of_frequency(const Record& record);
 void unwrap(std::vector<double>& angle);
 
 /// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
-constexpr int kFewestSamples = 30;
+constexpr int kMinSamples = 30;
 /// Shortest record [s]: nothing that a model does shows in less.
 constexpr double kShortestRecord = 0.1;
 /// Frames that a stream lost are bridged up to this length [s].

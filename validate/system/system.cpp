@@ -21,7 +21,7 @@ namespace swingbank::validate::system {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kFewestQuiet = 5;  // samples before the event, from which its noise is estimated
+constexpr int kMinQuiet = 5;  // samples before the event, from which its noise is estimated
 
 double mean_of(const std::vector<double>& v, std::size_t n) {
   return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n);
@@ -74,7 +74,7 @@ class Comparer {
     const double begins = out_.instants.front() - smear + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
-    if (e.playback.start.samples < kFewestQuiet)
+    if (e.playback.start.samples < kMinQuiet)
       throw InputError({fmt::format("{} samples before the event", e.playback.start.samples),
                         "terminal " + t.name, "noise and steady state are seen there",
                         "start the record at least 1 s before the event"});

@@ -158,7 +158,7 @@ record::Record short_record(int samples, double rate, std::mt19937& random) {
 }
 TEST(RecordCheckTest, ShortRecordsAreRefusedInOneSentence) {
   std::mt19937 random(1);
-  std::uniform_int_distribution<int> samples(record::kFewestSamples, 481);
+  std::uniform_int_distribution<int> samples(record::kMinSamples, 481);
   std::uniform_real_distribution<double> exponent(0, 6);
   int refused_as_short = 0;
   for (int i = 0; i < 500; ++i) {

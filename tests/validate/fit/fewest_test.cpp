@@ -1,6 +1,4 @@
 // The fewest parameters that must change: those that were made wrong, and no others.
-#include "validate/fit/fewest.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/fit/sparse_selection.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -32,8 +31,8 @@ struct Known {
   }
   [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
   /// Names of what is found, in order of the alphabet.
-  [[nodiscard]] std::vector<std::string> named(const FewestOptions& options = {}) const {
-    const Fewest found = fewest(model.under_test(), events, free(), options);
+  [[nodiscard]] std::vector<std::string> named(const SparseOptions& options = {}) const {
+    const SparseSelection found = select_parameters(model.under_test(), events, free(), options);
     std::vector<std::string> names;
     for (const auto& w : found.wrong) {
       names.push_back(w.fit.full_name());
@@ -46,16 +45,16 @@ struct Known {
   }
 };
 
-TEST(Fewest, NamesTheParameterThatIsWrong) {
+TEST(SparseSelection, NamesTheParameterThatIsWrong) {
   EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
 }
 /// One per cent off has an evidence of its own here, which is named only where right means exactly.
-TEST(Fewest, AValueThatIsOffByAPercentIsRight) {
+TEST(SparseSelection, AValueThatIsOffByAPercentIsRight) {
   const Known known({{"GENROU.H", 1.3}, {"GENROU.Xdp", 1.01}}, 2);
   EXPECT_EQ(known.named(), std::vector<std::string>{"GENROU.H"});
   EXPECT_EQ(known.named({.right = 1e-6}), (std::vector<std::string>{"GENROU.H", "GENROU.Xdp"}));
 }
-TEST(Fewest, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
+TEST(SparseSelection, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
 /// Unit 2 of IEEE 14 as `change` has it, and the record of one fault.
 std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
@@ -75,7 +74,7 @@ std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
 
 /// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
 /// by the same factor: the gain behind them does what they do.
-TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
+TEST(SparseSelection, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
   const auto exciter = [](sim::grid::Grid& grid) {
     const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
     sim::plant::Block block{&esst4b, esst4b.default_parameters()};
@@ -90,7 +89,7 @@ TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
     if (name == "ESST4B.KPR" || name == "ESST4B.KIR") sim::plant::parameter_value(model.plant, f.id) *= 0.6;
     if (name.starts_with("ESST4B.K") || name == "GENROU.H") free.push_back(f);
   }
-  const Fewest found = fewest(model.under_test(), events, free);
+  const SparseSelection found = select_parameters(model.under_test(), events, free);
   ASSERT_EQ(found.wrong.size(), 1U);
   EXPECT_EQ(found.wrong[0].fit.full_name(), "ESST4B.KPM");
   ASSERT_EQ(found.alternatives.size(), 1U);
@@ -99,7 +98,7 @@ TEST(Fewest, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
 }
 
 /// A ceiling that is believed a fifth too high is not met there, and costs no more than one that just is not.
-TEST(Fewest, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
+TEST(SparseSelection, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
   const sim::Effect& sexs = *sim::library::compiled().find("SEXS");
   const auto exciter = [&](sim::grid::Grid& grid) {
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
@@ -111,12 +110,12 @@ TEST(Fewest, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
   FitOptions from{.lenient = true, .values = values_of(model.plant, free)};
   model.plant.controls.back().p[static_cast<std::size_t>(ceiling)] *= 1.2;
   const Fit all = fit(model.under_test(), events, free, from);
-  const Fewest found = fewest(model.under_test(), events, free, {.all = &all});
+  const SparseSelection found = select_parameters(model.under_test(), events, free, {.all = &all});
   ASSERT_EQ(found.wrong.size(), 1U);
   EXPECT_EQ(found.wrong[0].fit.full_name(), "SEXS.EMAX");
 }
 
-TEST(FewestFull, NamesThreeThatAreWrong) {
+TEST(SparseSelectionFull, NamesThreeThatAreWrong) {
   for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
            {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
            {{"GENROU.Tdop", 1.3}, {"GENROU.Xq", 0.7}, {"SEXS.TB", 1.3}},

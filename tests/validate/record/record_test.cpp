@@ -101,8 +101,8 @@ TEST(RecordTest, AGapOfMoreThanAFifthOfASecondIsAFault) {
                                      HasSubstr("11 are missing"), HasSubstr("--from"))));
 }
 TEST(RecordTest, TooShortOrEmpty) {
-  EXPECT_THAT(faults_of(sound(kFewestSamples - 1)), ElementsAre(HasSubstr("29 samples")));
-  EXPECT_TRUE(faults_of(sound(kFewestSamples)).empty());
+  EXPECT_THAT(faults_of(sound(kMinSamples - 1)), ElementsAre(HasSubstr("29 samples")));
+  EXPECT_TRUE(faults_of(sound(kMinSamples)).empty());
   EXPECT_THAT(faults_of(""), ElementsAre(HasSubstr("empty record")));
   EXPECT_THAT(test::messages([] { read_record("no/such/file.csv", {}); }),
               ElementsAre(HasSubstr("no/such/file.csv")));

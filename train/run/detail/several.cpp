@@ -9,7 +9,7 @@
 namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
-constexpr std::size_t kFewestRecords = 3;
+constexpr std::size_t kMinRecords = 3;
 constexpr std::array<std::size_t, 3> kRecords = {1, 3, 12};  // largest numbers of combined records
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<std::vector<std::size_t>> plants_of(const data::Labels& labels,
   }
   std::vector<std::vector<std::size_t>> plants;
   for (auto& [parameters, own] : by_parameters)
-    if (own.size() >= kFewestRecords) plants.push_back(std::move(own));
+    if (own.size() >= kMinRecords) plants.push_back(std::move(own));
   return plants;
 }
 

@@ -18,7 +18,7 @@ constexpr double kTurnFound = 1e-5;  ///< of a search [rad]
 constexpr int kTurnSteps = 12;
 
 /// Samples on a side that foretell what f is nearer to the switching, and how many do where others are near.
-constexpr std::size_t kForetell = 4, kFewestToForetell = 2;
+constexpr std::size_t kForetell = 4, kMinToForetell = 2;
 constexpr double kStandsOut = 5;     ///< standard deviations of f's noise ...
 constexpr double kLeastPeak = 0.02;  ///< ... and so much [Hz] make a peak
 
@@ -132,11 +132,11 @@ void drop_peaks(FitEvent& event) {
   const auto begins = [&](std::size_t k) { return behind(r, at[k].time - reach); };
   const auto ends = [&](std::size_t k) { return behind(r, at[k].time + reach); };
   for (std::size_t first = 0, last; first < at.size(); first = last + 1) {
-    for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kFewestToForetell;) ++last;
+    for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kMinToForetell;) ++last;
     const std::size_t from = begins(first), to = ends(last), free_from = first > 0 ? ends(first - 1) : 0,
                       free_to = last + 1 < at.size() ? begins(last + 1) : r.t.size();
     const Peak peak{from, to, std::min(kForetell, from - free_from), std::min(kForetell, free_to - to)};
-    if (std::min(peak.before, peak.after) < kFewestToForetell) continue;
+    if (std::min(peak.before, peak.after) < kMinToForetell) continue;
     const std::vector<double> quiet = foretold(r, peak, at[first].time, at[last].time);
     const auto begin = r.f.begin() + static_cast<std::ptrdiff_t>(from);
     if (std::equal(quiet.begin(), quiet.end(), begin,

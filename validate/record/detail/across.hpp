@@ -13,9 +13,9 @@ struct Across {
   double jump = 0;             ///< by how much they jump there; 0: smoothly from side to side
 };
 /// `at`, `value`: beside the gap; `inside`: where in the same measure, of about 1 on each side, values are
-/// asked for. At least kFewestAcross are needed.
+/// asked for. At least kMinAcross are needed.
 Across across(const std::vector<double>& at, const std::vector<double>& value,
               const std::vector<double>& inside);
-constexpr std::size_t kFewestAcross = 6;
+constexpr std::size_t kMinAcross = 6;
 
 }  // namespace swingbank::validate::record

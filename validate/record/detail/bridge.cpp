@@ -71,7 +71,7 @@ Across told_across(const std::vector<double>& y, const Gap& gap, const std::vect
 /// Whether the voltage jumps in the gap; of too few samples, whether it changes by more than the steps beside
 /// it.
 bool jumps_in(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
-  if (told.size() >= kFewestAcross)
+  if (told.size() >= kMinAcross)
     return std::abs(told_across(r.V, gap, told).jump) > kJump ||
            (!r.theta.empty() && std::abs(told_across(r.theta, gap, told).jump) > kJump);
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
@@ -141,7 +141,7 @@ void bridge(Record& r) {
       r.notes.push_back(fmt::format(
           "The voltage jumps where frames are missing, between t = {:.4f} and {:.4f} s: the instant is known no better.",
           r.t[gap.first - 1], r.t[gap.last + 1]));
-    const bool bends = !jump && told.size() >= kFewestAcross;
+    const bool bends = !jump && told.size() >= kMinAcross;
     for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {
       if (y->empty()) continue;
       if (bends)

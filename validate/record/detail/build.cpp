@@ -292,7 +292,7 @@ void settle_angle(Record& r) {
 void take_over(Record& from, Record& all, const std::string& files, Problems& problems) {
   const double slack = 1e-3 * all.step();
   const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
-  if (!(last - first > all.step() * kFewestSamples)) {
+  if (!(last - first > all.step() * kMinSamples)) {
     problems.add("files that do not overlap", files,
                  fmt::format("one is of {:.6g} to {:.6g} s, another of {:.6g} to {:.6g} s", all.t.front(),
                              all.t.back(), from.t.front(), from.t.back()),
@@ -436,9 +436,9 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
     problems.raise();
   const EvenRows rows = settle(raw, options, r, faults);
   faults.tell(problems, file);
-  if (rows.place.size() < kFewestSamples)
+  if (rows.place.size() < kMinSamples)
     problems.add(fmt::format("{} samples", rows.place.size()), file,
-                 fmt::format("a record needs at least {}", kFewestSamples), "give a longer record");
+                 fmt::format("a record needs at least {}", kMinSamples), "give a longer record");
   else if (const double length = rows.t.back() - rows.t.front(); length > 0 && length < kShortestRecord)
     problems.add(fmt::format("{:.3g} s is too short", length), file, "the response to an event takes seconds",
                  "export it from 1 s before to 5 s after the event (--from, --until)");

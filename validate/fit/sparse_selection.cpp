@@ -1,4 +1,4 @@
-#include "validate/fit/fewest.hpp"
+#include "validate/fit/sparse_selection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +34,10 @@ struct Ranked {
 class Selection {
  public:
   Selection(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-            const std::vector<FreeParameter>& free, const FewestOptions& options)
+            const std::vector<FreeParameter>& free, const SparseOptions& options)
       : tested_(tested), events_(events), free_(free), options_(options) {}
 
-  Fewest run() {
+  SparseSelection run() {
     try {
       return select();
     } catch (const Interrupted&) {
@@ -47,10 +47,10 @@ class Selection {
   }
 
  private:
-  Fewest select() {
+  SparseSelection select() {
     fit_all();
     learn_curvature();
-    Fewest back;
+    SparseSelection back;
     Refit chosen = refit({});
     back.fit = chosen.fit;
     back.events = events_;
@@ -278,7 +278,8 @@ class Selection {
     return rises;
   }
   /// Fills the result from fits in which the other parameters keep their given values.
-  void describe(const Set& set, const std::vector<double>& rises, const Refit& chosen, Fewest& back) const {
+  void describe(const Set& set, const std::vector<double>& rises, const Refit& chosen,
+                SparseSelection& back) const {
     const double excess = penalised(back.fit) - penalised(all_);
     for (std::size_t i = 0; i < set.size(); ++i) {
       WrongParameter w;
@@ -377,7 +378,7 @@ class Selection {
   const sim::plant::PlantUnderTest tested_;
   event::WhitenedEvents events_;
   const std::vector<FreeParameter>& free_;
-  const FewestOptions& options_;
+  const SparseOptions& options_;
   Fit all_;
   Eigen::MatrixXd curvature_;
   Eigen::VectorXd at_;
@@ -388,8 +389,9 @@ class Selection {
 
 }  // namespace
 
-Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-              const std::vector<FreeParameter>& free, const FewestOptions& options) {
+SparseSelection select_parameters(const sim::plant::PlantUnderTest& tested,
+                                  const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
+                                  const SparseOptions& options) {
   return Selection(tested, events, free, options).run();
 }
 

@@ -28,7 +28,7 @@ struct Alternative {
 };
 
 /// Result of the sparse parameter selection.
-struct Fewest {
+struct SparseSelection {
   std::vector<WrongParameter> wrong;      ///< in descending order of evidence
   std::vector<Alternative> alternatives;  ///< pairs; single replacements are in WrongParameter::tied
   Fit fit;                       ///< with the named parameters free and all others at their given values
@@ -38,7 +38,7 @@ struct Fewest {
 };
 
 /// Limits of the sparse parameter selection.
-struct FewestOptions {
+struct SparseOptions {
   std::size_t most = 8;  ///< maximum size of the set
   double each = 10;      ///< minimum evidence of each parameter [chi2]
   /// Prior standard deviation of a correct parameter about its given value, relative. Parameters outside the
@@ -59,7 +59,8 @@ struct FewestOptions {
 /// Searches sets of parameters by beam search on the quadratic model of the cost about the full fit. The best
 /// sets of each size are refitted from the optimum that the quadratic model predicts. `free` lists the
 /// candidates with their priors. Throws InputError if the model cannot be fitted.
-Fewest fewest(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
-              const std::vector<FreeParameter>& free, const FewestOptions& options = {});
+SparseSelection select_parameters(const sim::plant::PlantUnderTest& tested,
+                                  const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
+                                  const SparseOptions& options = {});
 
 }  // namespace swingbank::validate::fit
