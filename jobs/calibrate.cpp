@@ -23,7 +23,7 @@ namespace {
 using namespace swingbank;
 using namespace swingbank::validate;
 
-constexpr const char *kModel = "model.toml", *kBentModel = "model-not-adequate.toml", *kDyr = "model.dyr",
+constexpr const char *kModel = "model.toml", *kBiasedModel = "model-not-adequate.toml", *kDyr = "model.dyr",
                      *kCurveFit = "curve-fit.toml", *kPage = "report.html", *kResult = "calibrate.json";
 
 struct Arguments {
@@ -64,13 +64,13 @@ std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& eve
   return names;
 }
 
-/// Writes the model to `kModel` with its .dyr records, or to `kBentModel` if it is not adequate (`holds` is
+/// Writes the model to `kModel` with its .dyr records, or to `kBiasedModel` if it is not adequate (`holds` is
 /// false). Returns the lines for the terminal.
 std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool holds,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
   model = event::whole_model(std::move(model));
-  const auto file = a.of.results().file(holds ? kModel : kBentModel);
+  const auto file = a.of.results().file(holds ? kModel : kBiasedModel);
   model.submitted.reset();
   if (!holds) model.submitted = before.plant;
   std::vector<std::string> head = provenance;
@@ -206,7 +206,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const std::vector<record::Record>& records = set.records;
   const nlohmann::json told = jobs::records_json(set);
   if (!a.start.empty()) note_input(a.start);
-  a.of.open_results("calibrate", {kModel, kBentModel, kDyr, kCurveFit, kPage, kResult,
+  a.of.open_results("calibrate", {kModel, kBiasedModel, kDyr, kCurveFit, kPage, kResult,
                                   jobs::kInterruptedModel, "calibrate-interrupted.json"});
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",

@@ -69,16 +69,16 @@ TEST(FitOrderings, BoundEveryFit) {
   for (const auto& o : sim::plant::violated(f.plant.machine))
     ADD_FAILURE() << sim::plant::violation_text(f.plant.machine, o);
   // A model that violates one is drawn back to it.
-  sim::plant::Plant bent = example.model.plant;
+  sim::plant::Plant biased = example.model.plant;
   const auto at = [&](const char* name) -> double& {
-    return bent.machine.p[static_cast<std::size_t>(bent.machine.effect->parameter_index(name))];
+    return biased.machine.p[static_cast<std::size_t>(biased.machine.effect->parameter_index(name))];
   };
   at("Xd") = 0.5;
   at("Xdp") = 0.6;
-  const Fit back = fit({bent, example.model.conventions}, example.events, free_parameters(bent, 0.5));
+  const Fit back = fit({biased, example.model.conventions}, example.events, free_parameters(biased, 0.5));
   ASSERT_EQ(back.failed, "");
   const auto value = [&](const char* name) {
-    return back.plant.machine.p[static_cast<std::size_t>(bent.machine.effect->parameter_index(name))];
+    return back.plant.machine.p[static_cast<std::size_t>(biased.machine.effect->parameter_index(name))];
   };
   EXPECT_GT(value("Xd"), 0.99 * value("Xdp"));
 }

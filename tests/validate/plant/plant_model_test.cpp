@@ -250,10 +250,10 @@ TEST_F(PlantModelTest, OrderingsThatNoMachineViolatesAreWarnedOfWithTheirLine) {
 }
 TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
   const PlantModel before = load(example_text());
-  PlantModel bent = before;
-  bent.plant.machine.p[4] = 3.5;  // H
-  bent.submitted = before.plant;
-  const PlantModel back = load(plant_text(bent, {}));
+  PlantModel biased = before;
+  biased.plant.machine.p[4] = 3.5;  // H
+  biased.submitted = before.plant;
+  const PlantModel back = load(plant_text(biased, {}));
   EXPECT_EQ(back.plant.machine.p[4], 3.5);
   ASSERT_TRUE(back.submitted.has_value());
   EXPECT_EQ(difference(as_submitted(back), before), "");
