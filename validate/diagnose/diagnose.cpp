@@ -266,16 +266,16 @@ class Diagnoser {
   /// Replaces a pair's first effect by its competitors: effects of its slot, and other accepted effects.
   [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::Stage& stage,
                                                              const hypothesis::Judgement& pair) const {
-    auto rivals = hypothesis::exchanges(stage, pair, result_.ranked);
-    each(rivals, event::Phase::pair_exchanges, [&](hypothesis::Judgement& j) {
+    auto competitors = hypothesis::exchanges(stage, pair, result_.ranked);
+    each(competitors, event::Phase::pair_exchanges, [&](hypothesis::Judgement& j) {
       hypothesis::try_begun(stage, j);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
-    std::erase_if(rivals, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
-    std::ranges::stable_sort(rivals, std::greater<>(), &hypothesis::Judgement::gain);
-    std::erase_if(rivals, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
-    each(rivals, event::Phase::pair_unseen_events, [&](hypothesis::Judgement& j) { judge_one(j); });
-    return rivals;
+    std::erase_if(competitors, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
+    std::ranges::stable_sort(competitors, std::greater<>(), &hypothesis::Judgement::gain);
+    std::erase_if(competitors, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
+    each(competitors, event::Phase::pair_unseen_events, [&](hypothesis::Judgement& j) { judge_one(j); });
+    return competitors;
   }
   /// Tries the remaining hypotheses with a pair's second effect. The first effect was selected without the
   /// second one and may have compensated for two. Empty if the second effect cannot be a first one by itself.

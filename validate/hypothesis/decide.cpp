@@ -23,7 +23,7 @@ using playin::Output;
 /// resolution of shaft pickups.
 constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
 /// Maximum number of competing hypotheses.
-constexpr std::size_t kRivals = 6;
+constexpr std::size_t kCompetitors = 6;
 constexpr double kFrequencyDip = 0.2;        ///< frequency drop after a remote load step [Hz]
 constexpr double kFrequencyDipWithin = 1.0;  ///< duration of the frequency drop [s]
 constexpr double kReferenceStep = 0.02;      ///< of Vref [pu]
@@ -67,8 +67,8 @@ event::FitEvent quiet(const event::FitEvent& like, double dip) {
 
 class Separations {
  public:
-  Separations(std::vector<const Judgement*> rivals, const event::WhitenedEvents& events, double spread)
-      : rivals_(std::move(rivals)), events_(events), known_(rivals_.size()) {
+  Separations(std::vector<const Judgement*> competitors, const event::WhitenedEvents& events, double spread)
+      : competitors_(std::move(competitors)), events_(events), known_(competitors_.size()) {
     for (std::size_t e = 0; e < events.size(); ++e)
       scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
     scenes_.push_back({quiet(events.front(), kFrequencyDip), -1,
@@ -78,17 +78,17 @@ class Separations {
                            .time = step.record.t.front() + kSceneBegins,
                            .size = kReferenceStep}};
     scenes_.push_back({step, -1, fmt::format("after a step of Vref by {} pu", kReferenceStep)});
-    for (const Judgement* j : rivals_) free_.push_back(free_of(j->hypothesis, spread));
+    for (const Judgement* j : competitors_) free_.push_back(free_of(j->hypothesis, spread));
     measure_noise();
   }
 
   void play(int threads) {
-    answers_.resize(scenes_.size() * rivals_.size());
+    answers_.resize(scenes_.size() * competitors_.size());
     in_parallel(
         answers_.size(),
-        [&](std::size_t k) { answers_[k] = play_one(k / rivals_.size(), k % rivals_.size()); }, [](int) {},
-        threads);
-    for (std::size_t j = 0; j < rivals_.size(); ++j) {
+        [&](std::size_t k) { answers_[k] = play_one(k / competitors_.size(), k % competitors_.size()); },
+        [](int) {}, threads);
+    for (std::size_t j = 0; j < competitors_.size(); ++j) {
       const auto n = static_cast<Eigen::Index>(free_[j].size());
       known_[j] = Eigen::MatrixXd::Identity(n, n);
       for (std::size_t s = 0; s < events_.size(); ++s)
@@ -120,8 +120,8 @@ class Separations {
 
  private:
   static std::size_t at(Output o) { return static_cast<std::size_t>(o); }
-  [[nodiscard]] const std::optional<Answer>& answer(std::size_t scene, std::size_t rival) const {
-    return answers_[scene * rivals_.size() + rival];
+  [[nodiscard]] const std::optional<Answer>& answer(std::size_t scene, std::size_t competitor) const {
+    return answers_[scene * competitors_.size() + competitor];
   }
   /// Sets the noise of the recorded channels to the RMS residual of the first hypothesis.
   void measure_noise() {
@@ -132,18 +132,18 @@ class Separations {
       std::size_t count = 0;
       for (std::size_t e = 0; e < events_.size(); ++e) {
         const auto& measured = events_[e].measured(channels()[c]);
-        const auto& model = rivals_.front()->fit.events[e].model[c];
+        const auto& model = competitors_.front()->fit.events[e].model[c];
         for (std::size_t k = 0; k < measured.size(); ++k)
           if (events_[e].compared(k)) squares += std::pow(model[k] - measured[k], 2), ++count;
       }
       noise_[at(channels()[c])] = std::sqrt(squares / static_cast<double>(count));
     }
   }
-  [[nodiscard]] std::optional<Answer> play_one(std::size_t scene, std::size_t rival) const {
-    const Judgement& j = *rivals_[rival];
+  [[nodiscard]] std::optional<Answer> play_one(std::size_t scene, std::size_t competitor) const {
+    const Judgement& j = *competitors_[competitor];
     const Scene& s = scenes_[scene];
     std::vector<playin::Direction> along;
-    for (const auto& f : free_[rival])
+    for (const auto& f : free_[competitor])
       along.push_back({.kind = playin::Direction::Kind::parameter,
                        .parameter = f.id,
                        .scale = fit::axis_unit(j.fit.plant, f)});
@@ -171,7 +171,7 @@ class Separations {
     }
   }
 
-  std::vector<const Judgement*> rivals_;
+  std::vector<const Judgement*> competitors_;
   const event::WhitenedEvents& events_;
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
@@ -211,17 +211,17 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
   Decision d;
   d.now = effects_in_set(all);
   std::vector<Explanation> set;
-  std::vector<const Judgement*> rivals;
-  for (std::size_t k = 0; k < credible(all) && set.size() < kRivals; ++k)
+  std::vector<const Judgement*> competitors;
+  for (std::size_t k = 0; k < credible(all) && set.size() < kCompetitors; ++k)
     if (all[k].place >= 0) {
       set.push_back(all[k]);
-      rivals.push_back(&ranked[static_cast<std::size_t>(all[k].place)]);
+      competitors.push_back(&ranked[static_cast<std::size_t>(all[k].place)]);
     }
   const bool whole = std::ranges::all_of(events, [](const event::FitEvent& e) {
     return e.record.component == record::Component::plant && e.record.staged.empty();
   });
   if (set.size() < 2 || !whole) return d;
-  Separations between(rivals, events, spread);
+  Separations between(competitors, events, spread);
   between.play(threads);
   const auto consider = [&](std::size_t scene, const std::vector<Output>& outputs,
                             const std::string& channel) {

@@ -68,16 +68,16 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
   const Judgement stays = staying(*second, pair.fit);
   const Stage then = after(stage, stays);
-  std::vector<Judgement> rivals;
+  std::vector<Judgement> competitors;
   for (Hypothesis& h : all_hypotheses(then.under_test(), then.library, then.component())) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
     const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();
     if (h.name == first->name || h.name == second->name || !(in_slot || holds)) continue;
     const bool found = known != alone.end() && known->fitted;
-    rivals.push_back(begun(then, std::move(h), found ? known->fit : pair.fit));
+    competitors.push_back(begun(then, std::move(h), found ? known->fit : pair.fit));
   }
-  return rivals;
+  return competitors;
 }
 
 void try_begun(const Stage& stage, Judgement& j) {

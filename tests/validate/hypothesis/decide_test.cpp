@@ -24,10 +24,11 @@ class Decide : public ::testing::Test {
     return j;
   }
   /// With the same evidence.
-  [[nodiscard]] Decision between(const std::vector<Judgement>& rivals) const {
+  [[nodiscard]] Decision between(const std::vector<Judgement>& competitors) const {
     std::vector<Explanation> all;
-    for (const Judgement& j : rivals) all.push_back({j.hypothesis.name, 100, static_cast<int>(all.size())});
-    return what_would_decide(rivals, posterior(std::move(all), 0), events_, kDecideSpread, 1);
+    for (const Judgement& j : competitors)
+      all.push_back({j.hypothesis.name, 100, static_cast<int>(all.size())});
+    return what_would_decide(competitors, posterior(std::move(all), 0), events_, kDecideSpread, 1);
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const event::WhitenedEvents events_ = event::prepare_events(

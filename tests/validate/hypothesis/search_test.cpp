@@ -100,11 +100,11 @@ class Exchange : public ::testing::Test {
 
 TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
-  const auto rivals = exchanges(stage_, pair, {});
-  EXPECT_THAT(names(rivals),
+  const auto competitors = exchanges(stage_, pair, {});
+  EXPECT_THAT(names(competitors),
               testing::UnorderedElementsAre("STEPUP + DEGOV1", "STEPUP + GAST", "STEPUP + GGOV1",
                                             "STEPUP + HYGOV", "STEPUP + IEEEG1"));
-  for (const Judgement& j : rivals) {
+  for (const Judgement& j : competitors) {
     EXPECT_FALSE(j.fit.failed.empty());
     // believed to be what it was before any fit, and starting where the pair's fit ended
     const sim::plant::ParameterId own = pair.hypothesis.free.front().id;
@@ -123,12 +123,12 @@ TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   Judgement holds = alone("CTERROR", 0.01), does_not = alone("PTERROR", 0.01);
   holds.accepted = true;
-  const auto rivals = exchanges(stage_, pair, {holds, does_not});
-  EXPECT_THAT(names(rivals), Contains("STEPUP + CTERROR"));
-  EXPECT_THAT(names(rivals), Not(Contains("STEPUP + PTERROR")));
+  const auto competitors = exchanges(stage_, pair, {holds, does_not});
+  EXPECT_THAT(names(competitors), Contains("STEPUP + CTERROR"));
+  EXPECT_THAT(names(competitors), Not(Contains("STEPUP + PTERROR")));
   const auto found =
-      std::ranges::find(rivals, "CTERROR", [](const Judgement& j) { return j.hypothesis.name; });
-  ASSERT_NE(found, rivals.end());
+      std::ranges::find(competitors, "CTERROR", [](const Judgement& j) { return j.hypothesis.name; });
+  ASSERT_NE(found, competitors.end());
   const fit::FreeParameter& f = found->hypothesis.free.front();
   EXPECT_EQ(sim::plant::parameter_value(found->fit.plant, f.id), 0.01);
 }
