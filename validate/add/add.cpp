@@ -109,23 +109,23 @@ class Adding {
       : bench_(bench),
         progress_(options.calibrate.progress),
         a_(a),
-        stage_{.events = bench.seen(),
-               .plant = model.plant,
-               .conventions = model.conventions,
-               .library = model.library,
-               .fit = a.without,
-               .spread = options.calibrate.spread,
-               .threads = omp_get_max_threads(),
-               .stop = interruption_asked,
-               .reached = [this](const fit::Fit& f) { keep(f); }} {}
+        base_model_{.events = bench.seen(),
+                    .plant = model.plant,
+                    .conventions = model.conventions,
+                    .library = model.library,
+                    .fit = a.without,
+                    .spread = options.calibrate.spread,
+                    .threads = omp_get_max_threads(),
+                    .stop = interruption_asked,
+                    .reached = [this](const fit::Fit& f) { keep(f); }} {}
 
   /// Makes both fits. After an interruption, `with` is the best fit so far. Returns whether the noise was
   /// measured again.
   bool run() {
     a_.with = with_effect();
     hypothesis::Hypothesis none;
-    none.plant = stage_.plant;
-    none.conventions = stage_.conventions;
+    none.plant = base_model_.plant;
+    none.conventions = base_model_.conventions;
     a_.without = from_other(none, a_.without, a_.with);
     bool measured = measure_noise();
     while (add_left_off()) measured |= measure_noise();
@@ -138,7 +138,7 @@ class Adding {
     j.hypothesis = a_.hypothesis;
     j.fitted = false;
     if (auto tried = judgements({a_.hypothesis}); !tried.empty()) j = std::move(tried.front());
-    if (!j.fitted) until_interrupted([&] { hypothesis::fit_alone(stage_, j); });
+    if (!j.fitted) until_interrupted([&] { hypothesis::fit_alone(base_model_, j); });
     if (interruption_asked()) end();
     if (!j.fit.failed.empty())
       throw InputError({"effect " + a_.hypothesis.name + " cannot be fitted", "every start", j.fit.failed,
@@ -165,7 +165,7 @@ class Adding {
   /// Returns the hypotheses in descending order of evidence.
   [[nodiscard]] std::vector<hypothesis::Judgement> judgements(std::vector<hypothesis::Hypothesis> all) {
     std::vector<hypothesis::Judgement> tried;
-    until_interrupted([&] { tried = hypothesis::try_hypotheses(stage_, std::move(all), progress_); });
+    until_interrupted([&] { tried = hypothesis::try_hypotheses(base_model_, std::move(all), progress_); });
     if (interruption_asked()) end();
     return tried;
   }
@@ -176,22 +176,22 @@ class Adding {
     hypothesis::Judgement j;
     j.hypothesis = h;
     j.fit = f;
-    hypothesis::try_from(stage_, other, j);
+    hypothesis::try_from(base_model_, other, j);
     return fit::better(j.fit, f) ? finished(j) : f;
   }
   /// Returns the fit completed with standard errors: fits of the search have none, or those of lenient steps.
   [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const {
-    fit::Fit f =
-        go_on(j.hypothesis.under_test(), bench_, hypothesis::free_of(j.hypothesis, stage_.spread), j.fit);
+    fit::Fit f = go_on(j.hypothesis.under_test(), bench_,
+                       hypothesis::free_of(j.hypothesis, base_model_.spread), j.fit);
     return f.failed.empty() ? f : j.fit;
   }
   /// Measures the noise again through the fit with the effect, if it is close, and repeats both fits.
   bool measure_noise() {
     const hypothesis::Hypothesis& h = a_.hypothesis;
     if (!bench_.measure_noise(a_.with, h.conventions)) return false;
-    a_.without =
-        go_on(stage_.under_test(), bench_, fit::free_parameters(stage_.plant, stage_.spread), a_.without);
-    a_.with = go_on(h.under_test(), bench_, hypothesis::free_of(h, stage_.spread), a_.with);
+    a_.without = go_on(base_model_.under_test(), bench_,
+                       fit::free_parameters(base_model_.plant, base_model_.spread), a_.without);
+    a_.with = go_on(h.under_test(), bench_, hypothesis::free_of(h, base_model_.spread), a_.with);
     return true;
   }
   void keep(const fit::Fit& f) {
@@ -208,7 +208,7 @@ class Adding {
   Addition& a_;
   std::mutex lock_;
   std::optional<fit::Fit> reached_;
-  const hypothesis::Stage stage_;
+  const hypothesis::BaseModel base_model_;
 };
 
 /// Returns the increase of each event's limit due to the uncertainty of the fitted parameters; 0 for seen

@@ -78,14 +78,15 @@ class Diagnoser {
       infer_inputs();
       keep();
       tell(side_sentence(result_));
-      const hypothesis::Stage stage = model_stage();
+      const hypothesis::BaseModel base_model = present_model();
       result_.ranked = hypothesis::try_hypotheses(
-          stage, hypothesis::all_hypotheses(stage.under_test(), stage.library, stage.component()),
+          base_model,
+          hypothesis::all_hypotheses(base_model.under_test(), base_model.library, base_model.component()),
           options_.progress);
       keep();
       tell(leading_sentence(result_));
       if (stopped()) return false;
-      const auto better = round < kBases ? better_start(stage, result_) : std::nullopt;
+      const auto better = round < kBases ? better_start(base_model, result_) : std::nullopt;
       if (!better) break;
       from = *better;
       result_.events = prepared;  // discards the noise measured through the worse base model
@@ -133,9 +134,10 @@ class Diagnoser {
   void try_replacements() {
     const auto fits = [&](const fit::Fit& f) { return f.reduced_chi2() <= options_.adequate; };
     if (fits(result_.base) || (!result_.ranked.empty() && fits(result_.ranked.front().fit))) return;
-    const hypothesis::Stage stage = model_stage();
+    const hypothesis::BaseModel base_model = present_model();
     auto others = hypothesis::try_hypotheses(
-        stage, hypothesis::all_replacements(stage.under_test(), stage.library), options_.progress);
+        base_model, hypothesis::all_replacements(base_model.under_test(), base_model.library),
+        options_.progress);
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
@@ -184,14 +186,14 @@ class Diagnoser {
   /// Judges the leading hypotheses. Then tries pairs with the companion of the controls. If none is accepted,
   /// tries pairs with the best single hypothesis or, if that is not accepted, with the best two.
   void search() {
-    const hypothesis::Stage stage = model_stage();
+    const hypothesis::BaseModel base_model = present_model();
     judge_leading(result_.ranked);
     if (result_.ranked.empty()) return;
     const hypothesis::Judgement best = result_.ranked.front();
     if (stopped() || (!best.accepted && best.gain < thresholds::evidence.accepted)) return;
-    auto pairs = beside_companion(stage);
+    auto pairs = beside_companion(base_model);
     if (pairs.empty() || !pairs.front().accepted) {
-      std::ranges::move(best.accepted ? judged_beside(stage, best) : try_pairs(stage),
+      std::ranges::move(best.accepted ? judged_beside(base_model, best) : try_pairs(base_model),
                         std::back_inserter(pairs));
       best_first(pairs);
     }
@@ -200,18 +202,18 @@ class Diagnoser {
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
     if (!pairs.empty()) {  // the first effect was selected without the second one
-      std::vector<hypothesis::Judgement> others = exchanged(stage, pairs.front());
-      std::ranges::move(beside_second(stage, pairs.front()), std::back_inserter(others));
+      std::vector<hypothesis::Judgement> others = exchanged(base_model, pairs.front());
+      std::ranges::move(beside_second(base_model, pairs.front()), std::back_inserter(others));
       std::erase_if(others, unneeded);
       std::ranges::move(others, std::back_inserter(pairs));
       std::ranges::stable_sort(pairs, std::greater<>(), &hypothesis::Judgement::gain);
-      cross(stage, pairs);
+      cross(base_model, pairs);
     }
     keep_one_order(pairs);
     result_.ranked.insert(result_.ranked.begin(), std::make_move_iterator(pairs.begin()),
                           std::make_move_iterator(pairs.end()));
   }
-  [[nodiscard]] hypothesis::Stage model_stage() const {
+  [[nodiscard]] hypothesis::BaseModel present_model() const {
     return {.events = result_.events,
             .plant = model_.plant,
             .conventions = model_.conventions,
@@ -224,7 +226,7 @@ class Diagnoser {
             .field = &result_.field};
   }
   /// Tries pairs with the best single hypotheses, one of each slot, until a pair is accepted.
-  std::vector<hypothesis::Judgement> try_pairs(const hypothesis::Stage& stage) {
+  std::vector<hypothesis::Judgement> try_pairs(const hypothesis::BaseModel& base_model) {
     std::vector<const hypothesis::Judgement*> firsts;
     for (const auto& j : result_.ranked) {
       const bool taken = std::ranges::any_of(firsts, [&](const hypothesis::Judgement* f) {
@@ -235,7 +237,7 @@ class Diagnoser {
     }
     std::vector<hypothesis::Judgement> pairs;
     for (const hypothesis::Judgement* first : firsts) {
-      std::ranges::move(judged_beside(stage, *first), std::back_inserter(pairs));
+      std::ranges::move(judged_beside(base_model, *first), std::back_inserter(pairs));
       best_first(pairs);
       if (!pairs.empty() && pairs.front().accepted) break;
     }
@@ -243,32 +245,33 @@ class Diagnoser {
   }
   /// Returns pairs with the machine or instrument effect that most reduces the cost of a control: the
   /// controls were ranked without it. Empty if there is no such effect.
-  [[nodiscard]] std::vector<hypothesis::Judgement> beside_companion(const hypothesis::Stage& stage) const {
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside_companion(
+      const hypothesis::BaseModel& base_model) const {
     const auto most = std::ranges::max_element(result_.ranked, {}, &hypothesis::Judgement::companion_gain);
     const auto companion = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& j) {
       return j.hypothesis.name == most->companion && j.hypothesis.with.empty();
     });
     if (companion == result_.ranked.end()) return {};
     hypothesis::Judgement first = *companion;
-    if (!first.fitted) hypothesis::fit_alone(stage, first);
+    if (!first.fitted) hypothesis::fit_alone(base_model, first);
     if (!first.fit.failed.empty()) return {};
-    return judged_beside(stage, first);
+    return judged_beside(base_model, first);
   }
   [[nodiscard]] bool can_be_first(const hypothesis::Judgement& single) const {
     return single.gain >= trial().evidence && single.fitted && !single.hypothesis.replaces;
   }
-  [[nodiscard]] std::vector<hypothesis::Judgement> judged_beside(const hypothesis::Stage& stage,
+  [[nodiscard]] std::vector<hypothesis::Judgement> judged_beside(const hypothesis::BaseModel& base_model,
                                                                  const hypothesis::Judgement& first) const {
-    auto pairs = beside(stage, first);
+    auto pairs = beside(base_model, first);
     judge_leading(pairs);
     return pairs;
   }
   /// Replaces a pair's first effect by its competitors: effects of its slot, and other accepted effects.
-  [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::Stage& stage,
+  [[nodiscard]] std::vector<hypothesis::Judgement> exchanged(const hypothesis::BaseModel& base_model,
                                                              const hypothesis::Judgement& pair) const {
-    auto competitors = hypothesis::exchanges(stage, pair, result_.ranked);
+    auto competitors = hypothesis::exchanges(base_model, pair, result_.ranked);
     each(competitors, event::Phase::pair_exchanges, [&](hypothesis::Judgement& j) {
-      hypothesis::try_begun(stage, j);
+      hypothesis::try_begun(base_model, j);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     std::erase_if(competitors, [](const hypothesis::Judgement& j) { return !j.fit.failed.empty(); });
@@ -279,30 +282,30 @@ class Diagnoser {
   }
   /// Tries the remaining hypotheses with a pair's second effect. The first effect was selected without the
   /// second one and may have compensated for two. Empty if the second effect cannot be a first one by itself.
-  [[nodiscard]] std::vector<hypothesis::Judgement> beside_second(const hypothesis::Stage& stage,
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside_second(const hypothesis::BaseModel& base_model,
                                                                  const hypothesis::Judgement& pair) const {
     const auto second = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& single) {
       return single.hypothesis.name == pair.hypothesis.name && single.hypothesis.with.empty();
     });
     if (second == result_.ranked.end() || !can_be_first(*second) || stopped()) return {};
     std::vector<std::string> known{pair.hypothesis.with};
-    for (const hypothesis::Judgement& j : hypothesis::exchanges(stage, pair, result_.ranked))
+    for (const hypothesis::Judgement& j : hypothesis::exchanges(base_model, pair, result_.ranked))
       known.push_back(j.hypothesis.name);
-    auto pairs = beside(stage, *second, known);
+    auto pairs = beside(base_model, *second, known);
     std::erase_if(pairs, [&](const hypothesis::Judgement& j) { return out_of_reach(j, pair); });
     judge_leading(pairs);
     return pairs;
   }
   /// Tries new pairs of the effects of accepted pairs, because each effect was fitted with one partner only.
   /// A pair is tried only if its expected evidence would place it in the set.
-  void cross(const hypothesis::Stage& stage, std::vector<hypothesis::Judgement>& pairs) const {
+  void cross(const hypothesis::BaseModel& base_model, std::vector<hypothesis::Judgement>& pairs) const {
     std::vector<hypothesis::Judgement> tried = pairs;
     const auto in_set = [&](double gain) { return gain > pairs.front().gain - hypothesis::out_of_set(); };
     for (auto next = hypothesis::best_cross(tried); next && in_set(next->expected) && !stopped();
          next = hypothesis::best_cross(tried)) {
-      hypothesis::Judgement j = hypothesis::crossed(stage, *next);
+      hypothesis::Judgement j = hypothesis::crossed(base_model, *next);
       report(event::Phase::pair_crossings, hypothesis::full_name(j.hypothesis), 0, 1);
-      hypothesis::try_begun(stage, j);
+      hypothesis::try_begun(base_model, j);
       fit::correct_noise_transfer(trial().noise_transfer, j.hypothesis.conventions, j.fit);
       if (j.fit.failed.empty()) j.gain = fit::gain(result_.base, j.fit, fit::criterion);
       tried.push_back(j);
@@ -318,10 +321,10 @@ class Diagnoser {
   }
   /// Fits every hypothesis except `but` with the effect of `first` present. `gain` is the evidence of both
   /// effects together.
-  [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::Stage& stage,
+  [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::BaseModel& base_model,
                                                           const hypothesis::Judgement& first,
                                                           const std::vector<std::string>& but = {}) const {
-    const hypothesis::Stage then = hypothesis::after(stage, first);
+    const hypothesis::BaseModel then = hypothesis::after(base_model, first);
     auto all = hypothesis::all_hypotheses(then.under_test(), then.library, then.component());
     std::erase_if(all, [&](const hypothesis::Hypothesis& h) { return std::ranges::count(but, h.name) > 0; });
     auto pairs = hypothesis::try_hypotheses(then, std::move(all), options_.progress);
@@ -354,7 +357,7 @@ class Diagnoser {
       const std::string& name = single.hypothesis.name;
       if (!single.fitted || (name != pair.hypothesis.name && name != pair.hypothesis.with)) continue;
       const fit::Fit before = single.fit;
-      hypothesis::try_from(model_stage(), pair.fit, single);
+      hypothesis::try_from(present_model(), pair.fit, single);
       if (!(fit::gain(before, single.fit) > 1)) continue;
       single.accepted = false;
       single.why_not.clear();

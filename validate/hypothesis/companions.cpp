@@ -20,10 +20,11 @@ struct Companion {
 };
 
 /// Returns the possible companions of a control in this plant, and appends their changes to `changes`.
-std::vector<Companion> companions_in(const Stage& stage, const sim::plant::Plant& plant,
+std::vector<Companion> companions_in(const BaseModel& base_model, const sim::plant::Plant& plant,
                                      std::vector<reduced::Change>& changes) {
   std::vector<Companion> all;
-  for (const Hypothesis& h : all_hypotheses({plant, stage.conventions}, stage.library, stage.component())) {
+  for (const Hypothesis& h :
+       all_hypotheses({plant, base_model.conventions}, base_model.library, base_model.component())) {
     if ((h.side != Side::machine && h.side != Side::measurement) || h.free.empty()) continue;
     Companion companion{h.name, {}};
     const auto add = [&](const sim::plant::Plant& from, const sim::plant::Plant& to) {
@@ -51,10 +52,10 @@ std::vector<Companion> companions_in(const Stage& stage, const sim::plant::Plant
 
 }  // namespace
 
-void find_companions(const Stage& stage, const Polish& polish, const Identified& leader,
+void find_companions(const BaseModel& base_model, const Polish& polish, const Identified& leader,
                      std::vector<Identified>& tried) {
   std::vector<reduced::Change> changes;
-  const auto companions = companions_in(stage, leader.best()->plant, changes);
+  const auto companions = companions_in(base_model, leader.best()->plant, changes);
   if (changes.empty()) return;
   const Polish::Reduced about = polish.linear_about(leader, changes);
   std::vector<Index> every(changes.size());
@@ -77,7 +78,7 @@ void find_companions(const Stage& stage, const Polish& polish, const Identified&
   const auto each = [&](auto act) {
     in_parallel(
         some.size(), [&](std::size_t k) { until_interrupted([&] { act(some[k]); }); }, [](int) {},
-        stage.threads);
+        base_model.threads);
   };
   each([&](Beside& b) {
     for (const reduced::Optimum& o : b.h->optima) b.known.push_back(o.values);

@@ -11,7 +11,7 @@ namespace swingbank::validate::hypothesis {
 /// Finds the companion of each control on the leader's side. With the companion, the control must have a
 /// lower chi2 than the best single hypothesis by thresholds::evidence.second. `leader` must have a fit.
 /// Throws InputError if the leader's plant cannot be simulated.
-void find_companions(const Stage& stage, const Polish& polish, const Identified& leader,
+void find_companions(const BaseModel& base_model, const Polish& polish, const Identified& leader,
                      std::vector<Identified>& tried);
 
 }  // namespace swingbank::validate::hypothesis

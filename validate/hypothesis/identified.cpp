@@ -35,13 +35,16 @@ std::uint64_t stream_of(const std::string& name) {  // FNV-1a
 
 class Identifying {
  public:
-  Identifying(const Stage& stage, const event::Progress& report)
-      : stage_(stage), report_(report), polish_(stage), none_(fit::penalised(stage.fit)) {}
+  Identifying(const BaseModel& base_model, const event::Progress& report)
+      : base_model_(base_model),
+        report_(report),
+        polish_(base_model),
+        none_(fit::penalised(base_model.fit)) {}
 
   std::vector<Judgement> run(std::vector<Hypothesis> all, const std::function<double(double)>& fit_others) {
     for (Hypothesis& h : all) {
-      reduced::Trial trial{prior_mean(stage_, h), h.free, stream_of(full_name(h))};
-      const auto& t = stage_.events.front().record.t;
+      reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h))};
+      const auto& t = base_model_.events.front().record.t;
       if (h.drawn) trial.draws = further_draws(h, h.free.size(), kSuitedDraws, t.back() - t.front());
       tried_.push_back({std::move(h), std::move(trial)});
     }
@@ -70,15 +73,15 @@ class Identifying {
   /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
   /// is skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
   void begin() {
-    if (stage_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
+    if (base_model_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
-    for (const auto& e : stage_.fit.events) states.push_back(e.state);
+    for (const auto& e : base_model_.fit.events) states.push_back(e.state);
     for (const InputKind kind : {InputKind::torque, InputKind::field}) {
       if (!(free_input(kind)->evidence > kStrongEvidence)) continue;
       const auto side = std::make_shared<const reduced::Reduction>(
-          reduced::linear_about(stage_.fit.plant, stage_.under_test(), stage_.events, polish_.free(), states,
-                                Polish::only(kind), stage_.threads),
-          stage_.events, stage_.conventions);
+          reduced::linear_about(base_model_.fit.plant, base_model_.under_test(), base_model_.events,
+                                polish_.free(), states, Polish::only(kind), base_model_.threads),
+          base_model_.events, base_model_.conventions);
       none_ = reduced::ReducedPlant(*side, kind)
                   .costs(Eigen::VectorXd::Zero(side->knots()), Eigen::VectorXd::Zero(1))[0];
       (kind == InputKind::torque ? torque_ : field_) = side;
@@ -86,10 +89,11 @@ class Identifying {
   }
   /// Returns the base model's known inferred input, or infers it.
   [[nodiscard]] std::shared_ptr<const reduced::FreeInput> free_input(InputKind kind) const {
-    const reduced::FreeInput* known = kind == InputKind::torque ? stage_.torque : stage_.field;
+    const reduced::FreeInput* known = kind == InputKind::torque ? base_model_.torque : base_model_.field;
     if (known) return {std::shared_ptr<void>(), known};
-    return std::make_shared<const reduced::FreeInput>(reduced::free_input(
-        kind, stage_.under_test(), stage_.events, polish_.free(), stage_.fit, stage_.threads));
+    return std::make_shared<const reduced::FreeInput>(
+        reduced::free_input(kind, base_model_.under_test(), base_model_.events, polish_.free(),
+                            base_model_.fit, base_model_.threads));
   }
   /// Infers torque, field voltage and both. Their evidence decides whether one input suffices.
   void infer() {
@@ -99,16 +103,18 @@ class Identifying {
     in_parallel(
         kInputs.size(),
         [&](std::size_t i) {
-          const reduced::FreeInput* known = i == 0 ? stage_.torque : i == 1 ? stage_.field : nullptr;
+          const reduced::FreeInput* known = i == 0   ? base_model_.torque
+                                            : i == 1 ? base_model_.field
+                                                     : nullptr;
           found[i] = known && known->inference
                          ? known->inference
                          : std::make_shared<const reduced::Inference>(reduced::infer(
-                               stage_.under_test(), stage_.events, polish_.free(), kInputs[i], 1));
+                               base_model_.under_test(), base_model_.events, polish_.free(), kInputs[i], 1));
         },
-        [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, stage_.threads);
+        [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
     // The better input alone; also the other one if its reduction of chi2 is similar.
-    const auto takes_off = [&](std::size_t i) { return fit::penalised(stage_.fit) - found[i]->chi2; };
+    const auto takes_off = [&](std::size_t i) { return fit::penalised(base_model_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
       if (found[i]->criterion < found[1 - i]->criterion ||
           takes_off(i) > takes_off(1 - i) - thresholds::evidence.within_reach ||
@@ -117,7 +123,7 @@ class Identifying {
   }
   void reduce(const reduced::Inference& found) {
     const auto reduction =
-        std::make_shared<const reduced::Reduction>(found, stage_.events, stage_.conventions);
+        std::make_shared<const reduced::Reduction>(found, base_model_.events, base_model_.conventions);
     if (found.inputs.torque) torque_ = reduction;
     if (found.inputs.field) field_ = reduction;
   }
@@ -134,19 +140,19 @@ class Identifying {
     in_parallel(
         tried_.size(),
         [&](std::size_t i) {
-          if (!stage_.stopped())
+          if (!base_model_.stopped())
             until_interrupted([&] {
               if (!near || nearly_fits(tried_[i])) identify(tried_[i]);
             });
         },
         [&](int done, std::size_t i) {
-          tell(stage_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
+          tell(base_model_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
                tried_[i].hypothesis.name, done, tried_.size());
         },
-        stage_.threads);
+        base_model_.threads);
   }
   [[nodiscard]] bool nearly_fits(const Identified& h) const {
-    return h.cost < thresholds::search.nearly_fits * stage_.fit.values;
+    return h.cost < thresholds::search.nearly_fits * base_model_.fit.values;
   }
   void identify(Identified& h) const {
     const Reduced& side = side_of(h);
@@ -173,7 +179,7 @@ class Identifying {
     const Identified* best = least();
     return best &&
            none_ - best->cost >
-               (stage_.with.empty() ? thresholds::evidence.accepted : thresholds::evidence.second) / 2;
+               (base_model_.with.empty() ? thresholds::evidence.accepted : thresholds::evidence.second) / 2;
   }
   /// Fits the leading hypotheses with the whole plant and returns the best; null if none can be fitted.
   [[nodiscard]] Identified* fitted_leader() {
@@ -208,9 +214,9 @@ class Identifying {
   /// Finds companions about the leader, if no effect was added before and its plant can be linearised.
   void find_companions() {
     const Identified* leader = best_fitted();
-    if (!leader || !stage_.with.empty() || stage_.stopped() || others_ < leader->cost) return;
+    if (!leader || !base_model_.with.empty() || base_model_.stopped() || others_ < leader->cost) return;
     try {
-      hypothesis::find_companions(stage_, polish_, *leader, tried_);
+      hypothesis::find_companions(base_model_, polish_, *leader, tried_);
     } catch (const InputError&) {  // runs with sensitivities take other steps, and these fail for this plant
     }
   }
@@ -253,18 +259,18 @@ class Identifying {
       if (!std::isfinite(h.cost) && !other_side) continue;
       Judgement j;
       j.hypothesis = h.hypothesis;
-      bring(stage_, j.hypothesis);
+      bring(base_model_, j.hypothesis);
       j.hypothesis.plant = h.trial.plant;
       j.companion = h.companion;
       j.companion_gain = h.companion_gain;
       if (const fit::Fit* f = h.best()) {
         std::optional<fit::Fit> known;
-        if (!std::isfinite(fit::criterion(*f))) known = with_errors(stage_, j.hypothesis, *f);
+        if (!std::isfinite(fit::criterion(*f))) known = with_errors(base_model_, j.hypothesis, *f);
         j.fit = known ? *known : *f;
-        j.gain = fit::gain(stage_.fit, j.fit,
+        j.gain = fit::gain(base_model_.fit, j.fit,
                            std::isfinite(fit::criterion(j.fit)) ? fit::criterion : fit::penalised);
       } else {
-        j.fit = stage_.fit;
+        j.fit = base_model_.fit;
         j.fitted = false;
         if (other_side) {
           j.why_not = fmt::format("a {} that is free in time explains too little",
@@ -289,18 +295,18 @@ class Identifying {
     in_parallel(
         some.size(),
         [&](std::size_t k) {
-          if (!stage_.stopped()) until_interrupted([&] { act(*some[k]); });
+          if (!base_model_.stopped()) until_interrupted([&] { act(*some[k]); });
         },
         [&](int done, std::size_t k) { tell(phase, some[k]->hypothesis.name, done, some.size()); },
-        stage_.threads);
+        base_model_.threads);
   }
   void tell(event::Phase phase, const std::string& item, int done, std::size_t total) const {
     if (report_)
-      report_(phase, item.empty() || stage_.with.empty() ? item : item + " beside " + stage_.with, done,
-              static_cast<int>(total));
+      report_(phase, item.empty() || base_model_.with.empty() ? item : item + " beside " + base_model_.with,
+              done, static_cast<int>(total));
   }
 
-  const Stage& stage_;
+  const BaseModel& base_model_;
   const event::Progress& report_;
   Polish polish_;
   std::vector<Identified> tried_;
@@ -320,19 +326,19 @@ void place_unfitted(std::vector<Judgement>& all) {
     if (j.behind > 0) j.gain = best - j.behind;
 }
 
-bool can_be_identified(const Stage& stage, const Hypothesis& h) {
-  return stage.component() == record::Component::plant && !stage.plant.machine.effect->converter &&
+bool can_be_identified(const BaseModel& base_model, const Hypothesis& h) {
+  return base_model.component() == record::Component::plant && !base_model.plant.machine.effect->converter &&
          (h.side == Side::mechanical || h.side == Side::excitation) && !h.free.empty() &&
-         h.conventions.speed_voltage == stage.conventions.speed_voltage &&
-         std::ranges::none_of(stage.events, [](const event::FitEvent& e) {
+         h.conventions.speed_voltage == base_model.conventions.speed_voltage &&
+         std::ranges::none_of(base_model.events, [](const event::FitEvent& e) {
            return e.record.breaker() != nullptr || e.record.open_circuit() || !e.record.staged.empty();
          });
 }
 
-std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
+std::vector<Judgement> identified(const BaseModel& base_model, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report) {
-  return Identifying(stage, report).run(std::move(all), fit_others);
+  return Identifying(base_model, report).run(std::move(all), fit_others);
 }
 
 }  // namespace swingbank::validate::hypothesis

@@ -11,7 +11,7 @@ namespace swingbank::validate::hypothesis {
 /// Returns whether a hypothesis on this base model can be identified alone. Its effect must act only through
 /// torque or field voltage, and the plant must be a whole synchronous machine. No record may contain a
 /// breaker operation, an open circuit or a staged test.
-bool can_be_identified(const Stage& stage, const Hypothesis& h);
+bool can_be_identified(const BaseModel& base_model, const Hypothesis& h);
 
 /// Sets the gain of hypotheses that were identified but not fitted: the best gain less their distance in chi2
 /// (Judgement::behind).
@@ -21,7 +21,7 @@ void place_unfitted(std::vector<Judgement>& all);
 /// the best one are fitted; those without any response are left out. `fit_others` fits the hypotheses that
 /// cannot be identified alone. It is called once with the lowest cost of a whole plant so far and returns the
 /// lowest cost of its fits. Hypotheses far behind these are not fitted here.
-std::vector<Judgement> identified(const Stage& stage, std::vector<Hypothesis> all,
+std::vector<Judgement> identified(const BaseModel& base_model, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report);
 

@@ -30,7 +30,7 @@ Judgement staying(const Hypothesis& h, const fit::Fit& in) {
 }
 /// Returns `h` on the base model `then`, not fitted. Start values are those of `from`, and those of `then`
 /// for its own parameters.
-Judgement begun(const Stage& then, Hypothesis h, const fit::Fit& from) {
+Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";
   j.fit.plant = h.plant;
@@ -44,30 +44,29 @@ Judgement begun(const Stage& then, Hypothesis h, const fit::Fit& from) {
 
 }  // namespace
 
-Stage after(const Stage& stage, const Judgement& j) {
-  return {stage.events, j.hypothesis.plant, j.hypothesis.conventions, stage.library,
-          j.fit,        j.hypothesis.free,  j.hypothesis.name,        stage.spread,
-          stage.threads};
+BaseModel after(const BaseModel& base_model, const Judgement& j) {
+  return {base_model.events, j.hypothesis.plant, j.hypothesis.conventions, base_model.library, j.fit,
+          j.hypothesis.free, j.hypothesis.name,  base_model.spread,        base_model.threads};
 }
 
-void bring(const Stage& stage, Hypothesis& h) {
-  h.with = stage.with;
-  for (const fit::FreeParameter& f : stage.own) {
-    h.free.push_back({sim::plant::same_parameter(h.plant, stage.plant, f.id).value(), f.spread});
-    const double value = sim::plant::parameter_value(stage.fit.plant, f.id);
+void bring(const BaseModel& base_model, Hypothesis& h) {
+  h.with = base_model.with;
+  for (const fit::FreeParameter& f : base_model.own) {
+    h.free.push_back({sim::plant::same_parameter(h.plant, base_model.plant, f.id).value(), f.spread});
+    const double value = sim::plant::parameter_value(base_model.fit.plant, f.id);
     for (auto* starts : {&h.starts, &h.further})
       for (auto& start : *starts) start.push_back(value);
   }
 }
 
-std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone) {
-  const auto all = all_hypotheses(stage.under_test(), stage.library, stage.component());
+  const auto all = all_hypotheses(base_model.under_test(), base_model.library, base_model.component());
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
   if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
   const Judgement stays = staying(*second, pair.fit);
-  const Stage then = after(stage, stays);
+  const BaseModel then = after(base_model, stays);
   std::vector<Judgement> competitors;
   for (Hypothesis& h : all_hypotheses(then.under_test(), then.library, then.component())) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
@@ -80,16 +79,16 @@ std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
   return competitors;
 }
 
-void try_begun(const Stage& stage, Judgement& j) {
+void try_begun(const BaseModel& base_model, Judgement& j) {
   if (j.fit.events.empty()) return;  // the candidate has no start
-  const auto free = free_of(j.hypothesis, stage.spread);
-  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), stage.events, free,
+  const auto free = free_of(j.hypothesis, base_model.spread);
+  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), base_model.events, free,
                             fit::continued({.lenient = true}, j.fit, free));
       f.failed.empty())
     j.fit = std::move(f);
 }
 
-Judgement crossed(const Stage& stage, const Cross& cross) {
+Judgement crossed(const BaseModel& base_model, const Cross& cross) {
   Judgement none;
   none.hypothesis.with = cross.stays;
   none.hypothesis.name = cross.joins;
@@ -98,10 +97,11 @@ Judgement crossed(const Stage& stage, const Cross& cross) {
     std::erase_if(all, [&](const Hypothesis& h) { return h.name != name; });
     return all;
   };
-  const auto first = named(all_hypotheses(stage.under_test(), stage.library, stage.component()), cross.stays);
+  const auto first =
+      named(all_hypotheses(base_model.under_test(), base_model.library, base_model.component()), cross.stays);
   if (first.empty()) return none;
   const Judgement stays = staying(first.front(), cross.stays_in->fit);
-  const Stage then = after(stage, stays);
+  const BaseModel then = after(base_model, stays);
   auto second = named(all_hypotheses(then.under_test(), then.library, then.component()), cross.joins);
   return second.empty() ? none : begun(then, std::move(second.front()), cross.joins_in->fit);
 }

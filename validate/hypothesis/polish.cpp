@@ -24,12 +24,13 @@ const fit::Fit* Identified::best() const {
   return least == fits.end() || !least->failed.empty() ? nullptr : &*least;
 }
 
-Polish::Polish(const Stage& stage) : stage_(stage), free_(fit::free_parameters(stage.plant, stage.spread)) {
-  for (const fit::FreeParameter& f : stage.own) {
+Polish::Polish(const BaseModel& base_model)
+    : base_model_(base_model), free_(fit::free_parameters(base_model.plant, base_model.spread)) {
+  for (const fit::FreeParameter& f : base_model.own) {
     std::erase_if(free_, [&](const fit::FreeParameter& known) { return known.id == f.id; });
     free_.push_back(f);
   }
-  for (const auto& f : free_) axes_.push_back(fit::make_axis(stage.plant, f));
+  for (const auto& f : free_) axes_.push_back(fit::make_axis(base_model.plant, f));
 }
 
 VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) {
@@ -43,7 +44,7 @@ VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) 
 Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const {
   Point to{reduction.inference().offset + found.plant, own_of(h, found.values),
-           reduction.states_at(stage_.events, h.input(), found.plant, found.series)};
+           reduction.states_at(base_model_.events, h.input(), found.plant, found.series)};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     double& z = to.plant[static_cast<Index>(i)];
     z = std::clamp(z, std::min(0.0, axes_[i].z(axes_[i].low)), std::max(0.0, axes_[i].z(axes_[i].high)));
@@ -55,7 +56,7 @@ Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& re
 sim::plant::Plant Polish::whole(const Identified& h, const Point& point) const {
   sim::plant::Plant plant = h.trial.plant;
   for (std::size_t i = 0; i < free_.size(); ++i)
-    if (const auto id = same_parameter(plant, stage_.plant, free_[i].id))
+    if (const auto id = same_parameter(plant, base_model_.plant, free_[i].id))
       parameter_value(plant, *id) = axes_[i].value(point.plant[static_cast<Index>(i)]);
   for (std::size_t i = 0; i < h.trial.free.size(); ++i)
     parameter_value(plant, h.trial.free[i].id) =
@@ -66,7 +67,7 @@ sim::plant::Plant Polish::whole(const Identified& h, const Point& point) const {
 std::vector<event::EventState> Polish::states_of(const Point& point) const {
   std::vector<event::EventState> all;
   for (std::size_t e = 0; e < point.states.size(); ++e)
-    all.push_back(fit::event_state(stage_.events[e], point.states[e].data()));
+    all.push_back(fit::event_state(base_model_.events[e], point.states[e].data()));
   return all;
 }
 
@@ -77,7 +78,7 @@ double Polish::prior_cost(const Identified& h, const Point& point) const {
   for (std::size_t i = 0; i < h.trial.free.size(); ++i)
     add(point.own[static_cast<Index>(i)], h.trial.free[i].spread);
   for (std::size_t e = 0; e < point.states.size(); ++e) {
-    const auto spreads = fit::state_priors(stage_.events[e]);
+    const auto spreads = fit::state_priors(base_model_.events[e]);
     for (std::size_t k = 0; k < spreads.size(); ++k) add(point.states[e][static_cast<Index>(k)], spreads[k]);
   }
   return cost;
@@ -85,10 +86,13 @@ double Polish::prior_cost(const Identified& h, const Point& point) const {
 
 Polish::Reduced Polish::linear_about(const Identified& h, const Point& point,
                                      std::span<const reduced::Change> changes) const {
-  reduced::Inference about = reduced::linear_about(whole(h, point), stage_.under_test(), stage_.events, free_,
-                                                   states_of(point), only(h.input()), 1);
-  if (!changes.empty()) add_changes(about, stage_.events, stage_.conventions, changes, stage_.threads);
-  return std::make_shared<const reduced::Reduction>(std::move(about), stage_.events, stage_.conventions);
+  reduced::Inference about =
+      reduced::linear_about(whole(h, point), base_model_.under_test(), base_model_.events, free_,
+                            states_of(point), only(h.input()), 1);
+  if (!changes.empty())
+    add_changes(about, base_model_.events, base_model_.conventions, changes, base_model_.threads);
+  return std::make_shared<const reduced::Reduction>(std::move(about), base_model_.events,
+                                                    base_model_.conventions);
 }
 
 Polish::Reduced Polish::linear_about(const Identified& h, std::span<const reduced::Change> changes) const {
@@ -97,10 +101,10 @@ Polish::Reduced Polish::linear_about(const Identified& h, std::span<const reduce
               own_of(h, fit::values_of(at.plant, h.trial.free)),
               {}};
   for (std::size_t i = 0; i < free_.size(); ++i)
-    if (const auto id = same_parameter(at.plant, stage_.plant, free_[i].id))
+    if (const auto id = same_parameter(at.plant, base_model_.plant, free_[i].id))
       point.plant[static_cast<Index>(i)] = axes_[i].z(parameter_value(at.plant, *id));
-  for (std::size_t e = 0; e < stage_.events.size(); ++e) {
-    const auto state = fit::state_of(stage_.events[e], at.events[e].state);
+  for (std::size_t e = 0; e < base_model_.events.size(); ++e) {
+    const auto state = fit::state_of(base_model_.events[e], at.events[e].state);
     point.states.push_back(Eigen::Map<const VectorXd>(state.data(), static_cast<Index>(state.size())));
   }
   return linear_about(h, point, changes);
@@ -187,11 +191,11 @@ void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) 
 
 fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptions options) const {
   Hypothesis brought = h.hypothesis;
-  bring(stage_, brought);
-  const auto free = free_of(brought, stage_.spread);
+  bring(base_model_, brought);
+  const auto free = free_of(brought, base_model_.spread);
   options.start = states_of(point);
   options.values = fit::values_of(whole(h, point), free);
-  return fit_at(stage_, {h.trial.plant, brought.conventions}, free, options);
+  return fit_at(base_model_, {h.trial.plant, brought.conventions}, free, options);
 }
 
 }  // namespace swingbank::validate::hypothesis

@@ -33,7 +33,7 @@ struct Identified {
 class Polish {
  public:
   using Reduced = std::shared_ptr<const reduced::Reduction>;
-  explicit Polish(const Stage& stage);
+  explicit Polish(const BaseModel& base_model);
 
   /// Free parameters of the base model.
   [[nodiscard]] const std::vector<fit::FreeParameter>& free() const { return free_; }
@@ -75,7 +75,7 @@ class Polish {
                                      std::span<const reduced::Change> changes = {}) const;
   [[nodiscard]] fit::Fit fit_from(const Identified& h, const Point& point, fit::FitOptions options) const;
 
-  const Stage& stage_;
+  const BaseModel& base_model_;
   std::vector<fit::FreeParameter> free_;
   std::vector<fit::Axis> axes_;  ///< axes of `free_`
 };

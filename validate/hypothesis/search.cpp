@@ -42,9 +42,9 @@ struct Candidate {
 class WholeFits {
  public:
   /// `least`: lowest cost of the hypotheses that are fitted already.
-  WholeFits(const Stage& stage, const event::Progress& report, double least)
-      : stage_(stage), report_(report), least_(least) {
-    for (const auto& e : stage.fit.events) fitted_states_.push_back(e.state);
+  WholeFits(const BaseModel& base_model, const event::Progress& report, double least)
+      : base_model_(base_model), report_(report), least_(least) {
+    for (const auto& e : base_model.fit.events) fitted_states_.push_back(e.state);
   }
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
@@ -77,7 +77,7 @@ class WholeFits {
       Judgement j;
       j.hypothesis = std::move(c.hypothesis);
       j.fit = std::move(c.fits.back());
-      j.gain = fit::gain(stage_.fit, j.fit,
+      j.gain = fit::gain(base_model_.fit, j.fit,
                          std::isfinite(fit::criterion(j.fit)) ? fit::criterion : fit::penalised);
       tried.push_back(std::move(j));
     }
@@ -88,23 +88,24 @@ class WholeFits {
   void find_starts(Candidate& c) const {
     Hypothesis& h = c.hypothesis;
     const std::size_t own = h.free.size();
-    bring(stage_, h);
+    bring(base_model_, h);
     auto draws = h.starts;
     draws.insert(draws.end(), h.further.begin(), h.further.end());
     if (h.drawn) {
-      const auto& t = stage_.events.front().record.t;
+      const auto& t = base_model_.events.front().record.t;
       for (auto& draw : further_draws(h, own, kFurtherDraws, t.back() - t.front())) {
         draw.insert(draw.end(), draws.front().begin() + static_cast<std::ptrdiff_t>(own),
                     draws.front().end());
         draws.push_back(std::move(draw));
       }
     }
-    c.prior = prior_mean(stage_, h);
-    c.free = free_of(h, stage_.spread);
+    c.prior = prior_mean(base_model_, h);
+    c.free = free_of(h, base_model_.spread);
     bool changes = false;
     const auto add_best = [&](const sim::plant::Plant& about, const std::vector<fit::EventState>& states,
                               bool submitted) {
-      const double without = chi2_of_each(std::array{about}, stage_.conventions, stage_.events, states)[0];
+      const double without =
+          chi2_of_each(std::array{about}, base_model_.conventions, base_model_.events, states)[0];
       std::vector<sim::plant::Plant> plants;
       for (const auto& draw : draws) {
         sim::plant::Plant plant = started(h, draw);
@@ -114,7 +115,7 @@ class WholeFits {
               sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(about, *id);
         plants.push_back(std::move(plant));
       }
-      const auto chi2 = chi2_of_each(plants, h.conventions, stage_.events, states);
+      const auto chi2 = chi2_of_each(plants, h.conventions, base_model_.events, states);
       for (const double left : chi2)
         changes |= std::isfinite(left) && std::abs(left - without) > thresholds::search.other_steps;
       const auto best = static_cast<std::size_t>(std::ranges::min_element(chi2) - chi2.begin());
@@ -126,18 +127,18 @@ class WholeFits {
       if (submitted && best != 0) add(0);  // the draw with the lowest chi2 may have almost no effect
       add(best);
     };
-    sim::plant::Plant plant = stage_.plant;
-    for (const fit::FreeParameter& f : stage_.own)
-      sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(stage_.fit.plant, f.id);
-    add_best(plant, std::vector<fit::EventState>(stage_.events.size()), true);
-    add_best(stage_.fit.plant, fitted_states_, false);
+    sim::plant::Plant plant = base_model_.plant;
+    for (const fit::FreeParameter& f : base_model_.own)
+      sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model_.fit.plant, f.id);
+    add_best(plant, std::vector<fit::EventState>(base_model_.events.size()), true);
+    add_best(base_model_.fit.plant, fitted_states_, false);
     if (!changes) c.starts.clear();
   }
   [[nodiscard]] fit::Fit attempt(const Candidate& c, const std::vector<double>& values,
                                  const std::vector<fit::EventState>& states, fit::FitOptions options) const {
     options.values = values;
     options.start = states;
-    return fit_at(stage_, {c.prior, c.hypothesis.conventions}, c.free, options);
+    return fit_at(base_model_, {c.prior, c.hypothesis.conventions}, c.free, options);
   }
   static void keep(Candidate& c, fit::Fit f) {
     if (f.failed.empty()) c.fits.push_back(std::move(f));
@@ -149,27 +150,27 @@ class WholeFits {
     for (const Candidate& c : candidates)
       for (const fit::Fit& f : c.fits) least = std::min(least, fit::penalised(f));
     const double needed = first() ? thresholds::evidence.accepted : thresholds::evidence.second;
-    return std::min(least + out_of_reach(), fit::penalised(stage_.fit) - needed / 2);
+    return std::min(least + out_of_reach(), fit::penalised(base_model_.fit) - needed / 2);
   }
   template <class F>
   void each(std::vector<Candidate>& candidates, event::Phase phase, F act) const {
     in_parallel(
         candidates.size(),
         [&](std::size_t i) {
-          if (!stage_.stopped()) until_interrupted([&] { act(candidates[i]); });
+          if (!base_model_.stopped()) until_interrupted([&] { act(candidates[i]); });
         },
         [&](int done, std::size_t i) {
           if (!report_) return;
           const std::string& name = candidates[i].hypothesis.name;
-          report_(phase, first() ? name : name + " beside " + stage_.with, done,
+          report_(phase, first() ? name : name + " beside " + base_model_.with, done,
                   static_cast<int>(candidates.size()));
         },
-        stage_.threads);
+        base_model_.threads);
   }
   /// Returns whether the base model is the given model.
-  [[nodiscard]] bool first() const { return stage_.with.empty(); }
+  [[nodiscard]] bool first() const { return base_model_.with.empty(); }
 
-  const Stage& stage_;
+  const BaseModel& base_model_;
   const event::Progress& report_;
   std::vector<fit::EventState> fitted_states_;
   double least_;
@@ -177,13 +178,13 @@ class WholeFits {
 
 }  // namespace
 
-fit::Fit fit_at(const Stage& stage, const sim::plant::PlantUnderTest& tested,
+fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& tested,
                 const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options) {
   const auto report = [&](const fit::Fit& f) {
-    if (stage.reached && f.failed.empty()) stage.reached(f);
+    if (base_model.reached && f.failed.empty()) base_model.reached(f);
   };
   try {
-    fit::Fit found = fit::fit(tested, stage.events, free, options);
+    fit::Fit found = fit::fit(tested, base_model.events, free, options);
     report(found);
     return found;
   } catch (const fit::InterruptedFit& ended) {
@@ -207,35 +208,35 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
   return chi2;
 }
 
-sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h) {
+sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h) {
   sim::plant::Plant plant = started(h, h.starts.front());
-  for (const fit::FreeParameter& f : stage.own) {
-    const auto id = sim::plant::same_parameter(plant, stage.plant, f.id).value();
-    sim::plant::parameter_value(plant, id) = sim::plant::parameter_value(stage.plant, f.id);
+  for (const fit::FreeParameter& f : base_model.own) {
+    const auto id = sim::plant::same_parameter(plant, base_model.plant, f.id).value();
+    sim::plant::parameter_value(plant, id) = sim::plant::parameter_value(base_model.plant, f.id);
   }
   return plant;
 }
 
-std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f) {
-  const auto free = free_of(h, stage.spread);
-  fit::Fit known = fit::fit(h.under_test(), stage.events, free,
+std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f) {
+  const auto free = free_of(h, base_model.spread);
+  fit::Fit known = fit::fit(h.under_test(), base_model.events, free,
                             fit::continued({.iterations = 0, .lenient = true}, f, free));
   if (!known.failed.empty()) return std::nullopt;
   return known;
 }
 
-void fit_alone(const Stage& stage, Judgement& j) {
-  const auto free = free_of(j.hypothesis, stage.spread);
+void fit_alone(const BaseModel& base_model, Judgement& j) {
+  const auto free = free_of(j.hypothesis, base_model.spread);
   fit::FitOptions o{.lenient = true};
-  for (const auto& e : stage.fit.events) o.start.push_back(e.state);
-  j.fit = fit_at(stage, j.hypothesis.under_test(), free, o);
+  for (const auto& e : base_model.fit.events) o.start.push_back(e.state);
+  j.fit = fit_at(base_model, j.hypothesis.under_test(), free, o);
   j.fitted = j.fit.failed.empty();
-  if (j.fitted) j.gain = fit::gain(stage.fit, j.fit, fit::criterion);
+  if (j.fitted) j.gain = fit::gain(base_model.fit, j.fit, fit::criterion);
 }
 
-void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
+void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
-  const auto free = free_of(h, stage.spread);
+  const auto free = free_of(h, base_model.spread);
   fit::FitOptions o{.lenient = true};
   for (const fit::FreeParameter& f : free) {
     const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
@@ -243,23 +244,24 @@ void try_from(const Stage& stage, const fit::Fit& other, Judgement& j) {
                           : sim::plant::parameter_value(j.fit.plant, f.id));
   }
   for (const auto& e : other.events) o.start.push_back(e.state);
-  if (fit::Fit f = fit::fit(h.under_test(), stage.events, free, o); f.failed.empty() && fit::better(f, j.fit))
+  if (fit::Fit f = fit::fit(h.under_test(), base_model.events, free, o);
+      f.failed.empty() && fit::better(f, j.fit))
     j.fit = std::move(f);
 }
 
-std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+std::vector<Judgement> try_hypotheses(const BaseModel& base_model, std::vector<Hypothesis> all,
                                       const event::Progress& report) {
-  const auto others = std::stable_partition(all.begin(), all.end(),
-                                            [&](const Hypothesis& h) { return can_be_identified(stage, h); });
+  const auto others = std::stable_partition(
+      all.begin(), all.end(), [&](const Hypothesis& h) { return can_be_identified(base_model, h); });
   const auto begin = std::make_move_iterator(all.begin()), middle = std::make_move_iterator(others),
              end = std::make_move_iterator(all.end());
   std::vector<Judgement> whole;
   const auto fit_others = [&](double least) {
-    whole = WholeFits(stage, report, least).run({middle, end});
+    whole = WholeFits(base_model, report, least).run({middle, end});
     for (const Judgement& j : whole) least = std::min(least, fit::penalised(j.fit));
     return least;
   };
-  std::vector<Judgement> tried = identified(stage, {begin, middle}, fit_others, report);
+  std::vector<Judgement> tried = identified(base_model, {begin, middle}, fit_others, report);
   std::ranges::move(whole, std::back_inserter(tried));
   place_unfitted(tried);
   std::ranges::stable_sort(tried, std::greater<>(), &Judgement::gain);

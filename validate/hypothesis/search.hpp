@@ -15,7 +15,7 @@
 namespace swingbank::validate::hypothesis {
 
 /// Base model of a search: a structure to which a hypothesis may be added.
-struct Stage {
+struct BaseModel {
   const event::WhitenedEvents& events;
   sim::plant::Plant plant;  ///< with the nominal values, the centres of the priors
   sim::Conventions conventions;
@@ -43,11 +43,11 @@ struct Stage {
 
 /// Fits the hypotheses without judging them. Returns them in descending order of evidence, without those that
 /// have no influence. `gain` is relative to the base model's fit.
-std::vector<Judgement> try_hypotheses(const Stage& stage, std::vector<Hypothesis> all,
+std::vector<Judgement> try_hypotheses(const BaseModel& base_model, std::vector<Hypothesis> all,
                                       const event::Progress& report = {});
 
-/// Calls fit::fit for a hypothesis on this base model and reports the result to Stage::reached.
-fit::Fit fit_at(const Stage& stage, const sim::plant::PlantUnderTest& tested,
+/// Calls fit::fit for a hypothesis on this base model and reports the result to BaseModel::reached.
+fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& tested,
                 const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options);
 
 /// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
@@ -58,31 +58,31 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
 
 /// Returns the plant at its prior mean: the hypothesis at its first start, and parameters of effects added
 /// before at their prior means.
-sim::plant::Plant prior_mean(const Stage& stage, const Hypothesis& h);
+sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h);
 
 /// Returns the fit of the hypothesis with standard errors, which its evidence needs; empty if they cannot be
 /// computed.
-std::optional<fit::Fit> with_errors(const Stage& stage, const Hypothesis& h, const fit::Fit& f);
+std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f);
 
 /// Fits a hypothesis that was not promising, from its start values.
-void fit_alone(const Stage& stage, Judgement& j);
+void fit_alone(const BaseModel& base_model, Judgement& j);
 
 /// Refits `j` from the end point of the fit of another structure, and keeps the better fit.
-void try_from(const Stage& stage, const fit::Fit& other, Judgement& j);
+void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j);
 
-/// Returns the base model that consists of `stage` and the hypothesis of `j`.
-Stage after(const Stage& stage, const Judgement& j);
+/// Returns the base model that consists of `base_model` and the hypothesis of `j`.
+BaseModel after(const BaseModel& base_model, const Judgement& j);
 
 /// Frees in `h` the parameters of effects added before, at their fitted values.
-void bring(const Stage& stage, Hypothesis& h);
+void bring(const BaseModel& base_model, Hypothesis& h);
 
 /// Returns the candidates for the place of a pair's first effect, with its second effect kept: all effects of
 /// the first one's slot, and the accepted hypotheses of `alone`. They are not fitted. `fit` holds the start
 /// values and states: those of the candidate as in `alone`, those of the second effect as in the pair.
-std::vector<Judgement> exchanges(const Stage& stage, const Judgement& pair,
+std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
 /// Fits a candidate of `exchanges` or `crossed` from its start. Does nothing if the candidate has no start.
-void try_begun(const Stage& stage, Judgement& j);
+void try_begun(const BaseModel& base_model, Judgement& j);
 /// Two effects that were found in two pairs, each with a partner of its own.
 struct Cross {
   std::string joins;          ///< name of the effect taken from the better pair
@@ -97,6 +97,6 @@ struct Cross {
 std::optional<Cross> best_cross(std::span<const Judgement> pairs);
 /// Returns the pair of a cross, not fitted. If one effect requires another to be present, only the names are
 /// set.
-Judgement crossed(const Stage& stage, const Cross& cross);
+Judgement crossed(const BaseModel& base_model, const Cross& cross);
 
 }  // namespace swingbank::validate::hypothesis

@@ -37,11 +37,11 @@ class HiddenExciter : public ::testing::Test {
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});
   fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
-  const Stage stage_{.events = events_,
-                     .plant = model_.plant,
-                     .conventions = model_.conventions,
-                     .library = model_.library,
-                     .fit = base_};
+  const BaseModel base_model_{.events = events_,
+                              .plant = model_.plant,
+                              .conventions = model_.conventions,
+                              .library = model_.library,
+                              .fit = base_};
 };
 
 }  // namespace swingbank::validate::hypothesis

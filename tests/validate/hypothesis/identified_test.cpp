@@ -14,13 +14,13 @@ namespace {
 class IdentifiedExciter : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<Judgement> found(const std::vector<std::string>& names) const {
-    return found(stage_, names);
+    return found(base_model_, names);
   }
-  [[nodiscard]] std::vector<Judgement> found(const Stage& stage,
+  [[nodiscard]] std::vector<Judgement> found(const BaseModel& base_model,
                                              const std::vector<std::string>& names) const {
     auto all = all_hypotheses(model_.under_test(), model_.library);
     std::erase_if(all, [&](const Hypothesis& h) { return std::ranges::count(names, h.name) == 0; });
-    return identified(stage, std::move(all), [](double least) { return least; }, {});
+    return identified(base_model, std::move(all), [](double least) { return least; }, {});
   }
   static std::vector<record::Record> records(const plant::PlantModel& model) {
     std::vector<record::Record> all;
@@ -34,11 +34,11 @@ class IdentifiedExciter : public ::testing::Test {
   const event::WhitenedEvents events_ =
       event::prepare_events(model_, records(model_), {.measured_states = false});
   const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
-  const Stage stage_{.events = events_,
-                     .plant = model_.plant,
-                     .conventions = model_.conventions,
-                     .library = model_.library,
-                     .fit = base_};
+  const BaseModel base_model_{.events = events_,
+                              .plant = model_.plant,
+                              .conventions = model_.conventions,
+                              .library = model_.library,
+                              .fit = base_};
 };
 
 TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
@@ -49,7 +49,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
   ASSERT_TRUE(best.fitted);
   EXPECT_LT(best.fit.reduced_chi2(), 1.05);
   // values of the plant that made the records
-  const auto free = free_of(best.hypothesis, stage_.spread);
+  const auto free = free_of(best.hypothesis, base_model_.spread);
   fit::FitOptions truth{.iterations = 20, .lenient = true};
   for (const auto& e : best.fit.events) truth.start.push_back(e.state);
   truth.values = fit::values_of(best.hypothesis.plant, free);
@@ -74,12 +74,12 @@ TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
     }
   const auto events = event::prepare_events(model_, wrong, {.measured_states = false});
   const fit::Fit base = fit::fit(model_.under_test(), events, {}, {.iterations = 0});
-  const Stage stage{.events = events,
-                    .plant = model_.plant,
-                    .conventions = model_.conventions,
-                    .library = model_.library,
-                    .fit = base};
-  for (const Judgement& j : found(stage, {"SEXS", "EXST1"})) {
+  const BaseModel base_model{.events = events,
+                             .plant = model_.plant,
+                             .conventions = model_.conventions,
+                             .library = model_.library,
+                             .fit = base};
+  for (const Judgement& j : found(base_model, {"SEXS", "EXST1"})) {
     EXPECT_TRUE(j.companion == "CTERROR" || j.companion == "PTERROR")
         << j.hypothesis.name << ": " << j.companion;
     EXPECT_GT(j.companion_gain, thresholds::evidence.second) << j.hypothesis.name;
@@ -88,7 +88,7 @@ TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
 
 TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
   const Judgement first = found({"SEXS"}).front();
-  const Stage then = after(stage_, first);
+  const BaseModel then = after(base_model_, first);
   auto all = all_hypotheses(then.under_test(), then.library);
   std::erase_if(all, [&](const Hypothesis& h) { return h.name != "IEEEVC" && h.name != "TGOV1"; });
   ASSERT_EQ(all.size(), 2U);

@@ -22,8 +22,8 @@ TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
   constexpr double kRa = 0.03;
   sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
   record_answer_of(truth.under_test());
-  base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, stage_.spread));
-  const auto tried = try_hypotheses(stage_, {named("PTERROR"), truth, named("IEEEVC")});
+  base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, base_model_.spread));
+  const auto tried = try_hypotheses(base_model_, {named("PTERROR"), truth, named("IEEEVC")});
   ASSERT_EQ(tried.size(), 2U);
   EXPECT_EQ(tried.front().hypothesis.name, "GENROU:Ra");
   EXPECT_GT(tried.front().gain, thresholds::evidence.accepted);
@@ -40,9 +40,9 @@ TEST_F(WholeFit, FindsARateFeedbackThatDefaultValuesLeaveOff) {
   parameter(truth.plant, "KF") = kKF;
   parameter(truth.plant, "TF") = kTF;
   record_answer_of(truth.under_test());
-  const auto alone = try_hypotheses(stage_, {exst1});
+  const auto alone = try_hypotheses(base_model_, {exst1});
   ASSERT_EQ(alone.size(), 1U);
-  const auto tried = try_hypotheses(stage_, with_left_off(exst1, alone.front().fit.plant));
+  const auto tried = try_hypotheses(base_model_, with_left_off(exst1, alone.front().fit.plant));
   ASSERT_EQ(tried.size(), 1U);
   EXPECT_EQ(tried.front().hypothesis.name, "EXST1 with KF");
   EXPECT_GT(tried.front().gain, alone.front().gain + 100);
@@ -73,7 +73,7 @@ class Exchange : public ::testing::Test {
   }
   /// `second` beside what is fitted already.
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
-    const Stage then = after(stage_, first);
+    const BaseModel then = after(base_model_, first);
     Judgement j;
     j.hypothesis = named(all_hypotheses(then.under_test(), then.library), second);
     j.fit = base_;
@@ -91,16 +91,16 @@ class Exchange : public ::testing::Test {
   [[nodiscard]] const plant::PlantModel& model() const { return example_.model; }
   const fit::ExciterExample example_{0.2};
   const fit::Fit base_ = example_.fitted({"H"}, {.iterations = 0});
-  const Stage stage_{.events = example_.events,
-                     .plant = example_.model.plant,
-                     .conventions = example_.model.conventions,
-                     .library = example_.model.library,
-                     .fit = base_};
+  const BaseModel base_model_{.events = example_.events,
+                              .plant = example_.model.plant,
+                              .conventions = example_.model.conventions,
+                              .library = example_.model.library,
+                              .fit = base_};
 };
 
 TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
-  const auto competitors = exchanges(stage_, pair, {});
+  const auto competitors = exchanges(base_model_, pair, {});
   EXPECT_THAT(names(competitors),
               testing::UnorderedElementsAre("STEPUP + DEGOV1", "STEPUP + GAST", "STEPUP + GGOV1",
                                             "STEPUP + HYGOV", "STEPUP + IEEEG1"));
@@ -123,7 +123,7 @@ TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   Judgement holds = alone("CTERROR", 0.01), does_not = alone("PTERROR", 0.01);
   holds.accepted = true;
-  const auto competitors = exchanges(stage_, pair, {holds, does_not});
+  const auto competitors = exchanges(base_model_, pair, {holds, does_not});
   EXPECT_THAT(names(competitors), Contains("STEPUP + CTERROR"));
   EXPECT_THAT(names(competitors), Not(Contains("STEPUP + PTERROR")));
   const auto found =
@@ -134,7 +134,7 @@ TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
 }
 TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
   Judgement pair = beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001);
-  EXPECT_THAT(exchanges(stage_, pair, {}), IsEmpty());
+  EXPECT_THAT(exchanges(base_model_, pair, {}), IsEmpty());
 }
 
 class Crossing : public Exchange {
@@ -176,7 +176,7 @@ TEST_F(Crossing, APairThatCannotBeFittedIsNotTriedAgain) {
 TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
   const std::vector<Judgement> pairs = {beside(alone("STEPUP", 0.07), "IEEEG1", 0.08),
                                         beside(alone("TGOV1", 0.06), "CTERROR", 0.01)};
-  const Judgement j = crossed(stage_, {"IEEEG1", &pairs[0], "CTERROR", &pairs[1], 0});
+  const Judgement j = crossed(base_model_, {"IEEEG1", &pairs[0], "CTERROR", &pairs[1], 0});
   EXPECT_EQ(full_name(j.hypothesis), "CTERROR + IEEEG1");
   EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, j.hypothesis.free.front().id), 0.08);
   const fit::FreeParameter& stays = pairs[1].hypothesis.free.front();
@@ -187,8 +187,8 @@ TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
 TEST_F(Crossing, NothingIsFittedWhereAnEffectNeedsAnother) {
   const std::vector<Judgement> pairs = {beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001),
                                         beside(alone("CTERROR", 0.01), "STEPUP", 0.07)};
-  Judgement j = crossed(stage_, {"STEPUP", &pairs[1], "TGOV1:db", &pairs[0], 0});
-  try_begun(stage_, j);
+  Judgement j = crossed(base_model_, {"STEPUP", &pairs[1], "TGOV1:db", &pairs[0], 0});
+  try_begun(base_model_, j);
   EXPECT_FALSE(j.fit.failed.empty());
   EXPECT_EQ(full_name(j.hypothesis), "TGOV1:db + STEPUP");
 }

@@ -25,42 +25,44 @@ bool unfinished(const fit::Fit& f) {
 }
 
 /// Returns the given model as a hypothesis without free parameters of its own.
-hypothesis::Hypothesis alone(const hypothesis::Stage& stage) {
+hypothesis::Hypothesis alone(const hypothesis::BaseModel& base_model) {
   hypothesis::Hypothesis h;
-  h.plant = stage.plant;
-  h.conventions = stage.conventions;
+  h.plant = base_model.plant;
+  h.conventions = base_model.conventions;
   return h;
 }
 
-fit::Fit from_extensions(const hypothesis::Stage& stage, const std::vector<hypothesis::Judgement>& ranked) {
+fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
+                         const std::vector<hypothesis::Judgement>& ranked) {
   hypothesis::Judgement base;
-  base.hypothesis = alone(stage);
-  base.fit = stage.fit;
+  base.hypothesis = alone(base_model);
+  base.fit = base_model.fit;
   for (std::size_t k = 0; k < std::min(kWaysOut, ranked.size()); ++k)
-    if (ranked[k].fitted) hypothesis::try_from(stage, ranked[k].fit, base);
+    if (ranked[k].fitted) hypothesis::try_from(base_model, ranked[k].fit, base);
   return std::move(base.fit);
 }
 /// Fits the model from the best single change of one parameter. A limit that is never reached has zero
 /// gradient.
-fit::Fit from_another_value(const hypothesis::Stage& stage) {
+fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
-  const auto free = fit::free_parameters(stage.plant, stage.spread);
+  const auto free = fit::free_parameters(base_model.plant, base_model.spread);
   std::vector<fit::EventState> states;
-  for (const auto& e : stage.fit.events) states.push_back(e.state);
+  for (const auto& e : base_model.fit.events) states.push_back(e.state);
   std::vector<sim::plant::Plant> plants;
   for (const fit::FreeParameter& f : free)
     for (const double multiple : kMultiples) {
-      plants.push_back(stage.fit.plant);
+      plants.push_back(base_model.fit.plant);
       double& value = sim::plant::parameter_value(plants.back(), f.id);
-      const auto range = sim::plant::search_range(sim::plant::parameter_record(stage.plant, f.id), value);
+      const auto range =
+          sim::plant::search_range(sim::plant::parameter_record(base_model.plant, f.id), value);
       value = std::clamp(value * multiple, range.low, range.high);
     }
-  const auto chi2 = hypothesis::chi2_of_each(plants, stage.conventions, stage.events, states);
+  const auto chi2 = hypothesis::chi2_of_each(plants, base_model.conventions, base_model.events, states);
   const auto least = std::ranges::min_element(chi2);
-  if (least == chi2.end() || !std::isfinite(*least)) return stage.fit;
-  fit::FitOptions o = fit::continued({.lenient = true}, stage.fit, free);
+  if (least == chi2.end() || !std::isfinite(*least)) return base_model.fit;
+  fit::FitOptions o = fit::continued({.lenient = true}, base_model.fit, free);
   o.values = fit::values_of(plants[static_cast<std::size_t>(least - chi2.begin())], free);
-  return fit::fit(stage.under_test(), stage.events, free, o);
+  return fit::fit(base_model.under_test(), base_model.events, free, o);
 }
 
 }  // namespace
@@ -85,19 +87,19 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
   require_fitted(d.base, model);
 }
 
-std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, const Diagnosis& d) {
+std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d) {
   const auto from = [&](const fit::Fit& f) {
-    return fit::continued({.lenient = true}, f, fit::free_parameters(stage.plant, stage.spread));
+    return fit::continued({.lenient = true}, f, fit::free_parameters(base_model.plant, base_model.spread));
   };
   const double leads = d.ranked.empty() ? 0.0 : std::max(0.0, d.ranked.front().gain);
   if (leads >= thresholds::evidence.accepted)
-    if (const fit::Fit f = from_extensions(stage, d.ranked);
-        fit::gain(stage.fit, f) > thresholds::evidence.escape * leads)
+    if (const fit::Fit f = from_extensions(base_model, d.ranked);
+        fit::gain(base_model.fit, f) > thresholds::evidence.escape * leads)
       return from(f);
   const double by_inputs = std::max(d.torque.evidence, d.field.evidence);
   if (by_inputs - leads < thresholds::evidence.accepted) return std::nullopt;
-  if (const fit::Fit f = from_another_value(stage);
-      fit::gain(stage.fit, f) - leads > thresholds::evidence.accepted)
+  if (const fit::Fit f = from_another_value(base_model);
+      fit::gain(base_model.fit, f) - leads > thresholds::evidence.accepted)
     return from(f);
   return std::nullopt;
 }

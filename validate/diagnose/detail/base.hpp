@@ -19,6 +19,6 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
 /// of starts are tried. The leading extensions may have escaped from a poor local optimum. If a free input
 /// explains more than any extension, a limit that was never reached may be wrong, because its gradient is
 /// zero.
-std::optional<fit::FitOptions> better_start(const hypothesis::Stage& stage, const Diagnosis& d);
+std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose
