@@ -174,7 +174,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   a.of.open_results(
       "add", {kModel, kDyr, kPage, kResult, kRetrained, jobs::kInterruptedModel, "add-interrupted.json"});
   a.options.calibrate.progress =
-      a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddCourse);
+      a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddPlan);
   if (a.until_adequate) {
     add::Completion c = add::add_until_adequate(model, records, a.options);
     if (!c.added.empty()) a.fitted = c.added.back().with;

@@ -317,7 +317,7 @@ int main(int argc, char** argv) {
   declare(line, a);
   if (!line.parse(argc, argv)) return line.end();
   if (a.of.model.empty()) return line.lacks("--model with --records");
-  a.options.progress = jobs::progress_line(a.sparse ? jobs::kSparseCourse : jobs::kCalibrateCourse);
+  a.options.progress = jobs::progress_line(a.sparse ? jobs::kSparsePlan : jobs::kCalibratePlan);
   a.options.events = a.of.events();
   a.options.spread = a.of.spread;
   a.options.held_out = a.of.held_out;

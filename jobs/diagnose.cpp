@@ -42,7 +42,7 @@ int run(Command& c) {
   diagnose::DiagnoseOptions options;
   options.spread = c.of.spread;
   options.events = c.of.events();
-  options.progress = jobs::progress_line(jobs::kDiagnoseCourse);
+  options.progress = jobs::progress_line(jobs::kDiagnosePlan);
   if (!jobs::quiet)
     options.told = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
   c.of.open_results("diagnose", {kPage, kResult});

@@ -17,7 +17,7 @@
 #include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/course.hpp"
+#include "jobs/progress_plan.hpp"
 #include "jobs/told_instants.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
@@ -184,15 +184,15 @@ inline void tell(const validate::plant::PlantModel& model) {
 
 /// Returns a progress callback. It updates one line if standard error is a terminal, and prints a line every
 /// ten seconds otherwise. With --quiet, returns an empty function.
-inline validate::event::Progress progress_line(const Course& course = {}) {
+inline validate::event::Progress progress_line(const ProgressPlan& plan = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
   struct State {  // copies of the function share it
-    CourseProgress at;
+    PlannedProgress at;
     Clock::time_point start = Clock::now(), said = start;
   };
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, state = std::make_shared<State>(CourseProgress(course))](
+  return [terminal, state = std::make_shared<State>(PlannedProgress(plan))](
              Phase phase, const std::string& item, int done, int total) {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - state->start).count();

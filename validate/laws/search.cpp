@@ -10,7 +10,7 @@
 
 #include "base/in_parallel.hpp"
 #include "sim/laws/law.hpp"
-#include "validate/laws/detail/course.hpp"
+#include "validate/laws/detail/progress_plan.hpp"
 #include "validate/laws/detail/text.hpp"
 #include "validate/laws/detail/traces.hpp"
 #include "validate/thresholds/thresholds.hpp"

@@ -9,7 +9,7 @@
 
 #include "sim/laws/law.hpp"
 #include "tests/validate/playin/support.hpp"
-#include "validate/laws/detail/course.hpp"
+#include "validate/laws/detail/progress_plan.hpp"
 #include "validate/laws/detail/text.hpp"
 #include "validate/playin/play_in.hpp"
 

@@ -1,4 +1,4 @@
-#include "validate/laws/detail/course.hpp"
+#include "validate/laws/detail/progress_plan.hpp"
 
 namespace swingbank::validate::laws {
 namespace {

@@ -77,17 +77,17 @@ inline std::string_view phase_words(Phase phase) {
 }
 
 /// Time interval of one phase of a command.
-struct CourseStage {
+struct PlannedPhase {
   Phase phase;
   double from, to;      ///< share of the total time at the phase's begin and end
   bool beyond = false;  ///< optional phase after an unsuccessful search; may take longer than all others
 };
 /// Sequence of a command's phases.
-using Course = std::vector<CourseStage>;
+using ProgressPlan = std::vector<PlannedPhase>;
 
 /// Phases of `diagnose`, measured on two shared cores with the four events of configs/records/record-example
 /// (28 s, including 6 s of optional phases).
-inline const Course kDiagnoseCourse = {
+inline const ProgressPlan kDiagnosePlan = {
     {Phase::base, 0, 0.01},
     {Phase::every_parameter, 0.01, 0.015},
     {Phase::parameter_subsets, 0.01, 0.015},
@@ -108,13 +108,13 @@ inline const Course kDiagnoseCourse = {
     {Phase::playing, 0.97, 1},
 };
 /// Phases of `calibrate`, measured with two of these events (5 s each).
-inline const Course kCalibrateCourse = {
+inline const ProgressPlan kCalibratePlan = {
     {Phase::model_as_it_is, 0, 0.15},  {Phase::parameter_sets, 0.15, 0.2}, {Phase::starts, 0.2, 0.62},
     {Phase::voltage_noise, 0.62, 0.8}, {Phase::fitted_model, 0.8, 0.82},   {Phase::sensitivities, 0.82, 0.95},
     {Phase::playing, 0.95, 1},
 };
 /// Phases of `add`, measured with the four events (4 s).
-inline const Course kAddCourse = {
+inline const ProgressPlan kAddPlan = {
     {Phase::model_as_it_is, 0, 0.06},    {Phase::missing_input, 0.06, 0.23},
     {Phase::quick_fits, 0.23, 0.26},     {Phase::screening, 0.23, 0.26},
     {Phase::full_fits, 0.26, 0.32},      {Phase::noise_again, 0.32, 0.42},
@@ -123,7 +123,7 @@ inline const Course kAddCourse = {
 };
 /// Phases of `calibrate --fewest`, measured with twelve events of a unit with four controls behind its
 /// transformer (480 s).
-inline const Course kSparseCourse = {
+inline const ProgressPlan kSparsePlan = {
     {Phase::every_parameter, 0, 0.12},
     {Phase::parameter_subsets, 0.12, 0.75},
     {Phase::subsets_less_one, 0.75, 0.98},
@@ -132,9 +132,9 @@ inline const Course kSparseCourse = {
 
 /// Progress of a command through its phases. The printed share never decreases, and the estimated total time
 /// never increases.
-class CourseProgress {
+class PlannedProgress {
  public:
-  explicit CourseProgress(Course course) : course_(std::move(course)) {}
+  explicit PlannedProgress(ProgressPlan plan) : plan_(std::move(plan)) {}
   /// Returns "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)" after `seconds` [s]. Omits the
   /// share for a phase that the course does not contain. Adds "round 2" to a phase that begins again.
   std::string line(Phase phase, const std::string& item, int done, int total, double seconds) {
@@ -142,11 +142,11 @@ class CourseProgress {
     const std::string what =
         fmt::format("{} ({}{} of {}{})", phase_words(phase), item.empty() ? "" : item + ", ", done, total,
                     round > 1 && phase != Phase::playing ? fmt::format(", round {}", round) : "");
-    const auto stage = std::ranges::find(course_, phase, &CourseStage::phase);
-    if (stage == course_.end()) return what;
+    const auto planned = std::ranges::find(plan_, phase, &PlannedPhase::phase);
+    if (planned == plan_.end()) return what;
     const double part = total > 0 ? static_cast<double>(done) / total : 0;
-    share_ = std::max(share_, stage->from + (stage->to - stage->from) * part);
-    beyond_ = beyond_ || stage->beyond;
+    share_ = std::max(share_, planned->from + (planned->to - planned->from) * part);
+    beyond_ = beyond_ || planned->beyond;
     const std::string share =
         beyond_ ? std::string("beyond the usual course") : fmt::format("{:.0f} % done", 100 * share_);
     return share + time_left(seconds) + ": " + what;
@@ -176,7 +176,7 @@ class CourseProgress {
 
   static constexpr double kLeastDone = 0.02;  ///< smallest share done for an estimate
   static constexpr double kMayGrow = 1.2;     ///< largest ratio of an estimate to the shortest earlier one
-  Course course_;
+  ProgressPlan plan_;
   std::map<Phase, Seen> seen_;
   double share_ = 0;
   double end_ = std::numeric_limits<double>::infinity();  ///< shortest estimate of the total time [s]
