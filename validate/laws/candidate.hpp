@@ -54,7 +54,7 @@ struct LawCandidate {
   std::vector<LawParameter> parameters;
   double explained = 0;  ///< coefficient of determination of the inferred input
   double score = 0;      ///< Bayesian information criterion of the regression; lower is better
-  std::vector<std::vector<double>> course;  ///< [event][knot] [pu]
+  std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]
 };
 
 /// Returns the deviation of the voltage that triggers a candidate's clock [pu]. It exceeds the voltage's

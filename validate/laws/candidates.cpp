@@ -38,8 +38,8 @@ std::vector<double> lagged(const std::vector<double>& t, const std::vector<doubl
   }
   return y;
 }
-Course filtered(const std::vector<LawTrace>& traces, const Form& f) {
-  Course all;
+TimeSeries filtered(const std::vector<LawTrace>& traces, const Form& f) {
+  TimeSeries all;
   for (const auto& e : traces) {
     const auto& x = e.signal[f.signal];
     if (f.filter == Filter::none) {
@@ -53,8 +53,8 @@ Course filtered(const std::vector<LawTrace>& traces, const Form& f) {
   }
   return all;
 }
-Course shaped(Course course, const Form& f) {
-  for (auto& event : course)
+TimeSeries shaped(TimeSeries time_series, const Form& f) {
+  for (auto& event : time_series)
     for (double& x : event) switch (f.shape) {
         case Shape::straight:
         case Shape::curve:
@@ -72,12 +72,12 @@ Course shaped(Course course, const Form& f) {
           x *= x;
           break;
       }
-  return course;
+  return time_series;
 }
 /// Returns hat functions of the signal at a curve's points, odd in the signal. Beyond the last point the
 /// value is constant.
-std::vector<Course> hats(const Course& course, const Form& f) {
-  std::vector<Course> all(kPoints, course);
+std::vector<TimeSeries> hats(const TimeSeries& time_series, const Form& f) {
+  std::vector<TimeSeries> all(kPoints, time_series);
   for (int k = 1; k <= kPoints; ++k) {
     const double low = point_of(f, k - 1), mid = point_of(f, k), high = k < kPoints ? point_of(f, k + 1) : 0;
     for (auto& event : all[static_cast<std::size_t>(k - 1)])
@@ -90,9 +90,9 @@ std::vector<Course> hats(const Course& course, const Form& f) {
   }
   return all;
 }
-double largest(const Course& course) {
+double largest(const TimeSeries& time_series) {
   double most = 0;
-  for (const auto& e : course)
+  for (const auto& e : time_series)
     for (const double x : e) most = std::max(most, std::abs(x));
   return most;
 }
@@ -234,12 +234,12 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
   std::map<std::tuple<std::size_t, Filter, Shape>, Best> best;
   for (std::size_t s = 0; s < kLawSignals.size(); ++s)
     for (Form form : forms_of(s)) {
-      const Course base = filtered(traces, form);
+      const TimeSeries base = filtered(traces, form);
       const double most = largest(base);
       if (!(most > 1e-9)) continue;
       const auto keep = [&](LawRegression::Answer answer) {
         Best& b = best[{s, form.filter, form.shape}];
-        if (b.answer.course.size() == 0 || answer.score < b.answer.score) b = {form, std::move(answer)};
+        if (b.answer.time_series.size() == 0 || answer.score < b.answer.score) b = {form, std::move(answer)};
       };
       const int filter = form.filter == Filter::none ? 0 : 1;
       const auto consider = [&](Shape shape, double part) {
@@ -259,7 +259,7 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
           form.width = part * most;
           form.ratio = ratio;
           std::vector<Eigen::VectorXd> columns;
-          for (const Course& hat : hats(base, form)) columns.push_back(regression.at_knots(hat));
+          for (const TimeSeries& hat : hats(base, form)) columns.push_back(regression.at_knots(hat));
           keep(regression.fit(columns, kPoints));
         }
     }
@@ -269,7 +269,7 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
     LawCandidate law = candidate_of(kind, b.form, b.answer.factors);
     law.explained = b.answer.explained;
     law.score = b.answer.score;
-    law.course = regression.by_event(b.answer.course);
+    law.time_series = regression.by_event(b.answer.time_series);
     all.push_back(std::move(law));
   }
   const auto coarse = thinned(traces);

@@ -40,12 +40,12 @@ LawRegression::LawRegression(const std::vector<LawTrace>& traces) : traces_(trac
   count_ = static_cast<double>((weight_.array() > 0).count()) / 2;
 }
 
-Eigen::VectorXd LawRegression::at_knots(const Course& course) const {
+Eigen::VectorXd LawRegression::at_knots(const TimeSeries& time_series) const {
   Eigen::VectorXd column = Eigen::VectorXd::Zero(target_.size());
   Eigen::Index first = 0;
   for (std::size_t e = 0; e < traces_.size(); ++e) {
     for (const Weight& w : hats_[e])
-      column[first + w.knot] += w.share * course[e][static_cast<std::size_t>(w.sample)];
+      column[first + w.knot] += w.share * time_series[e][static_cast<std::size_t>(w.sample)];
     first += static_cast<Eigen::Index>(traces_[e].knots.size());
   }
   return column;
@@ -61,13 +61,13 @@ LawRegression::Answer LawRegression::fit(const std::vector<Eigen::VectorXd>& col
     right[i] = w.dot(target_);
   }
   Answer a;
-  a.course = Eigen::VectorXd::Zero(target_.size());
+  a.time_series = Eigen::VectorXd::Zero(target_.size());
   a.factors = Eigen::VectorXd::Zero(n);
   if (normal.diagonal().minCoeff() > 1e-18 * static_cast<double>(target_.size()))
     a.factors = normal.ldlt().solve(right);
   if (!a.factors.allFinite()) a.factors.setZero();
-  for (Eigen::Index i = 0; i < n; ++i) a.course += a.factors[i] * columns[static_cast<std::size_t>(i)];
-  const double rest = weight_.cwiseProduct(target_ - a.course).squaredNorm();
+  for (Eigen::Index i = 0; i < n; ++i) a.time_series += a.factors[i] * columns[static_cast<std::size_t>(i)];
+  const double rest = weight_.cwiseProduct(target_ - a.time_series).squaredNorm();
   a.explained = total_ > 0 ? 1 - rest / total_ : 0;
   a.score = count_ * std::log(std::max(1e-6, 1 - a.explained)) +
             static_cast<double>(n + numbers) * std::log(count_);

@@ -8,7 +8,7 @@
 namespace swingbank::validate::laws {
 
 /// Time series at the samples of the events: [event][sample].
-using Course = std::vector<std::vector<double>>;
+using TimeSeries = std::vector<std::vector<double>>;
 
 /// Regression of the inferred input of all events on candidate time series.
 class LawRegression {
@@ -18,22 +18,22 @@ class LawRegression {
   struct Answer {
     Eigen::VectorXd factors;
     double explained = 0, score = 0;
-    Eigen::VectorXd course;  ///< at all knots, event after event
+    Eigen::VectorXd time_series;  ///< at all knots, event after event
   };
   /// Regresses the input on `columns`. `numbers`: number of parameters selected for the columns, besides
   /// their factors.
   [[nodiscard]] Answer fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
   /// Returns a time series at the knots: its mean over each knot's hat function.
-  [[nodiscard]] Eigen::VectorXd at_knots(const Course& course) const;
+  [[nodiscard]] Eigen::VectorXd at_knots(const TimeSeries& time_series) const;
   /// The same for a function of trace and time.
   template <class F>
   [[nodiscard]] Eigen::VectorXd at_knots_of(F f) const {
-    Course course(traces_.size());
+    TimeSeries time_series(traces_.size());
     for (std::size_t e = 0; e < traces_.size(); ++e) {
-      course[e].reserve(traces_[e].t.size());
-      for (const double t : traces_[e].t) course[e].push_back(f(traces_[e], t));
+      time_series[e].reserve(traces_[e].t.size());
+      for (const double t : traces_[e].t) time_series[e].push_back(f(traces_[e], t));
     }
-    return at_knots(course);
+    return at_knots(time_series);
   }
   /// [event][knot]
   [[nodiscard]] std::vector<std::vector<double>> by_event(const Eigen::VectorXd& all) const;

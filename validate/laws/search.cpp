@@ -161,8 +161,8 @@ class Searcher {
     std::vector<double> fitted;
     for (const auto& p : f.law.parameters) fitted.push_back(p.value);
     const LawRegression regression(traces);
-    f.law.course =
-        regression.by_event(regression.at_knots(law_course(*f.effect, fitted, f.law.kind, traces)));
+    f.law.time_series =
+        regression.by_event(regression.at_knots(law_time_series(*f.effect, fitted, f.law.kind, traces)));
     f.words = law_words(f.law, values);
     f.judgement.hypothesis.what = f.words;
     f.toml = law_toml(f.law, source_of(case_.trial.events));

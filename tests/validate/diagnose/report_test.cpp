@@ -203,7 +203,7 @@ Diagnosis with_laws() {
     trace.knots = {0, 2, 4};
     trace.input = {0, 0.5, 0.25};
     d.laws.traces.push_back(trace);
-    found.law.course.push_back({0, 0.375, 0.125});
+    found.law.time_series.push_back({0, 0.375, 0.125});
   }
   found.law.family = "lagged";
   found.law.signal = "V";

@@ -113,12 +113,13 @@ TEST(LawText, EveryFileDoesWhatWasRanked) {
       std::vector<double> values;
       for (const auto& p : law.parameters) values.push_back(p.value);
       EXPECT_EQ(effect.default_parameters(), values);
-      const auto course = regression.by_event(regression.at_knots(law_course(effect, values, kind, traces)));
+      const auto time_series =
+          regression.by_event(regression.at_knots(law_time_series(effect, values, kind, traces)));
       double difference = 0, size = 0;
-      for (std::size_t e = 0; e < course.size(); ++e)
-        for (std::size_t k = 0; k < course[e].size(); ++k) {
-          difference += std::pow(course[e][k] - law.course[e][k], 2);
-          size += std::pow(law.course[e][k], 2);
+      for (std::size_t e = 0; e < time_series.size(); ++e)
+        for (std::size_t k = 0; k < time_series[e].size(); ++k) {
+          difference += std::pow(time_series[e][k] - law.time_series[e][k], 2);
+          size += std::pow(law.time_series[e][k], 2);
         }
       // Ranking samples 20 times a second and jumps where the file has an edge; a trigger takes some 10 ms.
       // Of a sawtooth above 1 Hz, whose every jump is smeared so, most of a tenth of the square may differ.

@@ -24,9 +24,9 @@ void add_scatters(const Diagnosis& d, report::Page& page) {
   const laws::LawRegression regression(s.traces);
   std::vector<report::Scatter> all;
   for (std::size_t signal = 0; signal < laws::kLawSignals.size(); ++signal) {
-    laws::Course course;
-    for (const auto& t : s.traces) course.push_back(t.signal[signal]);
-    const auto x = regression.by_event(regression.at_knots(course));
+    laws::TimeSeries time_series;
+    for (const auto& t : s.traces) time_series.push_back(t.signal[signal]);
+    const auto x = regression.by_event(regression.at_knots(time_series));
     report::Scatter plot{std::string(laws::kLawSignals[signal].expression),
                          std::string(laws::kLawSignals[signal].expression) + " [pu]",
                          input_name(s) + " [pu]",
@@ -35,19 +35,19 @@ void add_scatters(const Diagnosis& d, report::Page& page) {
     for (std::size_t e = 0; e < s.traces.size(); ++e)
       for (std::size_t k = 0; k < x[e].size(); ++k) {
         plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
-        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->law.course[e][k]);
+        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->law.time_series[e][k]);
       }
     all.push_back(std::move(plot));
   }
   page.scatters(all);
 }
-void add_courses(const Diagnosis& d, report::Page& page) {
+void add_time_series(const Diagnosis& d, report::Page& page) {
   const laws::LawSearch& s = d.laws;
   for (std::size_t e = 0; e < s.traces.size(); ++e) {
     const std::string& name = d.events[e].record.name;
     report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " law", s.traces[e].knots, {}, {}};
     c.series.push_back({"inferred", kInferred, false, s.traces[e].input});
-    if (drawn(d)) c.series.push_back({"law", kLaw, false, drawn(d)->law.course[e]});
+    if (drawn(d)) c.series.push_back({"law", kLaw, false, drawn(d)->law.time_series[e]});
     page.curves(c);
   }
 }
@@ -98,7 +98,7 @@ void laws_on_page(const Diagnosis& d, report::Page& page) {
     page.note(fmt::format("Found: {}.", f->words));
   else
     page.note("No law predicts unseen events: none is offered.");
-  add_courses(d, page);
+  add_time_series(d, page);
   add_scatters(d, page);
   report::Table table{
       "", {"law", "share of the input", "evidence", "error left", "unseen events", "judged", "what"}, {}};

@@ -20,12 +20,12 @@ class Runner {
     effect.get<double>().control.steady(effect.law.get(), p.data(), c_.data(), rest, x_.data());
   }
   std::vector<double> run() {
-    std::vector<double> course;
+    std::vector<double> time_series;
     for (std::size_t k = 0; k < trace_.t.size(); ++k) {
       if (k > 0) step(k - 1);
-      course.push_back(output(signals(k, 0), x_, nullptr));
+      time_series.push_back(output(signals(k, 0), x_, nullptr));
     }
-    return course;
+    return time_series;
   }
 
  private:
@@ -76,9 +76,9 @@ class Runner {
 
 }  // namespace
 
-Course law_course(const sim::Effect& effect, const std::vector<double>& parameters, fit::InputKind kind,
-                  const std::vector<LawTrace>& traces) {
-  Course all;
+TimeSeries law_time_series(const sim::Effect& effect, const std::vector<double>& parameters,
+                           fit::InputKind kind, const std::vector<LawTrace>& traces) {
+  TimeSeries all;
   for (const LawTrace& trace : traces) all.push_back(Runner(effect, parameters, kind, trace).run());
   return all;
 }

@@ -41,41 +41,42 @@ const std::vector<double> kLengths = {0.2, 0.3, 0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8
 
 void add_transients(std::vector<LawShape>& all) {
   all.push_back({.family = "step",
-                 .course = [](double tau, double) { return edge(tau); },
+                 .time_series = [](double tau, double) { return edge(tau); },
                  .value = kBegins,
                  .words = "a step of {A} that begins {begin}"});
   all.push_back({.family = "pulse",
-                 .course = [](double tau, double b) { return edge(tau) - edge(tau - b); },
+                 .time_series = [](double tau, double b) { return edge(tau) - edge(tau - b); },
                  .grid = kLengths,
                  .second = time("length", "how long it lasts"),
                  .value = fmt::format("({} - clamp((tau - length) / {:g}, 0, 1))", kBegins, kRise),
                  .words = "a pulse of {A} that begins {begin} and lasts {length}"});
   all.push_back({.family = "ramp",
-                 .course = [](double tau, double b) { return std::clamp(tau / b, 0.0, 1.0); },
+                 .time_series = [](double tau, double b) { return std::clamp(tau / b, 0.0, 1.0); },
                  .grid = kLengths,
                  .second = time("length", "how long it rises"),
                  .value = "clamp(tau / length, 0, 1)",
                  .words = "a ramp to {A} that begins {begin} and takes {length}"});
-  all.push_back({.family = "decaying",
-                 .course = [](double tau, double b) { return edge(tau) * std::exp(-std::max(0.0, tau) / b); },
-                 .grid = kLengths,
-                 .second = time("T", "time constant of the decay"),
-                 .value = kBegins + " * exp(-max(tau, 0) / T)",
-                 .words = "a pulse of {A} that begins {begin} and decays with {T}"});
+  all.push_back(
+      {.family = "decaying",
+       .time_series = [](double tau, double b) { return edge(tau) * std::exp(-std::max(0.0, tau) / b); },
+       .grid = kLengths,
+       .second = time("T", "time constant of the decay"),
+       .value = kBegins + " * exp(-max(tau, 0) / T)",
+       .words = "a pulse of {A} that begins {begin} and decays with {T}"});
 }
 void add_oscillations(std::vector<LawShape>& all, const std::vector<double>& grid) {
   const LawParameter f{"f", "Hz", 0, 0.01, 30, false, "frequency"};
   all.push_back(
       {.kind = LawShape::Kind::sine,
        .family = "periodic",
-       .course = [](double tau, double) { return edge(tau); },
+       .time_series = [](double tau, double) { return edge(tau); },
        .grid = grid,
        .second = f,
        .value = kBegins + " * sin(2 * pi * f * turned + phase)",
        .words = "an oscillation of amplitude {A} at {f} that begins {begin} (phase {phase} at {centre})"});
   all.push_back({.kind = LawShape::Kind::wave,
                  .family = "periodic, sawtooth",
-                 .course = [](double tau, double b) { return edge(tau) * sawtooth(b * tau); },
+                 .time_series = [](double tau, double b) { return edge(tau) * sawtooth(b * tau); },
                  .grid = grid,
                  .second = f,
                  .value = kBegins + " * wave",
@@ -83,7 +84,7 @@ void add_oscillations(std::vector<LawShape>& all, const std::vector<double>& gri
                  .words = "a sawtooth of amplitude {A} at {f} that begins {begin}"});
   all.push_back({.kind = LawShape::Kind::wave,
                  .family = "periodic, square",
-                 .course = [](double tau, double b) { return edge(tau) * square(b * tau); },
+                 .time_series = [](double tau, double b) { return edge(tau) * square(b * tau); },
                  .grid = grid,
                  .second = f,
                  .value = kBegins + " * wave",

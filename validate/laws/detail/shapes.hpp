@@ -14,7 +14,7 @@ struct LawShape {
   Kind kind = Kind::once;
   std::string family;
   /// Output [-] at time tau since the start; b: second parameter.
-  std::function<double(double tau, double b)> course;
+  std::function<double(double tau, double b)> time_series;
   std::vector<double> grid = {};  ///< values of b; empty: no second parameter
   LawParameter second = {};
   std::string value;         ///< expression of the TOML file; tau is the time since the start

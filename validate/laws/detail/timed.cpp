@@ -52,21 +52,21 @@ class Timed {
   };
   [[nodiscard]] LawRegression::Answer answer_of(const LawShape& shape, const Clock& clock, double begin,
                                                 double b) const {
-    const auto column = [&](const auto& course) {
+    const auto column = [&](const auto& time_series) {
       return regression_.at_knots_of([&](const LawTrace& e, double t) {
         const double tau = t - begin - (clock.triggered ? e.trigger : 0.0);
         if (!(tau > 0)) return 0.0;  // also if the event has no trigger (NaN)
-        return (clock.scaled ? e.rest : 1.0) * course(tau);
+        return (clock.scaled ? e.rest : 1.0) * time_series(tau);
       });
     };
     std::vector<Eigen::VectorXd> columns;
     if (shape.kind == Kind::sine) {
-      columns.push_back(
-          column([&](double tau) { return shape.course(tau, b) * std::sin(constants::turn * b * tau); }));
-      columns.push_back(
-          column([&](double tau) { return shape.course(tau, b) * std::cos(constants::turn * b * tau); }));
+      columns.push_back(column(
+          [&](double tau) { return shape.time_series(tau, b) * std::sin(constants::turn * b * tau); }));
+      columns.push_back(column(
+          [&](double tau) { return shape.time_series(tau, b) * std::cos(constants::turn * b * tau); }));
     } else {
-      columns.push_back(column([&](double tau) { return shape.course(tau, b); }));
+      columns.push_back(column([&](double tau) { return shape.time_series(tau, b); }));
     }
     return regression_.fit(columns, shape.grid.empty() ? 1 : 2);
   }
@@ -130,7 +130,7 @@ class Timed {
               fmt::format("{{A}} × the {} before the event", torque ? "active power" : "field voltage"));
     law.explained = at.answer.explained;
     law.score = at.answer.score;
-    law.course = regression_.by_event(at.answer.course);
+    law.time_series = regression_.by_event(at.answer.time_series);
     return law;
   }
   /// Adds the start time as a parameter, or as a constant if it is not determined.
