@@ -68,15 +68,15 @@ void hide(const std::string& kind, double size, second::Setup& s, blind::cases::
   } else if (kind == "CTERROR") {
     s.ct_error = std::polar(1.0, 0.1 * size);
   } else if (kind == "sawtooth") {
-    s.odd = second::sawtooth(0.1 * size, d.uniform(0.2, 0.8), d.uniform(2.0, 4.0), 20.0);
+    s.unlisted = second::sawtooth(0.1 * size, d.uniform(0.2, 0.8), d.uniform(2.0, 4.0), 20.0);
   } else if (kind == "fieldloss") {
-    s.odd = second::field_loss(0.4 * size, d.uniform(3.0, 8.0));
+    s.unlisted = second::field_loss(0.4 * size, d.uniform(3.0, 8.0));
   } else if (kind == "limitcycle") {
-    s.odd = second::limit_cycle(size, d.uniform(0.3, 0.8), 1.0);
+    s.unlisted = second::limit_cycle(size, d.uniform(0.3, 0.8), 1.0);
   } else if (kind == "stickslip") {
-    s.odd = second::stick_slip(0.05 * size, 0.001);
+    s.unlisted = second::stick_slip(0.05 * size, 0.001);
   } else if (kind == "randomwalk") {
-    s.odd = second::random_walk(0.03 * size, 0.4, 2.3, 20.0, static_cast<unsigned>(d.bits()));
+    s.unlisted = second::random_walk(0.03 * size, 0.4, 2.3, 20.0, static_cast<unsigned>(d.bits()));
   }
 }
 const std::vector<std::string> kKinds = {"SEXS",       "TGOV1",     "saturation", "IEEEST",

@@ -190,7 +190,7 @@ TEST(SecondWriting, CurrentTransformerErrorAgrees) {
 
 TEST(SecondWriting, SawtoothIsWhatItSays) {
   second::Setup s = base();
-  s.odd = second::sawtooth(0.05, 0.5, 1.9, 8.0);
+  s.unlisted = second::sawtooth(0.05, 0.5, 1.9, 8.0);
   const auto out = second::simulate(s, 8.0, 240.0);
   // 1.9 s + 0.5 s is a quarter of the period of 2 s: -A + 2 A / 4; at 4.2 s fifteen hundredths: -A + 0.3 A.
   EXPECT_NEAR(out.Pm[576] - out.Pm[0], -0.025, 1e-9);

@@ -9,46 +9,46 @@
 namespace swingbank::blind_second {
 
 /// Rises evenly from -A to A, falls at once.
-inline OddDrive sawtooth(double A, double hz, double start, double until) {
-  OddDrive d;
+inline UnlistedDrive sawtooth(double A, double hz, double start, double until) {
+  UnlistedDrive d;
   for (double t = start; t < until; t += 1 / hz) d.instants.push_back(t);
-  d.torque = [=](double t, double within, double, const OddDrive::Memory&) {
+  d.torque = [=](double t, double within, double, const UnlistedDrive::Memory&) {
     if (within < start) return 0.0;
     const double tooth = std::floor((within - start) * hz);
     return A * (2 * ((t - start) * hz - tooth) - 1);
   };
   return d;
 }
-inline OddDrive field_loss(double part, double start) {
-  OddDrive d;
+inline UnlistedDrive field_loss(double part, double start) {
+  UnlistedDrive d;
   d.instants = {start};
-  d.field = [=](double within, double Efd, const OddDrive::Memory&) {
+  d.field = [=](double within, double Efd, const UnlistedDrive::Memory&) {
     return within < start ? Efd : Efd * (1 - part);
   };
   return d;
 }
 /// Van der Pol's oscillator on Efd, kicked by the voltage's deviation.
-inline OddDrive limit_cycle(double A, double hz, double growth) {
-  OddDrive d;
-  d.rates = [=](double dV, const OddDrive::Memory& m) {
+inline UnlistedDrive limit_cycle(double A, double hz, double growth) {
+  UnlistedDrive d;
+  d.rates = [=](double dV, const UnlistedDrive::Memory& m) {
     const double w = 2 * kPi * hz;
-    return OddDrive::Memory{w * m[1], w * (growth * (1 - m[0] * m[0]) * m[1] - m[0]) - 20 * dV};
+    return UnlistedDrive::Memory{w * m[1], w * (growth * (1 - m[0] * m[0]) * m[1] - m[0]) - 20 * dV};
   };
-  d.field = [=](double, double Efd, const OddDrive::Memory& m) { return Efd + A * m[0]; };
+  d.field = [=](double, double Efd, const UnlistedDrive::Memory& m) { return Efd + A * m[0]; };
   return d;
 }
 /// Friction that is twice as large while the shaft hardly moves.
-inline OddDrive stick_slip(double A, double loose) {
-  OddDrive d;
-  d.torque = [=](double, double, double w, const OddDrive::Memory&) {
+inline UnlistedDrive stick_slip(double A, double loose) {
+  UnlistedDrive d;
+  d.torque = [=](double, double, double w, const UnlistedDrive::Memory&) {
     const double sticking = 1 / (1 + w * w / (loose * loose));
     return -A * w / std::hypot(w, 1e-4) * (1 + sticking);
   };
   return d;
 }
 /// Normal increments, straight between knots `step` apart.
-inline OddDrive random_walk(double A, double step, double start, double until, unsigned seed) {
-  OddDrive d;
+inline UnlistedDrive random_walk(double A, double step, double start, double until, unsigned seed) {
+  UnlistedDrive d;
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   std::vector<double> knots{0.0};
@@ -56,7 +56,7 @@ inline OddDrive random_walk(double A, double step, double start, double until, u
     d.instants.push_back(t);
     knots.push_back(knots.back() + A * normal(engine));
   }
-  d.torque = [=](double t, double within, double, const OddDrive::Memory&) {
+  d.torque = [=](double t, double within, double, const UnlistedDrive::Memory&) {
     if (within < start) return 0.0;
     const auto k = static_cast<std::size_t>((within - start) / step);
     if (k + 1 >= knots.size()) return knots.back();

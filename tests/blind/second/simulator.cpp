@@ -14,15 +14,15 @@ struct State {
   Sexs::State exciter;
   Tgov1::State governor;
   Ieeest::State stabiliser;
-  OddDrive::Memory odd{};
+  UnlistedDrive::Memory unlisted{};
 };
 Vector pack(const State& s) {
   const auto& r = s.rotor;
   const auto& p = s.stabiliser;
   return {
       r.delta,           r.w, r.Eq1, r.Ed1, r.psi1, r.psi2, s.exciter.lag, s.exciter.Efd, s.governor.valve,
-      s.governor.reheat, p.a, p.da,  p.b,   p.db,   p.lag1, p.lag2,        p.wash,        s.odd[0],
-      s.odd[1]};
+      s.governor.reheat, p.a, p.da,  p.b,   p.db,   p.lag1, p.lag2,        p.wash,        s.unlisted[0],
+      s.unlisted[1]};
 }
 State unpack(const Vector& v) {
   return {{v[0], v[1], v[2], v[3], v[4], v[5]},
@@ -45,7 +45,7 @@ class Simulation {
   [[nodiscard]] Vector start() const { return pack(start_); }
   /// When anything jumps.
   [[nodiscard]] std::vector<double> jumps() const {
-    std::vector<double> all = s_.odd.instants;
+    std::vector<double> all = s_.unlisted.instants;
     for (const Stretch& g : stretch_) all.push_back(g.start);
     all.push_back(s_.dip.start);
     std::ranges::sort(all);
@@ -60,7 +60,7 @@ class Simulation {
     if (s_.exciter) r.exciter = s_.exciter->rates(x.exciter, std::abs(terminal_), Vs_);
     if (s_.governor) r.governor = s_.governor->rates(x.governor, x.rotor.w);
     if (s_.stabiliser) r.stabiliser = s_.stabiliser->rates(x.stabiliser, x.rotor.w);
-    if (s_.odd.rates) r.odd = s_.odd.rates(std::abs(terminal_) - V0_, x.odd);
+    if (s_.unlisted.rates) r.unlisted = s_.unlisted.rates(std::abs(terminal_) - V0_, x.unlisted);
     return pack(r);
   }
   void clamp(Vector& v) const {
@@ -102,8 +102,8 @@ class Simulation {
     Vs_ = s_.stabiliser ? s_.stabiliser->output(x.stabiliser) : 0.0;
     Efd_now_ = s_.exciter ? s_.exciter->output(x.exciter) : Efd_;
     Pm_now_ = s_.governor ? s_.governor->output(x.governor, x.rotor.w) : Pm_;
-    if (s_.odd.torque) Pm_now_ += s_.odd.torque(t, within, x.rotor.w, x.odd);
-    if (s_.odd.field) Efd_now_ = s_.odd.field(within, Efd_now_, x.odd);
+    if (s_.unlisted.torque) Pm_now_ += s_.unlisted.torque(t, within, x.rotor.w, x.unlisted);
+    if (s_.unlisted.field) Efd_now_ = s_.unlisted.field(within, Efd_now_, x.unlisted);
   }
 
   Setup s_;

@@ -24,7 +24,7 @@ struct FrequencyDip {
 
 /// A drive that no list knows; `memory` are two states of its own, at 0 before the event. `within` lies on
 /// the same side of every jump as the step that is made.
-struct OddDrive {
+struct UnlistedDrive {
   using Memory = std::array<double, 2>;
   /// What is added to the mechanical power [pu].
   std::function<double(double t, double within, double w, const Memory&)> torque;
@@ -44,7 +44,7 @@ struct Setup {
   std::optional<Ieeest> stabiliser;
   Phasor transformer{};   ///< impedance of a step-up transformer of ratio 1 [pu on the machine's base]
   Phasor ct_error{1, 0};  ///< what the current transformers make of a current of 1
-  OddDrive odd;
+  UnlistedDrive unlisted;
   std::vector<Stretch> grid;  ///< the first one starts at 0; its source is set so that it holds P, Q, V
   FrequencyDip dip;
 };

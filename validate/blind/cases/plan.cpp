@@ -26,9 +26,10 @@ std::vector<const BlindKind*> of(const BlindConfig& config, bool listed) {
 /// Deals kinds out in turn, each class in an order of its own drawn from the seed.
 class Dealer {
  public:
-  Dealer(const BlindConfig& config, BlindDraw& draw) : listed_(of(config, true)), odd_(of(config, false)) {
+  Dealer(const BlindConfig& config, BlindDraw& draw)
+      : listed_(of(config, true)), unlisted_(of(config, false)) {
     shuffle(listed_, draw);
-    shuffle(odd_, draw);
+    shuffle(unlisted_, draw);
     for (const auto* a : listed_)
       for (const auto* b : listed_)
         if (a < b && a->side != b->side) pairs_.push_back({a, b});
@@ -37,7 +38,7 @@ class Dealer {
   Hidden next(const std::string& word) {
     if (word == "none") return {};
     if (word == "listed") return {turn(listed_, n_listed_, word)};
-    if (word == "odd") return {turn(odd_, n_odd_, word)};
+    if (word == "odd") return {turn(unlisted_, n_unlisted_, word)};
     return turn(pairs_, n_pairs_, word);
   }
   template <class T>
@@ -53,9 +54,9 @@ class Dealer {
                         "add some, or choose other kinds"});
     return list[count++ % list.size()];
   }
-  std::vector<const BlindKind*> listed_, odd_;
+  std::vector<const BlindKind*> listed_, unlisted_;
   std::vector<Hidden> pairs_;
-  std::size_t n_listed_ = 0, n_odd_ = 0, n_pairs_ = 0;
+  std::size_t n_listed_ = 0, n_unlisted_ = 0, n_pairs_ = 0;
 };
 
 bool is_class(const std::string& word) {

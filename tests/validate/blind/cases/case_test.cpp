@@ -317,29 +317,29 @@ TEST(BlindRecord, FilterOfClassMIsAsLongAsTheStandardSays) {
 }
 
 TEST(BlindEffects, OddOnesAreInNoList) {
-  EXPECT_GE(odd_effects().size(), 5U);
-  for (const auto& odd : odd_effects()) {
-    EXPECT_EQ(sim::library::compiled().find(odd.name), nullptr) << odd.name;
-    EXPECT_EQ(blind_effect(std::string(odd.name)), &odd);
+  EXPECT_GE(unlisted_effects().size(), 5U);
+  for (const auto& unlisted : unlisted_effects()) {
+    EXPECT_EQ(sim::library::compiled().find(unlisted.name), nullptr) << unlisted.name;
+    EXPECT_EQ(blind_effect(std::string(unlisted.name)), &unlisted);
   }
 }
 
 TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/cases.toml"));
   const BlindPlan plan = plan_blind(config, {}, 500, 4, 0);
-  int none = 0, listed = 0, odd = 0, pairs = 0, first_none = 0;
+  int none = 0, listed = 0, unlisted = 0, pairs = 0, first_none = 0;
   std::set<std::string> kinds;
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
     const auto& hidden = plan.cases[k].hidden;
     none += hidden.empty() ? 1 : 0;
     if (k < 100) first_none += hidden.empty() ? 1 : 0;
     pairs += hidden.size() == 2 ? 1 : 0;
-    if (hidden.size() == 1) ++(hidden[0]->listed ? listed : odd);
+    if (hidden.size() == 1) ++(hidden[0]->listed ? listed : unlisted);
     if (hidden.size() == 1 && hidden[0]->listed) kinds.insert(hidden[0]->name);
   }
   EXPECT_EQ(none, 200);
   EXPECT_EQ(listed, 200);
-  EXPECT_EQ(odd, 60);
+  EXPECT_EQ(unlisted, 60);
   EXPECT_EQ(pairs, 40);
   EXPECT_GE(kinds.size(), 20U);
   EXPECT_NEAR(first_none, 40, 20);  // shuffled: four standard deviations of a draw of 100

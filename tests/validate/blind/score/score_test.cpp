@@ -94,14 +94,14 @@ TEST_F(BlindScoring, CountsEachRate) {
 }
 
 TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
-  const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, odd{"sawtooth", "mechanical", "ODD", 3, false};
+  const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, unlisted{"sawtooth", "mechanical", "ODD", 3, false};
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1}, false, {"30/s", "class M"});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 1}, false, {"30/s"});
   add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1}, false,
       {"30/s"});  // below 2 limits
   add({}, {"adequate", {}, {}, "none", 1}, false, {"30/s"});
-  add({odd}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
-  add({sexs, odd}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // as outside the list
+  add({unlisted}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
+  add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // as outside the list
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1});
   const BlindScore s = score();
   ASSERT_EQ(s.by_condition.size(), 2U);

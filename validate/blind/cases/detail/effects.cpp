@@ -6,8 +6,8 @@
 namespace swingbank::validate::blind::cases {
 
 const sim::Effect* blind_effect(const std::string& name) {
-  for (const auto& odd : odd_effects())
-    if (odd.name == name) return &odd;
+  for (const auto& unlisted : unlisted_effects())
+    if (unlisted.name == name) return &unlisted;
   return sim::library::compiled().find(name);
 }
 

@@ -9,7 +9,7 @@
 namespace swingbank::validate::blind::cases {
 
 /// Unlisted effects.
-std::span<const sim::Effect> odd_effects();
+std::span<const sim::Effect> unlisted_effects();
 /// Returns the compiled or unlisted effect of that name; nullptr: none.
 const sim::Effect* blind_effect(const std::string& name);
 /// Reads "EFFECT[:PARAM=VALUE,...]"; parameters that are not named have their default values.

@@ -40,8 +40,8 @@ sim::plant::Block block_of(const std::string& text) {
 }
 
 void put(sim::plant::Plant& plant, sim::plant::Block block) {
-  const bool odd = sim::library::compiled().find(block.effect->name) != block.effect;
-  if (odd) {  // several may act where a slot holds one: after everything else of that slot
+  const bool unlisted = sim::library::compiled().find(block.effect->name) != block.effect;
+  if (unlisted) {  // several may act where a slot holds one: after everything else of that slot
     plant.controls.push_back(std::move(block));
     std::ranges::stable_sort(plant.controls, {}, [](const sim::plant::Block& b) { return b.effect->slot; });
     return;

@@ -16,13 +16,13 @@ using namespace sim;
 constexpr double kLongestRecord = 130.0;  ///< no record lasts longer [s]
 
 /// What every odd drive is: any parameters, no check of its own beyond their ranges.
-struct Odd {
+struct Unlisted {
   static void check(const void*, const double*, const std::string&, Problems&) {}
   static std::string_view unphysical(const double*) { return ""; }
 };
 
 /// Sawtooth torque: rises evenly over each period and falls at once.
-struct Sawtooth : Odd {
+struct Sawtooth : Unlisted {
   static constexpr std::string_view name = "ODD_SAWTOOTH", title = "sawtooth torque";
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { A, f, start, coefficients };
@@ -48,7 +48,7 @@ struct Sawtooth : Odd {
 };
 
 /// A random walk of the torque, straight between its knots.
-struct RandomWalk : Odd {
+struct RandomWalk : Unlisted {
   static constexpr std::string_view name = "ODD_RANDOMWALK", title = "random walk of the torque";
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { A, step, start, number, coefficients };
@@ -85,7 +85,7 @@ struct RandomWalk : Odd {
 };
 
 /// Play in the valve's linkage: the torque follows only what goes beyond the play, 5 ms late.
-struct Backlash : Odd {
+struct Backlash : Unlisted {
   static constexpr std::string_view name = "ODD_BACKLASH", title = "hysteresis of the valve";
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { width, coefficients };
@@ -107,7 +107,7 @@ struct Backlash : Odd {
 };
 
 /// A limit cycle of the field voltage (van der Pol), woken by the dip of the voltage.
-struct LimitCycle : Odd {
+struct LimitCycle : Unlisted {
   static constexpr std::string_view name = "ODD_LIMITCYCLE", title = "limit cycle of the field voltage";
   static constexpr sim::Slot slot = sim::Slot::exciter;
   enum P { A, f, growth, V0, coefficients };
@@ -132,7 +132,7 @@ struct LimitCycle : Odd {
 };
 
 /// A part of the field voltage is lost for good.
-struct FieldLoss : Odd {
+struct FieldLoss : Unlisted {
   static constexpr std::string_view name = "ODD_FIELDLOSS", title = "sudden loss of a part of the field";
   static constexpr sim::Slot slot = sim::Slot::exciter;
   enum P { part, start, coefficients };
@@ -153,7 +153,7 @@ struct FieldLoss : Odd {
 
 /// Stick-slip: a shaft seal is dragged along until its spring breaks it loose, and lets go (Stribeck's
 /// falling friction, smoothed within 1e-4 pu of speed).
-struct StickSlip : Odd {
+struct StickSlip : Unlisted {
   static constexpr std::string_view name = "ODD_STICKSLIP", title = "stick-slip on the shaft";
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { A, speed, coefficients };
@@ -189,7 +189,7 @@ void fill(sim::Effect& e) {
 }
 
 template <class M>
-sim::Effect odd() {
+sim::Effect unlisted() {
   sim::Effect e{};
   e.name = M::name;
   e.title = M::title;
@@ -210,9 +210,9 @@ sim::Effect odd() {
 
 }  // namespace
 
-std::span<const sim::Effect> odd_effects() {
-  static const std::array all = {odd<Sawtooth>(),   odd<RandomWalk>(), odd<Backlash>(),
-                                 odd<LimitCycle>(), odd<FieldLoss>(),  odd<StickSlip>()};
+std::span<const sim::Effect> unlisted_effects() {
+  static const std::array all = {unlisted<Sawtooth>(),   unlisted<RandomWalk>(), unlisted<Backlash>(),
+                                 unlisted<LimitCycle>(), unlisted<FieldLoss>(),  unlisted<StickSlip>()};
   return all;
 }
 
