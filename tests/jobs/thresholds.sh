@@ -25,7 +25,7 @@ for t in printed:
         for n in filter(None, number):
             assert list((source / "docs/decisions").glob(f"{int(n):02d}-*.md")), f"no decision {n}: {t['name']}"
 value = {t["name"]: t["value"] for t in printed}
-assert value["evidence.accepted"] == 40 and value["adequacy.misfit"] == 1.12 and value["addition.strong"] == 10
+assert value["evidence.accepted"] == 40 and value["adequacy.reduced_chi2"] == 1.12 and value["addition.strong"] == 10
 PYTHON
 
 code=0

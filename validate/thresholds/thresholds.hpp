@@ -80,7 +80,7 @@ inline constexpr HeldOut held_out;
 /// Limits of a residual that counts as noise; adequacy.hpp lists the commands that use them.
 struct Adequacy {
   Threshold reduced_chi2{
-      "adequacy.misfit", 1.12, "chi2 per value",
+      "adequacy.reduced_chi2", 1.12, "chi2 per value",
       "splines through noisy samples of the played-in voltage leave up to this (decisions 16 and 17)"};
   Threshold slow{
       "adequacy.slow", 8, "standard deviations",
@@ -183,7 +183,7 @@ struct Parameters {
   Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "what one parameter's standard error costs"};
   Threshold moved{"parameters.moved", 2, "standard errors",
                   "a parameter that calibration moved by more is named in the verdict"};
-  Threshold beyond_prior{"parameters.beyond_belief", 2.5, "standard deviations of the belief",
+  Threshold beyond_prior{"parameters.beyond_prior", 2.5, "standard deviations of the belief",
                          "a fitted value further from the model's is noted"};
 };
 inline constexpr Parameters parameters;
