@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Writes into README.md how much of the dynamic models of PSS/E cases the effects cover, model by model.
+# Writes the coverage table of docs/models.md: how many dynamic records of PSS/E cases the effects support, by model.
 #   bash docs/coverage_table.sh FILE.dyr...
-# The table stands between `<!-- coverage -->` and `<!-- end of coverage -->`. It is what
-# `swingbank effects --coverage --json` says; the command must be in the PATH, or in build/release/bin or build/dev/bin.
+# The table lies between `<!-- coverage -->` and `<!-- end of coverage -->`. Its source is
+# `swingbank effects --coverage --json`; the command must be in the PATH, or in build/release/bin or build/dev/bin.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 (($# > 0)) || { echo "no file at FILE.dyr (the table counts their records): name PSS/E .dyr files" >&2; exit 1; }
@@ -17,9 +17,9 @@ for m in c["models"]:
     read_as = "%s %s" % (m["slot"].replace("_", " "), m["effect"]) if m["effect"] else m["missing_because"] or "nothing yet"
     rows.append("| %s | %d | %d | %s |" % (m["name"].replace("|", ""), m["records"], m["covered"], read_as))
 text = "Of {:,} records in {} files {:,} are covered ({:.1f} %):\n\n".format(c["records"], c["files"], c["covered"], c["percent"])
-readme = pathlib.Path("README.md")
-old = readme.read_text()
+page = pathlib.Path("docs/models.md")
+old = page.read_text()
 begin, end = "<!-- coverage -->\n", "<!-- end of coverage -->\n"
 at, stop = old.index(begin) + len(begin), old.index(end)
-readme.write_text(old[:at] + text + "\n".join(rows) + "\n" + old[stop:])
+page.write_text(old[:at] + text + "\n".join(rows) + "\n" + old[stop:])
 '
