@@ -210,7 +210,7 @@ int main(int argc, char** argv) {
   line.add("--seed", o.seed, "seed of the run").shows_default();
   line.add("--kinds", o.kinds,
            "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
-           "pairs (default: the mixture of docs/blind-test.md)")
+           "pairs (default: the mixture of docs/how-to/blind-test.md)")
       .comma_separated();
   line.add("--size", o.size, "size of every effect, in detection limits (default: drawn)");
   line.add_flag("--diagnose", o.diagnose,

@@ -187,7 +187,7 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("generate"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
   jobs::CommandLine line(
-      "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/formats.md).\n"
+      "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/reference/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
       "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts made, the same bytes.\n"

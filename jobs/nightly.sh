@@ -29,8 +29,8 @@ hours_of_seeds=4                             # from which on a cell has a spread
 table_share=0.67                             # of the hours
 tests_take=5400                              # [s] of two cores, their builds in it, where no night before tells
 blind_share=0.6                              # of what the tables leave
-blind_case=80                                # [s] of two cores; docs/blind-test.md
-fuzz_build=300 fuzz_least=10                 # [s]; docs/performance.md
+blind_case=80                                # [s] of two cores; docs/reference/blind-test-results.md
+fuzz_build=300 fuzz_least=10                 # [s]; docs/reference/performance.md
 while (($#)); do
   case $1 in
     --hours) hours=${2:?--hours needs a number}; shift 2 ;;
@@ -164,7 +164,7 @@ run_tables() {
   part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
 }
 
-# A part of the blind test (docs/blind-test.md); what is made and judged stays when it is broken off.
+# A part of the blind test (docs/reference/blind-test-results.md); what is made and judged stays when it is broken off.
 blind_test() {
   local configs=$source_folder/configs/blind run=$night/blind
   run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&

@@ -1,9 +1,9 @@
 // swingbank nightly-compare FOLDER: reports scores that differ from earlier nights by more than their noise.
 //
-// FOLDER contains one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/formats.md). A cell is
-// one (table, network, noise level, generator) at one preset and dataset config. Its score is s = ln(MSE /
-// baseline), the mean over the night's seeds. Every night trains with other seeds, so the earlier nights show
-// the random variation of a score:
+// FOLDER contains one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/reference/formats.md). A
+// cell is one (table, network, noise level, generator) at one preset and dataset config. Its score is s =
+// ln(MSE / baseline), the mean over the night's seeds. Every night trains with other seeds, so the earlier
+// nights show the random variation of a score:
 //   residual of a night = s - median of the cell's earlier nights
 //   noise of a table, network and level = 1.4826 * median(|residual| * sqrt(n / (n - 1)))
 //     pooled over its cells, because one cell has too few nights; at least 1 %

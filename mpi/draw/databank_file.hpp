@@ -1,5 +1,5 @@
 #pragma once
-// Databank file: drawn once, and read by all programs that simulate its points (docs/formats.md).
+// Databank file: drawn once, and read by all programs that simulate its points (docs/reference/formats.md).
 #include <filesystem>
 
 #include "mpi/draw/databank.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// Dataset folder: dataset.json, journals, shards/ (docs/formats.md). Readers use only the shards that the
-// journals list.
+// Dataset folder: dataset.json, journals, shards/ (docs/reference/formats.md). Readers use only the shards
+// that the journals list.
 #include <cstdint>
 #include <filesystem>
 #include <map>

@@ -1,7 +1,7 @@
 #pragma once
-// Shard of a dataset: an HDF5 file (docs/formats.md), read and written without MPI. Parallel writing is in
-// mpi/ranks/shard_group.hpp. All functions are thread-safe; they hold one lock, because HDF5 is not
-// thread-safe.
+// Shard of a dataset: an HDF5 file (docs/reference/formats.md), read and written without MPI. Parallel
+// writing is in mpi/ranks/shard_group.hpp. All functions are thread-safe; they hold one lock, because HDF5 is
+// not thread-safe.
 #include <cstdint>
 #include <filesystem>
 #include <map>

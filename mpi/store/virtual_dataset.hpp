@@ -9,7 +9,7 @@ namespace swingbank::mpi::store {
 
 constexpr const char* kVirtualFile = "dataset.h5";
 /// Largest number of shards for which the file is written; for more it would take over a minute
-/// (docs/performance.md).
+/// (docs/reference/performance.md).
 constexpr std::uint64_t kMostVirtual = 100000;
 
 /// Writes the file: the arrays of all shards, concatenated in order of shard number, with relative paths, so

@@ -19,7 +19,7 @@ struct RoundRotor {
 
 /// Returns the candidates, best first; the d axis alone may fit at several angles. The segment starts after
 /// the last voltage step. Empty if the record has no field current, or the segment has fewer than 40 samples.
-/// Derivation: docs/closed-form.md.
+/// Derivation: docs/explanation/closed-form.md.
 std::vector<RoundRotor> round_rotor(const Recording& record, double Ra, double Xdpp);
 
 }  // namespace swingbank::sim::direct

@@ -20,7 +20,7 @@ struct BatchOptions {
   double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
   std::vector<int> plants;        ///< recorded plants; empty: all
   std::vector<Channel> channels;  ///< recorded channels; empty: all of kChannels
-  int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 46); 0: the widest in double of this build
+  int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 02); 0: the widest in double of this build
   /// Loss of synchronism: a run ends when the angle between two rotors of one island has changed by this
   /// much.
   double lose_at = constants::pi;  ///< [rad]

@@ -1,6 +1,6 @@
 #pragma once
-// Law files: user-defined models that are read from text, not compiled. See docs/add-an-effect.md for the
-// format and configs/laws/ for examples. A law runs wherever a compiled effect does: in the reference
+// Law files: user-defined models that are read from text, not compiled. See docs/how-to/add-an-effect.md for
+// the format and configs/laws/ for examples. A law runs wherever a compiled effect does: in the reference
 // integrator, in the lanes kernel and with dual numbers.
 #include <filesystem>
 #include <string>

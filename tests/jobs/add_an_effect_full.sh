@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/add-an-effect.md followed literally, in a copy of the tree: its files are written, its commands run, and both the
+# docs/how-to/add-an-effect.md followed literally, in a copy of the tree: its files are written, its commands run, and both the
 # law and the header are found by listing, simulator, generator and compare without another edit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
@@ -27,7 +27,7 @@ copy_tree
 cd "$SWINGBANK_SOURCE"
 
 # The document's blocks: ```LANGUAGE file=NAME is a file, ```bash a command.
-/usr/bin/python3 - docs/add-an-effect.md "$work" <<'PYTHON'
+/usr/bin/python3 - docs/how-to/add-an-effect.md "$work" <<'PYTHON'
 import pathlib, re, sys
 
 text, work = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
@@ -111,4 +111,4 @@ p, q = numbers(one), numbers(other)
 assert len(p) == len(q) > 10
 assert max(abs(x - y) / (1 + abs(x)) for x, y in zip(p, q)) < 1e-4  # play-in's own tolerance
 PYTHON
-echo "ok: law and header of docs/add-an-effect.md, after $SECONDS s"
+echo "ok: law and header of docs/how-to/add-an-effect.md, after $SECONDS s"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The examples of docs/components.md and docs/staged-tests.md, word for word: what compare and calibrate say of them. And
+# The examples of docs/how-to/components.md and docs/how-to/staged-tests.md, word for word: what compare and calibrate say of them. And
 # what is said of a component's record without its columns.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export PATH=$SWINGBANK_BIN:$PATH TMPDIR=$work
 
 # example FILE: runs the page's bash lines; what they say stands in `said`
 example() {
-  sed -n '/^```bash$/,/^```$/p' "$SWINGBANK_SOURCE/docs/$1" | grep -v '```' >"$work/example.sh"
+  sed -n '/^```bash$/,/^```$/p' "$SWINGBANK_SOURCE/docs/how-to/$1" | grep -v '```' >"$work/example.sh"
   (cd "$work" && bash example.sh >said 2>said.errors)
 }
 # says PATTERN TIMES: so many lines of what was said match

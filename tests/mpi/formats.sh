@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The lines of Python in docs/formats.md read a shard.
+# The lines of Python in docs/reference/formats.md read a shard.
 source "$(dirname "$0")/common.bash"
 "$generate" "$configs/ieee14_genrou_bus3.toml" --draws 30 --progress none --out "$work/data" >/dev/null 2>&1
 # shellcheck disable=SC2016 # backquotes of Markdown
-sed -n '/^```python/,/^```/{/^```/d;p}' "$SWINGBANK_SOURCE/docs/formats.md" >"$work/read.py"
-[ "$(wc -l <"$work/read.py")" -ge 5 ] || fail "no lines of Python in docs/formats.md"
+sed -n '/^```python/,/^```/{/^```/d;p}' "$SWINGBANK_SOURCE/docs/reference/formats.md" >"$work/read.py"
+[ "$(wc -l <"$work/read.py")" -ge 5 ] || fail "no lines of Python in docs/reference/formats.md"
 cat >>"$work/read.py" <<'PYTHON'
 import numpy
 assert records.shape[1:] == (7, 1800) and 10 < len(records) <= 30 and records.dtype == numpy.float32

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A small blind test, judged: the missing exciter is named, nothing is named where nothing is missing, and what
-# is not in the list is not called adequate. Its rates mean nothing (docs/blind-test.md has those that do).
+# is not in the list is not called adequate. Its rates mean nothing (docs/reference/blind-test-results.md has those that do).
 set -euo pipefail
 bin=${SWINGBANK_BIN:?} source=${SWINGBANK_SOURCE:?}
 folder=$(mktemp -d)

@@ -135,7 +135,7 @@ std::string BlasRate::sentence() const {
 
 std::string BlasRate::warning() const {
   // Kernels as wide as the processor reach 60 % and more; SSE kernels reach 17 % on AVX-512:
-  // docs/performance.md.
+  // docs/reference/performance.md.
   constexpr double kLeastOfPeak = 0.4;
   if (share() >= kLeastOfPeak) return "";
   return Problem{

@@ -79,7 +79,7 @@ class DiagnosisPage {
     page_.bars(bars);
     page_.text(fmt::format(
         "How probable each explanation is, given the effects that were tried and that none of them may be right. "
-        "The blue ones make up {:.0f} % together. How often such figures are right stands in docs/blind-test.md.",
+        "The blue ones make up {:.0f} % together. How often such figures are right stands in docs/reference/blind-test-results.md.",
         100 * thresholds::posterior.set));
     if (d_.would_decide.next.empty()) return;
     report::Table table{

@@ -96,7 +96,7 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
   return text +
          "How often the diagnosis names an effect where nothing is missing, or misses one, is for the blind "
          "test to say "
-         "(docs/blind-test.md).";
+         "(docs/reference/blind-test-results.md).";
 }
 
 std::string fleet_text(const std::vector<FleetRow>& rows) {

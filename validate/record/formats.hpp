@@ -15,8 +15,8 @@ namespace swingbank::validate::record {
 Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, const RecordBase& base,
                           const ReadOptions& options);
 
-/// One plant of a run that `swingbank simulate --out FILE.h5` wrote (docs/formats.md): P and Q from the
-/// machine's base to the record's. Throws InputError.
+/// One plant of a run that `swingbank simulate --out FILE.h5` wrote (docs/reference/formats.md): P and Q from
+/// the machine's base to the record's. Throws InputError.
 Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& base,
                         const ReadOptions& options);
 

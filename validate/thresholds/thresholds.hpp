@@ -15,7 +15,7 @@ struct Threshold {
   constexpr operator double() const { return value; }  // NOLINT: a threshold is used as its value
 };
 
-/// Thresholds of evidence, 2 ln(Bayes factor) by Laplace's approximation in units of chi2 (decision 18).
+/// Thresholds of evidence, 2 ln(Bayes factor) by Laplace's approximation in units of chi2 (decision 41).
 struct Evidence {
   Threshold accepted{
       "evidence.accepted", 40, "chi2",
@@ -24,14 +24,14 @@ struct Evidence {
   Threshold second{
       "evidence.second", 80, "chi2",
       "a pair of effects leaves that much less than every single one, in evidence and in chi2, because "
-      "what the first effect or the instruments leave looks like a second one (decision 20)"};
+      "what the first effect or the instruments leave looks like a second one (decision 61)"};
   Threshold within_reach{
       "evidence.within_reach", 200, "chi2",
       "a long fit may add this much to a short one; what lies further behind the best is neither "
-      "fitted on for that reason nor judged (decision 19)"};
+      "fitted on for that reason nor judged (decision 61)"};
   Threshold escape{
       "evidence.escape", 0.5, "share of the leading extension's evidence",
-      "where a better start of the model alone explains more, the diagnosis begins anew (decision 19)"};
+      "where a better start of the model alone explains more, the diagnosis begins anew (decision 61)"};
   Threshold same_fit{
       "evidence.same_fit", 0.5, "chi2",
       "a finished fit takes the place of a short one, which has no errors, unless it is worse by more"};
@@ -49,26 +49,26 @@ struct Posterior {
   Threshold told{"posterior.told", 0.5, "probability",
                  "which of the set comes first is told above this (decision 41)"};
   Threshold negligible{"posterior.negligible", 1e-4, "probability beside the leading one",
-                       "what cannot become more probable is not fitted on (decision 45)"};
+                       "what cannot become more probable is not fitted on (decision 61)"};
 };
 inline constexpr Posterior posterior;
 
-/// Thresholds of the hold-out test of an effect on unseen events (decision 18).
+/// Thresholds of the hold-out test of an effect on unseen events (decision 41).
 struct HeldOut {
   Threshold worse{
       "held_out.worse", 1.02, "ratio of costs",
       "an event in which the effect hardly acts may be predicted worse by this: the refit's own scatter "
-      "(decision 18)"};
+      "(decision 41)"};
   Threshold costs{
       "held_out.costs", 20, "chi2",
       "an effect may cost no unseen event more, or costs_share if that is more; what is really missing "
-      "costs nothing (decision 18)"};
+      "costs nothing (decision 41)"};
   Threshold costs_share{"held_out.costs_share", 0.1, "share of the effect's evidence",
-                        "see costs (decision 18)"};
+                        "see costs (decision 41)"};
   Threshold predicts{"held_out.predicts", 1.25, "chi2 per value",
-                     "an unseen event with this cost at most is predicted (decision 18)"};
+                     "an unseen event with this cost at most is predicted (decision 41)"};
   Threshold falls{"held_out.falls", 0.1, "share of the cost without the effect",
-                  "an unseen event whose cost falls to this is predicted too (decision 18)"};
+                  "an unseen event whose cost falls to this is predicted too (decision 41)"};
   Threshold alone{
       "held_out.alone", 0.8, "share of what the effect saves on unseen events",
       "an effect shows in one event alone if that event holds more; no other event can foretell it then"};

@@ -1,4 +1,4 @@
-// Sixteen lanes in float (decision 46) against eight in double: whatever switches, jumps or is out; the same
+// Sixteen lanes in float (decision 02) against eight in double: whatever switches, jumps or is out; the same
 // bits in any company; and what they refuse. all_effects_against_reference_test.cpp compares them with the
 // reference.
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 // How often the 95 % intervals of calibrate hold the truth where the voltage is as noisy as instruments of a
-// class make it (docs/uncertainty.md): filtered phasors with noise on magnitude and angle of V and I.
+// class make it (docs/reference/uncertainty.md): filtered phasors with noise on magnitude and angle of V and
+// I.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

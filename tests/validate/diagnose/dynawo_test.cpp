@@ -1,5 +1,5 @@
 // Case 1 of RTE's dynamic model validation engine, simulated by Dynawo, the whole way
-// (docs/records-of-others.md).
+// (docs/reference/records-of-others.md).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A run as `swingbank simulate --out run.h5` writes it (docs/formats.md), read as a record.
+// A run as `swingbank simulate --out run.h5` writes it (docs/reference/formats.md), read as a record.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

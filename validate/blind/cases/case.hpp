@@ -1,7 +1,7 @@
 #pragma once
 // Blind cases: records of a plant with an effect that its model file lacks. They are simulated independently
 // of the diagnosis: by IDA on the unreduced grid, at a sampling rate that no other integrator here uses, with
-// switching times off the sampling instants. docs/blind-test.md describes the files.
+// switching times off the sampling instants. docs/reference/blind-test.md describes the files.
 #include <cstdint>
 #include <filesystem>
 #include <optional>

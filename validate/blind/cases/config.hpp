@@ -30,7 +30,7 @@ struct BlindKind {
   bool logarithmic = false;  ///< the scale is linear in the parameters' logarithms
   /// Returns whether the effect is an instrument error.
   [[nodiscard]] bool of_instrument() const { return side == "measurement"; }
-  double limit = 0;  ///< detection limit: least size to be detected (docs/blind-test.md) [noise]
+  double limit = 0;  ///< detection limit: least size to be detected (docs/reference/blind-test.md) [noise]
 };
 
 /// Grid with its PSS/E files.
@@ -39,8 +39,8 @@ struct BlindGrid {
   std::vector<std::int64_t> buses;  ///< buses whose plants may be the recorded one
 };
 
-/// Field conditions beyond a clean record of a quiet grid ([conditions]; docs/blind-test.md), drawn for each
-/// case. A share of 0 or an empty list consumes no random draw, and the value in [record] applies.
+/// Field conditions beyond a clean record of a quiet grid ([conditions]; docs/reference/blind-test.md), drawn
+/// for each case. A share of 0 or an empty list consumes no random draw, and the value in [record] applies.
 struct BlindConditions {
   std::vector<double> rates;                ///< reporting rates [1/s]
   std::vector<double> voltage_noise;        ///< as BlindConfig::voltage_noise

@@ -1,7 +1,7 @@
 #pragma once
-// False-positive rate of the last blind test (docs/blind-test.md), which is shown with each verdict. It
-// changes together with the document after new cases, never after inspection of cases that were already
-// judged.
+// False-positive rate of the last blind test (docs/reference/blind-test-results.md), which is shown with each
+// verdict. It changes together with the document after new cases, never after inspection of cases that were
+// already judged.
 #include <string>
 
 #include "base/rate.hpp"
