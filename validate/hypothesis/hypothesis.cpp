@@ -170,7 +170,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
     const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
     if (!fits || !tried || effect->instants || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(component, effect->slot)) continue;
-    if (!sim::reduced_chi2(*tested.plant.machine.effect, *effect).empty()) continue;
+    if (!sim::slot_conflict(*tested.plant.machine.effect, *effect).empty()) continue;
     if (instrument && !(playin::can_be_taken_back(*effect) && playin::touches_phasors(*effect))) continue;
     all.push_back(added_to(tested, *effect));
   }

@@ -165,7 +165,7 @@ void read_around(Config& config, PlantModel& model) {
   std::ranges::stable_sort(plant.controls, {}, [](const auto& b) { return b.effect->slot; });
   if (!plant.machine.effect) return;
   for (const auto& control : plant.controls)
-    if (const std::string why = sim::reduced_chi2(*plant.machine.effect, *control.effect); !why.empty())
+    if (const std::string why = sim::slot_conflict(*plant.machine.effect, *control.effect); !why.empty())
       config.problem(std::string(sim::slot_name(control.effect->slot)), std::string(control.effect->name),
                      why, "remove the section");
 }

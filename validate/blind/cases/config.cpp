@@ -67,7 +67,7 @@ void check_controls(Config& config, const BlindConditions& c) {
       const sim::Effect *control = blind_effect(text.substr(0, text.find(':'))),
                         *source = blind_effect(machine.substr(0, machine.find(':')));
       if (!control || !source) continue;
-      if (const std::string why = sim::reduced_chi2(*source, *control); !why.empty())
+      if (const std::string why = sim::slot_conflict(*source, *control); !why.empty())
         config.problem("conditions.controls", fmt::format("'{}' beside {}", text, source->name), why,
                        "choose controls that go with every one of conditions.machines");
     }
