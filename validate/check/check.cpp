@@ -43,12 +43,12 @@ class Check : Findings {
     power();
     quantised();
     if (plant_.synchronous && r_.angle == record::AngleSource::measured)
-      jumps();  // the phasors', so not without an angle of their own
+      jumps();  // requires measured phasors
     return taken();
   }
 
  private:
-  /// The slowest rate but one that IEC/IEEE 60255-118-1 (2018, 5.2) asks of phasor measurement units is 25/s.
+  /// Warns of rates below 25/s, the second lowest of IEC/IEEE 60255-118-1 (2018, 5.2).
   void rate() {
     constexpr double kSlowestRate = 24.5;
     if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
@@ -59,9 +59,9 @@ class Check : Findings {
         "give a record at 25/s or more if there is one; of this one believe what is slow: inertia, governor, "
         "reactances");
   }
-  static constexpr double kShortestChecked = 0.5;  ///< of a record that any check makes sense of [s]
+  static constexpr double kShortestChecked = 0.5;  ///< shortest record that the checks can interpret [s]
 
-  /// Records that were not read from a file may hold anything.
+  /// Checks that the channels are complete: records that were not read from a file may contain anything.
   bool complete() {
     const std::size_t n = r_.t.size();
     if (r_.samples() < record::kMinSamples)
@@ -84,7 +84,7 @@ class Check : Findings {
   }
 
   void dropouts() {
-    // Zeros between frames that go on as before are lost frames, and reading has bridged them.
+    // Reading has interpolated zeros between frames that continue as before: these are lost frames.
     std::size_t zeros = 0, first = 0;
     for (std::size_t k = 0; k < r_.t.size(); ++k)
       if (r_.V[k] == 0 && r_.P[k] == 0 && r_.Q[k] == 0 && zeros++ == 0) first = k;
@@ -128,12 +128,12 @@ class Check : Findings {
     steadiness();
   }
 
-  /// False where the record shows no state that the model could start from.
+  /// Returns false if the record does not contain the steady state from which the model starts.
   bool beginning() {
     constexpr double kMinBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
     const bool few = !signals_.slow && (n < kMinBefore || before < kLeastBefore);
-    // A short stretch before a jump may be one of a fault, and a record without jumps may begin in a swing.
+    // A short stretch before a step may be that of a fault, and a record without steps may begin in a swing.
     const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
     const bool doubtful = !few && (signals_.slow || before < kShort);
     const double moves = doubtful ? moves_within(looked_at) * machine_per_record() : 0;
@@ -161,23 +161,23 @@ class Check : Findings {
     return true;
   }
 
-  /// How far P or Q goes in the first samples, beyond the noise [pu on the record's base].
+  /// Returns the range of P or Q in the first samples beyond the noise [pu on the record's base].
   [[nodiscard]] double moves_within(std::size_t samples) const {
     double most = 0;
     for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {
       const auto n = std::clamp<std::size_t>(samples, 1, y->size());
       const auto [low, high] = std::minmax_element(y->begin(), y->begin() + static_cast<std::ptrdiff_t>(n));
-      most = std::max(most, *high - *low - 4 * noise);  // what noise alone spans in half a second
+      most = std::max(most, *high - *low - 4 * noise);  // range of noise alone in half a second
     }
     return most;
   }
-  /// Median over the last second.
+  /// Returns the median of V over the last second.
   [[nodiscard]] double last_voltage() const {
     const auto n = std::min(r_.V.size(), static_cast<std::size_t>(r_.rate()) + 1);
     return median_of({r_.V.end() - static_cast<std::ptrdiff_t>(n), r_.V.end()});
   }
 
-  /// Steps that a transducer or an archive has left.
+  /// Warns of the quantisation of a transducer or an archive.
   void quantised() {
     const double scale = machine_per_record();
     for (const auto& [name, y, limit] :
@@ -192,13 +192,13 @@ class Check : Findings {
             "export it with more digits where that is possible");
   }
 
-  /// Powers must stand still before the event, or the equilibrium that the model starts in is not the
+  /// Checks that the powers are steady before the event: otherwise the model's initial equilibrium is not the
   /// plant's.
   void steadiness() {
     for (const auto& [name, s] : {std::pair{"P", &signals_.P}, {"Q", &signals_.Q}}) {
       const double scale = machine_per_record();
       const double drift = std::abs(s->drift) * scale, swing = s->swing * scale;
-      const double limit = 0.005;  // pu of the machine; ambient changes of load stay below it
+      const double limit = 0.005;  // pu of the machine; ambient load changes stay below it
       if (drift > std::max(limit, 6 * s->drift_error * scale))
         add("unsteady", drift > 0.05 ? Severity::refuse : Severity::warn,
             fmt::format("{} drifts by {:.2g} pu of the machine before the event", name, drift),
@@ -225,7 +225,7 @@ class Check : Findings {
       refuse("voltage_unit", what, "that is off by sqrt(3)",
              v < 1 ? "if V is line to neutral, name the column V_kV_ln; base_kv is always line to line"
                    : "give base_kv line to line, or name the column V_kV if V is line to line");
-    else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // 1 kV: a case that gives none
+    else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // 1 kV: a case without a nominal voltage
       refuse("voltage_unit", fmt::format("{}, with base_kv = {:g} kV", what, r_.base.kv),
              "that is a voltage in V taken as kV", "name the column V_V");
     else if (within(v, 70, 130))
@@ -244,7 +244,7 @@ class Check : Findings {
       refuse("voltage_unit", what, "a plant runs near 1 pu", "check the column of V, its unit and base_kv");
   }
 
-  /// 50 and 60 Hz, as a share of the model's nominal frequency.
+  /// Returns whether the ratio is that of 50 Hz and 60 Hz grids, relative to the model's nominal frequency.
   [[nodiscard]] bool other_nominal(double ratio) const {
     const double other = std::abs(plant_.frequency - 60) < 5 ? 50.0 : 60.0;
     return near(ratio, other / plant_.frequency, 0.02);
@@ -300,8 +300,9 @@ class Check : Findings {
       refuse("speed_unit", what, "a machine runs near nominal speed", "give the speed in pu");
   }
 
-  /// Whether an angle beyond a turn is radians that were never wrapped, as a simulation writes them: it turns
-  /// as the frequency says or, where that says nothing, jumps as at a machine's terminals.
+  /// Returns whether an angle beyond a full turn is in unwrapped radians, as simulations write it. Its rate
+  /// must equal the frequency, or, if that is not conclusive, its steps must be those at a machine's
+  /// terminals.
   [[nodiscard]] bool radians_beyond_a_turn() const {
     if (const double ratio = signals_.angle_per_frequency; ratio > 0) return within(ratio, 0.5, 2);
     const int delay = power_delay(r_, jumps_);
@@ -309,10 +310,10 @@ class Check : Findings {
     const record::Record other = reinterpreted([](const Reading& x) {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
-    // Where the angle hardly jumps it fits in either unit, and that says nothing.
+    // If the angle hardly steps, it fits in either unit, which is not conclusive.
     return fits(radians) && 3 * radians.reduced_chi2 < fit_jumps(other, jumps_, delay).reduced_chi2;
   }
-  /// Jumps of sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
+  /// Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
   [[nodiscard]] bool fits(const JumpFit& fit) const {
     const double noise = noise_share(fit);
     return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 3 * noise;
@@ -328,7 +329,7 @@ class Check : Findings {
              "that is beyond a turn, and neither the frequency nor the jumps say that it is radians which "
              "were never wrapped",
              "name the column theta_deg if it is degrees; else take whole turns off, or add the frequency");
-    // A frequency or speed in a wrong unit says nothing about the angle.
+    // A frequency or speed in a wrong unit cannot be compared with the angle.
     const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
     if (within(ratio, 18, 180))
       refuse("angle_unit",
@@ -371,10 +372,11 @@ class Check : Findings {
       if (!(fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.01 + 2 * noise)) continue;
       if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
         continue;
-      // Sound records leave below 0.03 beside their noise (tests/validate/check/sound_test.cpp).
+      // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
       const bool sound = same.reactance > 0 && (same.reduced_chi2 < m.sound + 2 * noise ||
                                                 same.reduced_chi2 < 5 * fit.reduced_chi2);
-      // Of two mistakes that explain the jumps about as well, the commoner one is taken, which stands first.
+      // Of two mistakes that explain the steps almost equally well, the first in the list is the more common
+      // one.
       if (!sound && fit.reduced_chi2 < least / 2) best = &m, least = fit.reduced_chi2;
     }
     if (best && apart())
@@ -387,7 +389,7 @@ class Check : Findings {
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 
-  /// Whether the jumps belong together once each of them takes in one more interval: after it, before it, or
+  /// Returns whether the steps are consistent if each includes one more interval: after it, before it, or
   /// both.
   [[nodiscard]] bool apart() const {
     constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
@@ -400,14 +402,14 @@ class Check : Findings {
       return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 2 * noise;
     });
   }
-  /// How far the angle as written jumps [rad].
+  /// Returns the step of the angle as written [rad].
   [[nodiscard]] double turned(const Jump& j) const {
     const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
     return std::abs(theta[j.after] - theta[j.before]);
   }
 
-  /// Share of the squared jumps that is noise: a jump is a combination of four samples that carries five
-  /// times the variance of one.
+  /// Returns the share of noise in the squared steps: a step combines four samples and has five times the
+  /// variance of one.
   [[nodiscard]] double noise_share(const JumpFit& fit) const {
     return 10 * square(signals_.V.white) / fit.voltage +
            5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
@@ -427,13 +429,13 @@ class Check : Findings {
     return other;
   }
 
-  /// X'' of machines is 0.1 to 0.4 pu, with a step-up transformer up to 0.6.
+  /// Checks X'': 0.1 to 0.4 pu in machines, with a step-up transformer up to 0.6.
   void reactance(double x) {
     if (!(plant_.mva > 0) || within(x, 0.08, 0.8)) return;
     const BaseSlip* best = nullptr;
     const std::vector<BaseSlip> all = base_slips(r_, plant_);
     const auto distance = [](double z) { return std::abs(std::log(z / 0.25)); };
-    for (const auto& b : all)  // P times factor makes X over factor
+    for (const auto& b : all)  // multiplying P by the factor divides X by it
       if (distance(x / b.factor) < (best ? distance(x / best->factor) : std::log(2.5))) best = &b;
     const std::string what =
         fmt::format("jumps of P and Q that mean a reactance of {:.3g} pu of the machine", x);

@@ -17,7 +17,7 @@ namespace {
 struct Hypothesis {
   const char *kind, *words, *why, *remedy;
   Reinterpret reinterpret;
-  bool scales = false;  ///< P and Q become others in size
+  bool scales = false;  ///< the magnitude of P and Q changes
 };
 const std::vector<Hypothesis>& hypotheses() {
   constexpr double kPhases = 3;
@@ -58,8 +58,8 @@ const std::vector<Hypothesis>& hypotheses() {
   return list;
 }
 
-/// What the model leaves of the movement of P and Q about their steady state, as a share of its power; no
-/// value where it cannot follow.
+/// Residual of the model as a share of the squared movement of P and Q about their steady state; none if the
+/// model cannot follow.
 struct Fit {
   std::optional<double> share;
   double rms = 0;  ///< [pu of the record's base]
@@ -102,7 +102,7 @@ class Readings {
     }
   }
 
-  /// P and Q of the record are taken `delay` samples later than the model's.
+  /// Compares the playback with P and Q of the record taken `delay` samples later.
   [[nodiscard]] static Fit fit(const playin::Playback& back, const record::Record& r, long delay) {
     double left = 0, moved = 0;
     long count = 0;
@@ -117,7 +117,7 @@ class Readings {
     return {left / moved, std::sqrt(left / static_cast<double>(std::max(count, 1L)))};
   }
 
-  /// P and Q late or early: the model's response is the same.
+  /// Tests delays of P and Q, with the same response of the model.
   void delays(const playin::Playback& back) {
     constexpr double kLargestDelay = 0.5;  // s
     const auto most = static_cast<long>(std::min(kLargestDelay * r_.rate(), r_.samples() / 4.0));
@@ -135,7 +135,7 @@ class Readings {
           "shift their time stamps, if another clock or filter explains it"});
   }
 
-  /// The power becomes one that the machine can have, and is not that of the case as it is.
+  /// Returns whether the scaled power is feasible for the machine, and closer to that of the case.
   [[nodiscard]] bool may_scale(const Hypothesis& h) const {
     double p = 0, q = 0;
     constexpr std::size_t kSteadySamples = 5;
@@ -167,7 +167,7 @@ class Readings {
   }
 
   [[nodiscard]] std::optional<Finding> best() const {
-    constexpr double kUnexplained = 1.0 / 16, kCloser = 3;  // share of the movement's power; ratio of rms
+    constexpr double kUnexplained = 1.0 / 16, kCloser = 3;  // share of the squared movement; ratio of rms
     if (!best_.share || *best_.share > kUnexplained) return std::nullopt;
     const double closer =
         as_is_.share ? std::sqrt(*as_is_.share / *best_.share) : std::numeric_limits<double>::infinity();

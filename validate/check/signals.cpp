@@ -15,13 +15,12 @@
 namespace swingbank::validate::check {
 namespace {
 
-/// Gaussian noise of this standard deviation leaves second differences with this median magnitude: 0.6745
-/// times sqrt(1 + 4 + 1).
+/// Median magnitude of second differences of Gaussian noise, per standard deviation: 0.6745 sqrt(1 + 4 + 1).
 constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
-/// Straight line through values at 0, 1, 2 …
+/// Least-squares line through values at 0, 1, 2 …
 struct Line {
-  double middle = 0, slope = 0, spread = 0;  ///< spread: standard deviation about it
+  double middle = 0, slope = 0, spread = 0;  ///< spread: standard deviation about the line
 };
 Line fit_line(std::span<const double> y) {
   const auto n = static_cast<double>(y.size());
@@ -38,8 +37,8 @@ Line fit_line(std::span<const double> y) {
   return {mean, slope, n > 2 ? std::sqrt(square / (n - 2)) : 0.0};
 }
 
-/// White noise from second differences; filters make noise that changes slowly, which only the spread of the
-/// quietest second sees.
+/// Estimates white noise from second differences. Filtered noise changes slowly; only the standard deviation
+/// of the quietest second contains it.
 void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   std::vector<double> second;
   for (std::size_t k = 1; k + 1 < y.size(); ++k) second.push_back(std::abs(y[k - 1] - 2 * y[k] + y[k + 1]));
@@ -57,8 +56,8 @@ std::span<const double> until(const std::vector<double>& y, std::size_t last) {
 }
 double median_in(std::span<const double> y) { return median_of(std::vector<double>(y.begin(), y.end())); }
 
-/// The first sample by which the frequency, as the angle turns over half a second, has changed by more than
-/// 20 mHz and the noise: what a slow event shows before anything else. Size if there is none.
+/// Returns the first sample at which the frequency, as the angle's change over half a second, has changed by
+/// more than 20 mHz and the noise: the earliest sign of a slow event. Returns the size if there is none.
 std::size_t turns_faster(const record::Record& r) {
   constexpr double kSpan = 0.5, kLeastDrift = constants::turn * 0.02;  // s, rad/s
   const auto m = static_cast<std::size_t>(kSpan * r.rate());
@@ -74,8 +73,8 @@ std::size_t turns_faster(const record::Record& r) {
   return k < turned.size() ? k + m : n;
 }
 
-/// The event begins before its first clear jump where that is smeared, or an earlier one too small: the first
-/// step of the voltage within half a second that stands out from those before.
+/// Returns the first change of the voltage within half a second before a clear step that exceeds those before
+/// it. The event begins there if the step is filtered, or if an earlier one is too small to count.
 std::size_t step_before(const record::Record& r, std::size_t jump) {
   std::vector<double> steps;
   const std::vector<Complex> all = playin::voltage_steps(r);
@@ -87,8 +86,8 @@ std::size_t step_before(const record::Record& r, std::size_t jump) {
   return jump;
 }
 
-/// Where the event begins: before the first jump, or where a channel first leaves the noise about its first
-/// samples.
+/// Finds the start of the event: the sample before the first step, or before a channel first leaves the noise
+/// about its first samples.
 void find_event(const record::Record& r, Signals& s) {
   const auto jumps = find_jumps(r);
   const std::size_t n = r.t.size();
@@ -102,8 +101,8 @@ void find_event(const record::Record& r, Signals& s) {
   const std::pair<const std::vector<double>*, SignalFacts*> channels[] = {
       {&r.V, &s.V}, {&r.P, &s.P}, {&r.Q, &s.Q}};
   for (const auto& [y, facts] : channels) {
-    // Six standard deviations: pure noise stays below five in ten thousand samples. The floor is what
-    // rounding leaves of records without noise.
+    // Six standard deviations: pure noise stays below five in ten thousand samples. The floor covers rounding
+    // in records without noise.
     const double reach = std::max(6 * facts->noise, 1e-4);
     first = std::min(first,
                      playin::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
@@ -114,9 +113,9 @@ void find_event(const record::Record& r, Signals& s) {
 }
 
 void describe(const record::Record& r, const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
-  // Measuring windows reach over the event: leave out 50 ms before it.
+  // Measuring windows extend across the event: exclude 50 ms before it.
   const auto guard = static_cast<std::size_t>(std::ceil(0.05 * r.rate()));
-  // A slow event is seen only some time after it began.
+  // A slow event is detected only some time after its start.
   const std::size_t clear = s.slow ? s.onset / 2 : s.onset > guard ? s.onset - guard : 0;
   const auto before = s.event ? until(y, clear) : std::span<const double>(y);
   facts.level = median_in(before);
@@ -129,14 +128,14 @@ void describe(const record::Record& r, const std::vector<double>& y, const Signa
   facts.drift_error = std::max(line.spread, facts.noise) * std::sqrt(12 / n);
 }
 
-/// Median over steps that are no jumps.
+/// Returns the differences of consecutive values.
 std::vector<double> smooth_steps(const std::vector<double>& y) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < y.size(); ++k) steps.push_back(y[k + 1] - y[k]);
   return steps;
 }
 
-/// Running mean over 2m + 1 values.
+/// Returns the running mean over 2m + 1 values.
 std::vector<double> smoothed(const std::vector<double>& y, std::size_t m) {
   std::vector<double> mean;
   for (std::size_t k = m; k + m < y.size(); ++k) {
@@ -147,13 +146,14 @@ std::vector<double> smoothed(const std::vector<double>& y, std::size_t m) {
   return mean;
 }
 
-/// Slope of the angle [pu of nominal frequency] over frequency or speed, where both clearly move together.
+/// Returns the rate of the angle [pu of nominal frequency] over frequency or speed, if both clearly move
+/// together.
 double angle_per_frequency(const record::Record& r, const std::vector<double>& theta) {
   const std::vector<double>& f = r.f.empty() ? r.speed : r.f;
   if (f.size() != theta.size() || f.size() < 40) return 0;
   std::vector<double> rate = smooth_steps(theta), mid;
   for (double& v : rate) v /= r.step() * constants::turn * r.base.frequency;
-  // Jumps of the angle and its turns are no rates: leave the largest out.
+  // Steps and wraps of the angle are not rates: exclude the largest.
   std::vector<double> size(rate.size());
   std::ranges::transform(rate, size.begin(), [](double v) { return std::abs(v); });
   std::vector<double> sorted = size;
@@ -188,7 +188,7 @@ void describe_angle(const record::Record& r, Signals& s) {
   s.angle_rate =
       median_in(s.event && s.onset >= 2 ? until(turns, s.onset - 1) : std::span<const double>(turns)) /
       r.step();
-  // Over 0.1 s, so that noise does not count, or over half of a shorter record.
+  // Over 0.1 s, to suppress noise, or over half of a shorter record.
   const auto apart = std::clamp<std::size_t>(static_cast<std::size_t>(0.1 * r.rate()), 1,
                                              std::max<std::size_t>(theta.size() / 2, 1));
   std::vector<double> fast;
@@ -202,7 +202,7 @@ void describe_angle(const record::Record& r, Signals& s) {
 }
 
 void find_holds(const record::Record& r, Signals& s) {
-  if (!(s.P.quietest > 2e-5)) return;  // without noise standing still is no sign of anything
+  if (!(s.P.quietest > 2e-5)) return;  // without noise, constant values are no defect
   std::size_t run = 0;
   for (std::size_t k = 1; k < r.t.size(); ++k) {
     const bool same =

@@ -12,7 +12,7 @@ namespace {
 
 using record::Component;
 
-/// What stands in the plant file and has no part in the component.
+/// Returns the names of the plant's blocks outside the component.
 std::string left_out_of(const sim::plant::Plant& plant, Component component) {
   std::string names;
   const auto add = [&](const sim::plant::Block& b) {

@@ -1,15 +1,14 @@
 #pragma once
-// The model of a component: what of a plant file stays where an exciter, a governor or a machine is tried
-// alone.
+// Model of one component (exciter, governor or machine) of a plant file, which is tested alone.
 #include "validate/plant/plant_model.hpp"
 
 namespace swingbank::validate::event {
 
-/// The model with the component as its plant, reading the columns that the component needs; the whole plant
-/// stands in `whole`. What is left out is said in the warnings.
+/// Returns the model whose plant is the component and whose records supply the columns that the component
+/// needs; `whole` holds the whole plant. Warnings list the blocks left out.
 plant::PlantModel component_model(plant::PlantModel model, record::Component component);
 
-/// The whole plant again, with the component as the model has it.
+/// Returns the whole plant, with the component's blocks as in the model.
 plant::PlantModel whole_model(plant::PlantModel model);
 
 }  // namespace swingbank::validate::event

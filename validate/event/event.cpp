@@ -16,14 +16,15 @@
 namespace swingbank::validate::event {
 namespace {
 
-/// How far x lies from everything between a and b.
+/// Returns the distance of x from the straight segment between a and b.
 double beyond(Complex x, Complex a, Complex b) {
   const double length = std::norm(b - a);
   const double at = length > 0 ? std::real((x - a) * std::conj(b - a)) / length : 0.0;
   return std::abs(x - a - std::clamp(at, 0.0, 1.0) * (b - a));
 }
-/// How much each step stands out from the steps two and three before and after it, and from what lies between
-/// these: where a converter's ramp ends, or a swing turns, steps go over from one size to another [pu].
+/// Returns the distance of each step [pu] from the steps two and three before and after it, and from the
+/// segments between these: at the end of a converter's ramp, or at the turn of a swing, the step size changes
+/// gradually.
 std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
   for (std::size_t k = 3; k + 3 < step.size(); ++k) {
@@ -34,8 +35,8 @@ std::vector<double> prominence(const std::vector<Complex>& step) {
   }
   return d;
 }
-/// Whether intervals first .. last are part of a fast swing, where nothing stands out from steps of the same
-/// size.
+/// Returns whether intervals first .. last belong to a fast swing, where no step stands out from its
+/// neighbours.
 bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, std::size_t first,
               std::size_t last) {
   constexpr double kOfSwing = 0.25;
@@ -47,11 +48,12 @@ bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, st
   return true;
 }
 
-/// Intervals first .. last over which one jump is smeared.
+/// Intervals first .. last over which one step is spread.
 struct Smear {
   std::size_t first, last;
 };
-/// Leaves out what moves beside the jump, because the voltage drifts in a short fault, step after like step.
+/// Removes intervals at both ends where the voltage only drifts, as in a short fault: consecutive steps are
+/// equal.
 Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
   double largest = 0;
   for (std::size_t i = jump.first; i <= jump.last; ++i) largest = std::max(largest, std::abs(step[i]));
@@ -63,9 +65,9 @@ Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
   while (jump.first < jump.last && !belongs(jump.last)) --jump.last;
   return jump;
 }
-/// The two jumps of a short fault may have run together. They are told apart because they go opposite ways.
+/// Separates the two steps of a short fault that have merged, by their opposite directions.
 std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, double limit) {
-  constexpr double kBack = -0.15, kOn = 0.05;  // of the first jump's largest step
+  constexpr double kBack = -0.15, kOn = 0.05;  // fraction of the largest change in the first step
   Complex onward = step[both.first];
   for (std::size_t i = both.first; i <= std::min(both.first + 2, both.last); ++i)
     if (std::abs(step[i]) > std::abs(onward)) onward = step[i];
@@ -81,7 +83,7 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, doub
   return {trimmed(step, {both.first, end}, limit), trimmed(step, {back, both.last}, limit)};
 }
 
-/// The largest step that a decay behind a jump makes, by the jump's own.
+/// Largest change per interval of a decay after a step, as a fraction of the step.
 constexpr double kOfPeak = 0.5;
 
 double least_jump(const std::vector<double>& d, double threshold) {
@@ -95,12 +97,12 @@ std::size_t largest_of(const std::vector<Complex>& step, Smear jump) {
                        [](Complex a, Complex b) { return std::abs(a) < std::abs(b); }) -
       at);
 }
-/// Whether a subtransient decays behind the sharp jump in interval m. An instrument's window is even and
-/// falls off to both sides. If its middle lies in m, it reaches m - 1 at least as far as m + 2, and so leaves
-/// there as much of the jump. A machine answers only after the jump.
+/// Returns whether a subtransient decay follows the sharp step in interval m. An instrument's window is even
+/// and decreases to both sides. If its middle lies in m, its share in m - 1 is at least that in m + 2. A
+/// machine responds only after the step.
 bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit) {
-  constexpr double kOfNext = 0.15, kOfLimit = 0.25;  // what the rotor's swing may move meanwhile
-  constexpr double kLess = 0.9;                      // else the next jump begins
+  constexpr double kOfNext = 0.15, kOfLimit = 0.25;  // allowance for the rotor's swing
+  constexpr double kLess = 0.9;                      // above it the next step begins
   const Complex next = step[m + 1];
   if (std::abs(next) <= limit || std::abs(next) > kOfPeak * std::abs(step[m])) return false;
   if (std::real(next * std::conj(step[m])) < 0) return false;
@@ -108,24 +110,23 @@ bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit)
   return goes_on < kLess * std::abs(next) &&
          goes_on - std::abs(step[m - 1]) > std::max(kOfNext * std::abs(next), kOfLimit * limit);
 }
-/// Whether a filter's middle lies in the middle of interval m: its shares in the neighbours are then equal,
-/// and none stands out from the other.
+/// Returns whether a filter is centred in interval m: its shares in the neighbours are equal.
 bool is_even(const std::vector<Complex>& step, std::size_t m, double limit) {
   const Complex before = step[m - 1], after = step[m + 1];
   return std::abs(before - after) < limit && std::abs(before - step[m - 2]) > limit &&
          std::abs(after - step[m + 2]) > limit && std::real(before * std::conj(step[m])) > 0;
 }
-/// Where all jumps are sharp, whether one interval has the jump and the others what the machine adds.
+/// Returns whether one interval contains a sharp step, and the others only the machine's response.
 bool has_peak(const std::vector<Complex>& step, Smear jump, std::size_t m) {
   for (std::size_t k = jump.first; k <= jump.last; ++k)
     if (k != m && std::abs(step[k]) > kOfPeak * std::abs(step[m])) return false;
   return true;
 }
 
-constexpr double kGoodPart = 0.15;  ///< of a jump's largest step
+constexpr double kGoodPart = 0.15;  ///< fraction of a step's largest change
 
-/// Whether a jump over several intervals has a good part in its second one. The little that a filter may
-/// leave there, a subtransient moves as well, and a fault of two samples hides how that goes on.
+/// Returns whether a filter has spread a step over several intervals: a large part lies in its second one. A
+/// smaller part may also come from a subtransient, whose further decay a fault of two samples hides.
 bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
   const auto step = playin::voltage_steps(r);
   std::size_t m = 1;
@@ -134,9 +135,9 @@ bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
   const auto along = [&](std::size_t k) { return std::real(step[k] * std::conj(step[m])); };
   return std::max(along(m - 1), along(m + 1)) > kGoodPart * std::norm(step[m]);
 }
-/// Whether the record's first jump cannot have passed a filter: a decay follows it, or it is large or alone,
-/// and too sudden. A filter would share it out over two intervals, or begin in the interval before. Later
-/// jumps may be those of a swing.
+/// Returns whether the record's first step is unfiltered: a decay follows it, or it is large or isolated, and
+/// too sudden. A filter would spread it over two intervals, or begin in the interval before. Later steps may
+/// belong to a swing.
 bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& found, double threshold) {
   constexpr double kClear = 10, kBegins = 0.03;
   if (found.empty()) return false;
@@ -148,16 +149,17 @@ bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& fou
   const bool alone = k + 1 < step.size() && std::abs(step[k] - step[k + 1]) < kGoodPart * jump;
   return (jump > kClear * threshold || alone) && std::abs(step[k - 2]) < kBegins * jump;
 }
-/// Whether the voltage moves before the interval of the first switching that a person told.
+/// Returns whether the voltage moves before the interval of the first switching time given by the user.
 bool moves_before(const record::Record& r, double threshold) {
   constexpr double kBegins = 0.03;
-  const double last = r.switched.front() + 1e-4 * r.step();  // a sample there holds the value before
+  const double last = r.switched.front() + 1e-4 * r.step();  // a sample at this time holds the value before
   const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, last) - r.t.begin());
   if (k < 2 || k >= r.t.size()) return false;
   const auto step = playin::voltage_steps(r);
   return std::abs(step[k - 2]) > std::max(threshold / 2, kBegins * std::abs(step[k - 1]));
 }
-/// Last sample before V leaves what it was in the first half second. This needs no switching to be found.
+/// Returns the time of the last sample before V leaves its level of the first half second, without any
+/// switching.
 double still_until(const record::Record& r) {
   constexpr double kFirstStretch = 0.5, kOffMean = 8;  // [s]; standard deviations
   const auto n = static_cast<std::size_t>(std::lround(kFirstStretch / r.step()));
@@ -170,7 +172,7 @@ double still_until(const record::Record& r) {
   return k < r.V.size() ? r.t[k - 1] : r.t.back();
 }
 
-/// Instants that a person told. Of the samples that a filter has smeared, those about them are marked.
+/// Takes the switching times given by the user. Of the filtered samples, those around them remain marked.
 void take_told(FitEvent& e, Jumps jumps) {
   const auto found = std::exchange(e.switchings, {});
   for (const double t : e.record.switched) e.switchings.push_back({.time = t});
@@ -183,7 +185,7 @@ void take_told(FitEvent& e, Jumps jumps) {
                             });
                    });
 }
-/// Infinite where none is.
+/// Returns the time half a sample before the first filtered sample [s]; infinity if there is none.
 double before_first_smeared(const FitEvent& e) {
   const auto k = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
   return k < e.smeared.size() ? e.record.t[k] - e.record.step() / 2 : std::numeric_limits<double>::infinity();
@@ -193,8 +195,8 @@ FitEvent prepare(record::Record record, const record::Record& seen, const FitEve
                  Jumps jumps) {
   FitEvent e;
   e.record = std::move(record);
-  // The threshold is half of what matters to the eye. A filter shares a jump out over two intervals, and a
-  // jump that is not found is played in as a ramp.
+  // The threshold is half of the visible one: a filter spreads a step over two intervals, and an undetected
+  // step is played in as a ramp.
   e.switchings = find_switchings(seen, options.jump_threshold / 2, jumps, e.smeared);
   if (!e.record.switched.empty())
     take_told(e, jumps);
@@ -209,7 +211,7 @@ FitEvent prepare(record::Record record, const record::Record& seen, const FitEve
   return e;
 }
 
-/// Where the model starts, once it is known what is smeared.
+/// Determines the operating point, after the filtered samples are known.
 void set_start(FitEvent& e, const FitEventOptions& options) {
   auto first = e.switchings;
   if (!e.smeared.empty() && !first.empty()) {
@@ -228,7 +230,7 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
   e.channels = playin::compared_outputs(e.record, options.measured_states);
 }
 
-/// Samples that are not compared.
+/// Returns marks of the samples that are not compared.
 std::vector<char> left_out(const FitEvent& e) {
   std::vector<char> marks = e.smeared;
   marks.resize(e.record.t.size());
@@ -241,7 +243,7 @@ std::vector<char> left_out(const FitEvent& e) {
   return marks;
 }
 
-/// Residual before the event, [channel][sample], with each channel's mean taken off.
+/// Returns the residual before the event, [channel][sample], minus each channel's mean.
 Eigen::MatrixXd quiet_residual(const sim::plant::PlantUnderTest& tested, const FitEvent& e) {
   const Playing how{
       .tolerance = 1e-8, .hasty = false, .until = e.record.t[static_cast<std::size_t>(e.start.samples - 1)]};
@@ -255,7 +257,7 @@ Eigen::MatrixXd quiet_residual(const sim::plant::PlantUnderTest& tested, const F
   return residual;
 }
 
-/// Noise of each event by the pre-event residuals of all events that have the same channels.
+/// Estimates the noise of each event from the pre-event residuals of all events with the same channels.
 template <class Events>
 NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events& events) {
   std::vector<EventNoise> noise;
@@ -291,7 +293,7 @@ Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
   bool any_spread = false, any_sharp = false, any_open = false;
   std::vector<FitEvent> if_spread;
   for (record::Record r : records) {
-    // an integrated angle is not what the instrument made of the phasor
+    // an integrated angle does not contain the instrument's filtering of the phasor
     if (r.angle == record::AngleSource::integrated) r.theta.assign(r.t.size(), 0.0);
     if (!r.switched.empty()) {
       if (moves_before(r, threshold)) return Jumps::spread;
@@ -326,13 +328,13 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     if (d[k] <= limit) continue;
     std::size_t last = k;
     while (last + 1 < d.size() && d[last + 1] > limit) ++last;
-    // a step within a smeared jump may happen to look like those around it
+    // one interval within a spread step may happen to equal its neighbours
     if (last + 2 < d.size() && d[last + 2] > limit) {
       last += 2;
       while (last + 1 < d.size() && d[last + 1] > limit) ++last;
     }
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
-    // samples first + 1 .. last lie inside the jump
+    // samples first + 1 .. last lie inside the step
     for (Smear jump : told_apart(step, {k, last}, limit)) {
       if (jumps == Jumps::either && jump.first == jump.last && is_even(step, jump.first, limit))
         jump = {jump.first - 1, jump.first + 1};

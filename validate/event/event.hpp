@@ -1,6 +1,5 @@
 #pragma once
-// Events made ready for fitting: where the voltage jumps, where the model starts, and how large the noise is
-// in each channel.
+// Preparation of events for fitting: switching times, operating point and noise of each channel.
 #include <optional>
 #include <vector>
 
@@ -10,60 +9,61 @@
 
 namespace swingbank::validate::event {
 
-/// What an instrument does to jumps: it smears all or none.
+/// Shape of voltage steps as the instrument records them: all filtered (spread), or none.
 enum class Jumps { either, sharp, spread };
 
 struct FitEventOptions {
-  bool measured_states = true;  ///< compare speed, Efd and Ifd too, where they are recorded
+  bool measured_states = true;  ///< compare speed, Efd and Ifd too, if recorded
   double jump_threshold = playin::kJumpThreshold;
-  double pre_event = 1.0;       ///< length of the steady window where nothing is switched [s]
-  Jumps jumps = Jumps::either;  ///< either: the records tell (jumps_of)
-  double mva = 0;               ///< of all machines whose power the records hold; 0: the model's
-  /// P and Q at which the model stands, where the records' are those of several units [pu on their base]. An
-  /// integrated angle's turns are then left to whoever knows all of them.
+  double pre_event = 1.0;       ///< length of the steady window of a record without switchings [s]
+  Jumps jumps = Jumps::either;  ///< either: determined from the records (jumps_of)
+  double mva = 0;               ///< rating of all machines whose power the records contain; 0: the model's
+  /// P and Q of the model's operating point if the records contain the power of several units [pu on their
+  /// base]. The caller, who has the models of all units, then estimates the turns of an integrated angle.
   std::optional<Complex> start = {};
 };
 
-/// The records in which jumps are sought. An angle that was integrated from a frequency does not show them,
-/// but the power that flows over the transient reactance does: the angle is that of the voltage as the rotor
-/// sees it then, which is theta = -0.3 P on a machine of so many MVA. Others stay as they are.
+/// Returns the records for the detection of switchings. An angle integrated from a frequency lacks their
+/// steps, but the power through the transient reactance shows them. Such an angle is replaced by that of the
+/// voltage seen from the rotor, theta = -0.3 P [pu on `mva`]. Other records are returned unchanged.
 std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, double mva);
 
-/// Samples about a switching that a meter's window reaches, whose frequency is then not that of the angle.
+/// Reach of a meter's window around a switching [samples]: there the frequency is not the derivative of the
+/// angle.
 constexpr double kPeakReach = 2.1;
 
-/// Finds switchings even where a filter has spread their jumps over two or three sample intervals. `smeared`
-/// gets a mark for each sample that lies inside such a jump or beside it. If jumps are known to be spread,
-/// the neighbours of sharp ones are marked too; if they are known to be sharp, a spread step is a swing.
+/// Finds switchings, also if a filter has spread their steps over two or three sample intervals. Marks in
+/// `smeared` each sample inside or next to such a filtered step. With Jumps::spread, the neighbours of sharp
+/// steps are marked too; with Jumps::sharp, a step over several intervals is taken for a swing and ignored.
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold, Jumps jumps,
                                                std::vector<char>& smeared);
 
-/// What one instrument does to jumps, by all of its records: an instrument's filter is even, so it smears
-/// before and after a jump alike, and what decays only after it is the machine's subtransient. Their first
-/// jumps decide, because later ones may be those of a swing. Where some look sharp and others do not, the
-/// most probable window does (passed_filter). `either` where no record tells. Where the angle was integrated,
-/// V alone tells.
+/// Returns the shape of steps as one instrument records them, from all of its records. The window of a filter
+/// is even: it spreads a step equally before and after it. A decay on one side only is the machine's
+/// subtransient response. The first step of each record decides, because later ones may belong to swings. If
+/// some are sharp and others are not, the most probable window decides (passed_filter). `either` if no record
+/// decides. If the angle was integrated, only V is used.
 Jumps jumps_of(const std::vector<record::Record>& records, double threshold);
 
-/// Prepares records that belong together (one plant, one instrument). The noise is that of the pre-event
-/// residual of `model`, pooled over the events: what the played-in voltage's own noise adds through the
-/// machine's reactance is in it, and so is what ties P and Q together. `kLeastNoise` is its floor. Throws
-/// InputError if a record has no pre-event.
+/// Prepares the records of one plant and one instrument. The noise covariance is that of the pre-event
+/// residual of `model`, pooled over the events. It thus includes the voltage noise transferred through the
+/// machine's reactance, and the correlation of P and Q. `kLeastNoise` is its floor. Throws InputError if a
+/// record has no pre-event window.
 WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                               const FitEventOptions& options = {});
 
-/// Samples of the steady state before the first switching, as prepare_events() finds them, without a model.
-/// `options.mva` is needed where the angle was integrated. Throws InputError if there are none.
+/// Returns the number of samples in steady state before the first switching, as in prepare_events(), without
+/// a model. `options.mva` is required if the angle was integrated. Throws InputError if there are none.
 int samples_before_event(const record::Record& record, const FitEventOptions& options);
 
-/// Measures the noise anew with another model of the plant, because a reactance that is wrong by a fifth
-/// makes the noise wrong by a fifth. The noise is white.
+/// Estimates the noise again with another model of the plant; the noise is white. An error of a fifth in a
+/// reactance causes an error of a fifth in the noise.
 NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events);
 
-/// Interpolation between samples leaves residuals of this size where a record has no noise at all [pu].
+/// Noise floor [pu]: residual of the interpolation between samples in a record without noise.
 constexpr double kLeastNoise = 1e-4;
-/// The same for the speed [pu]. It is what an error of 1e-4 pu of P that lasts a tenth of a second does to a
-/// machine of H = 1 s.
+/// Noise floor of the speed [pu]: effect of an error of 1e-4 pu of P that lasts 0.1 s on a machine of H = 1
+/// s.
 constexpr double kLeastSpeedNoise = 5e-6;
 
 }  // namespace swingbank::validate::event

@@ -1,8 +1,8 @@
 #pragma once
-// Whitening of noise that has a memory: noise of the played-in voltage passes regulator and rotor, and what
-// comes out is slow. The filter predicts each sample of the residual from those before it; what it does not
-// predict, the innovation, is white (Kalman, J. Basic Eng. 82, 1960; correlated disturbances as in Anderson
-// and Moore, Optimal Filtering, 1979, section 5.4).
+// Whitening of coloured noise: noise of the played-in voltage is low-pass filtered by regulator and rotor. A
+// Kalman filter predicts each sample of the residual from the earlier ones; the prediction errors
+// (innovations) are white (Kalman, J. Basic Eng. 82, 1960; correlated disturbances as in Anderson and Moore,
+// Optimal Filtering, 1979, section 5.4).
 #include <Eigen/Dense>
 #include <vector>
 
@@ -10,9 +10,9 @@ namespace swingbank::validate::event {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// x[k+1] = A x[k] + w, e[k] = C x[k] + v. The covariance of w is Q, that of v is S, that of w with v is M,
-/// and that of x[0] is P. Behind sample k, the covariance of w is larger by `doubtful[k]` times `jump`
-/// (empty: nowhere).
+/// State-space model of coloured noise: \f$x_{k+1} = A x_k + w\f$, \f$e_k = C x_k + v\f$. Covariances: Q of
+/// w, S of v, M of w with v, P of x[0]. After sample k, the covariance of w is increased by `doubtful[k]`
+/// times `jump` (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
   std::vector<char> doubtful = {};
@@ -20,7 +20,8 @@ struct SlowNoise {
 
 class Innovations {
  public:
-  /// Filters `samples` samples of a record; those marked in `left_out` (empty: none) are not compared.
+  /// Runs the filter over `samples` samples of a record; those marked in `left_out` (empty: none) are not
+  /// compared.
   Innovations(const SlowNoise& noise, int samples, const std::vector<char>& left_out);
   /// Whitens every column of e [compared sample * channels + channel][column] in place.
   void whiten(RowMatrix& e) const;
@@ -28,8 +29,8 @@ class Innovations {
  private:
   struct Step {
     bool compared;
-    Eigen::MatrixXd white;  ///< inverse root of the innovation's covariance, lower triangular
-    Eigen::MatrixXd gain;   ///< gain by which the innovation corrects the prediction
+    Eigen::MatrixXd white;  ///< inverse square root of the innovation's covariance, lower triangular
+    Eigen::MatrixXd gain;   ///< Kalman gain of the innovation
   };
   Eigen::MatrixXd A_, C_;
   std::vector<Step> steps_;

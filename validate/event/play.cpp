@@ -24,7 +24,7 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
     start.Pm += state.P;
     return start;
   }
-  if (event.record.open_circuit()) return start;  // nothing flows
+  if (event.record.open_circuit()) return start;  // no current
   start.P += state.P;
   start.Q += state.Q;
   return start;
@@ -32,7 +32,7 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
 
 namespace {
 
-/// The run of an event; `curve` and `given` stay where they are.
+/// Returns the run of an event; `curve` and `given` must outlive it.
 playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& event, const EventState& state,
                      const Playing& how, const playin::VoltageCurve& curve, const playin::Given* given) {
   playin::Drive run{.plant = &tested.plant,
@@ -110,7 +110,7 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
       }
       runs.push_back(run);
       which.push_back(k);
-    } catch (const InputError&) {  // it cannot stand at the start
+    } catch (const InputError&) {  // no steady state at the start
     }
   auto answers = playin::drive_together(runs);
   for (std::size_t k = 0; k < runs.size(); ++k) all[which[k]] = std::move(answers[k]);

@@ -1,6 +1,5 @@
 #pragma once
-// The one way in which an event is played into a plant: from the event's own state, and through the plant's
-// own instruments, which show what was recorded.
+// Playback of an event into a plant, from the event's own initial state and through the plant's instruments.
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,17 +10,17 @@
 
 namespace swingbank::validate::event {
 
-/// An input that no model makes, free in time.
+/// Unmodelled input, a free function of time.
 enum class InputKind { none, torque, field };
 
-/// What belongs to one event.
+/// Fitted quantities of one event.
 struct EventState {
-  std::vector<double> switchings;  ///< [s]; empty: where they were found
+  std::vector<double> switchings;  ///< switching times [s]; empty: as they were found
   std::vector<double> turns = {};  ///< of the angle at each of them [rad]; empty: as they were found
-  /// Offsets of the operating point and of the first states. Of an exciter or a governor P is that of Efd or
-  /// Pm, and the others mean nothing.
+  /// Offsets of the operating point [pu on the record's base] and of the initial angle [rad] and speed [pu].
+  /// For an exciter or a governor, P is the offset of Efd or Pm, and the others are unused.
   double P = 0, Q = 0, angle = 0, speed = 0;
-  playin::PiecewiseLinear torque = {}, field = {};  ///< what is added to Tm and Efd [pu]
+  playin::PiecewiseLinear torque = {}, field = {};  ///< added to Tm and Efd [pu]
   [[nodiscard]] playin::PiecewiseLinear& input(InputKind kind) {
     return kind == InputKind::torque ? torque : field;
   }
@@ -30,44 +29,45 @@ struct EventState {
   }
 };
 
-/// How an event is played.
+/// Options of a playback.
 struct Playing {
   double tolerance = 1e-5;  ///< error per step, relative to 1 + |state|
-  /// Steps down to a fortieth of the sample interval are taken whatever their error, because a limit that is
-  /// met and left within one sample is no reason for shorter ones; after 15 steps a sample it gives up.
-  /// False: neither.
+  /// Accepts steps of a fortieth of the sample interval whatever their error: a limit that is met and left
+  /// within one sample does not justify shorter ones. Gives up after 15 steps per sample on average. False:
+  /// neither.
   bool hasty = true;
-  /// A step may miss a state by what the compared channels do not show of it (playin::allowances).
+  /// Relaxes the tolerance of each state according to its effect on the compared channels
+  /// (playin::allowances).
   bool lenient = false;
-  /// How much, kept for further plays of the same plant with other values. Empty: found, and left here. Null:
-  /// found each time.
+  /// Cache of these allowances for further playbacks of the same plant with other values. Empty: computed and
+  /// stored here. Null: computed each time.
   std::vector<double>* allowance = nullptr;
-  bool linear_slopes = false;                           ///< slopes as playin::Drive has them: for a search
-  std::shared_ptr<const playin::Past>* past = nullptr;  ///< as playin::Drive has it
-  bool instants_stand = false;                          ///< as playin::Drive has it
-  double until = 1e300;                                 ///< samples after it are left out [s]
+  bool linear_slopes = false;                           ///< sensitivities as in playin::Drive, for a search
+  std::shared_ptr<const playin::Past>* past = nullptr;  ///< as in playin::Drive
+  bool instants_stand = false;                          ///< as in playin::Drive
+  double until = 1e300;                                 ///< later samples are left out [s]
 };
 
-/// The event's switchings at the instants that `state` has.
+/// Returns the event's switchings at the switching times of `state`.
 std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventState& state);
-/// The operating point with the offsets that `state` has.
+/// Returns the operating point with the offsets of `state`.
 playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
-/// What the plant answers as its instruments show it, and slopes along the directions. Throws InputError as
-/// playin::observe.
+/// Returns the plant's response through its instruments, and its sensitivities to the parameters `along`.
+/// Throws InputError as playin::observe.
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                       const EventState& state, std::span<const playin::Direction> along = {},
                       const Playing& how = {});
-/// The same of several plants that differ in values only, eight at a time (playin::drive_together); nothing
-/// where play() would throw.
+/// Returns the responses of several plants that differ in values only, computed in SIMD batches of eight
+/// (playin::drive_together); an entry is empty where play() would throw.
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
                                                            const sim::Conventions& conventions,
                                                            const FitEvent& event, const EventState& state,
                                                            const Playing& how = {});
 
-/// How fast each state of the plant follows 1 pu of an input at the start [1/s]; the state has that input.
+/// Returns the derivative of each state's rate with respect to an input at the start [1/s per pu].
 Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                                const EventState& state, InputKind input);
-/// Inputs of the plant's controls along the event, at these times too (playin::seen_along).
+/// Returns the inputs of the plant's controls along the event, also at `times` [s] (playin::seen_along).
 playin::SeenAlong seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                              const EventState& state, std::span<const double> times = {});
 

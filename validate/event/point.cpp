@@ -25,12 +25,12 @@ Collector read_section(Config& c, const std::string& at) {
   z.mva = c.require<double>(at + ".base_mva", {1e-3, 1e6, "MVA"});
   return z;
 }
-/// One section, [collector], or several, [[collector]].
+/// Reads one section, [collector], or several, [[collector]].
 std::vector<Collector> read_collector(Config& c) {
   std::vector<Collector> all;
   if (!c.has("collector")) return all;
   if (!c.is_array("collector")) return {read_section(c, "collector")};
-  c.ignore("collector");  // its keys are compared below
+  c.ignore("collector");  // its keys are checked below
   for (int k = 0; c.has(fmt::format("collector[{}]", k)); ++k) {
     const std::string at = fmt::format("collector[{}]", k);
     for (const std::string& key : c.keys(at))
@@ -59,7 +59,7 @@ OtherUnit read_unit(Config& c, const std::string& at, const std::filesystem::pat
   return unit;
 }
 
-/// Mean before the event.
+/// Returns the mean power before the event [pu].
 Complex mean_power(const record::Record& r, int samples) {
   Complex sum = 0;
   for (int k = 0; k < samples; ++k)
@@ -75,7 +75,7 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
   Problems problems;
   bool found = false;
   double shares = 0;
-  if (c.has("unit")) c.ignore("unit");  // its keys are compared below
+  if (c.has("unit")) c.ignore("unit");  // its keys are checked below
   for (int k = 0; c.has(fmt::format("unit[{}]", k)); ++k) {
     const std::string at = fmt::format("unit[{}]", k);
     for (const std::string& key : c.keys(at))
@@ -84,7 +84,7 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
                   "remove it");
     const std::filesystem::path model = c.file(at + ".model");
     std::error_code error;
-    if (model.empty() || !std::filesystem::exists(model, error)) continue;  // told by the config
+    if (model.empty() || !std::filesystem::exists(model, error)) continue;  // reported by the config
     if (std::filesystem::equivalent(model, tried, error)) {
       found = true;
       point.tried = plant::load_plant_model(model);
@@ -126,12 +126,13 @@ record::Record behind_section(record::Record r, const Collector& z) {
   return r;
 }
 
-/// Of two in a row, the one at the plant first.
+/// Returns two two-ports in series, beginning with the one at the plant.
 sim::plant::TwoPort in_a_row(const sim::plant::TwoPort& first, const sim::plant::TwoPort& then) {
   return {then.a * first.a + then.b * first.c, then.a * first.b + then.b * first.d,
           then.c * first.a + then.d * first.c, then.c * first.b + then.d * first.d};
 }
-/// From the units' side of a section to the point's [pu on `mva`]; behind_section() the other way.
+/// Returns the two-port from the units' side of a section to the point [pu on `mva`], the inverse of
+/// behind_section().
 sim::plant::TwoPort across(const Collector& z, double mva) {
   const double scale = mva / z.mva;
   const Complex Z(z.R * scale, z.X * scale), half(0, z.B / scale / 2);
@@ -180,7 +181,7 @@ MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& t
 
 namespace {
 
-/// A unit behind the point with what the record shows there, made ready for its model.
+/// A unit behind the point, with the record prepared for its model.
 struct Standing {
   sim::plant::PlantUnderTest tested;
   Complex start;  ///< P and Q before the event [pu on the record's base]
@@ -190,7 +191,7 @@ struct Standing {
   }
 };
 
-/// The machines behind the point, on whose power a switching shows.
+/// Returns the rating of all machines behind the point [MVA], whose power shows the switchings.
 double all_mva(const MeasuredPoint& point) {
   double mva = point.tried.plant.mva;
   for (const OtherUnit& unit : point.others) mva += unit.model.plant.mva;
@@ -204,17 +205,17 @@ FitEventOptions of_all(double mva) {
   return options;
 }
 
-/// A unit that stands at P and Q = `start` of the whole that is seen.
+/// Prepares a unit whose operating point is P + jQ = `start`, a part of the whole power `seen`.
 Standing standing(const plant::PlantModel& model, const record::Record& seen, double mva, Complex start) {
   FitEventOptions options = of_all(mva);
   options.start = start;
   return {model.under_test(), start, prepare_events(model, {seen}, options)};
 }
 
-/// What all units together leave of the measured P and Q until shortly after the switchings.
+/// Returns the residual of measured P and Q minus those of all units, until shortly after the switchings.
 Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Record& whole,
                           const EventState& state) {
-  constexpr double kAfter = 0.5;  // [s]; later the instants matter less than the models
+  constexpr double kAfter = 0.5;  // [s]; later the models matter more than the switching times
   const FitEvent& event = units[0].events[0];
   const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
   std::vector<playin::Response> answers;
@@ -230,8 +231,8 @@ Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Reco
   return left;
 }
 
-/// The step of least squares along `slopes` that keeps `at` within -1 to 1: what would leave stops there, and
-/// the rest is solved anew.
+/// Returns the least-squares step along `slopes` within the bounds -1 to 1 of `at`: components that would
+/// leave them are clamped, and the others are solved again.
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left, const Eigen::VectorXd& at) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
   std::vector<Eigen::Index> free(static_cast<std::size_t>(at.size()));
@@ -254,12 +255,13 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left
   return step;
 }
 
-/// The instants within their sample intervals, and the turns of an integrated angle, at which all units
-/// together meet the record best (Gauss-Newton): half an interval at 60 per second would cost the units
-/// several per cent of their power during a fault.
+/// Fits the switching times within their sample intervals, and the turns of an integrated angle, to the sum
+/// of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of several
+/// per cent of the units' power during a fault.
 EventState fitted_instants(const std::vector<Standing>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
-  constexpr double kAside = 0.02, kPointSettled = 1e-4;  // of the half interval, or the farthest turn
+  constexpr double kAside = 0.02,
+                   kPointSettled = 1e-4;  // fraction of the half interval, or of the largest turn
   const auto& switchings = units[0].events[0].switchings;
   const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].events[0].turns() ? 2 : 1));
   const auto state_at = [&](const Eigen::VectorXd& at) {
@@ -292,7 +294,7 @@ EventState fitted_instants(const std::vector<Standing>& units, const record::Rec
   return state_at(at);
 }
 
-/// The models of the others and of the tried unit, whose controls may measure at the point.
+/// Returns the models of the other units, then of the tested one, whose controls may measure at the point.
 std::vector<plant::PlantModel> models_at(const MeasuredPoint& point) {
   std::vector<plant::PlantModel> models;
   for (const OtherUnit& unit : point.others) {
@@ -317,10 +319,11 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   record::Record seen = record;
   for (auto* channel :
        {&seen.speed, &seen.Efd, &seen.Ifd, &seen.Vs, &seen.Vref, &seen.Pm, &seen.Pref, &seen.gate})
-    channel->clear();  // the tried unit's own
+    channel->clear();  // channels of the tested unit only
   const double mva = all_mva(point);
   const Complex whole = mean_power(seen, samples_before_event(seen, of_all(mva)));
-  const std::vector<plant::PlantModel> models = models_at(point);  // outlive the units, which point to them
+  const std::vector<plant::PlantModel> models =
+      models_at(point);  // must outlive the units, which refer to them
   std::vector<Standing> units;
   Complex others = 0;
   for (std::size_t k = 0; k < point.others.size(); ++k) {

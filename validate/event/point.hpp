@@ -1,5 +1,5 @@
 #pragma once
-// A measured point behind which several units stand: what the record says of the one that is tried.
+// Separation of the tested unit from a record taken at a common measuring point of several units.
 #include <complex>
 #include <filesystem>
 #include <string>
@@ -10,48 +10,50 @@
 
 namespace swingbank::validate::event {
 
-/// The impedance that units share before the point: a line or cables as a pi section, a transformer.
+/// Impedance shared by the units up to the measuring point: a line or cables as a pi section, or a
+/// transformer.
 struct Collector {
-  double R = 0, X = 0;  ///< in series [pu on `mva`]
-  double B = 0;         ///< charging, half at either end [pu on `mva`]
-  double ratio = 1;     ///< voltage at the units' bus over that at the point, both in pu, without load
+  double R = 0, X = 0;  ///< series impedance [pu on `mva`]
+  double B = 0;         ///< total charging susceptance, half at either end [pu on `mva`]
+  double ratio = 1;     ///< no-load voltage at the units' bus over that at the point, both in pu
   double mva = 100;     ///< base [MVA]
 };
 
-/// A unit beside the one that is tried: its model is believed.
+/// Another unit behind the point, whose model is assumed correct.
 struct OtherUnit {
   plant::PlantModel model;
-  double share = 0;     ///< of what flows at the units' bus before the event; 0: P and Q count
+  double share = 0;     ///< share of the power at the units' bus before the event; 0: P and Q apply
   double P = 0, Q = 0;  ///< before the event [MW, Mvar]
 };
 
 struct MeasuredPoint {
   std::string file;
-  std::vector<Collector> collector;  ///< sections one after the other, the one at the point first
-  plant::PlantModel tried;  ///< tells, with the others, when within a sample interval the network switched
+  std::vector<Collector> collector;  ///< sections in series, beginning at the point
+  plant::PlantModel tried;  ///< with the others it determines the switching times within a sample interval
   std::vector<OtherUnit> others;
 };
 
 /// Reads a point file (configs/plants/README.md) for the unit whose plant file is `tried`. Throws InputError
-/// with every fault of it: unknown keys, units that cannot be read, the tried one missing, shares that leave
-/// nothing.
+/// with every fault of it: unknown keys, units that cannot be read, tested unit missing, shares of the others
+/// that add up to 1 or more.
 MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried);
-/// The same for a model that was read, whose control, if it measures elsewhere, does so at the point then.
+/// Reads a point file for a model read before. If a control of that model measures at another bus, it is set
+/// to measure at the point.
 MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& tried);
 
-/// The record moved from the point to the units' bus, by its own V, P and Q.
+/// Returns the record transferred from the point to the units' bus, computed from its V, P and Q.
 record::Record behind_collector(record::Record record, const std::vector<Collector>& collector);
 
-/// What a control of the plant sees of the point: beyond the collector, where all units behind it carry
-/// 1/`share` times what this one does, as a whole [pu on `mva`].
+/// Returns the two-port between the plant and the point, for a control that measures there. All units
+/// together carry 1/`share` times the power of this one [pu on `mva`].
 sim::plant::TwoPort to_point(const std::vector<Collector>& collector, double mva, double share);
-/// The tried unit's plant, whose control, if one measures elsewhere, measures at the point. Throws InputError
-/// where the unit's share of the whole is not known.
+/// Returns the tested unit's plant, whose control measures at the point if it measures at another bus. Throws
+/// InputError if the unit's share of the total is unknown.
 sim::plant::Plant at_point(const MeasuredPoint& point);
 
-/// What the record shows of the tried unit alone: moved to the units' bus, and without what the other units
-/// do there, which are played in with the voltage of that bus. Notes say so. Throws InputError as play()
-/// does, and where the record lacks V, angle, P or Q.
+/// Returns the record of the tested unit alone: transferred to the units' bus, minus the simulated responses
+/// of the other units to the voltage of that bus. Notes report this. Throws InputError as play() does, and if
+/// the record lacks V, angle, P or Q.
 record::Record of_tried_unit(const MeasuredPoint& point, record::Record record);
 
 }  // namespace swingbank::validate::event

@@ -1,19 +1,19 @@
 #pragma once
-// Progress of analyses that take minutes: the phase at work, and how much of it is done.
+// Progress of long analyses: the current phase and its completed share.
 #include <functional>
 #include <string>
 
 namespace swingbank::validate::event {
 
 enum class Phase {
-  playing,  ///< events are played for the page
+  playing,  ///< playback of events for the report
   // calibrate, and add
-  model_as_it_is,   ///< each event with the model as it is
-  parameter_sets,   ///< drawn sets are screened
-  starts,           ///< the best of them are fitted
-  voltage_noise,    ///< the noise of the played-in voltage is corrected
+  model_as_it_is,   ///< each event with the original model
+  parameter_sets,   ///< screening of drawn parameter sets
+  starts,           ///< fits from the best of them
+  voltage_noise,    ///< correction for the noise of the played-in voltage
   fitted_model,     ///< each event with the fitted model
-  sensitivities,    ///< what the records determine
+  sensitivities,    ///< identifiability of the parameters
   effect_left_out,  ///< each event without the effect
   effect_added,     ///< each event with the effect
   // sparse parameter selection
@@ -38,8 +38,8 @@ enum class Phase {
   pair_unseen_events,
 };
 
-/// Called with the phase, what of it is at work (may be empty), and how many of how many are done. May be
-/// empty.
+/// Callback with the phase, the current item (may be empty), and the numbers of completed and of all items.
+/// May be empty.
 using Progress = std::function<void(Phase phase, const std::string& item, int done, int total)>;
 
 }  // namespace swingbank::validate::event

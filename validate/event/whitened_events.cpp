@@ -18,7 +18,7 @@ bool FitEvent::turns() const {
 
 namespace {
 
-/// None where the voltage cannot be known; playing the event says why.
+/// Returns the curve; none if the voltage is invalid: playing the event then reports the reason.
 KeptCurve kept_curve(const FitEvent& e) {
   const record::Record& r = e.played();
   if (r.t.empty() || r.V.size() != r.t.size() || r.theta.size() != r.t.size()) return {};

@@ -1,6 +1,6 @@
 #pragma once
-// Events that never change, beside one measurement of their noise. Fits take both together; to measure the
-// noise anew makes another value and leaves this one as it is.
+// Immutable events with one estimate of their noise. Fits take both together; another estimate of the noise
+// gives another value and leaves this one unchanged.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace swingbank::validate::event {
 
-/// The curve of an event that no longer changes. A copy of the event, which may be changed, has none.
+/// Cached voltage curve of an immutable event. Copies of the event may be changed, so a copy starts without
+/// it.
 class KeptCurve {
  public:
   KeptCurve() = default;
@@ -36,39 +37,38 @@ class KeptCurve {
 /// One event, prepared for fitting.
 struct FitEvent {
   record::Record record;
-  std::vector<playin::Switching> switchings;  ///< where they were found; those with an uncertainty are fitted
+  std::vector<playin::Switching> switchings;  ///< as found; those with an uncertainty are fitted
   playin::OperatingPoint start;
-  /// Marks samples that an instrument's filter has smeared over a switching; these are not played in. Empty:
-  /// no sample is.
+  /// Marks samples within a step filtered by the instrument; these are not played in. Empty: none.
   std::vector<char> smeared = {};
-  /// Marks samples that are not compared: the smeared ones, and those next to a sharp switching, because a
-  /// channel that is a millisecond late may lie on the other side there. Empty: no sample is.
+  /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
+  /// where a delay of a millisecond may put a channel on the other side. Empty: none.
   std::vector<char> left_out = {};
-  /// Time, V and theta of the samples that are not smeared, and of those that unsmear() brought back. Empty
-  /// where none is smeared.
+  /// Time, V and theta of the samples that are not filtered, and of those that unsmear() restored. Empty if
+  /// no sample is filtered.
   record::Record clean = {};
-  std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd where recorded
+  std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
   KeptCurve kept = {};                   ///< of played() with `switchings`, in WhitenedEvents
-  /// The voltage that is played in, with the switchings at these instants.
+  /// Returns the played-in voltage with the given switchings.
   [[nodiscard]] playin::VoltageCurve curve(std::vector<playin::Switching> at) const;
-  /// One of Response's answers or slopes ([output][sample]), with the measured values taken off where asked:
-  /// [compared sample * channels + channel].
+  /// Returns an output or a sensitivity of Response ([output][sample]) as a vector
+  /// [compared sample * channels + channel], minus the measured values if `less_measured`.
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
   [[nodiscard]] const std::vector<double>& measured(playin::Output o) const;
-  /// Whether the angle turns by an unknown amount at each switching, because it was integrated from a
+  /// Returns whether the angle turns by an unknown amount at each switching, because it was integrated from a
   /// frequency.
   [[nodiscard]] bool turns() const;
-  /// The record that is played in.
+  /// Returns the played-in record.
   [[nodiscard]] const record::Record& played() const { return smeared.empty() ? record : clean; }
   [[nodiscard]] bool compared(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
-  /// How many numbers are compared.
+  /// Returns the number of compared values.
   [[nodiscard]] int values() const {
     const auto missing = std::ranges::count(left_out, 1);
     return (record.samples() - static_cast<int>(missing)) * static_cast<int>(channels.size());
   }
 };
 
-/// One event beside its noise. Both stay where they are kept.
+/// References to one event and its noise, both owned by WhitenedEvents.
 struct WhitenedEvent {
   const FitEvent& event;
   const EventNoise& noise;
@@ -90,23 +90,23 @@ class WhitenedEvents {
 
   [[nodiscard]] const EventNoise& noise(std::size_t event) const { return noise_.of(which_[event]); }
   [[nodiscard]] WhitenedEvent whitened(std::size_t event) const { return {*events_[event], noise(event)}; }
-  /// The measurement that the noise comes from.
+  /// Returns the noise estimate of the events.
   [[nodiscard]] const NoiseModel& noise_model() const { return noise_; }
 
-  /// The same events with another measurement of their noise, which has one entry for each of them.
+  /// Returns the same events with another noise estimate, which has one entry for each of them.
   [[nodiscard]] WhitenedEvents with(NoiseModel noise) const;
-  /// Some of the events, with the same measurement.
+  /// Returns a subset of the events with the same noise estimate.
   [[nodiscard]] WhitenedEvents only(const std::vector<std::size_t>& events) const;
   [[nodiscard]] WhitenedEvents alone(std::size_t event) const { return only({event}); }
   [[nodiscard]] WhitenedEvents without(std::size_t event) const;
 
  private:
   std::vector<std::shared_ptr<const FitEvent>> events_;
-  std::vector<std::size_t> which_;  ///< place of each event in the measurement
+  std::vector<std::size_t> which_;  ///< index of each event in the noise estimate
   NoiseModel noise_;
 };
 
-/// Goes through the events of WhitenedEvents.
+/// Iterator over the events of WhitenedEvents.
 class WhitenedEvents::Iterator {
  public:
   using value_type = FitEvent;

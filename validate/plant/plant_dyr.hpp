@@ -1,5 +1,5 @@
 #pragma once
-// A plant model as records of a PSS/E .dyr or a PSLF .dyd: what is handed in.
+// Export of a plant model as records of a PSS/E .dyr or a PSLF .dyd.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,24 +8,24 @@
 
 namespace swingbank::validate::plant {
 
-/// The records of the model's machine and controls; `head` becomes comments. `where` names the model in
-/// messages. No bus number, a law and a value without a column become problems.
+/// Returns the .dyr records of the model's machine and controls; `head` becomes comments, and `where` names
+/// the model in messages. A missing bus number, a user-defined model and a value without a column become
+/// problems.
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
 
-/// The same as lines of a PSLF .dyd, with what PSLF asks for beside: the bus's name and its nominal voltage
-/// [kV].
+/// Returns the same as lines of a PSLF .dyd, which also contain the bus's name and nominal voltage [kV].
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems);
 
-/// The names of the blocks whose values differ from `before`, and of those it does not have.
+/// Returns the names of the blocks that are new or whose values differ from `before`.
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
 
 struct WrittenDyr {
-  std::string line;            ///< for the person: what was written, or why nothing could be
-  std::filesystem::path file;  ///< empty where nothing was written
+  std::string line;            ///< message: the written file, or the reason why none was written
+  std::filesystem::path file;  ///< empty if none was written
 };
-/// Writes the records beside a plant file, its extension .dyr, with the changed ones named.
+/// Writes the .dyr records beside a plant file, with the same name; a comment lists the changed blocks.
 WrittenDyr write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
                             const PlantModel& model);
 

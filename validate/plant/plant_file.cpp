@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The shortest text that reads back to the same bits, with a point or exponent.
+/// Returns the shortest text that reads back to the same bits, with a decimal point or exponent.
 std::string number(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
 }
-/// As a TOML basic string.
+/// Returns the text as a TOML basic string.
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -33,7 +33,7 @@ std::string in_quotes(std::string_view text) {
   }
   return out + '"';
 }
-/// As comment lines: text that may hold anything.
+/// Returns arbitrary text as comment lines.
 std::string comment(const std::string& text) {
   std::string out = "# ";
   for (const char c : text) {
@@ -45,7 +45,7 @@ std::string comment(const std::string& text) {
   return out + "\n";
 }
 
-/// Whether the model leaves this parameter to its standard value, and it still has it.
+/// Returns whether the plant file left this parameter at its default value, and it is unchanged.
 bool left_default(const PlantModel& model, const sim::plant::Block& block, std::size_t i) {
   const auto& p = block.effect->parameters[i];
   return block.p[i] == p.default_value &&
@@ -76,7 +76,7 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
   return all;
 }
 
-/// Values before a calibration that did not hold, where they differ.
+/// Appends the values before a rejected calibration that differ.
 void append_submitted(std::string& text, const PlantModel& model) {
   if (!model.submitted) return;
   text +=
@@ -133,7 +133,7 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   return text;
 }
 
-/// Law files under names of their own, without folders.
+/// Returns the names of the law files without folders, which must be unique.
 std::vector<std::string> law_names(const PlantModel& model) {
   std::vector<std::string> names;
   Problems problems;
@@ -147,7 +147,7 @@ std::vector<std::string> law_names(const PlantModel& model) {
   return names;
 }
 
-/// `text`, with absolute paths of its laws, must read back to the model.
+/// Checks that the text, with absolute paths of the law files, reads back to the same model.
 void check(const PlantModel& model, const std::vector<std::string>& provenance) {
   std::vector<std::string> laws;
   for (const auto& law : model.laws) laws.push_back(fs::absolute(law).string());
@@ -158,7 +158,7 @@ void check(const PlantModel& model, const std::vector<std::string>& provenance) 
                       "report this as an error of the program"});
 }
 
-bool same(double a, double b) { return a == b; }  // no NaN gets into a plant
+bool same(double a, double b) { return a == b; }  // a plant contains no NaN
 
 std::string block_difference(const sim::plant::Block& a, const sim::plant::Block& b) {
   if (!a.effect || !b.effect ? a.effect != b.effect : !sim::laws::same_effect(*a.effect, *b.effect))

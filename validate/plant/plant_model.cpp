@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using sim::Slot;
 
-constexpr double kSmallest = 1e-9;     ///< bases and frequencies are above zero
-constexpr double kMostBuses = 999999;  ///< the largest bus number of PSS/E
+constexpr double kSmallest = 1e-9;     ///< lower bound of bases and frequencies
+constexpr double kMostBuses = 999999;  ///< largest bus number of PSS/E
 
-constexpr std::string_view kConverter = "converter";  ///< section of a source that is one
+constexpr std::string_view kConverter = "converter";  ///< section of a converter as the source
 
 using sim::library::EffectLibrary;
 
-/// Names of the effects of one slot, as a config may write them; `section` says which kind of source.
+/// Returns the names of the effects of one slot; `section` selects machines or converters.
 std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std::string_view section = {}) {
   std::vector<std::string> names;
   for (const auto* e : library.all())
@@ -36,7 +36,7 @@ std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std
   return names;
 }
 
-/// What is unusual in a section: noted with its line, not refused.
+/// Adds a warning with its line for each unusual value of a section.
 void warn_unusual(const Config& config, const std::string& section, const sim::plant::Block& block,
                   PlantModel& model) {
   for (const int i : sim::plant::unusual(block)) {
@@ -48,15 +48,15 @@ void warn_unusual(const Config& config, const std::string& section, const sim::p
   }
 }
 
-/// One section: the effect's name and every one of its parameters; checked for consistency if all could be
-/// read. `section` is a slot's name, or "limiter[1]". What the section leaves to the standard values, and
-/// what is unusual in it, is noted in the model.
+/// Reads one section: the effect's name and all of its parameters, which are checked for consistency if all
+/// could be read. `section` is a slot's name, or "limiter[1]". Parameters left at default values, and unusual
+/// ones, are noted in the model.
 sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const std::string& section) {
   const EffectLibrary& library = model.library;
   sim::plant::Block block{
       library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
   if (!block.effect || block.effect->slot != slot) {
-    config.ignore(section);  // its keys are those of the effect that was meant
+    config.ignore(section);  // its keys belong to the intended effect
     return {};
   }
   const bool sound = config.sound();
@@ -78,7 +78,7 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   return block;
 }
 
-/// Orderings that every machine has, each with its line.
+/// Warns of violated orderings of a machine's parameters, each with its line.
 void check_orderings(const Config& config, PlantModel& model) {
   const sim::plant::Block& machine = model.plant.machine;
   if (!machine.effect) return;
@@ -91,10 +91,10 @@ void check_orderings(const Config& config, PlantModel& model) {
   }
 }
 
-/// Every [[section]] of a slot that takes several effects.
+/// Reads every [[section]] of a slot with several effects.
 std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, Slot slot) {
   const std::string name(sim::slot_name(slot));
-  config.ignore(name);  // its keys are compared below
+  config.ignore(name);  // its keys are checked below
   std::vector<sim::plant::Block> blocks;
   for (int k = 0; config.has(fmt::format("{}[{}]", name, k)); ++k) {
     const std::string section = fmt::format("{}[{}]", name, k);
@@ -111,7 +111,7 @@ std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, S
   return blocks;
 }
 
-/// The effects of one slot: one [section], or several [[section]] where they add up.
+/// Reads the effects of one slot: one [section], or several [[section]] if their outputs add up.
 void read_slot(Config& config, PlantModel& model, Slot slot, std::vector<sim::plant::Block>& into) {
   const std::string section(sim::slot_name(slot));
   if (!config.is_array(section)) {
@@ -127,7 +127,7 @@ void read_slot(Config& config, PlantModel& model, Slot slot, std::vector<sim::pl
   std::ranges::move(read_several(config, model, slot), std::back_inserter(into));
 }
 
-/// A slot that the grid's files fill already.
+/// Returns whether the grid's files already fill the slot.
 bool filled(const sim::plant::Plant& plant, Slot slot) {
   if (sim::is_shared(slot)) return false;
   if (slot == Slot::transformer) return plant.transformer.effect != nullptr;
@@ -139,7 +139,8 @@ std::string_view name_in(const sim::plant::Plant& plant, Slot slot) {
   return at->effect->dyr_name;
 }
 
-/// Every section but [machine] or [converter], into the plant and beside what it has from a grid's files.
+/// Reads all sections other than [machine] and [converter] into the plant, in addition to those of a grid's
+/// files.
 void read_around(Config& config, PlantModel& model) {
   sim::plant::Plant& plant = model.plant;
   for (const Slot slot : sim::kSlots) {
@@ -170,7 +171,7 @@ void read_around(Config& config, PlantModel& model) {
                      why, "remove the section");
 }
 
-/// Values before a calibration that did not hold, by effect and parameter.
+/// Reads the values before a rejected calibration, by effect and parameter.
 void read_submitted(Config& config, PlantModel& model) {
   if (!config.has("submitted")) return;
   sim::plant::Plant plant = model.plant;
@@ -189,7 +190,7 @@ void read_submitted(Config& config, PlantModel& model) {
                                        config.name().string()));
 }
 
-/// Law files of the plant: the library knows their effects from here on.
+/// Loads the law files of the plant, and adds their effects to the library.
 std::vector<fs::path> read_laws(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
   for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
@@ -212,7 +213,7 @@ sim::Conventions read_conventions(Config& config, double hz) {
   return read;
 }
 
-/// Whole blocks that a replacement left to their standard values.
+/// Notes all parameters of these effects as left at default values by a replacement.
 void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
   for (const auto& name : effects)
     for (const auto& p : model.library.find(name)->parameters)
@@ -251,7 +252,7 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.warnings = unit.notes;
 }
 
-/// Whether the first line that is no comment is one of columns, as records have it: no line of TOML divides
+/// Returns whether the first line that is no comment consists of columns, as in a record: no line of TOML has
 /// three cells before a table or a value begins.
 bool is_columns(std::string_view text) {
   while (!text.empty()) {
@@ -348,7 +349,7 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.conventions.frequency = unit.frequency;
   model.record_base.frequency = unit.frequency;
   model.record_base.mva = unit.system_mva;
-  // Cases in per unit give every bus 1 kV, or none; a plant's voltage is never so low.
+  // Cases in per unit give every bus 1 kV, or none; the voltage of a plant is higher.
   constexpr double kPerUnitCase = 1.0;
   if (unit.kv > kPerUnitCase) model.record_base.kv = unit.kv;
   note_defaults(model, unit.defaults);

@@ -1,6 +1,6 @@
 #pragma once
-// The model of one plant, as the commands that work on records take it: a .toml file that names the effects
-// and every parameter, or one generator of a PSS/E grid.
+// Model of one plant for the commands that use records: a .toml file that names the effects and every
+// parameter, or one generator of a PSS/E grid.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -19,43 +19,42 @@ struct PlantModel {
   std::string sha256;        ///< of that file's bytes
   sim::plant::Plant plant;   ///< its generation is set from each record
   sim::Conventions conventions;
-  record::RecordBase record_base;                ///< what "pu" means in the records of this plant
-  record::ReadOptions reading;                   ///< which columns of its records are read, and which stretch
-  std::vector<std::filesystem::path> laws = {};  ///< law files that its effects come from
-  int bus = 0;                                   ///< number in its case; 0: not given
-  std::string id = "1";                          ///< the machine's, there
-  /// What it delivers in its case; none: not known. Records are held against it, nothing starts from it.
+  record::RecordBase record_base;                ///< bases of "pu" in the records of this plant
+  record::ReadOptions reading;                   ///< columns and time range of its records
+  std::vector<std::filesystem::path> laws = {};  ///< law files that define some of its effects
+  int bus = 0;                                   ///< bus number in its case; 0: not given
+  std::string id = "1";                          ///< machine identifier in its case
+  /// Output in its case; none: unknown. Used to check records, never as an initial condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
-  /// Parameters ("SEXS.TE") that the file leaves to their standard values (`standard = true`).
+  /// Parameters ("SEXS.TE") that the file leaves at their default values (`standard = true`).
   std::vector<std::string> defaults = {};
-  /// Of a calibration that did not hold: the plant as it was before, not bent to make up for what is missing.
+  /// Plant before a calibration that was rejected; its parameters do not compensate for a missing effect.
   std::optional<sim::plant::Plant> submitted = {};
-  /// Where `plant` is one component of it only: the plant.
+  /// The whole plant, if `plant` is only one component of it.
   std::optional<sim::plant::Plant> whole = {};
-  /// What looks wrong in the file and does not refuse it, with its line.
+  /// Suspicious entries of the file that do not refuse it, with their lines.
   std::vector<std::string> warnings = {};
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
-  /// Compiled effects and those of `laws`. The plant's blocks point into it, so a plant taken out of the
-  /// model must not outlive the model and its copies.
+  /// Compiled effects and those of `laws`. The plant's blocks point into it, so a copy of the plant must not
+  /// outlive the model and its copies.
   sim::library::EffectLibrary library = {};
 };
 
-/// What is tried, in a word: the machine's effect, or "exciter alone".
+/// Returns the name of the tested part: the machine's effect, or "exciter alone".
 std::string subject(const PlantModel& model);
 
-/// Reads a plant file (configs/plants/README.md describes it). Every parameter of every effect must be given
-/// by name; what is not is taken from the effect's standard values only where its block says
-/// `standard = true`. Throws InputError with every fault of the file: unknown keys, effects or
-/// parameters (the known ones are listed), missing ones, wrong types, values that no equation takes. Values
-/// outside what is usual for them are warnings, each with its line.
+/// Reads a plant file (configs/plants/README.md). Every parameter of every effect must be given by name;
+/// missing ones take default values only if their block has `standard = true`. Throws InputError with every
+/// fault of the file: unknown keys, effects or parameters (the known ones are listed), missing ones, wrong
+/// types, values that the equations do not allow. Unusual values become warnings, each with its line.
 PlantModel load_plant_model(const std::filesystem::path& file);
-/// The same from a text; `file` stands for it in messages, and relative paths in it refer to its folder.
+/// Reads a plant file from its text; `file` denotes it in messages, and relative paths refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
-/// The model to fit or diagnose: as it was before a calibration that did not hold, else as it is.
+/// Returns the model to fit or diagnose: as before a rejected calibration, otherwise unchanged.
 PlantModel as_submitted(PlantModel model);
-/// The model of one unit of a case, with the values of the case; `files` names them in messages. The records'
-/// base is the system's. The warnings say which orderings are violated, and whether the data look like those
-/// of another base.
+/// Returns the model of one unit of a case, with the values of the case; `files` names its files in messages.
+/// The base of the records is the system's. Warnings report violated orderings of parameters, and data that
+/// appear to be on another base.
 PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files);
 
 }  // namespace swingbank::validate::plant

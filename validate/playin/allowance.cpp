@@ -7,8 +7,8 @@
 namespace swingbank::validate::playin {
 
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval) {
-  constexpr double kUnseen = 1e-6;  // a state that waits behind a gate or a limit may yet act
-  constexpr int kDoublings = 8;     // the channels are looked at up to 2^8 samples later
+  constexpr double kUnseen = 1e-6;  // a state without visible effect behind a gate or a limit may act later
+  constexpr int kDoublings = 8;     // effects are evaluated up to 2^8 samples later
   const Eigen::Index n = plant.A.rows();
   std::vector<double> all(static_cast<std::size_t>(n), 1.0);
   if (compared.empty() || !plant.A.allFinite() || !plant.C.allFinite()) return all;

@@ -1,5 +1,5 @@
 #pragma once
-// How much an integration step may miss each state by: what counts is what the compared channels show of it.
+// Tolerance of each state in an integration step, derived from its effect on the compared channels.
 #include <span>
 #include <vector>
 
@@ -7,12 +7,12 @@
 
 namespace swingbank::validate::playin {
 
-/// For each state by how much more than the tolerance [its unit per pu] a step may miss it: so much that no
-/// compared channel is ever moved by more than the tolerance, as the plant is about its start (linearise).
-/// Between 1 and kMostAllowance. `interval` [s]: of the record.
+/// Returns the factor of each state on the tolerance of a step [its unit per pu], between 1 and
+/// kMostAllowance. By the plant linearised about its start, an error of this size never moves a compared
+/// channel by more than the tolerance. `interval` is the record's sample interval [s].
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval);
 
-/// The start says little of where a plant is at a limit.
+/// Upper bound of the factor: the linearisation about the start does not describe a plant at a limit.
 constexpr double kMostAllowance = 100;
 
 }  // namespace swingbank::validate::playin

@@ -18,7 +18,7 @@ bool all_blocks(const sim::plant::Plant& plant, F holds) {
 bool is_ordered(const sim::plant::Block& b) {
   return !b.effect->unphysical || b.effect->unphysical(b.p.data()).empty();
 }
-/// Whether a block violates nothing that `given` does not.
+/// Returns whether every violation of a block also exists in `given`.
 bool is_as_ordered(const sim::plant::Block& b, const sim::plant::Block& given) {
   if (!b.effect || is_ordered(b)) return true;
   if (is_ordered(given)) return false;

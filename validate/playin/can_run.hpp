@@ -1,16 +1,16 @@
 #pragma once
-// Can this plant run? What the checks of its effects say of the parameters it has.
+// Validity of a plant's parameters according to the checks of its effects.
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::validate::playin {
 
-/// Whether the block's equations can be run with its parameters.
+/// Returns whether the block's equations are defined for its parameters.
 bool can_run(const sim::plant::Block& block);
-/// The same of every block of a plant, instruments included.
+/// Returns the same for all blocks of a plant, instruments included.
 bool can_run(const sim::plant::Plant& plant);
-/// Whether the plant can be run, and a machine, a control or an instrument of that kind can have such
-/// parameters (Effect::unphysical). What the values of `given`, a plant of the same blocks, violate may be
-/// violated: `given` is the model as submitted, so that a search which crossed such a limit can go back.
+/// Returns whether the plant can run and its parameters are physically possible (Effect::unphysical).
+/// Violations that `given`, the submitted model with the same blocks, already contains are allowed, so that a
+/// search may return to them.
 bool can_exist_beside(const sim::plant::Plant& plant, const sim::plant::Plant& given);
 
 }  // namespace swingbank::validate::playin

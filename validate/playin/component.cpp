@@ -35,7 +35,7 @@ struct RecordedMachine {
   static void emf(const T*, const T*, T*, T& er, T& ei) {
     er = ei = T(0.0);
   }
-  /// The current stands in the signals before it is asked for.
+  /// The signals contain the current already.
   template <class T>
   static void current(const T*, const T*, T*, sim::Signals<T>&) {}
   template <class T>
@@ -59,7 +59,7 @@ struct RecordedMachine {
   }
 };
 
-/// How a signal is moved to see whether anything answers.
+/// Perturbation of a signal to test whether any block depends on it.
 struct Probe {
   const char* word;
   double reach;
@@ -80,8 +80,8 @@ constexpr Probe kProbes[] = {
     {"Ifd", 2.0, [](sim::Signals<double>&, double* m, double by) { m[recorded::dIfd] += by; }},
 };
 
-/// Words of the signals that the component's blocks answer to, tried at one operating point; nothing where
-/// they cannot hold it.
+/// Returns the signals that the component's blocks depend on, tested at one operating point. Throws
+/// InputError if it has no steady state.
 std::vector<std::string> answered(const sim::plant::PlantUnderTest& part, double Efd, double Tm) {
   auto p = sim::plant::block_parameters(part.plant);
   p.front() = recorded::standing<double>(Efd, Efd, Tm);
@@ -116,7 +116,7 @@ std::vector<std::string> answered(const sim::plant::PlantUnderTest& part) {
     for (const double Tm : {0.6, 0.8, 0.4, 0.2}) {
       try {
         return answered(part, Efd, Tm);
-      } catch (const InputError&) {  // another point may be held
+      } catch (const InputError&) {  // try the next point
       }
     }
   return {};

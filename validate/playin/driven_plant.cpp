@@ -21,11 +21,11 @@ namespace {
 using sim::D8;
 using Kind = Direction::Kind;
 
-constexpr double kRoughFrom = 1e-5;     ///< tolerance
+constexpr double kRoughFrom = 1e-5;     ///< tolerance from which the 3(2) pair is used
 constexpr double kShortestStep = 1e-9;  ///< [s]
-constexpr double kCornerError = 1e-6;   ///< of a state, in a step across a corner of the equations
-constexpr double kJumpWithin = 1e-8;    ///< an instant at which the equations jump is found to this [s]
-constexpr double kRateOver = 1e-6;      ///< how fast a guard passes zero is measured over this [s]
+constexpr double kCornerError = 1e-6;   ///< accepted error of a state in a step across a corner
+constexpr double kJumpWithin = 1e-8;    ///< accuracy of the time at which the equations are discontinuous [s]
+constexpr double kRateOver = 1e-6;      ///< interval for the rate of a guard at zero [s]
 
 template <class T>
 class Driven {
@@ -44,7 +44,7 @@ class Driven {
     collect_instants();
   }
 
-  /// `trace`, if given, gets where the run went.
+  /// Runs the simulation; `trace`, if given, receives the trajectory.
   Response run(Trace* trace = nullptr) {
     trace_ = trace;
     Response back;
@@ -65,7 +65,7 @@ class Driven {
     return back;
   }
 
-  /// Slopes of derivative and outputs at the start: by states, then by V and theta.
+  /// Returns the derivatives of state rates and outputs at the start, with respect to states, V and theta.
   LinearPlant linear() {
     const auto n = static_cast<Eigen::Index>(x_.size());
     Eigen::MatrixXd by(n + kOutputs, n + 2);
@@ -73,7 +73,7 @@ class Driven {
     for (Eigen::Index first = 0; first < n + 2; first += sim::kDirections) {
       const Eigen::Index count = std::min<Eigen::Index>(sim::kDirections, n + 2 - first);
       auto x = x_;
-      for (T& value : x) value = value + T(1e-9);  // beside the corner that a dead-band of no width has
+      for (T& value : x) value = value + T(1e-9);  // off the corner of a dead-band of zero width
       T vr(v.real()), vi(v.imag());
       for (Eigen::Index i = 0; i < count; ++i) {
         const auto d = static_cast<std::size_t>(i);
@@ -90,7 +90,7 @@ class Driven {
               j < n ? trial_[static_cast<std::size_t>(j)] : out[static_cast<std::size_t>(j - n)],
               static_cast<std::size_t>(i));
     }
-    if (breaker_) by.rightCols(2).setZero();  // the recorded voltage drives nothing
+    if (breaker_) by.rightCols(2).setZero();  // the recorded voltage is no input
     return {by.topLeftCorner(n, n), by.topRightCorner(n, 2), by.bottomLeftCorner(kOutputs, n),
             by.bottomRightCorner(kOutputs, 2)};
   }
@@ -98,7 +98,7 @@ class Driven {
  private:
   struct Instant {
     double time;
-    int switching;  ///< of the curve; -1: of an effect
+    int switching;  ///< index in the curve; -1: of an effect
   };
 
   void collect_instants() {
@@ -117,7 +117,7 @@ class Driven {
     std::ranges::stable_sort(instants_, {}, &Instant::time);
     look_ahead();
   }
-  /// Integrates to the next instant and over to its other side.
+  /// Integrates to the next switching time and moves to its other side.
   void pass_instant() {
     const Instant at = instants_[next_];
     advance(at.time);
@@ -152,7 +152,7 @@ class Driven {
       trace_->dx.push_back(sim::value_of(derivative[i]));
     }
   }
-  /// Effects see at most the next instant less a moment.
+  /// Limits the time that effects receive to just before the next switching time.
   void look_ahead() {
     equations_.side.last_moment =
         next_ < instants_.size() ? instants_[next_].time - sim::plant::kBeforeSwitching : 1e300;
@@ -184,13 +184,13 @@ class Driven {
       }
       const double factor =
           std::isfinite(error) ? std::clamp(0.9 * grown(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
-      const bool cut_short = reaches && error <= 1;  // short for the instant's sake, not the error's
+      const bool cut_short = reaches && error <= 1;  // shortened by the target time, not by the error
       h_ = cut_short ? std::max(h_, h * factor) : h * factor;
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
   }
-  /// The step that was tried last becomes the run's.
+  /// Accepts the step of the last attempt.
   void take(double h) {
     t_ += h;
     std::swap(x_, trial_);
@@ -200,19 +200,19 @@ class Driven {
     equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
     fresh_ = sim::value_of(moved) > 0;
   }
-  /// By the signals as they were evaluated last, at these states.
+  /// Evaluates the guards at these states, from the last evaluated signals.
   void look_at_guards(const std::vector<T>& x, std::vector<T>& guards) {
     if (!guards.empty())
       equations_.of_plant().guard(equations_.c.data(), x.data(), equations_.signals, guards.data());
   }
-  /// A guard that passes zero in the step that was tried last; -1: none does.
+  /// Returns a guard that passes zero in the step of the last attempt; -1: none.
   [[nodiscard]] int passed_guard() const {
     for (std::size_t g = 0; g < guards_.size(); ++g)
       if ((sim::value_of(guards_[g]) < 0) != (sim::value_of(guards_at_end_[g]) < 0))
         return static_cast<int>(g);
     return -1;
   }
-  /// Goes to where the equations first jump within a step of h, and over to the other side.
+  /// Moves across the first discontinuity of the equations within a step of h.
   void pass_jump(double h) {
     const auto [before, after, guard] = jump_within(h);
     if (before > 0) {
@@ -238,10 +238,10 @@ class Driven {
     if (++steps_ > run_.step_limit) give_up();
   }
   struct Jump {
-    double before, after;  ///< it lies between [s]
-    int guard;             ///< which passes zero there
+    double before, after;  ///< bounds of its time within the step [s]
+    int guard;             ///< guard that passes zero there
   };
-  /// By regula falsi (Illinois), from the step that was tried last.
+  /// Locates the discontinuity by regula falsi (Illinois) within the step of the last attempt.
   Jump jump_within(double h) {
     constexpr int kMostRounds = 60;
     Jump jump = {0.0, h, passed_guard()};
@@ -249,10 +249,10 @@ class Driven {
       return std::abs(sim::value_of(guards[static_cast<std::size_t>(jump.guard)]));
     };
     double low = height(guards_), high = height(guards_at_end_);
-    int side = 0;  // of zero, on which the last guess was
+    int side = 0;  // side of zero of the last guess
     for (int round = 0; round < kMostRounds && jump.after - jump.before > kJumpWithin; ++round) {
       const double wide = jump.after - jump.before, guess = jump.before + wide * low / (low + high);
-      // a little beyond, so that the next guess comes to lie on the other side
+      // a little further, so that the next guess lies on the other side
       const double middle = std::clamp(guess - 0.4 * side * kJumpWithin, jump.before + 0.01 * kJumpWithin,
                                        jump.after - 0.01 * kJumpWithin);
       attempt(middle);
@@ -271,7 +271,7 @@ class Driven {
     }
     return jump;
   }
-  /// How fast a guard goes on from where the plant stands [1/s].
+  /// Returns the rate of a guard at the present state [1/s].
   T rate_of(int guard) {
     const auto g = static_cast<std::size_t>(guard);
     for (std::size_t i = 0; i < x_.size(); ++i) trial_[i] = x_[i] + T(kRateOver) * k_[0][i];
@@ -279,15 +279,15 @@ class Driven {
     look_at_guards(trial_, guards_at_end_);
     return (guards_at_end_[g] - guards_[g]) / T(kRateOver);
   }
-  /// Is the step so short, and what it misses so little, that nothing but a corner of the equations stands in
-  /// the way (a state that runs into its limit)?
+  /// Returns whether the step is so short, and its error so small, that only a corner of the equations (a
+  /// state that reaches its limit) can be the cause.
   [[nodiscard]] bool crosses_corner(double h, double error) const {
     return h < kShortestStep && error * run_.tolerance < kCornerError;
   }
   static double grown(double error, double exponent) {
     return sim::plant::dp54::rough_power(static_cast<float>(error), static_cast<float>(exponent));
   }
-  /// Makes k_[0] and the signals those of the states as they stand.
+  /// Evaluates k_[0] and the signals at the present states.
   void refresh() {
     if (fresh_) {
       equations_.evaluate(t_, x_.data(), k_[0].data());
@@ -306,8 +306,8 @@ class Driven {
     (stage<pair, Before + 1>(h), ...);
     return scaled_error<pair>(h);
   }
-  /// Sum of the first stages' derivatives with the weights of a row (-1: those of the error), of a number: a
-  /// state, or one of its slopes.
+  /// Returns the sum of the first stages' derivatives, weighted by a row of the pair (-1: by the error
+  /// weights), for one number: a state or one of its sensitivities.
   template <const Pair& pair, int row, int last>
   double weighted(std::size_t number) const {
     constexpr double weight = row < 0 ? pair.error[last] : pair.a[row < 0 ? 0 : row][row < 0 ? 0 : last];
@@ -343,7 +343,7 @@ class Driven {
     }
     return worst;
   }
-  /// The states one after the other, each a value and its slopes: sums of steps are the same for all of them.
+  /// The states as consecutive numbers, each a value and its sensitivities, with the same step sums for all.
   static constexpr std::size_t kNumbers = sizeof(T) / sizeof(double);
   static_assert(kNumbers * sizeof(double) == sizeof(T) && std::is_trivially_copyable_v<T>);
   static double* numbers(std::vector<T>& states) { return reinterpret_cast<double*>(states.data()); }
@@ -354,7 +354,7 @@ class Driven {
   void record(Response& back) {
     refresh();
     mark(Trace::Node::Kind::sample, -1, k_[0].data());
-    // the frame turns with the pre-event angle
+    // the frame rotates with the pre-event angle
     const double frame = run_.start.drift / (constants::turn * run_.conventions.frequency);
     back.voltage.push_back(equations_.voltage(t_));
     auto out = equations_.outputs(x_.data());
@@ -375,7 +375,7 @@ class Driven {
 
   const Drive& run_;
   const Pair& pair_ = run_.tolerance < kRoughFrom ? kFineSteps : kRoughSteps;
-  bool fresh_ = true;  ///< k_[0] must be evaluated anew
+  bool fresh_ = true;  ///< k_[0] must be evaluated again
   std::span<const Direction> directions_;
   DrivenEquations<T> equations_;
   std::vector<T> x_, trial_, missed_;
@@ -407,7 +407,7 @@ std::string_view output_name(Output output) {
   return names[static_cast<std::size_t>(output)];
 }
 
-/// A run and where it went.
+/// A run and its trajectory.
 class Past {
  public:
   explicit Past(const Drive& run) : answer(Driven<double>(run, {}).run(&trace)) {}
@@ -443,7 +443,7 @@ SeenAlong seen_along(const Drive& run, std::span<const double> times) {
     for (; k > 0 && next < times.size() && times[next] < node.t; ++next) {
       const double from = trace.nodes[k - 1].t, h = node.t - from, share = (times[next] - from) / h;
       if (share <= 0) continue;
-      for (std::size_t i = 0; i < n; ++i) {  // the cubic through both nodes
+      for (std::size_t i = 0; i < n; ++i) {  // cubic Hermite interpolation
         const std::size_t a = (k - 1) * n + i, b = k * n + i;
         x[i] = hermite(share, h, trace.x[a], trace.dx[a], trace.x[b], trace.dx[b]);
       }

@@ -1,7 +1,8 @@
 #pragma once
-// One plant driven by a terminal voltage: no network is needed, what the network did is in the voltage. The
-// same equations run on doubles (what does the plant answer?) and on duals (and how does the answer move with
-// parameters, switching instants, the start, and torque or field voltage that no model explains?).
+// Simulation of one plant with a prescribed terminal voltage (playback). No network model is needed, because
+// the voltage contains the network's effect. The same equations run on doubles for the response, and on dual
+// numbers for its sensitivities to parameters, switching times, initial state, and unmodelled torque or field
+// voltage.
 #include <Eigen/Dense>
 #include <memory>
 #include <span>
@@ -13,25 +14,26 @@
 
 namespace swingbank::validate::playin {
 
-/// Mean terminal state before the event: where the model starts.
+/// Mean terminal quantities before the event: the model's operating point.
 struct OperatingPoint {
-  int samples = 0;      ///< of the pre-event window, from the record's first
+  int samples = 0;      ///< length of the pre-event window, from the record's first sample
   Complex voltage;      ///< at t = 0 of the record [pu]
   double P = 0, Q = 0;  ///< [pu on the record's base]
-  /// Of a component: what its record has of them, on the record's base and as deviation from nominal (speed).
+  /// Recorded inputs of a component, on the record's base; speed as deviation from nominal.
   double Efd = 0, Ifd = 0, Pm = 0, speed = 0, Vs = 0, Vref = 0, Pref = 0;
-  double drift = 0;  ///< slope of theta [rad/s]; 0 where it cannot be told from noise
+  double drift = 0;  ///< rate of theta [rad/s]; 0 if it does not exceed the noise
 };
 
-/// A function of time through (t[k], value[k]), straight between them, zero outside.
+/// Piecewise linear function of time through (t[k], value[k]), zero outside.
 struct PiecewiseLinear {
-  std::vector<double> t, value;    ///< t [s], increasing
-  std::vector<double> knots = {};  ///< of the hats that its directions are [s]; empty: t
+  std::vector<double> t, value;  ///< t [s], increasing
+  std::vector<double> knots =
+      {};  ///< knots of the hat functions that are its sensitivity parameters [s]; empty: t
   [[nodiscard]] double operator()(double at) const;
   [[nodiscard]] const std::vector<double>& hats() const { return knots.empty() ? t : knots; }
 };
 
-/// What the plant answers at each sample of the record.
+/// Outputs of the plant at each sample of the record.
 enum class Output { P, Q, speed, Efd, Ifd, Pm, gate, V };
 constexpr int kOutputs = 8;
 std::string_view output_name(Output output);
@@ -39,70 +41,72 @@ std::string_view output_name(Output output);
 class Given;
 class Past;
 
-/// One run: who is driven, by what, from where. Where the record's breaker opens, the voltage stands still
-/// until the first switching; from then on, in an open circuit from the start, no current flows and V is the
-/// plant's own. P, Q and Pm of the answer are per unit on the record's base,
-/// the other outputs on the machine's.
+/// Specification of one run: plant, inputs and initial state. If the record's breaker opens, the voltage is
+/// constant until the first switching. From then on, or from the start of an open circuit, the current is
+/// zero and V is the plant's own. P, Q and Pm of the response are per unit on the record's base, the other
+/// outputs on the machine's.
 struct Drive {
   const sim::plant::Plant* plant = nullptr;
   sim::Conventions conventions = {};
   const record::Record* record = nullptr;
   const VoltageCurve* curve = nullptr;
-  Complex voltage_factor = 1;  ///< what the curve is multiplied by
+  Complex voltage_factor = 1;  ///< factor on the curve
   OperatingPoint start = {};
-  const Given* given = nullptr;  ///< what else drives a component (given.hpp); none: it stays at the start
-  double angle = 0, speed = 0;   ///< offset of the first two states from equilibrium [rad], [pu]
+  const Given* given =
+      nullptr;  ///< further inputs of a component (given.hpp); null: constant at their initial values
+  double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
   double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
   std::vector<double> allowance = {};       ///< factor on the tolerance, for each state; empty: 1
-  double until = 1e300;                     ///< samples after it are left out [s]
-  double least_step = 0.0;                  ///< steps this short are taken whatever their error; 0: never [s]
-  int step_limit = 2'000'000;               ///< steps before it gives up
-  /// Slopes of these outputs alone, and of the plant as it is linear about each end of a step: a per cent or
-  /// two off, for a fraction of the cost. None: the answer's own, of every output.
+  double until = 1e300;                     ///< later samples are left out [s]
+  double least_step = 0.0;                  ///< step accepted whatever its error [s]; 0: none
+  int step_limit = 2'000'000;               ///< maximum number of steps
+  /// Outputs with approximate sensitivities, from the plant linearised at both ends of each step: one or two
+  /// per cent off, at a fraction of the cost. Empty: exact sensitivities of every output.
   std::vector<Output> linear_slopes = {};
-  bool instants_stand = false;  ///< the answer's own slopes leave out that a guard's instant moves
-  /// A run without directions leaves here where it went, and the same run with linear slopes goes on from
-  /// there. Whoever changes the run empties it. Null: nothing is kept.
+  bool instants_stand = false;  ///< exact sensitivities neglect the shift of a guard's switching time
+  /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
+  /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
   std::shared_ptr<const Past>* past = nullptr;
 };
 
-/// What a slope is taken along; `scale` is one unit of the direction, and slopes are per such unit.
+/// Sensitivity parameter; `scale` is its unit, and sensitivities are per such unit.
 struct Direction {
   enum class Kind {
     parameter,  ///< `parameter` of the plant
-    switching,  ///< instant `index` of the curve [s]
-    turn,       ///< of the voltage's angle at that instant [rad]
+    switching,  ///< switching time `index` of the curve [s]
+    turn,       ///< turn of the voltage's angle at that time [rad]
     P,          ///< of the operating point [pu on the record's base]; of a component Efd and Pm
     Q,          ///< likewise
-    angle,      ///< at the start [rad]
-    speed,      ///< at the start [pu]
-    torque,     ///< hat `index` of Drive::torque [pu]
-    field,      ///< hat `index` of Drive::field [pu]
+    angle,      ///< initial angle [rad]
+    speed,      ///< initial speed [pu]
+    torque,     ///< hat function `index` of Drive::torque [pu]
+    field,      ///< hat function `index` of Drive::field [pu]
   };
   Kind kind;
   sim::plant::ParameterId parameter = {};  ///< of Kind::parameter
-  int index = 0;                           ///< of an instant or knot
+  int index = 0;                           ///< of a switching time or knot
   double scale = 1.0;
   friend bool operator==(const Direction&, const Direction&) = default;
 };
 
-/// Answer [output][sample], and slopes [direction][output][sample]; none of an output that no slopes were
-/// asked of.
+/// Response [output][sample] and sensitivities [parameter][output][sample]; outputs without requested
+/// sensitivities have none.
 struct Response {
   std::vector<double> value[kOutputs];
   struct Slope {
     std::vector<double> value[kOutputs];
   };
   std::vector<Slope> slopes;
-  std::vector<Complex> voltage;  ///< that drove the plant, per sample [pu]
-  int steps = 0;                 ///< of the integrator
+  std::vector<Complex> voltage;  ///< played-in voltage at each sample [pu]
+  int steps = 0;                 ///< number of integration steps
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };
 
-/// Plays the curve into the plant. Steps end at every sample, switching and instant of an effect; at a
-/// switching instant that is a direction, slopes jump by the difference of the derivatives on its two sides.
-/// Throws InputError if the operating point cannot be held or the equations cannot be integrated.
+/// Returns the plant's response to the curve. Steps end at every sample, switching and switching time of an
+/// effect. At a switching time that is a sensitivity parameter, the sensitivities step by the difference of
+/// the derivatives before and after it. Throws InputError if the operating point has no steady state or the
+/// integration fails.
 Response drive(const Drive& run, std::span<const Direction> directions = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
@@ -111,24 +115,25 @@ struct Seen {
   int segment;        ///< of the voltage curve
   Complex V, I;       ///< voltage, current out of the machine [pu]
   double speed, Ifd;  ///< [pu]
-  double Efd, Tm;     ///< that drive the machine, inputs included [pu]
+  double Efd, Tm;     ///< at the machine, added inputs included [pu]
 };
 struct SeenAlong {
   Seen standing;           ///< at the operating point, in steady state
   std::vector<Seen> seen;  ///< along the run
 };
-/// At every sample and integration step, on both sides of every switching time, and at these times [s]
-/// (ascending). Throws as drive().
+/// Returns these inputs at every sample and integration step, on both sides of every switching time, and at
+/// `times` [s] (ascending). Throws as drive().
 SeenAlong seen_along(const Drive& run, std::span<const double> times = {});
 
-/// How the plant moves about a run's start: x' = A x + B u, y = C x + D u with u = (change of V over V,
-/// change of theta [rad]) and y = all outputs, in the units of Response.
+/// Linearised plant about a run's start: \f$x' = A x + B u\f$, \f$y = C x + D u\f$ with u = (relative change
+/// of V, change of theta [rad]) and y = all outputs in the units of Response.
 struct LinearPlant {
   Eigen::MatrixXd A, B, C, D;
 };
-/// Throws InputError if the operating point cannot be held.
+/// Linearises the plant about the run's start. Throws InputError if the operating point has no steady state.
 LinearPlant linearise(const Drive& run);
-/// How fast each state follows 1 pu of the run's torque or field at the start [1/s]. Throws as linearise().
+/// Returns the derivative of each state's rate with respect to the run's torque or field at the start [1/s
+/// per pu]. Throws as linearise().
 Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input);
 
 }  // namespace swingbank::validate::playin

@@ -35,7 +35,8 @@ class Together {
   }
 
   std::vector<std::optional<Response>> run() {
-    if (!any()) return std::vector<std::optional<Response>>(runs_.size());  // no operating point can be held
+    if (!any())
+      return std::vector<std::optional<Response>>(runs_.size());  // no operating point has a steady state
     const record::Record& r = *runs_.front().record;
     const auto& switchings = runs_.front().curve->switchings();
     for (auto& answer : answers_)
@@ -61,7 +62,8 @@ class Together {
   }
 
  private:
-  /// The operating points of all runs; a lane whose point cannot be held is that of another.
+  /// Returns the equations of all runs; a lane whose operating point has no steady state is a copy of
+  /// another.
   DrivenEquations<P8> packed(std::span<const Drive> runs) {
     sim::plant::OperatingOf<P8> at;
     bool first = true;
@@ -191,7 +193,7 @@ class Together {
   double t_ = 0, h_ = 1e-3;
 };
 
-/// Whether eight such runs can take common steps.
+/// Returns whether eight such runs can take common steps.
 bool can_go_together(const Drive& run) {
   constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&

@@ -1,6 +1,6 @@
 #pragma once
-// Eight plants driven at once by one voltage, in the lanes of a pack: they differ in values only, so that a
-// search which looks at many starts pays for one run where it had eight.
+// Simulation of eight plants in a SIMD batch with one played-in voltage. The plants differ in values only, so
+// a search over many starts pays for one run instead of eight.
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,9 +9,10 @@
 
 namespace swingbank::validate::playin {
 
-/// What drive() answers to each run, without slopes; nothing where it would throw. The runs have one record
-/// and one curve, and plants of the same effects. Eight of them take common steps, as short as the worst of
-/// them needs: answers differ from those of drive() by what the tolerance allows.
+/// Returns the responses of drive() to each run without sensitivities; an entry is empty where drive() would
+/// throw. The runs share one record and one curve, and their plants have the same effects. Eight of them take
+/// common steps, as short as the most demanding needs, so responses differ from those of drive() within the
+/// tolerance.
 std::vector<std::optional<Response>> drive_together(std::span<const Drive> runs);
 
 }  // namespace swingbank::validate::playin

@@ -8,14 +8,14 @@ namespace {
 
 using At = Given::At;
 
-/// A signal of a record, where it goes, and what is taken off.
+/// A signal of a record, its destination, and its offset.
 struct Source {
   double At::*to;
   const std::vector<double>* values;
   double less;
 };
 
-/// The signals that the record has and its component does not make itself.
+/// Returns the signals of the record that the component does not compute itself.
 std::vector<Source> sources(const record::Record& r, const OperatingPoint& start) {
   const auto& speed = r.speed.empty() ? r.f : r.speed;
   std::vector<Source> all;
@@ -38,7 +38,7 @@ std::vector<Source> sources(const record::Record& r, const OperatingPoint& start
   return all;
 }
 
-/// Two signals as the parts of a phasor.
+/// Returns two signals as real and imaginary part of a phasor.
 record::Record packed(const record::Record& r, const Source& a, const Source* b) {
   record::Record both;
   both.name = r.name;
@@ -57,7 +57,7 @@ Given::Given(const record::Record& played, const std::vector<Switching>& switchi
              const OperatingPoint& start)
     : before_(standing(start)) {
   auto plain = switchings;
-  for (Switching& s : plain) s.has_before = s.has_after = false;  // those of the voltage
+  for (Switching& s : plain) s.has_before = s.has_after = false;  // these are one-sided voltages
   const std::vector<Source> all = sources(played, start);
   for (std::size_t i = 0; i < all.size(); i += 2) {
     const Source* second = i + 1 < all.size() ? &all[i + 1] : nullptr;
@@ -81,8 +81,8 @@ std::vector<Switching> breaker_instants(const record::Record& record, const std:
   if (record.open_circuit()) return {};
   for (const Switching& s : found)
     if (std::abs(s.time - breaker.time) < kNearBreaker) return {s};
-  // the power that stood before falls by half
-  constexpr double kLoaded = 0.01;  // [pu]: less does not tell
+  // the initial power falls by half
+  constexpr double kLoaded = 0.01;  // [pu]: a smaller power is not conclusive
   for (std::size_t k = 0; k + 1 < record.t.size() && k + 1 < record.P.size(); ++k)
     if (std::abs(record.t[k] - breaker.time) < kNearBreaker && std::abs(record.P[0]) > kLoaded &&
         std::abs(record.P[k + 1]) < std::abs(record.P[0]) / 2)

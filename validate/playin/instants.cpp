@@ -10,8 +10,9 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// How far each step lies from the straight lines through the two steps before and the two after it, the
-/// nearer of them [pu]: a jump stands out from both, the step beside it from one, a rotor's swing from none.
+/// Returns the smaller distance of each step from the extrapolations of the two steps before and of the two
+/// after it [pu]. A switching step differs from both, the change next to it from one, a rotor swing from
+/// none.
 std::vector<double> standing_out(const std::vector<Complex>& step) {
   std::vector<double> out(step.size(), 0.0);
   for (std::size_t k = 2; k + 2 < step.size(); ++k)
@@ -20,17 +21,17 @@ std::vector<double> standing_out(const std::vector<Complex>& step) {
   return out;
 }
 
-/// Values to either side of a jump that its height is told by.
+/// Number of values on either side of a step that determine its height.
 constexpr std::size_t kSamplesBeside = 3;
 
 double mean(std::span<const double> x) {
   return Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size())).mean();
 }
-/// From the values up to sample k to those behind it.
+/// Returns the change from the values up to sample k to those after it.
 double height(std::span<const double> x, std::size_t k) {
   return mean(x.subspan(k + 1, kSamplesBeside)) - mean(x.subspan(k + 1 - kSamplesBeside, kSamplesBeside));
 }
-/// Variance of a height by the noise to either side of it, a record's rounding included.
+/// Returns the variance of a height from the noise on either side, including the record's rounding.
 double height_variance(std::span<const double> x, std::size_t k) {
   const auto before = x.first(k + 1), after = x.subspan(k + 1);
   const auto weight = [](std::span<const double> part) { return static_cast<double>(part.size() - 2); };
@@ -45,7 +46,8 @@ double height_variance(std::span<const double> x, std::size_t k) {
 std::size_t before_power_jump(const record::Record& record, std::size_t n) {
   constexpr double kErrorsOfHeight = 6, kOfBefore = 3, kOfPower = 1e-3;
   constexpr std::size_t kSamplesBefore = 4,
-                        kReaches = kSamplesBeside - 1;  // a jump's height in the samples beside it
+                        kReaches =
+                            kSamplesBeside - 1;  // samples beside a step that contain part of its height
   if (record.P.size() < n || record.Q.size() < n || n < kSamplesBefore + 2 * kSamplesBeside + 1) return n - 1;
   const std::span P(record.P.data(), n), Q(record.Q.data(), n);
   const double least = kOfPower * std::hypot(mean(P), mean(Q));

@@ -10,13 +10,13 @@ namespace {
 
 using Kind = Direction::Kind;
 
-/// Where instruments have a memory, the answer has so many samples for each sample of the record. A jump is
-/// then smeared over a time that is shorter by this factor.
+/// Oversampling of the response for instruments with memory. A step is then filtered over a time that is
+/// shorter by this factor.
 constexpr int kFine = 8;
-/// Step of a parameter as a share of its range; it is of no consequence to the slope's error.
+/// Step of a parameter as a fraction of its range; the error of the sensitivity does not depend on it.
 constexpr double kMove = 1e-5;
 
-/// What the chain of instruments makes of standing phasors.
+/// Gain of the chain of instruments for constant phasors.
 struct Standing {
   Complex V = 1, I = 1;
 };
@@ -36,7 +36,7 @@ Standing standing(const std::vector<sim::plant::Block>& chain, double rate, doub
   return {p.V[beside], p.I[beside]};
 }
 
-/// Values of P and Q after the chain, every `stride`-th.
+/// P and Q after the chain, every `stride`-th value.
 struct Power {
   std::vector<double> P, Q;
 };
@@ -58,10 +58,10 @@ void thin(std::vector<T>& values, std::size_t stride) {
   values.resize(kept);
 }
 
-/// One run, and its slopes along directions.
+/// One run and its sensitivities.
 class Observed {
  public:
-  /// `directions` are no parameters of the instruments.
+  /// `directions` must not contain parameters of the instruments.
   Observed(const Drive& run, std::span<const Direction> directions)
       : run_(run), chain_(run.plant->measurements), inner_(run), directions_(directions) {
     const record::Record& r = *run.record;
@@ -108,8 +108,8 @@ class Observed {
     Q = seen.Q;
     return r;
   }
-  /// Slope along a parameter of an instrument, after run(). Where it leaves standing phasors as they are, the
-  /// plant starts and runs as before, and only what is shown of it moves.
+  /// Returns the sensitivity to a parameter of an instrument, after run(). If it does not change the gain for
+  /// constant phasors, the plant's run is unchanged, and only the instruments' outputs are recomputed.
   [[nodiscard]] Response::Slope along(const Direction& d) const {
     const auto& record = sim::plant::parameter_record(*run_.plant, d.parameter);
     const double move = kMove * (record.high - record.low);
@@ -160,8 +160,7 @@ class Observed {
     inner_.record = &fine_;
     inner_.step_limit = run_.step_limit * kFine;
   }
-  /// Turns slopes along P and Q of the start. They are asked for as measured, and were taken as they are in
-  /// the plant.
+  /// Converts sensitivities to P and Q of the start from the plant's values to the measured ones.
   void turn_starts(Response& r) const {
     const auto find = [&](Kind kind) {
       return std::ranges::find(directions_, kind, &Direction::kind) - directions_.begin();
@@ -184,8 +183,8 @@ class Observed {
   std::span<const Direction> directions_;
   record::Record fine_;
   Standing gain_;
-  sim::Phasors shown_;  ///< what the chain was shown of the plant
-  Complex back_ = 1;    ///< power in the plant per power measured, of standing phasors
+  sim::Phasors shown_;  ///< inputs of the chain
+  Complex back_ = 1;    ///< ratio of power in the plant to measured power, for constant phasors
   std::size_t stride_ = 1;
 };
 
@@ -214,7 +213,7 @@ namespace {
 
 constexpr int kProbeSamples = 64;
 
-/// What an instrument is probed with: moving phasors.
+/// Returns the test signal of an instrument: moving phasors.
 sim::Phasors probe() {
   constexpr double kRate = 240.0;
   sim::Phasors p{kRate, 60.0, {}, {}, std::vector<double>(kProbeSamples, 0.0)};
@@ -224,7 +223,7 @@ sim::Phasors probe() {
   }
   return p;
 }
-/// Its parameters away from neutral, beyond what rounding hides.
+/// Returns the instrument's parameters away from their null values, beyond rounding.
 std::vector<double> away_from_null(const sim::Effect& instrument) {
   constexpr double kAway = 0.05;  // of the range
   auto p = instrument.default_parameters();

@@ -16,10 +16,9 @@ namespace {
 using sim::P8;
 constexpr auto kBlockLanes = std::size_t(P8::lanes);
 
-/// ROS34PW2, a linearly implicit formula of order 3 whatever matrix stands for the Jacobian: L-stable, and a
-/// lag far faster than a step ends at its input exactly (J. Rang, L. Angermann, BIT 45 (2005) 761, table 4).
-/// By rows, below the diagonal: what a stage adds of those before it to the state, and to its right-hand
-/// side.
+/// ROS34PW2, a linearly implicit (W-) formula of order 3 for any approximation of the Jacobian: L-stable, and
+/// a lag much faster than a step ends exactly at its input (J. Rang, L. Angermann, BIT 45 (2005) 761, table
+/// 4). Lower triangles by rows: weights of earlier stages in the state and in the right-hand side of a stage.
 constexpr int kFormulaStages = 4;
 using Stages = std::array<std::array<double, kFormulaStages>, kFormulaStages>;
 constexpr double kGamma = 0.435866521508459;
@@ -30,12 +29,12 @@ constexpr Stages kGammas = {{{kGamma},
                              {-0.90338057013044082, 0.054180672388095326, kGamma},
                              {0.24212380706095346, -1.2232505839045147, 0.54526025533510214, kGamma}}};
 
-/// The formula in terms of u = gammas k, which needs no product with the Jacobian (E. Hairer, G. Wanner,
+/// The formula in terms of u = gammas k, which avoids products with the Jacobian (E. Hairer, G. Wanner,
 /// Solving Ordinary Differential Equations II, IV.7).
 struct Transformed {
-  Stages inverse{};                         ///< of the gammas
-  Stages a{};                               ///< alpha times that
-  std::array<double, kFormulaStages> at{};  ///< of the step, where a stage sees its inputs
+  Stages inverse{};                         ///< inverse of gammas
+  Stages a{};                               ///< alpha times the inverse
+  std::array<double, kFormulaStages> at{};  ///< fraction of the step at which each stage evaluates its inputs
   constexpr Transformed() {
     for (std::size_t j = 0; j < kFormulaStages; ++j)
       for (std::size_t i = j; i < kFormulaStages; ++i) {
@@ -52,7 +51,7 @@ struct Transformed {
 };
 constexpr Transformed kFormula;
 
-/// Controls of up to eight plants in lanes.
+/// Controls of up to eight plants in a SIMD batch.
 class BlockLanes {
  public:
   BlockLanes(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
@@ -91,8 +90,9 @@ class BlockLanes {
   [[nodiscard]] bool initialised(std::size_t lane) const { return initialised_[lane] != 0; }
   [[nodiscard]] double response(std::size_t lane) const { return response_[static_cast<int>(lane)]; }
 
-  /// Derivatives of the states, and the response. Derivatives are not held at non-windup limits: each stage
-  /// is clipped instead, so that a state which meets its limit within a step ends at that limit exactly.
+  /// Computes the derivatives of the states, and the response. Derivatives are not clamped at non-windup
+  /// limits. Each stage is clipped instead, so that a state which reaches its limit within a step ends
+  /// exactly at that limit.
   void evaluate(const Seen& at, const std::vector<P8>& x, std::vector<P8>& dx) {
     sim::Signals<P8>& s = signals_;
     s.Efd = P8(efd_);
@@ -108,7 +108,7 @@ class BlockLanes {
     response_ = made_ == Made::field ? s.Efd : s.Tm;
   }
   void evaluate(const Seen& at) { evaluate(at, x_, dx_); }
-  /// One step from where evaluate() was called last; `seen` of the stages after the first.
+  /// Takes one step from the last point of evaluate(); `seen` are the inputs of the stages after the first.
   void step(double h, std::span<const Seen, kFormulaStages - 1> seen) {
     const std::size_t n = x_.size();
     const std::vector<P8>& triangles = triangles_for(h);
@@ -129,7 +129,7 @@ class BlockLanes {
         u[i] = u[i] * triangles[i * n + i];
       }
     }
-    // the formula is stiffly accurate: its weights are the last stage's, and one for its own u
+    // the formula is stiffly accurate: its weights are those of the last stage, and one for its own u
     for (std::size_t j = 0; j + 1 < kFormulaStages; ++j) add(x_, kFormula.a.back()[j], u_[j]);
     add(x_, 1.0, u_.back());
     clip(x_);
@@ -144,7 +144,7 @@ class BlockLanes {
     P8 moved(0.0);
     equations_.clamp_states(c_.data(), x.data(), moved);
   }
-  /// The Jacobian of the controls at their start, by differences.
+  /// Computes the Jacobian of the controls at their start by finite differences.
   void linearise(const Seen& start) {
     constexpr double kRateMove = 1e-6;
     const std::size_t n = x_.size();
@@ -159,9 +159,8 @@ class BlockLanes {
       for (std::size_t i = 0; i < n; ++i) jacobian_[i * n + j] = (moved[i] - dx_[i]) * P8(1 / kRateMove);
     }
   }
-  /// Triangles of 1 / (gamma h) - Jacobian, with one over the diagonal in its place. Controls are chains of
-  /// lags, so that few of the entries are not zero; pivots are large, because the lags' own rates are
-  /// negative.
+  /// Returns the LU factors of 1 / (gamma h) - Jacobian, with the reciprocal diagonal. Controls are chains of
+  /// lags, so few entries are non-zero. Pivots are large, because the lags' own rates are negative.
   const std::vector<P8>& triangles_for(double h) {
     for (const auto& [known, triangles] : triangles_)
       if (known == h) return triangles;
@@ -180,8 +179,8 @@ class BlockLanes {
     }
     return triangles_.emplace_back(h, std::move(all)).second;
   }
-  /// Columns of entries left and right of the diagonal that are not zero, those included that elimination
-  /// makes.
+  /// Finds the columns of non-zero entries left and right of the diagonal, including the fill-in of the
+  /// elimination.
   void find_entries() {
     const std::size_t n = x_.size();
     std::vector<char> there(n * n);
@@ -204,10 +203,10 @@ class BlockLanes {
   std::vector<P8> c_, x_, dx_, trial_, scratch_, jacobian_;
   std::vector<std::vector<std::size_t>> left_, right_;
   std::array<std::vector<P8>, kFormulaStages> u_;
-  std::vector<std::pair<double, std::vector<P8>>> triangles_;  ///< for each length of a step [s]
+  std::vector<std::pair<double, std::vector<P8>>> triangles_;  ///< LU factors for each step length [s]
   std::array<char, kBlockLanes> initialised_{};
   P8 response_{0.0};
-  sim::Signals<P8> signals_;  ///< what nothing writes stays zero
+  sim::Signals<P8> signals_;  ///< unwritten signals remain zero
 };
 
 Seen mixed(const Seen& a, const Seen& b, double share) {
@@ -216,7 +215,7 @@ Seen mixed(const Seen& a, const Seen& b, double share) {
           of(a.speed, b.speed), of(a.Ifd, b.Ifd), of(a.Efd, b.Efd), of(a.Tm, b.Tm)};
 }
 
-/// Without the last digits of times, so that equal steps are equal.
+/// Returns h without the rounding errors of times, so that equal steps compare equal.
 double rounded(double h) { return static_cast<double>(static_cast<float>(h)); }
 
 }  // namespace

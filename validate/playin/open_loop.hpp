@@ -1,6 +1,6 @@
 #pragma once
-// Controls of a plant simulated open loop: their inputs are those of an earlier run, so that their field
-// voltage or torque does not feed back. Eight plants ride in the lanes of a pack, in fixed steps.
+// Open-loop simulation of a plant's controls: their inputs are those of an earlier run, without feedback of
+// their field voltage or torque. SIMD batches of eight plants, fixed steps.
 #include <Eigen/Dense>
 #include <array>
 #include <span>
@@ -15,36 +15,36 @@ enum class Made { field, torque };
 
 class OpenLoop {
  public:
-  /// Where the response is known: the given times from the first switching time (none: from the first of
-  /// them) on, and both sides of every switching time. Before that the controls are in steady state.
+  /// Times of the response: `times` from the first switching time on (without switchings, all), and both
+  /// sides of every switching time. Before that the controls are in steady state.
   struct TimePoint {
     double t;     ///< [s]
     int segment;  ///< of the voltage curve
   };
-  /// `times`: where steps end [s].
+  /// `times`: ends of the steps [s].
   OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::Conventions& conventions);
 
-  /// Where the steps from one of these times to the next look at their inputs: the signals should be known
-  /// there.
+  /// Returns the times within the steps between `times` at which the formula evaluates the inputs [s]. The
+  /// signals should be known there.
   [[nodiscard]] static std::vector<double> looks(const std::vector<double>& times);
 
   [[nodiscard]] const std::vector<TimePoint>& times() const { return times_; }
-  /// Efd or Tm [pu] at [time point][plant] of plants with the recorded machine (playin/component.hpp) that
-  /// differ in values only. A column is NaN where its plant has no steady state at the start, and not finite
-  /// where it cannot be integrated.
+  /// Returns Efd or Tm [pu] at [time point][plant] for plants with the recorded machine
+  /// (playin/component.hpp) that differ in values only. A column is NaN if its plant has no steady state at
+  /// the start, and not finite if the integration fails.
   [[nodiscard]] Eigen::MatrixXd run(Made made, std::span<const sim::plant::Plant> plants) const;
 
  private:
   struct Step {
-    double h;  ///< to the next time point [s]; 0: that one is on the other side of a switching time
+    double h;  ///< to the next time point [s]; 0: across a switching time
     Seen begin;
-    std::array<Seen, 3> stages = {};  ///< of the formula, after the first
+    std::array<Seen, 3> stages = {};  ///< inputs at the formula's stages after the first
   };
   [[nodiscard]] Seen between(int segment, double t) const;
 
   Seen standing_;
   std::vector<Seen> seen_;
-  std::vector<std::size_t> first_of_;  ///< segment's first entry in `seen_`, and the end
+  std::vector<std::size_t> first_of_;  ///< first entry of each segment in `seen_`, then the end
   sim::Conventions conventions_;
   std::vector<TimePoint> times_;
   std::vector<Step> steps_;  ///< from each time point but the last

@@ -13,11 +13,11 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// A limit that is met within a step bends it, and no step is short enough for that [s].
+/// Smallest step [s]. A limit reached within a step makes a corner, which no step length resolves.
 constexpr double kLeastStep = 1e-7;
-constexpr int kMinSteady = 5;  ///< samples that make a mean and a spread
+constexpr int kMinSteady = 5;  ///< minimum number of samples of a mean and a standard deviation
 
-/// Slope of theta over the first n samples [rad/s], or 0 if it is below five times its own standard error.
+/// Returns the rate of theta over the first n samples [rad/s], or 0 if below five times its standard error.
 double angle_drift(const record::Record& r, int n) {
   double mean_t = 0, mean_a = 0, tt = 0, ta = 0, rest = 0;
   for (int k = 0; k < n; ++k) mean_t += r.t[k] / n, mean_a += r.theta[k] / n;
@@ -31,16 +31,17 @@ double angle_drift(const record::Record& r, int n) {
     rest += e * e;
   }
   const double error = std::sqrt(rest / (n - 2) / tt);
-  // 1e-7 rad/s moves the angle by 1e-6 rad in 10 s: below that rounding of the file decides.
+  // 1e-7 rad/s changes the angle by 1e-6 rad in 10 s; below that, rounding of the file dominates.
   return std::abs(slope) > std::max(5 * error, 1e-7) ? slope : 0.0;
 }
 
-/// Polynomial through the first n values, by powers of the time that runs from -1 to 1 over them.
+/// Polynomial through the first n values, in powers of a time that runs from -1 to 1 over them.
 struct Course {
   Eigen::VectorXd by_power, residual;
-  double last_error = 0;  ///< standard error of the highest power, the residual's memory counted
+  double last_error = 0;  ///< standard error of the highest power, with autocorrelation of the residual
 };
-/// The samples that a residual is worth are fewer by its sum of autocorrelations, up to where these vanish.
+/// Returns the factor between the number of samples and the effective one: the sum of autocorrelations up to
+/// their first zero.
 double memory(const Eigen::VectorXd& r) {
   const double power = r.squaredNorm();
   double sum = 1;
@@ -65,14 +66,14 @@ Course course_of(const std::vector<double>& t, const std::vector<double>& values
   c.last_error = std::sqrt(variance * (basis.transpose() * basis).inverse()(powers, powers));
   return c;
 }
-/// Where the grid speeds up or slows down before the event the angle bends, and a frame that turns evenly
-/// leaves it at both ends. Then the plant stands as the courses of angle, V, P and Q have it at the first
-/// sample, and goes on from there as it is driven. False: the angle does not bend.
+/// Sets the start to the trajectories of angle, V, P and Q at the first sample if the angle is curved: then
+/// the grid accelerates or decelerates before the event, and a uniformly rotating frame deviates at both
+/// ends. Returns false if it is not curved.
 bool start_on_course(const record::Record& record, OperatingPoint& point) {
-  // [rad]; behind a transient reactance of 0.3 pu a third of a per cent of MVA
+  // [rad]; across a transient reactance of 0.3 pu this is a third of a per cent of MVA
   constexpr double kLeastBend = 1e-3;
-  constexpr double kErrors = 5;            // as for an even turn
-  constexpr double kLongerThanASwing = 3;  // [s]; within a swing every angle bends
+  constexpr double kErrors = 5;            // standard errors, as for the rate
+  constexpr double kLongerThanASwing = 3;  // [s]; within a swing every angle is curved
   const int n = point.samples;
   const double length = record.t[static_cast<std::size_t>(n - 1)] - record.t.front();
   if (length < kLongerThanASwing || record.component != record::Component::plant) return false;

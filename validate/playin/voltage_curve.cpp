@@ -11,13 +11,13 @@
 namespace swingbank::validate::playin {
 namespace {
 
-constexpr double kStampRounding = 1e-4;  ///< of a sample interval: what printing times with 6 decimals leaves
+constexpr double kStampRounding = 1e-4;  ///< of a sample interval: rounding of times printed with 6 decimals
 
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
 
-/// Second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is continuous at the
-/// second and the last but one. Tridiagonal after the end values are eliminated (de Boor, A Practical Guide
-/// to Splines, IV).
+/// Returns the second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is
+/// continuous at the second and the last but one. The system is tridiagonal after elimination of the end
+/// values (de Boor, A Practical Guide to Splines, IV).
 std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<Complex>& v) {
   const std::size_t n = t.size();
   std::vector<double> h(n - 1), low(n), diagonal(n), high(n);
@@ -52,7 +52,7 @@ std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<
 std::vector<Switching> detect_switchings(const record::Record& record, double threshold) {
   const std::vector<Complex> step = voltage_steps(record);
   const std::size_t steps = step.size();
-  // A jump differs from both neighbours; a step beside a jump differs from one of them only.
+  // A step differs from both neighbours; the interval next to a step differs from one of them only.
   std::vector<double> spike(steps, 0.0);
   for (std::size_t k = 1; k + 1 < steps; ++k)
     spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
@@ -130,7 +130,7 @@ void VoltageCurve::fit(Segment& segment) {
   }
 }
 
-/// The last knot at or before t that has another behind it; the first where t lies before all.
+/// Returns the last knot at or before t that has a successor; the first one if t precedes all.
 std::size_t VoltageCurve::interval(const Segment& s, double t) {
   const std::size_t last = s.t.size() - 2;
   const double guess = (t - s.t[1]) * s.rate + 1;

@@ -15,7 +15,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// An integer or float of the file, little-endian as the standard has it.
+/// Returns an integer or float of the file, little-endian as in the standard.
 template <class T>
 T little(std::string_view bytes, std::size_t at) {
   std::uint32_t bits = 0;
@@ -60,11 +60,11 @@ class Data {
   }
 
  private:
-  /// Bytes of a sample whose values take `width` bytes each.
+  /// Returns the size of a sample with values of `width` bytes [bytes].
   [[nodiscard]] std::size_t sample_size(std::size_t width) const {
     return 8 + width * out_.channels.size() + 2 * ((static_cast<std::size_t>(c_.status) + 15) / 16);
   }
-  /// Whether samples of that size are numbered upwards by one from the first on.
+  /// Returns whether samples of that size are numbered consecutively from the first.
   [[nodiscard]] bool counts_up(std::size_t size) const {
     constexpr std::size_t kLooked = 16;
     const std::size_t n = std::min(kLooked, dat_.size() / size);
@@ -73,8 +73,8 @@ class Data {
         return false;
     return n > 1;
   }
-  /// Whether the four-byte values are floats: integers that are read as such are mostly denormal or no
-  /// number.
+  /// Returns whether the four-byte values are floats: integers interpreted as floats are mostly denormal or
+  /// not finite.
   [[nodiscard]] bool holds_floats() const {
     const std::size_t size = sample_size(4), n = dat_.size() / size;
     bool any = false;
@@ -87,7 +87,7 @@ class Data {
       }
     return any;
   }
-  /// The data type that the data have, where the configuration names another.
+  /// Replaces the data type of the configuration if the data have another one.
   void settle_kind() {
     const std::string_view head = dat_.substr(0, 200);
     const bool text = head.find_first_not_of("0123456789.,+-eE \t\r\n\x1a") == std::string_view::npos;
@@ -127,7 +127,7 @@ class Data {
     }
   }
 
-  /// Missing: empty, or 99999 before 2013 (8.4).
+  /// Parses a value; missing if empty, or 99999 before 2013 (8.4).
   double text_value(const ComtradeChannel& channel, std::string_view text, std::size_t sample) {
     const auto v = comtrade_number(text);
     if (!v && !text.empty())
@@ -153,7 +153,7 @@ class Data {
       note_cut(fmt::format("{}, byte {}", out_.file, n * size));
   }
 
-  /// Whether all announced samples are read; counts those beyond them.
+  /// Returns whether all announced samples have been read, and counts those beyond them.
   bool is_surplus() {
     if (out_.places.size() < static_cast<std::size_t>(c_.samples)) return false;
     ++surplus_;
@@ -163,7 +163,7 @@ class Data {
     out_.notes.push_back(fmt::format("The last sample ({}) is cut off and was left out.", where));
   }
 
-  /// Missing: 0x8000 and 0x80000000 (8.6); a FLOAT32 that is not finite.
+  /// Returns a value; missing if 0x8000 or 0x80000000 (8.6), or a FLOAT32 that is not finite.
   [[nodiscard]] double binary_value(std::size_t at) const {
     if (out_.kind == "BINARY") {
       const auto v = little<std::int16_t>(dat_, at);
@@ -182,7 +182,7 @@ class Data {
     return out_.places.size() - 1;
   }
 
-  /// Numbers count up by one; each break is told once.
+  /// Checks that sample numbers are consecutive; each break is reported once.
   void numbered(std::size_t sample, double number) {
     if (sample > 0 && number != next_number_)
       faults_.add("number", fmt::format("sample number {:g}", number), sample,
@@ -197,7 +197,7 @@ class Data {
     c.values.push_back((c.a * x + c.b) * ratio);
   }
 
-  /// Stamps are unsigned numbers of four bytes, which a recorder that runs for long passes.
+  /// Unwraps the stamps: unsigned four-byte numbers that overflow in a recorder that runs for long.
   void unwrap_stamps() {
     constexpr double kWrap = 4294967296.0;
     double turns = 0, before = kNoValue;
@@ -229,7 +229,7 @@ class Data {
     }
   }
 
-  /// A sample comes after the one before it by the step of its own stretch.
+  /// Computes times from the rates; each interval has the step of its sample's stretch.
   void rated_times(std::size_t n) {
     std::size_t first = 0;
     for (std::size_t i = 0; i < c_.rates.size(); ++i) {
@@ -245,13 +245,13 @@ class Data {
         out_.stretches.push_back({rate, first, end});
       first = end;
     }
-    // One rate: no rounding of sums.
+    // A single rate avoids rounding errors of sums.
     if (out_.stretches.size() == 1)
       for (std::size_t k = 0; k < n; ++k) out_.t[k] = static_cast<double>(k) / out_.stretches[0].rate;
   }
 
-  /// The rate counts (8.3), but where the stamps tell another the reader is told; where they are ten times
-  /// apart one of them is in another unit, and which is not known.
+  /// Compares stamps with the rate, which is authoritative (8.3); a difference is noted. A ratio of about ten
+  /// or more means that one of them is in another, unknown unit, and becomes a problem.
   void compare_stamps() {
     if (stamps_.size() < 2) return;
     const double stamped = (stamps_.back() - stamps_.front()) * c_.stamp, rated = out_.t.back();
@@ -281,10 +281,10 @@ class Data {
   SampleFaults faults_;
   std::vector<double> stamps_;
   double next_number_ = 1;
-  std::size_t surplus_ = 0;  ///< samples beyond those that are announced
+  std::size_t surplus_ = 0;  ///< samples beyond the announced number
 };
 
-/// The section of a .cff whose heading holds `word`; `heading` becomes that line.
+/// Returns the section of a .cff whose heading contains `word`; `heading` becomes that line.
 std::string_view section(std::string_view cff, std::string_view word, std::string& heading) {
   constexpr std::string_view mark = "--- file type:";
   for (auto at = cff.find(mark); at != std::string_view::npos; at = cff.find(mark, at + 1)) {
@@ -293,7 +293,7 @@ std::string_view section(std::string_view cff, std::string_view word, std::strin
     if (heading.find(word) == std::string::npos) continue;
     if (heading.find("BINARY") == std::string::npos && heading.find("FLOAT") == std::string::npos)
       return rest.substr(0, rest.find(mark));
-    // "DAT BINARY: 1234 ---": so many bytes.
+    // "DAT BINARY: 1234 ---": the number of bytes.
     const auto colon = heading.rfind(':');
     std::string_view digits = std::string_view(heading).substr(colon + 1);
     digits = comtrade_fields(digits.substr(0, digits.find("---")))[0];
@@ -316,17 +316,17 @@ std::string Comtrade::where(std::size_t first, std::size_t last) const {
 }
 
 namespace {
-/// Rates that a recorder draws along with the grid's frequency: waveforms are put onto an even grid by
-/// cubics.
+/// Resamples waveforms of a recorder whose rate follows the grid's frequency to a uniform grid, by cubic
+/// interpolation. Returns false if the rates differ by more.
 bool put_onto_mean_rate(Comtrade& c) {
-  constexpr double kDrawn = 0.02;  // of the rate: no grid runs further off
+  constexpr double kDrawn = 0.02;  // relative; no grid's frequency deviates further
   const auto [low, high] = std::ranges::minmax(c.stretches, {}, &ComtradeStretch::rate);
   const std::size_t n = c.t.size();
   if (high.rate > low.rate * (1 + kDrawn) || n < 4) return false;
   const double rate = static_cast<double>(n - 1) / (c.t.back() - c.t.front());
   std::vector<std::vector<double>> even(c.channels.size(), std::vector<double>(n));
   std::vector<double> t(n);
-  std::size_t at = 0;  // the sample before
+  std::size_t at = 0;  // the preceding sample
   for (std::size_t k = 0; k < n; ++k) {
     t[k] = c.t.front() + static_cast<double>(k) / rate;
     while (at + 2 < n && c.t[at + 1] <= t[k]) ++at;
@@ -356,7 +356,7 @@ bool put_onto_mean_rate(Comtrade& c) {
 void make_even(Comtrade& c, double fewest, Problems& problems) {
   const auto& all = c.stretches;
   if (all.size() < 2 || (fewest > 0 && put_onto_mean_rate(c))) return;
-  // The run of stretches that are fast enough and lasts longest.
+  // The longest run of stretches that are fast enough.
   std::size_t from = 0, to = 0;
   double longest = -1;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -365,7 +365,7 @@ void make_even(Comtrade& c, double fewest, Problems& problems) {
     const double lasts = j > i ? c.t[all[j - 1].end - 1] - c.t[all[i].first] : -1;
     if (lasts > longest) longest = lasts, from = i, to = j;
   }
-  if (to == from) return;  // too slow as a whole, which the reader of waveforms tells
+  if (to == from) return;  // too slow as a whole, which the reader of waveforms reports
   double low = all[from].rate;
   for (std::size_t i = from; i < to; ++i) low = std::min(low, all[i].rate);
   std::string rates;
@@ -406,7 +406,7 @@ Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::s
                         const std::string& dat_name) {
   Problems problems;
   ComtradeConfig config = parse_comtrade_config(cfg, cfg_name, problems);
-  problems.raise();  // without it the data mean nothing
+  problems.raise();  // the data cannot be interpreted without it
   Comtrade record = Data(std::move(config), dat, dat_name, problems).read();
   problems.raise();
   return record;

@@ -1,5 +1,5 @@
 #pragma once
-// One function per kind of file that read_record knows; parse_record (record.hpp) is the one for text.
+// Readers of the file formats that read_record supports; parse_record (record.hpp) reads text.
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -9,23 +9,24 @@
 
 namespace swingbank::validate::record {
 
-/// A COMTRADE record of phasors (channels named and with units as columns of text) or of three-phase
-/// waveforms, which become positive-sequence phasors; power out of the machine is V conj(I) of them. Needs
-/// base.kv for waveforms and kV. Throws InputError.
+/// Returns the record of a COMTRADE file with phasors (channels named as text columns, with units) or
+/// three-phase waveforms, which are converted to positive-sequence phasors. Power out of the machine is V
+/// conj(I). Waveforms and values in kV require base.kv. Throws InputError.
 Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, const RecordBase& base,
                           const ReadOptions& options);
 
-/// One plant of a run that `swingbank simulate --out FILE.h5` wrote (docs/reference/formats.md): P and Q from
-/// the machine's base to the record's. Throws InputError.
+/// Returns the record of one plant from a file of `swingbank simulate --out FILE.h5`
+/// (docs/reference/formats.md). P and Q are converted from the machine's base to the record's. Throws
+/// InputError.
 Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& base,
                         const ReadOptions& options);
 
-/// A MATLAB file (v4, v5, v7.3): vectors, matrices with a list of names, and structs of them become columns,
-/// which are then read as those of text; lines in messages count samples from 2 on. Throws InputError, also
-/// where the file is cut short.
+/// Returns the record of a MATLAB file (v4, v5, v7.3). Vectors, matrices with a list of names, and structs of
+/// these become text columns; line numbers in messages count samples from 2. Throws InputError, also for
+/// truncated files.
 Record read_mat_record(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options);
 
-/// Bytes of a file; throws InputError if it cannot be read.
+/// Returns the bytes of a file; throws InputError if it cannot be read.
 std::string read_bytes(const std::filesystem::path& file);
 
 }  // namespace swingbank::validate::record

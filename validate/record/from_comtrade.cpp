@@ -1,4 +1,4 @@
-// COMTRADE channels as a record: phasors as they are, waveforms by way of phasors.
+// Conversion of COMTRADE channels to a record: phasors directly, waveforms via their phasors.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,15 +20,15 @@
 namespace swingbank::validate::record {
 namespace {
 
-constexpr double kMinPerCycle = 8;  ///< samples of a waveform
+constexpr double kMinPerCycle = 8;  ///< minimum samples of a waveform per cycle
 
-/// The positive sequence of three waveforms [kV to neutral, kA].
+/// Positive sequence of three waveforms [kV to neutral, kA].
 struct Sequence {
   std::vector<double> t;
   std::vector<Complex> x;
 };
 
-/// A channel's values in kV or kA; where there is none, the negative sum of the two others.
+/// Returns a channel's values in kV or kA; without a channel, the negative sum of the other two.
 std::vector<double> samples_of(const WaveSet& set, std::size_t phase, SampleFaults& faults) {
   if (const Wave* w = set.waves[phase]) {
     std::vector<double> samples = w->channel->values;
@@ -66,7 +66,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
                  fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
                              names[1], names[2]),
                  fault->remedy + " (the channels' names and phases stand in the .cfg)");
-  // Times and angles count from the record's first sample, which may be none of those that are used.
+  // Times and angles refer to the record's first sample, which may not be used.
   const double begin = comtrade.t.front();
   Sequence sequence;
   for (std::size_t k = 0; k < track.t.size(); ++k) {
@@ -77,7 +77,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
   return sequence;
 }
 
-/// Which channels became which quantity, where that is not three phases to neutral.
+/// Notes the channels of a quantity unless they are three phases to neutral.
 void note_set(const WaveSet& set, bool voltage, Record& about) {
   if (set.between)
     about.notes.emplace_back(
@@ -96,7 +96,7 @@ RawColumn column(std::string name, Quantity q, Unit u, std::vector<double> value
   return {std::move(name), {q, u, false, {}, false}, std::move(values)};
 }
 
-/// A circuit that is asked for must be one of the file's.
+/// Checks that the requested circuit exists in the file.
 void check_terminal(const std::vector<Wave>& waves, const ReadOptions& options, const std::string& file,
                     Problems& problems) {
   std::set<std::string> circuits;
@@ -124,7 +124,7 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     problems.add(fmt::format("a record of a {:g} Hz grid", comtrade.nominal), comtrade.file,
                  fmt::format("the model is for {:g} Hz", base.frequency),
                  "set frequency_hz in the plant file, or take that plant's own record");
-  // Evenly spaced, or the phasors mean nothing: a gap in waveforms is not bridged.
+  // Phasors require even spacing: a gap in waveforms is not interpolated.
   const EvenRows even = settle_rows({.t = comtrade.t,
                                      .resolution = comtrade.resolution,
                                      .same = [](std::size_t, std::size_t) { return false; }},
@@ -181,7 +181,7 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
   Problems problems;
   std::vector<Heading> headings;
   for (const auto& c : comtrade.channels) headings.push_back({c.id, column_meaning(c.id, c.unit), c.unit});
-  // Where a quantity comes more than once, the circuits tell the terminals apart.
+  // If a quantity occurs more than once, the circuits distinguish the terminals.
   std::map<std::pair<Quantity, std::string>, int> seen;
   bool twice = false;
   for (const auto& h : headings)

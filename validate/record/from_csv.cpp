@@ -1,4 +1,4 @@
-// Records as text in columns: separators, header dialects, numbers and stamps.
+// Reader of text columns: separators, header dialects, numbers and stamps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class CsvReader {
     for (const auto i : chosen_)
       if (headings_[i].meaning->quantity == Quantity::time && stamped(i))
         headings_[i].meaning->unit = Unit::stamp;
-    problems_.raise();  // without columns no row means anything
+    problems_.raise();  // without columns no row can be interpreted
     for (const auto i : chosen_) raw.columns.push_back({headings_[i].name, *headings_[i].meaning, {}});
     SampleFaults faults([this](std::size_t first, std::size_t last) {
       return first == last ? fmt::format("{}:{}", name_, lines_[first])
@@ -67,7 +67,8 @@ class CsvReader {
     return false;
   }
 
-  /// A line of values: its first cell is a number or a stamp, or most cells are numbers.
+  /// Returns whether a line contains values: its first cell is a number or a stamp, or most cells are
+  /// numbers.
   [[nodiscard]] bool is_data(const Cells& cells) const {
     if (parse_number(cells[0], top_.separator).ok || parse_stamp(cells[0])) return true;
     const auto numbers = std::ranges::count_if(
@@ -76,14 +77,14 @@ class CsvReader {
     return 2 * (numbers - empty) > static_cast<std::ptrdiff_t>(cells.size()) - empty;
   }
 
-  /// Lines before the heading that may belong to it: names of stations, numbers of phasors.
+  /// Returns whether a line before the heading may belong to it: names of stations, numbers of phasors.
   [[nodiscard]] bool belongs_to_header(const Cells& cells) const {
     constexpr int kLinesAbove = 5;
     return top_.line + 1 - number_ <= kLinesAbove && cells.size() > 1 &&
            std::ranges::none_of(cells, [&](auto c) { return parse_number(c, top_.separator).ok; });
   }
 
-  /// The heading and the lines about it, at most 6, up to the first values.
+  /// Reads the heading and the lines around it, at most 6, up to the first values.
   void read_header() {
     std::string_view line;
     while (next(line)) {
@@ -117,7 +118,7 @@ class CsvReader {
     return column < header_[line].size() ? header_[line][column] : std::string_view{};
   }
 
-  /// Of several header lines, the one whose cells are units most often (at least twice), if any.
+  /// Returns the header line with the most units as cells (at least two), if any.
   [[nodiscard]] std::optional<std::size_t> unit_line() const {
     std::optional<std::size_t> best;
     std::size_t most = 1;
@@ -128,7 +129,7 @@ class CsvReader {
     return best;
   }
 
-  /// The header line that names the most quantities with their units.
+  /// Returns the header line with the most quantities including units.
   [[nodiscard]] std::size_t quantity_line(std::optional<std::size_t> units) const {
     std::size_t best = 0, most = 0;
     for (std::size_t k = 0; k < header_.size(); ++k) {
@@ -143,8 +144,8 @@ class CsvReader {
     return best;
   }
 
-  /// Stations: another line above with fewer names than columns, each for several columns. An empty cell
-  /// goes on with the name before it.
+  /// Returns the line of stations: another line above with fewer names than columns, each for several
+  /// columns. An empty cell repeats the name before it.
   [[nodiscard]] std::optional<std::size_t> station_line(std::size_t quantities,
                                                         std::optional<std::size_t> units) const {
     for (std::size_t k = 0; k < quantities; ++k) {
@@ -158,14 +159,14 @@ class CsvReader {
     return std::nullopt;
   }
 
-  /// Does the map of columns count them?
+  /// Returns whether the column map refers to columns by number only.
   [[nodiscard]] bool by_number() const {
     return !options_.columns.empty() && std::ranges::all_of(options_.columns, [](const auto& entry) {
       return entry.second.starts_with('#') || entry.second.starts_with("-#");
     });
   }
 
-  /// A table with one measurement a line: a name, a time, a value.
+  /// Refuses a table with one measurement per line: a name, a time, a value.
   void refuse_tall(const std::string& where) {
     constexpr std::string_view kNames =
         "id name tag tagname point pointid pointtag pointname signal signalid signalname signaltag channel channelname "
@@ -188,8 +189,8 @@ class CsvReader {
     problems_.raise();
   }
 
-  /// Of several times the first one counts, "SOC" only beside FRACSEC or alone: it may be a state of charge.
-  /// The fraction of the second that C37.118 counts is kept beside it.
+  /// Keeps the first of several times; "SOC" only with FRACSEC or alone, because it may be a state of charge.
+  /// The fraction of the second according to C37.118 is kept with it.
   void one_time(Record& about) {
     std::vector<std::size_t> times;
     for (std::size_t i = 0; i < headings_.size(); ++i) {
@@ -276,7 +277,7 @@ class CsvReader {
     fractions_.push_back(part);
   }
 
-  /// Is nothing but blank lines left?
+  /// Returns whether only blank lines remain.
   [[nodiscard]] bool ends() const {
     return text_.find_first_not_of(" \t\r\n\"\x1a") == std::string_view::npos;
   }
@@ -295,7 +296,7 @@ class CsvReader {
       raw.about.start = cell;
     }
     resolution_ = std::min(resolution_, s->resolution);
-    // Minutes alone go on at the hour.
+    // Stamps without hours continue after the full hour.
     if (s->in_hour && s->second < last_in_hour_ - 1800) hours_ += 3600;
     last_in_hour_ = s->in_hour ? s->second : 0;
     return hours_ + static_cast<double>(s->day - first_->day) * 86400 + (s->second - first_->second);
@@ -330,14 +331,14 @@ class CsvReader {
     return kNoValue;
   }
 
-  /// A word where a number belongs is a missing value; which words these were is noted.
+  /// Treats a word in place of a number as a missing value; the words are noted.
   void take_word(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
     faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "this is no number",
                 "fill it at the source, cut the record before it, or export it again");
     if (words_.try_emplace(std::string(cell), 0).first->second++ == 0) word_at_.emplace(cell, lines_[sample]);
   }
 
-  /// UTC of the first stamp, where its zone is known.
+  /// Computes UTC of the first stamp if its zone is known.
   void finish_beginning(RawRecord& raw) const {
     if (!first_ || first_->day == 0) return;
     const auto time =
@@ -357,7 +358,7 @@ class CsvReader {
       raw.time_resolution = 0;
     else if (unit == Unit::millisecond || unit == Unit::microsecond || unit == Unit::nanosecond ||
              (!unit && !time->values.empty() && time->values.front() > 5e11))
-      raw.time_resolution = 1;  // whole milliseconds are a rounding too
+      raw.time_resolution = 1;  // whole milliseconds are rounded, too
     if (fraction_) add_fractions(time->values, raw);
     for (const auto& [word, count] : words_)
       raw.about.notes.push_back(fmt::format("'{}' stands for {} {}, the first at {}:{}: taken for no value.",
@@ -365,8 +366,7 @@ class CsvReader {
                                             word_at_.at(word)));
   }
 
-  /// Fractions are seconds, or counts of a clock that has as many in a second as the record shows at its
-  /// wraps.
+  /// Adds fractions in seconds, or in counts of a clock whose counts per second are inferred from its wraps.
   void add_fractions(std::vector<double>& t, RawRecord& raw) {
     const std::string name = headings_[*fraction_].name;
     double most = 0;
@@ -396,14 +396,14 @@ class CsvReader {
   std::size_t width_ = 0;
   std::vector<Heading> headings_;
   std::vector<std::size_t> chosen_;
-  Cells pending_, cells_;  ///< the first line of values, and the present one
+  Cells pending_, cells_;  ///< the first line of values, and the current one
   bool started_ = false, commas_ = false, points_ = false;
   std::optional<Stamp> first_;
   double resolution_ = std::numeric_limits<double>::infinity();  ///< finest of the times, in their own unit
-  double hours_ = 0, last_in_hour_ = 0;                          ///< of stamps of minutes and seconds alone
+  double hours_ = 0, last_in_hour_ = 0;                          ///< of stamps with minutes and seconds only
   std::optional<std::size_t> fraction_;                          ///< column of FRACSEC
   std::vector<double> fractions_;
-  std::map<std::string, int> words_, word_at_;  ///< in place of numbers, how often, and the first line
+  std::map<std::string, int> words_, word_at_;  ///< words in place of numbers: count, and first line
   std::vector<int> lines_;                      ///< file line of each sample
   int number_ = 0;
 };

@@ -1,4 +1,4 @@
-// One plant of a simulated run as a record.
+// Conversion of one plant of a simulated run to a record.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Which plant: the one asked for, or the only one.
+/// Returns the requested plant, or the only one.
 std::size_t choose_plant(const std::vector<std::string>& plants, const std::string& asked,
                          const std::string& file) {
   std::string all;

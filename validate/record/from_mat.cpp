@@ -1,4 +1,4 @@
-// MATLAB files (v4, v5 and v7.3, by libmatio) as records: vectors, tables of columns and structs of both.
+// Reader of MATLAB files (v4, v5 and v7.3, by libmatio): vectors, tables of columns and structs of both.
 #include <fmt/format.h>
 #include <matio.h>
 
@@ -24,7 +24,7 @@ namespace {
 constexpr const char* kExport =
     "save vectors: save('event.mat', 't_s', 'V_kV', 'f_Hz', 'P_MW', 'Q_Mvar'), or say which is what: "
     "--columns \"t=NAME [s],V=NAME [kV],…\"";
-constexpr int kDeepestStruct = 4;  ///< structs within structs
+constexpr int kDeepestStruct = 4;  ///< maximum depth of nested structs
 
 struct MatColumn {
   std::string name;
@@ -37,7 +37,7 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t widt
     value = value << 8U | static_cast<unsigned char>(bytes[at + (swapped ? k : width - 1 - k)]);
   return value;
 }
-/// v7.3 is HDF5 behind 512 bytes; its superblock says where the file ends.
+/// Returns whether a v7.3 file, HDF5 after 512 bytes, is shorter than its superblock states.
 bool hdf5_is_cut_off(std::string_view bytes) {
   constexpr std::size_t kBegin = 512;
   if (bytes.size() < kBegin + 64 || !bytes.substr(kBegin).starts_with("\x89HDF")) return true;
@@ -45,7 +45,8 @@ bool hdf5_is_cut_off(std::string_view bytes) {
   const std::size_t addresses = version == 0 ? 24 : version == 1 ? 28 : 12;  // base, another one, the end
   return bytes.size() < number_at(bytes, kBegin + addresses + 16, 8);
 }
-/// A v5 file is a row of elements that each say their length; what was cut off ends within one.
+/// Returns whether a file is truncated: a v5 file consists of elements with their lengths, and ends within
+/// one.
 bool is_cut_off(std::string_view bytes) {
   if (bytes.starts_with("MATLAB 7.3")) return hdf5_is_cut_off(bytes);
   if (!bytes.starts_with("MATLAB 5")) return false;
@@ -65,7 +66,7 @@ std::size_t elements(const matvar_t& v) {
   for (int k = 0; k < v.rank; ++k) n *= v.dims[k];
   return n;
 }
-/// Real numbers of any width; none: the variable holds something else.
+/// Returns real numbers of any width; none if the variable contains something else.
 std::optional<std::vector<double>> numbers(const matvar_t& v) {
   const std::size_t n = elements(v);
   if (v.data == nullptr || v.isComplex != 0 || v.rank != 2 || v.class_type == MAT_C_CHAR ||
@@ -112,7 +113,7 @@ std::optional<std::vector<double>> numbers(const matvar_t& v) {
   }
 }
 
-/// Text of one row; what is no ASCII becomes '?'.
+/// Returns the text of one row; characters other than ASCII become '?'.
 std::string text_of(const matvar_t& v, std::size_t row = 0) {
   std::string text;
   if (v.class_type != MAT_C_CHAR || v.rank != 2 || v.data == nullptr || row >= v.dims[0]) return text;
@@ -127,7 +128,7 @@ std::string text_of(const matvar_t& v, std::size_t row = 0) {
   text.erase(text.find_last_not_of(' ') + 1);
   return text;
 }
-/// The words of a cell array of texts, or the rows of a matrix of letters; empty: it is neither.
+/// Returns the words of a cell array of texts, or the rows of a character matrix; empty if it is neither.
 std::vector<std::string> words(const matvar_t& v) {
   std::vector<std::string> all;
   if (v.class_type == MAT_C_CHAR && v.rank == 2)
@@ -153,7 +154,7 @@ class MatReader {
 
   void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
 
-  /// The columns as text, as the reader of text takes them.
+  /// Returns the columns as text for the reader of text.
   std::string text(const std::string& time) {
     name_tables();
     const std::size_t rows = time_rows(time);
@@ -192,8 +193,8 @@ class MatReader {
     tables_.push_back({full, place, v.dims[0], v.dims[1], std::move(*values)});
   }
 
-  /// One struct: its fields, or a signal with its own times ("Time" and "Data", as a timeseries is saved by
-  /// people; "time" and "signals", as Simulink logs).
+  /// Reads one struct: its fields, or a signal with its own times ("Time" and "Data", as a saved timeseries;
+  /// "time" and "signals", as logged by Simulink).
   void structure(matvar_t& v, const std::string& name, int depth) {
     if (elements(v) == 0 || v.data == nullptr || depth >= kDeepestStruct)
       return seen_.push_back(name + " (struct)");
@@ -218,7 +219,7 @@ class MatReader {
     }
   }
 
-  /// Signals with times of their own must share them.
+  /// Adds a column; signals with their own times must share them.
   void add(const std::string& name, std::vector<double> values) {
     if (is_time(name))
       for (const MatColumn& c : columns_)
@@ -234,7 +235,7 @@ class MatReader {
     return name;
   }
 
-  /// Columns of a matrix are named by a list that has a name for each.
+  /// Names the columns of a matrix by a list with as many names.
   void name_tables() {
     for (const Table& table : tables_) {
       const Words* names = nullptr;
@@ -255,7 +256,7 @@ class MatReader {
     }
   }
 
-  /// How many samples there are: as many as times.
+  /// Returns the number of samples, which is that of the times.
   [[nodiscard]] std::size_t time_rows(const std::string& asked) const {
     if (!other_times_.empty())
       refuse("signals with different times", "one record has one time vector",

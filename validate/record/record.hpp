@@ -1,6 +1,5 @@
 #pragma once
-// A PMU record of one plant's terminal: what was measured, uniformly sampled, with its units settled on
-// reading.
+// Record of measurements at one plant's terminal: uniformly sampled, units converted on reading.
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -14,167 +13,166 @@
 
 namespace swingbank::validate::record {
 
-/// What a record's columns are measured in where the column name says "pu".
+/// Bases of columns in "pu".
 struct RecordBase {
   double mva = 100.0;       ///< base of P_pu and Q_pu [MVA]
   double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
-  double kv = 0.0;          ///< base of voltages in kV, line to line; 0: the file may not use kV
-  /// What the model's 1 pu (air-gap line) of field voltage and current is in the record's own unit: per unit
-  /// of another base, V or A; 0: the record's pu is the model's, and the file may not use V or A.
+  double kv = 0.0;          ///< base of voltages in kV, line to line; 0: columns in kV are refused
+  /// Field voltage and current, in the record's unit (other pu base, V or A), that equal 1 pu of the model
+  /// (air-gap line). 0: the record uses the model's pu, and columns in V or A are refused.
   double efd = 0.0, ifd = 0.0;
 };
 
-/// Where a record's angle comes from. An integrated one lacks what a switching turns it at once; a missing
-/// one stands as zeros.
+/// Source of a record's angle. An angle integrated from a frequency lacks the step at each switching; a
+/// missing angle is stored as zeros.
 enum class AngleSource { measured, integrated, none };
 
-/// What of a plant is tried: all of it, or one part, which the record drives with what the others did.
+/// The tested part of a plant: the whole, or one component whose inputs are the recorded outputs of the
+/// others.
 enum class Component {
-  plant,     ///< V and its angle drive; P and Q are compared
-  exciter,   ///< V drives, with Vs, Ifd and what else its blocks ask for; Efd is compared
-  governor,  ///< the speed drives, with Pref; Pm or the gate is compared
-  machine,   ///< V, its angle and Efd drive, with Pm; P, Q and Ifd are compared
+  plant,     ///< inputs V and its angle; P and Q are compared
+  exciter,   ///< input V, with Vs, Ifd and other signals that its blocks need; Efd is compared
+  governor,  ///< input speed, with Pref; Pm or the gate is compared
+  machine,   ///< inputs V, its angle, Efd and Pm; P, Q and Ifd are compared
 };
 std::string_view component_name(Component component);
 
-/// What a test does to the plant, beside what the record shows.
+/// An action of a staged test on the plant that the record's channels do not contain.
 struct StagedEvent {
   enum class Kind {
-    vref_step,       ///< the exciter's reference moves by `size` [pu]
-    pref_step,       ///< the governor's reference moves by `size` [pu on base.mva of the record]
-    efd_step,        ///< the field voltage of an exciter by hand moves by `size` [pu]
-    open_circuit,    ///< the breaker is open all the time
-    load_rejection,  ///< the breaker opens at `time`
+    vref_step,       ///< step of the voltage reference by `size` [pu]
+    pref_step,       ///< step of the governor's reference by `size` [pu on base.mva of the record]
+    efd_step,        ///< step of the field voltage under manual control by `size` [pu]
+    open_circuit,    ///< breaker open during the whole record
+    load_rejection,  ///< breaker opens at `time`
   };
   Kind kind = Kind::vref_step;
-  double time = 0, until = std::numeric_limits<double>::infinity();  ///< a step comes and goes [s]
+  double time = 0, until = std::numeric_limits<double>::infinity();  ///< start and end of the step [s]
   double size = 0;
-  std::string record = {};  ///< file name of the record it belongs to; empty: all
+  std::string record = {};  ///< file name of the record that it applies to; empty: all
   [[nodiscard]] bool opens_breaker() const { return kind >= Kind::open_circuit; }
   friend bool operator==(const StagedEvent&, const StagedEvent&) = default;
 };
 
-/// Samples of one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
+/// Samples at one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
   std::string name;    ///< file name without folder
   std::string sha256;  ///< of the file's bytes (of a COMTRADE record: .cfg, then .dat)
   RecordBase base;
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
-  std::vector<double> P, Q;          ///< out of the machine [pu on base.mva]
+  std::vector<double> P, Q;          ///< output of the machine [pu on base.mva]
   std::vector<double> f;             ///< optional: frequency deviation [pu]
   std::vector<double> speed;         ///< optional: rotor speed deviation [pu]
   std::vector<double> Efd, Ifd;      ///< optional [pu]
-  std::vector<double> Vs, Vref;      ///< optional: stabiliser output, reference of the voltage [pu]
+  std::vector<double> Vs, Vref;      ///< optional: stabiliser output, voltage reference [pu]
   std::vector<double> Pm, Pref;      ///< optional: mechanical power, its reference [pu on base.mva]
   std::vector<double> gate;          ///< optional: opening of gate or valve [pu]
   std::vector<std::string> ignored;  ///< columns of the file that were not read
 
-  std::string format = "CSV";            ///< what kind of file it was
-  std::string terminal;                  ///< which of the file's terminals, where it names them
-  std::string start;                     ///< the file's own stamp of t = 0, where it has one
-  std::optional<double> epoch;           ///< UTC of t = 0 [s since 1970-01-01], where the file tells it
-  std::vector<std::string> notes;        ///< what reading did that a reader of results must know
-  std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if made otherwise
+  std::string format = "CSV";      ///< file format
+  std::string terminal;            ///< name of the terminal, if the file names it
+  std::string start;               ///< time stamp of t = 0 as written, if any
+  std::optional<double> epoch;     ///< UTC of t = 0 [s since 1970-01-01], if known
+  std::vector<std::string> notes;  ///< changes made on reading that affect the interpretation of results
+  std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if the angle was computed
   AngleSource angle = AngleSource::measured;
   bool per_unit_power = true;              ///< P and Q, or the current, were written in pu; false: in MW or A
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
-  Component component = Component::plant;  ///< what it is read for
-  std::vector<StagedEvent> staged;         ///< what was done to the plant while it ran
-  std::vector<double> switched;  ///< instants of switchings that a person knows [s]; empty: the jumps tell
-  /// Marks samples that are not compared: frames that were not recorded, whose voltage is bridged, and frames
-  /// in which a channel that is compared has no value. Empty: none.
+  Component component = Component::plant;  ///< tested part of the plant
+  std::vector<StagedEvent> staged;         ///< staged actions during the record
+  std::vector<double> switched;  ///< switching times given by the user [s]; empty: found from the signals
+  /// Marks samples that are not compared: lost frames, whose voltage is interpolated, and frames in which a
+  /// compared channel has no value. Empty: none.
   std::vector<char> lost;
 
-  /// The event that takes the plant off the grid; nullptr: none does, or a part of it is tried that does not
-  /// see the grid.
+  /// Returns the event that opens the breaker; nullptr if there is none, or if the tested component is not
+  /// connected to the grid.
   [[nodiscard]] const StagedEvent* breaker() const;
   [[nodiscard]] bool open_circuit() const {
     return breaker() && breaker()->kind == StagedEvent::Kind::open_circuit;
   }
-  /// When the first of them comes [s]; infinity: none.
+  /// Returns the time of the first staged event [s]; infinity if there is none.
   [[nodiscard]] double first_staged() const;
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
   [[nodiscard]] double rate() const { return 1.0 / step(); }
 };
 
-/// The angle against nominal frequency, from zero, integrated from the record's f [rad].
+/// Returns the angle relative to nominal frequency [rad], integrated from the record's f, starting at zero.
 std::vector<double> angle_of_frequency(const Record& record);
-/// Adds to each angle [rad] the whole turns that bring it closest to the one before; values that are not
-/// finite stay. So plots and differences of angles make sense.
+/// Unwraps angles [rad]: adds multiples of 2 pi that bring each value closest to its predecessor. Values that
+/// are not finite are left unchanged.
 void unwrap(std::vector<double>& angle);
 
-/// Fewest samples a record may have: a pre-event window and a response cannot be told from less.
+/// Minimum number of samples of a record: fewer do not contain a pre-event window and a response.
 constexpr int kMinSamples = 30;
-/// Shortest record [s]: nothing that a model does shows in less.
+/// Shortest record [s]: no model's response is visible in less.
 constexpr double kShortestRecord = 0.1;
-/// Frames that a stream lost are bridged up to this length [s].
+/// Longest gap of lost frames that is interpolated [s].
 constexpr double kLongestGap = 0.2;
 
-/// Which column of the file gives a quantity: {"V", "BUS1.VPM [kV]"}. Words are those of names_of(); the
-/// column is the heading or "#3" for the third one, with its unit in brackets where the file gives none; a
-/// "-" before it turns the sign.
+/// Column of the file for each quantity: {"V", "BUS1.VPM [kV]"}. Quantities are named as in names_of(). The
+/// column is its heading, or "#3" for the third one, with the unit in brackets if the file gives none; a
+/// leading "-" reverses the sign.
 using ColumnMap = std::map<std::string, std::string>;
 
 struct ReadOptions {
-  std::string terminal{};  ///< which terminal, where the file holds several
-  ColumnMap columns{};     ///< chosen by name; the others are found by themselves
-  double from = -std::numeric_limits<double>::infinity();  ///< samples before it are left out [s]
-  double until = std::numeric_limits<double>::infinity();  ///< samples after it are left out [s]
-  double phasor_rate = 0;  ///< phasors per second made of waveforms; 0: one per nominal cycle
-  bool power = true;       ///< P and Q are needed (or the current); false: they stay empty where not given
-  bool part = false;       ///< one of several files: what it lacks stands in another
-  Component component = Component::plant;  ///< which part of the plant is tried
-  /// What a component's record must have: one word of each list ({"speed", "f"}).
+  std::string terminal{};  ///< terminal to read, if the file contains several
+  ColumnMap columns{};     ///< columns chosen by the user; the others are recognised by name
+  double from = -std::numeric_limits<double>::infinity();  ///< earlier samples are left out [s]
+  double until = std::numeric_limits<double>::infinity();  ///< later samples are left out [s]
+  double phasor_rate = 0;  ///< phasors per second computed from waveforms; 0: one per nominal cycle
+  bool power = true;       ///< P and Q (or the current) are required; false: they may be empty
+  bool part = false;       ///< the file is one of several that complete each other
+  Component component = Component::plant;  ///< tested part of the plant
+  /// Columns that a component's record must have: one word of each list ({"speed", "f"}).
   std::vector<std::vector<std::string>> needed = {};
-  std::vector<StagedEvent> staged = {};  ///< what was done to the plant, of all its records
-  bool angle = false;  ///< the angle is needed; false: it may be integrated from f, or be missing
+  std::vector<StagedEvent> staged = {};  ///< staged events of all records of the plant
+  bool angle = false;  ///< a measured angle is required; false: it may be integrated from f, or be missing
 };
 
-/// Reads a record; the name's ending says what it is: .cfg/.dat or .cff COMTRADE, .h5 a run of
-/// `swingbank simulate`, anything else text in columns (validate/record/README.md lists names, units and
-/// dialects). "FILE#TERMINAL" picks one terminal of several, "FILE+FILE" joins the columns of several files
-/// of one event. Columns that are not measurements of the terminal are left out and listed in `ignored`.
-/// Throws InputError with every fault of the file: missing, repeated or unitless columns, ragged lines,
-/// values that are no finite numbers or missing for longer than kLongestGap, times that do not increase or
-/// are unevenly spaced, too few samples. Each names its lines or bytes. What was mended (shorter gaps, stamps
-/// repeated, a clock that leapt) stands in `notes`. What a readable record means is for check_record
-/// (validate/check/check.hpp).
+/// Reads a record. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat MATLAB, .h5 a run of
+/// `swingbank simulate`, otherwise text columns (validate/record/README.md lists names, units and dialects).
+/// "FILE#TERMINAL" selects one of several terminals; "FILE+FILE" joins the columns of several files of one
+/// event. Columns that are not measurements of the terminal are listed in `ignored`. Repairs (shorter gaps,
+/// repeated stamps, clock adjustments) are listed in `notes`. check_record (validate/check/check.hpp) judges
+/// the content. Throws InputError with every fault of the file and its lines or bytes: missing, repeated or
+/// unitless columns, lines of unequal length, values that are not finite or missing for longer than
+/// kLongestGap, times that do not increase or are unevenly spaced, too few samples.
 Record read_record(const std::filesystem::path& file, const RecordBase& base,
                    const ReadOptions& options = {});
 
-/// What the record of such a name is called: without folders, "a.csv#NORTH", "a.csv+b.csv".
+/// Returns the name of a record without folders: "a.csv#NORTH", "a.csv+b.csv".
 std::string record_name(const std::filesystem::path& named);
 
-/// The same with the staged events that belong to the file. Of a plant whose breaker is open all the time P
-/// and Q are not needed.
+/// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole
+/// record, P and Q are not required.
 Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options);
 
-/// The word of a plant file: "vref_step".
+/// Returns the name of a staged event in plant files: "vref_step".
 std::string_view staged_name(StagedEvent::Kind kind);
 constexpr int kStagedKinds = 5;
 
-/// The same from the text of a CSV file; `name` stands for the file in messages.
+/// Reads a record from the text of a CSV file; `name` denotes the file in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
                     const ReadOptions& options = {});
 
-/// The record from `from` to `until` [s]; the times stay as they are. Throws InputError if too little is
-/// left.
+/// Returns the samples from `from` to `until` [s] with unchanged times. Throws InputError if too few remain.
 Record stretch(Record record, double from, double until);
 
-/// The step of values that come in steps: all lie on a grid that has a third of the values at most. 0: no
-/// such grid.
+/// Returns the quantisation step of the values: all lie on a grid with at most a third as many points as
+/// values. 0 if there is no such grid.
 double quantum(const std::vector<double>& values);
 
-/// Throws InputError if the record has no angle, measured or integrated: its voltage then drives no model.
+/// Throws InputError if the record has neither a measured nor an integrated angle: play-in requires one.
 void require_angle(const Record& record);
 
-/// "2024-05-01T12:00:00.033333Z" of seconds since 1970-01-01.
+/// Returns seconds since 1970-01-01 as text: "2024-05-01T12:00:00.033333Z".
 std::string utc_text(double epoch);
 
-/// What is known of the time at t = 0: UTC, or the file's own stamp and that its zone is not known; empty
-/// where neither is.
+/// Returns a description of the time at t = 0: UTC, or the file's stamp with the remark that its time zone is
+/// unknown; empty if neither exists.
 std::string beginning(const Record& record);
 
 }  // namespace swingbank::validate::record

@@ -1,10 +1,10 @@
 #pragma once
-// To which record a staged event of a plant file belongs.
+// Assignment of a plant file's staged events to records.
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::record {
 
-/// Whether it is one of this file's, by its name or of all.
+/// Returns whether the event applies to this file, by name or because it applies to all.
 bool belongs_to(const StagedEvent& e, const std::filesystem::path& file);
 
 }  // namespace swingbank::validate::record

@@ -1,5 +1,5 @@
 #pragma once
-// What was found on one record: of each kind the first word alone, which is the best founded.
+// Findings on one record; only the first of each kind is kept, because the checks run in order of certainty.
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -29,7 +29,7 @@ class Findings {
     return std::ranges::find(all_, kind, &Finding::kind) != all_.end();
   }
   [[nodiscard]] bool none() const { return all_.empty(); }
-  /// Moves them out, the graver ones first.
+  /// Moves the findings out, refusals first.
   std::vector<Finding> taken() {
     std::ranges::stable_sort(all_, {}, &Finding::severity);
     return std::move(all_);

@@ -12,7 +12,8 @@ double written_theta(const record::Record& r, std::size_t k) {
   return r.theta_as_written.empty() ? r.theta[k] : r.theta_as_written[k];
 }
 
-/// Filters smear a jump over several intervals: changes over three of them that stand out from those nearby.
+/// Finds steps that a filter spreads over several intervals: changes over three intervals that exceed their
+/// surroundings.
 std::vector<Jump> smeared(const record::Record& r) {
   constexpr double kLeastJump = 0.03;  // pu
   std::vector<Jump> jumps;
@@ -32,8 +33,8 @@ std::vector<Jump> smeared(const record::Record& r) {
   return jumps;
 }
 
-/// What the voltage phasor changes by over sample interval k, less the mean of the changes beside it [pu]:
-/// what a jump is divided by.
+/// Returns the change of the voltage phasor over sample interval k minus the mean of the adjacent changes
+/// [pu], the denominator of quotients of steps.
 double jump_in(const record::Record& r, std::size_t k) {
   if (k < 1 || k + 2 >= r.t.size()) return 0;
   const auto step = [&](std::size_t i) {
@@ -85,8 +86,8 @@ JumpFit fit_jumps(const record::Record& r, const std::vector<Jump>& jumps, int d
   for (const auto& j : jumps) {
     if (static_cast<long>(j.before) - 1 + std::min(delay, 0) < 0) continue;
     if (j.after + 1 + static_cast<std::size_t>(std::max(delay, 0)) >= r.t.size()) continue;
-    // The rotor swings meanwhile: the mean of the steps on either side is taken off the jump. One and the
-    // same linear operation on voltage and current keeps the relation between their jumps.
+    // The mean of the adjacent changes is subtracted to remove the rotor's swing. The same linear operation
+    // on voltage and current preserves the relation of their steps.
     const Phasors p[] = {at(j.before - 1), at(j.before), at(j.after), at(j.after + 1)};
     if (std::ranges::any_of(p, [](const Phasors& x) { return !(std::abs(x.v) > 0.02); })) continue;
     const double half = static_cast<double>(j.after - j.before) / 2;
@@ -116,7 +117,7 @@ int power_delay(const record::Record& r, const std::vector<Jump>& jumps) {
     int best = 0;
     for (int m = -kFarthest; m <= kFarthest; ++m)
       if (step(m) > step(best)) best = m;
-    // Other switchings nearby, or a flat choice, tell nothing.
+    // Nearby switchings, or a flat maximum, are not conclusive.
     if (best != 0 && !(step(best) > 4 * step(0))) best = 0;
     if (!first && best != delay) return 0;
     delay = best;

@@ -1,8 +1,7 @@
 #pragma once
-// What the jumps of a record say about its columns. When the network switches, the current of a synchronous
-// machine jumps by the voltage's jump behind its subtransient reactance, dV = -jX'' dI (Kundur, Power System
-// Stability and Control, 3.6), whatever else the plant has: a record of which this is not true by far has its
-// columns or bases confused.
+// Consistency of a record's columns at voltage steps. When the network switches, the current step of a
+// synchronous machine follows from the voltage step: dV = -jX'' dI (Kundur, Power System Stability and
+// Control, 3.6). The rest of the plant has no influence. A large deviation indicates wrong columns or bases.
 #include <string>
 #include <vector>
 
@@ -10,26 +9,27 @@
 
 namespace swingbank::validate::check {
 
-/// A sample interval (or two, where a filter smears the jump) in which the voltage jumps.
+/// A sample interval (or two, if a filter spreads the step) with a voltage step.
 struct Jump {
   std::size_t before, after;  ///< samples
 };
-/// Jumps of the voltage phasor, as small as can be told from noise and swings.
+/// Finds steps of the voltage phasor, down to the size that exceeds noise and swings.
 std::vector<Jump> find_jumps(const record::Record& record);
-/// Those large enough to divide by: not what a small event makes, nor where a filter longer than a fault
-/// turns from fall to rise.
+/// Returns the steps large enough for a quotient. Excluded are those of small events, and those where the
+/// fall and rise of a fault shorter than the filter overlap.
 std::vector<Jump> clear_jumps(const record::Record& record);
 
-/// What the jumps say, from dV = -jX dI by least squares.
+/// Least-squares fit of the steps to dV = -jX dI.
 struct JumpFit {
-  double reactance = 0;     ///< X [pu on the record's base], current out of the machine; X'' if all is well
-  double reduced_chi2 = 1;  ///< share of sum |dV|^2 that this leaves: below 0.01 for sound records
-  double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a jump [pu^2]
+  double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' in a sound record
+  double reduced_chi2 = 1;          ///< residual share of sum |dV|^2: below 0.01 for sound records
+  double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a step [pu^2]
 };
-/// P and Q are taken `delay` samples later than the voltage. NaN where there is nothing to divide by.
+/// Fits the steps with P and Q taken `delay` samples later than the voltage. NaN if the current does not
+/// change.
 JumpFit fit_jumps(const record::Record& record, const std::vector<Jump>& jumps, int delay);
 
-/// By how many samples P and Q jump later than the voltage; the same for every jump, otherwise 0.
+/// Returns the delay of P and Q after the voltage [samples] if it is the same for every step, otherwise 0.
 int power_delay(const record::Record& record, const std::vector<Jump>& jumps);
 
 }  // namespace swingbank::validate::check

@@ -1,5 +1,5 @@
 #pragma once
-// Ways in which the four columns of a record get confused, tried where its jumps make no sense as they are.
+// Common confusions of the four columns, tested if the steps of the record are inconsistent.
 #include <functional>
 #include <vector>
 
@@ -7,18 +7,18 @@
 
 namespace swingbank::validate::check {
 
-/// One way to read the four columns of a sample: what is tried for the likely mistake.
+/// The four columns of a sample under an assumed mistake.
 struct Reading {
   double V, theta, P, Q;
 };
 using Reinterpret = std::function<Reading(const Reading&)>;
 
-/// Readings that would make sense of jumps which make none as they are.
+/// Mistake whose correction may make inconsistent steps consistent.
 struct Mistake {
   const char *kind, *why, *remedy;
   Reinterpret reinterpret;
-  double sound = 0.03;  ///< share left over up to which the record is taken as it is
-  double turn = 0;      ///< the angle as written must jump by this at least [rad]
+  double sound = 0.03;  ///< largest residual share with which the correction is accepted
+  double turn = 0;      ///< smallest required step of the angle as written [rad]
 };
 inline const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> list = {
@@ -34,12 +34,12 @@ inline const std::vector<Mistake>& mistakes() {
        [](const Reading& x) {
          return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
-       0.015, 0.1},  // where it hardly jumps, no angle at all would fit nearly as well
+       0.015, 0.1},  // if the angle hardly steps, no angle at all would fit nearly as well
       {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
        [](const Reading& x) {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
-       0.006},  // too small an angle hides where V jumps more; too large a one fits no sound record
+       0.006},  // too small an angle is hidden by larger steps of V; too large a one fits no sound record
       {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};

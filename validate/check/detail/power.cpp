@@ -18,7 +18,7 @@ std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plan
                                            "name the columns P_pu and Q_pu"},
                             {1e3, "P and Q are off by 1000", "give P_MW and Q_Mvar"},
                             {1e-3, "P and Q are off by 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
-  if (!r.per_unit_power) return all;  // no base is in them
+  if (!r.per_unit_power) return all;  // MW and A do not depend on a base
   const std::string set = "set base_mva under [record] in the plant file to ";
   if (plant.mva > 0 && !near(plant.mva, base, 0.3))
     all.push_back(
@@ -33,7 +33,7 @@ std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plan
 
 std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant, Complex power) {
   constexpr double kLargestMachinePower = 1.6,
-                   kNoSlip = 100;  // pu of the machine; slips of units are by a thousand
+                   kNoSlip = 100;  // pu of the machine; errors of units are factors of a thousand
   const double on_machine = std::abs(power) * (plant.mva > 0 ? r.base.mva / plant.mva : 1.0);
   if (on_machine <= kLargestMachinePower) return std::nullopt;
   if (!r.per_unit_power && plant.mva > 0 && on_machine < kNoSlip) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the power of a record says about its units, its base and the unit it belongs to.
+// Plausibility of a record's power: its units, its base, and the unit that it belongs to.
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace swingbank::validate::check {
 
-/// Whether x differs from target by at most a share of it.
+/// Returns whether x differs from target by at most the given fraction.
 bool near(double x, double target, double share);
 
-/// A way in which P and Q have come to be wrong, and what to do about it.
+/// Common error of scale in P and Q, with its remedy.
 struct BaseSlip {
   double factor;  ///< true value = value * factor
   std::string why, remedy;
@@ -22,11 +22,11 @@ std::vector<BaseSlip> base_slips(const record::Record& record, const PlantFacts&
 struct Doubt {
   std::string what, why, remedy;
 };
-/// Why P + jQ before the event [pu on the record's base] is beyond what the machine can give; none: it is
-/// not.
+/// Returns why P + jQ before the event [pu on the record's base] exceeds the capability of the machine; none
+/// if it does not.
 std::optional<Doubt> base_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
-/// The ratio to what the unit delivers in its case, and what it may come of, where both differ by more than
-/// units run apart. Dispatch changes from day to day.
+/// Returns the ratio to the unit's output in its case, with a possible cause, if it differs by more than
+/// usual redispatch explains.
 std::optional<Doubt> dispatch_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
 
 }  // namespace swingbank::validate::check

@@ -1,19 +1,19 @@
 #pragma once
-// The averaging windows that phasor measurement units are known to have.
+// Averaging windows of phasor measurement units.
 #include <vector>
 
 namespace swingbank::validate::event {
 
-/// An averaging window: even, its integral 1.
+/// Averaging window: an even weight function with integral 1.
 class FilterWindow {
  public:
   enum class Shape { triangle, box, class_m };
   FilterWindow() = default;
   FilterWindow(Shape shape, double half, double Ffr = 0);
   [[nodiscard]] Shape shape() const { return shape_; }
-  /// How far the window reaches to either side [s]; 0: no window.
+  /// Returns the half-width of the window [s]; 0: no window.
   [[nodiscard]] double half() const { return half_; }
-  /// Density [1/s] at `t` [s] from the middle.
+  /// Returns the weight [1/s] at `t` [s] from the middle.
   [[nodiscard]] double operator()(double t) const;
 
  private:
@@ -22,9 +22,9 @@ class FilterWindow {
   double half_ = 0, Ffr_ = 0, scale_ = 0;
 };
 
-/// The windows worth trying at a frequency [Hz] and a rate of reports [1/s]: triangles and boxes of half a
-/// cycle to two to either side, and the reference filters of class M for these reports, and for twice as
-/// many, of which every second was kept.
+/// Returns the candidate windows at a frequency [Hz] and a reporting rate [1/s]. They are triangles and boxes
+/// with half-widths of 0.5 to 2 cycles, and the class M reference filters for this rate and for twice this
+/// rate. The latter applies if every second report was dropped.
 std::vector<FilterWindow> known_windows(double frequency, double rate);
 
 }  // namespace swingbank::validate::event

@@ -8,17 +8,16 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr double kAnyVoltage =
-    1;  ///< standard deviation of a coefficient about 0, where nothing else is known [pu]
+constexpr double kAnyVoltage = 1;  ///< prior standard deviation of a coefficient about 0 [pu]
 
 double square(double x) { return x * x; }
-/// Cubic B-splines on a uniform grid, those that reach a span, at u = 0 ... 1 of it.
+/// Returns the cubic B-splines on a uniform grid that are non-zero in a span, at u = 0 ... 1.
 std::array<double, 4> cubics(double u) {
   const double a = 1 - u;
   return {a * a * a / 6, (3 * u * u * u - 6 * u * u + 4) / 6, (3 * a * a * a - 6 * a * a + 4) / 6,
           u * u * u / 6};
 }
-/// Integral of the products of their second derivatives over a span of length 1.
+/// Returns the integrals of the products of their second derivatives over a span of length 1.
 const Eigen::Matrix4d& bends() {
   static const Eigen::Matrix4d product = [] {
     Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -37,7 +36,8 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
                            const std::vector<double>& instants, double roughness) {
   set_segments(stretch, window, instants);
   const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
-  // weights of real and imaginary part and of both together: the noise lies along the phasor and across it
+  // weights of real part, imaginary part and their product: the noise has components along and across the
+  // phasor
   const auto samples = static_cast<Eigen::Index>(stretch.t.size());
   Eigen::MatrixXd measured(samples, 2);
   Eigen::ArrayXd re(samples), im(samples), both(samples);
@@ -63,7 +63,7 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
   precision.topLeftCorner(count_, count_) = before + curvature(re);
   precision.bottomRightCorner(count_, count_) = before + curvature(im);
   precision.bottomLeftCorner(count_, count_) = curvature(both);
-  const Eigen::LLT<Eigen::MatrixXd> known(precision);  // reads the lower half
+  const Eigen::LLT<Eigen::MatrixXd> known(precision);  // uses the lower half
   coefficients_ = A.transpose() * weighed(measured);
   coefficients_.reshaped() = known.solve(Eigen::VectorXd(coefficients_.reshaped()));
   const Eigen::MatrixXd left = measured - A * coefficients_;
@@ -112,7 +112,7 @@ Eigen::MatrixXd SmearedCurve::averages(const SmearedStretch& stretch, const Filt
       for (int span = index(at - half); span <= index(at + half); ++span) {
         const double from = std::max(s.from + span * s.span, at - half);
         const double to = std::min(s.from + (span + 1) * s.span, at + half);
-        if (from < at && at < to) {  // a triangle has a corner there
+        if (from < at && at < to) {  // corner of a triangle
           add(s, span, from, at);
           add(s, span, at, to);
         } else if (from < to) {

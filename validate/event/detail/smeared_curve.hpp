@@ -1,6 +1,5 @@
 #pragma once
-// The voltage that jumps at given instants and is smooth between them, by the averages that a filter has made
-// of it.
+// Reconstruction of a voltage with steps at given switching times from the averages of a filter.
 #include <Eigen/Dense>
 #include <vector>
 
@@ -9,31 +8,31 @@
 
 namespace swingbank::validate::event {
 
-/// Samples about some switchings, each an average over a window.
+/// Filtered samples around some switchings, each a weighted average over a window.
 struct SmearedStretch {
   std::vector<double> t;            ///< [s]
   std::vector<Complex> v;           ///< [pu]
   double magnitude = 0, angle = 0;  ///< noise of V [pu], noise of theta [rad]
-  double step = 0;                  ///< between samples [s]
+  double step = 0;                  ///< sample interval [s]
 };
 
-/// The most probable voltage. Between instants its second derivative is white noise of intensity `roughness`
-/// [pu^2/s^3] (a smoothing spline: G. Wahba, "Improper priors, spline smoothing and the problem of guarding
-/// against model errors in regression", J. R. Stat. Soc. B 40, 1978), written in cubic B-splines of half a
-/// sample, or of an eighth of the window where that is longer. It goes on for half a window beyond the
-/// stretch.
+/// Most probable voltage. Between switching times its second derivative is white noise of intensity
+/// `roughness` [pu^2/s^3] (smoothing spline: G. Wahba, "Improper priors, spline smoothing and the problem of
+/// guarding against model errors in regression", J. R. Stat. Soc. B 40, 1978). Its basis is cubic B-splines
+/// with knots every half sample interval, or every eighth of the window's half-width if that is longer. It
+/// extends half a window beyond the stretch.
 class SmearedCurve {
  public:
-  /// The instants are ascending and lie within the stretch.
+  /// `instants`: switching times, ascending, within the stretch [s].
   SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, const std::vector<double>& instants,
                double roughness);
-  /// Logarithm of the probability of the samples, given window, instants and roughness, but for a constant.
+  /// Returns the log evidence of window, switching times and roughness, up to a constant.
   [[nodiscard]] double evidence() const { return evidence_; }
-  /// Voltage phasor [pu] at t [s] in segment 0 (before the first instant), 1, ...
+  /// Returns the voltage phasor [pu] at t [s] in segment 0 (before the first switching time), 1, ...
   [[nodiscard]] Complex operator()(int segment, double t) const;
 
  private:
-  /// A segment: spans of one cubic each, whose coefficients begin at `first`.
+  /// One segment: cubic spans of equal length, whose coefficients begin at `first`.
   struct Segment {
     double from, span;
     int spans, first;

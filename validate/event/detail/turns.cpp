@@ -13,16 +13,17 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr int kBehind = 3;           ///< samples behind a switching that tell its turn
-constexpr double kTurnFound = 1e-5;  ///< of a search [rad]
+constexpr int kBehind = 3;           ///< samples after a switching that determine its turn
+constexpr double kTurnFound = 1e-5;  ///< convergence tolerance [rad]
 constexpr int kTurnSteps = 12;
 
-/// Samples on a side that foretell what f is nearer to the switching, and how many do where others are near.
+/// Samples on each side for the extrapolation of f to the switching, and their minimum near another
+/// switching.
 constexpr std::size_t kForetell = 4, kMinToForetell = 2;
-constexpr double kStandsOut = 5;     ///< standard deviations of f's noise ...
-constexpr double kLeastPeak = 0.02;  ///< ... and so much [Hz] make a peak
+constexpr double kStandsOut = 5;     ///< threshold of a peak in standard deviations of f's noise, and
+constexpr double kLeastPeak = 0.02;  ///< its minimum [Hz]
 
-/// The straight line through the samples [first, last) of f.
+/// Least-squares line through the samples [first, last) of f.
 struct Line {
   double middle = 0, mean = 0, slope = 0;
   Line(const record::Record& r, std::size_t first, std::size_t last) {
@@ -38,18 +39,18 @@ struct Line {
   double operator()(double t) const { return mean + slope * (t - middle); }
 };
 
-/// The first sample later than t.
+/// Returns the first sample after t.
 std::size_t behind(const record::Record& r, double t) {
   return static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
 }
 
-/// Samples [from, to) about switchings, and how many beside them are free of other switchings.
+/// Samples [from, to) around switchings, and the numbers of adjacent samples free of other switchings.
 struct Peak {
   std::size_t from, to, before, after;
 };
 
-/// What f would be there by the samples on either side, without what happened from `begin` to `end` [s];
-/// straight from one to the other between the two.
+/// Extrapolates f from the samples on either side up to `begin` and down to `end` [s]; linear between the
+/// two.
 std::vector<double> foretold(const record::Record& r, const Peak& p, double begin, double end) {
   const auto [from, to] = std::pair(p.from, p.to);
   const Line before(r, from - p.before, from), after(r, to, to + p.after);
@@ -66,7 +67,7 @@ std::vector<double> foretold(const record::Record& r, const Peak& p, double begi
   return f;
 }
 
-/// The first compared samples behind a switching and before the next one.
+/// Returns the first compared samples after a switching and before the next one.
 std::vector<std::size_t> samples_behind(const FitEvent& event, std::size_t switching) {
   const auto& at = event.switchings;
   const double from = at[switching].time, to = switching + 1 < at.size()
@@ -78,7 +79,8 @@ std::vector<std::size_t> samples_behind(const FitEvent& event, std::size_t switc
   return found;
 }
 
-/// P and Q at these samples by Gauss and Newton: on a circle that the turn moves along there is one least.
+/// Fits the turn to P and Q at these samples (Gauss-Newton). They depend on it along a circle, with one
+/// minimum.
 double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std::size_t switching) {
   const std::vector<std::size_t> samples = samples_behind(event, switching);
   if (samples.empty()) return 0.0;
@@ -148,7 +150,7 @@ void drop_peaks(FitEvent& event) {
   }
   if (!dropped) return;
   const std::vector<double> without = record::angle_of_frequency(r);
-  for (std::size_t k = 0; k < r.t.size(); ++k)  // a collector between point and units has moved the angle
+  for (std::size_t k = 0; k < r.t.size(); ++k)  // keeps the change of the angle across a collector
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
       "The frequency has peaks about the switchings, where a meter spreads the angle's jump over its window: for the "
@@ -161,7 +163,7 @@ void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {
     double turn = 0;
     try {
       turn = best_turn(tested, event, k);
-    } catch (const InputError&) {  // the model cannot follow; the fit will say so
+    } catch (const InputError&) {  // the model cannot follow; the fit reports it
     }
     event.switchings[k].turn = turn;
   }

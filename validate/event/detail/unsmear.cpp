@@ -14,34 +14,35 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr int kLeastKnots = 3;  ///< of a segment that is brought back
-constexpr int kAbout = 4;       ///< samples beyond the longest window's reach that a stretch holds
-constexpr int kNarrowings = 5;  ///< of the search for instants, each half as wide as the last
-/// With another roughness the search begins again as wide as after so many.
+constexpr int kLeastKnots = 3;  ///< minimum number of knots in a reconstructed segment
+constexpr int kAbout = 4;       ///< samples of a stretch beyond the reach of the longest window
+constexpr int kNarrowings = 5;  ///< rounds of the search for switching times, each half as wide as the last
+/// After a change of the roughness, the search resumes at the width of this round.
 constexpr int kAgain = 2;
-constexpr int kLastNarrowings = 5;    ///< with the window that is taken
-constexpr double kSameLength = 1e-3;  ///< of a window and a sample interval
-/// Roughness of a grid's voltage between switchings [pu^2/s^3]: a swing of 0.1 pu at 1 Hz has about 10, the
-/// subtransient behind a fault some hundred for its few hundredths of a second.
+constexpr int kLastNarrowings = 5;    ///< further rounds with the selected window
+constexpr double kSameLength = 1e-3;  ///< relative tolerance between a window and a sample interval
+/// Roughness of a grid's voltage between switchings [pu^2/s^3]: about 10 for a swing of 0.1 pu at 1 Hz, some
+/// hundred for the subtransient after a fault during its few hundredths of a second.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
 constexpr double kFirstRoughness = 10;
-/// The scan for instants goes in such shares of a sample. A large jump that the grid misses by a millisecond
-/// asks for a rough voltage, and in a rough one a small jump needs no instant.
+/// Step of the scan for switching times [sample intervals], and its roughnesses. If the grid misses a large
+/// step by a millisecond, a rough voltage fits better; but in a rough voltage a small step needs no switching
+/// time.
 constexpr double kScanStep = 0.25, kScanRoughness[] = {10, 100};
 
-/// Switchings first ... first + count - 1 of an event, whose windows meet, and the samples about them.
+/// Switchings first ... first + count - 1 of an event, whose windows overlap, and the samples around them.
 struct Cluster {
   std::size_t event, first, count;
   SmearedStretch stretch;
 };
-/// What a window makes of a cluster.
+/// Reconstruction of a cluster with one window.
 struct BroughtBack {
   std::vector<double> instants;
   double roughness = kFirstRoughness;
   std::optional<SmearedCurve> curve = {};
 };
 
-/// Noise by second differences before the first smeared sample.
+/// Returns the noise from second differences before the first filtered sample.
 double noise_of(const std::vector<double>& x, const FitEvent& e) {
   const auto quiet = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
   return std::sqrt(white_variance(std::span(x).first(std::min(quiet, x.size()))));
@@ -68,7 +69,7 @@ std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double wi
   return found;
 }
 
-/// Whether instants lie one after the other within the stretch.
+/// Returns whether the switching times are ascending within the stretch.
 bool in_order(const std::vector<double>& instants, const SmearedStretch& stretch) {
   const double edge = 1e-2 * stretch.step;
   double last = stretch.t.front();
@@ -79,12 +80,12 @@ bool in_order(const std::vector<double>& instants, const SmearedStretch& stretch
   return last + edge < stretch.t.back();
 }
 
-/// Search for a cluster's instants: pairs of neighbours on a grid that narrows down about the best.
+/// Search for a cluster's switching times: neighbouring pairs on a grid that is refined around the optimum.
 class InstantSearch {
  public:
   InstantSearch(const Cluster& cluster, const FilterWindow& window) : cluster_(cluster), window_(window) {}
-  /// Pairs of neighbours on an even grid, over all that was left open: the probability has many peaks, each
-  /// much narrower than that.
+  /// Scans neighbouring pairs on a uniform grid over the whole uncertainty, because the evidence has many
+  /// narrow maxima.
   void scan(BroughtBack& best, const std::vector<double>& width) const {
     const std::vector<double> middle = best.instants;
     best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
@@ -98,7 +99,7 @@ class InstantSearch {
       grid(best, i, about, step, steps(i), steps(i + 1));
     }
   }
-  /// Narrows down from `width` [s] in so many rounds, with the roughness that stands.
+  /// Refines from `width` [s] in `rounds` rounds, at the present roughness.
   void run(BroughtBack& best, double width, int rounds) const {
     constexpr int kSide = 2;
     best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
@@ -108,7 +109,8 @@ class InstantSearch {
   }
 
  private:
-  /// Keeps the best of instants i and i + 1 moved from where they stand in `about`, by so many steps at most.
+  /// Keeps the best of the combinations of times i and i + 1, each moved from `about` by at most so many
+  /// steps.
   void grid(BroughtBack& best, std::size_t i, const std::vector<double>& about, double step, int first,
             int second) const {
     const bool pair = i + 1 < about.size();
@@ -128,13 +130,13 @@ class InstantSearch {
   const FilterWindow& window_;
 };
 
-/// How wide the search for instants is after so many rounds [s].
+/// Returns the width of the search for switching times after so many rounds [s].
 double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
 
 bool told(const FitEvent& e) { return !e.record.switched.empty(); }
 
-/// Where the instants are about; those that a person told stay. Every window is even, so that one serves for
-/// all.
+/// Returns approximate switching times; those given by the user are unchanged. All windows are even, so one
+/// of them suffices.
 std::vector<double> first_instants(const FitEvent& e, const Cluster& c, const FilterWindow& window) {
   std::vector<double> middle, width;
   for (std::size_t s = c.first; s < c.first + c.count; ++s) {
@@ -151,7 +153,7 @@ std::vector<double> first_instants(const FitEvent& e, const Cluster& c, const Fi
   return best.instants;
 }
 
-/// Gives the curve the most probable roughness.
+/// Sets the curve to the roughness with the largest evidence.
 void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& best) {
   best.curve.emplace(c.stretch, window, best.instants, best.roughness);
   for (const double other : kRoughness)
@@ -174,7 +176,7 @@ BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow
   return best;
 }
 
-/// Every cluster, brought back with one window.
+/// Reconstruction of all clusters with one window.
 struct Attempt {
   FilterWindow window;
   std::vector<BroughtBack> clusters;
@@ -190,8 +192,8 @@ Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>&
   return a;
 }
 
-/// Logarithm of the share of all that was left open of an instant [s] in which the samples are about as
-/// probable as at the best (Laplace).
+/// Returns the log of the fraction of a switching time's uncertainty `open` [s] in which the evidence is near
+/// its maximum (Laplace approximation).
 double told_share(const Cluster& c, const FilterWindow& window, const BroughtBack& b, std::size_t instant,
                   double open) {
   const double aside = c.stretch.step / 50;
@@ -208,8 +210,8 @@ double told_share(const Cluster& c, const FilterWindow& window, const BroughtBac
   const double bend = 2 * falls / sides;
   return bend > 0 ? std::min(0.0, std::log(std::sqrt(2 * constants::pi / bend) * aside / open)) : 0.0;
 }
-/// Drops instants without which the samples are more probable, the best to drop first: a fast swing looks
-/// like a jump that a wide window has smeared. Returns which of the cluster's stay.
+/// Drops switching times whose removal increases the evidence, most beneficial first: a fast swing resembles
+/// a step filtered by a wide window. Returns marks of the remaining ones of the cluster.
 std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterWindow& window,
                               BroughtBack& b) {
   std::vector<char> stays(c.count, 1);
@@ -235,7 +237,7 @@ std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterW
   return stays;
 }
 
-/// Takes away the other switchings, and the marks of what was seen to move about them.
+/// Removes the other switchings, and their marks of filtered samples.
 void keep(FitEvent& e, const std::vector<char>& stays) {
   std::vector<playin::Switching> kept;
   for (std::size_t s = 0; s < stays.size(); ++s)
@@ -248,7 +250,7 @@ void keep(FitEvent& e, const std::vector<char>& stays) {
                    });
   if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear(), e.clean = {};
 }
-/// The same for all events. Clusters of which nothing stays are gone.
+/// Drops such switching times of all events, and clusters without remaining ones.
 void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, Attempt& a) {
   std::vector<std::vector<char>> stays(events.size());
   for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -270,7 +272,7 @@ void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, 
     }
 }
 
-/// Marks what the window reaches beside what was seen to move.
+/// Marks the samples within the window, in addition to those that were seen to move.
 void mark_again(FitEvent& e, const FilterWindow& window) {
   const double reach = window.half() - 1e-3 * e.record.step();
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
@@ -279,7 +281,7 @@ void mark_again(FitEvent& e, const FilterWindow& window) {
                    });
 }
 
-/// Puts knots of the curve in place of what stands in the clean record between two times.
+/// Replaces the clean record between two times by knots of the curve.
 void replace(FitEvent& e, int segment, double from, double to, const SmearedCurve& curve) {
   record::Record& r = e.clean;
   const auto first = std::ranges::lower_bound(r.t, from) - r.t.begin(),
@@ -309,7 +311,7 @@ void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
     e.switchings[c.first + i] = {.time = b.instants[i], .uncertainty = e.record.step() / 5};
 }
 
-/// Fills all that the window smeared of a cluster.
+/// Fills all filtered samples of a cluster.
 void fill(FitEvent& e, const Cluster& c, const BroughtBack& b, double half) {
   const double begin = std::max(b.instants.front() - half, c.stretch.t.front());
   const double end = std::min(b.instants.back() + half, c.stretch.t.back());
@@ -335,9 +337,9 @@ record::Record without(const record::Record& record, const std::vector<char>& sm
 
 namespace {
 
-/// What was smeared of all events, and where its instants are about.
+/// Filtered samples of all events, with approximate switching times.
 struct Smeared {
-  std::vector<FilterWindow> windows;  ///< worth trying; none where nothing is smeared
+  std::vector<FilterWindow> windows;  ///< candidates; none if nothing is filtered
   std::vector<Cluster> clusters = {};
   std::vector<std::vector<double>> instants = {};
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Brings back the voltage about switchings that an instrument's filter has smeared. The smeared samples know
-// it: each is the average of what lies about it, and the window of the average is one of a few.
+// Reconstruction of the voltage around switchings from samples that an instrument's filter has averaged. The
+// window of the average is one of a few.
 #include <vector>
 
 #include "validate/event/detail/filter_window.hpp"
@@ -8,18 +8,19 @@
 
 namespace swingbank::validate::event {
 
-/// Time, V and theta of the samples that are not smeared.
+/// Returns time, V and theta of the samples that are not filtered.
 record::Record without(const record::Record& record, const std::vector<char>& smeared);
 
-/// Whether the samples about the switchings are most probable behind a known window that is longer than a
-/// sample interval; a shorter one cannot be told from none. The events are prepared as if there were one.
+/// Returns whether the samples around the switchings are most probable with a known window longer than a
+/// sample interval; a shorter one cannot be distinguished from none. The events must be prepared for a
+/// filter.
 bool passed_filter(const std::vector<FitEvent>& events);
 
-/// Finds the window that makes the samples about all switchings most probable (SmearedCurve), one for all
-/// events, and the instants of those switchings that nobody told. Marks as smeared what this window reaches,
-/// and puts the voltage that was brought back into the events' clean records, so that every segment between
-/// switchings has one. Where the instrument has another window than those known, a rougher voltage makes up
-/// for it. Returns the window, half = 0 where nothing is smeared.
+/// Finds the window, one for all events, with the largest evidence from the samples around all switchings
+/// (SmearedCurve), and the switching times that the user has not given. Marks the samples within this window
+/// as filtered, and adds the reconstructed voltage to the events' clean records, so that every segment
+/// between switchings has a voltage. If the instrument has an unknown window, a larger roughness compensates.
+/// Returns the window, half = 0 if nothing is filtered.
 FilterWindow unsmear(std::vector<FitEvent>& events);
 
 }  // namespace swingbank::validate::event

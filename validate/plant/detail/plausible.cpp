@@ -10,16 +10,16 @@
 namespace swingbank::validate::plant {
 namespace {
 
-/// Of large machines, on their own base (Kundur 1994, tables 3.2 and 4.2): the middle, and the bounds of the
-/// product of inertia [s] and reactance [pu], which no base changes.
+/// Typical values of large machines on their own base (Kundur 1994, tables 3.2 and 4.2): medians, and bounds
+/// of the product of inertia [s] and reactance [pu], which does not depend on the base.
 struct Typical {
   double h, x, least, most;
 };
 constexpr Typical kSynchronous = {4.0, 1.6, 0.6, 40.0}, kTransient = {4.0, 0.3, 0.12, 8.0};
-/// A factor between bases that no spread of machines explains, and that few machines do.
+/// Ratio of bases beyond the variation among machines, and one that few machines reach.
 constexpr double kFar = 3.0, kFarForOne = 2.0;
 
-/// The ratio of the machine's likely base to that of the data; nothing if they look like one.
+/// Returns the ratio of the machine's probable base to that of the data; none if they agree.
 std::optional<double> ratio_of_bases(const Typical& typical, double h, double x, double far) {
   if (!(h > 0 && x > 0) || h * x < typical.least || h * x > typical.most) return {};
   const double ratio = std::sqrt(h / x * typical.x / typical.h);

@@ -11,7 +11,7 @@ namespace {
 using Kind = record::StagedEvent::Kind;
 
 constexpr double kLatest = 1e5;      ///< [s]
-constexpr double kLargestStep = 10;  ///< of a reference or of Efd [pu]
+constexpr double kLargestStep = 10;  ///< largest step of a reference or of Efd [pu]
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names;
@@ -54,7 +54,7 @@ record::StagedEvent read_one(Config& config, const std::string& section) {
 std::vector<record::StagedEvent> read_staged_events(Config& config) {
   std::vector<record::StagedEvent> events;
   if (!config.has("event")) return events;
-  config.ignore("event");  // its keys are compared above
+  config.ignore("event");  // its keys are checked above
   if (!config.is_array("event")) {
     config.problem("event", "one [event]", "a plant may have several", "write [[event]]");
     return events;

@@ -1,5 +1,5 @@
 #pragma once
-// Staged tests of a plant file: [[event]] with kind, time, size, until and the record it belongs to.
+// Staged tests of a plant file: [[event]] with kind, time, size, until and the record that it applies to.
 #include <string>
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace swingbank::validate::plant {
 
-/// Every [[event]] of the file; its faults go to the config.
+/// Reads every [[event]] of the file; its faults are added to the config.
 std::vector<record::StagedEvent> read_staged_events(Config& config);
-/// The same as text of a plant file. `number` writes a value to the last digit.
+/// Returns the events as text of a plant file; `number` formats a value exactly.
 std::string staged_text(const std::vector<record::StagedEvent>& events, std::string (*number)(double));
 
 }  // namespace swingbank::validate::plant

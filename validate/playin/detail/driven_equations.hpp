@@ -1,5 +1,5 @@
 #pragma once
-// The equations of a driven plant: signals, derivatives and outputs at given states and time.
+// Equations of a plant with prescribed voltage: signals, derivatives and outputs at given states and time.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace swingbank::validate::playin {
 
-/// Height at t of the hat over knot k, straight to its neighbours.
+/// Returns the value at t of the piecewise linear hat function of knot k.
 inline double hat(const std::vector<double>& knots, std::size_t k, double t) {
   if (t < knots.front() || t > knots.back()) return 0.0;
   if (t < knots[k]) return k == 0 ? 0.0 : std::max(0.0, (t - knots[k - 1]) / (knots[k] - knots[k - 1]));
@@ -24,7 +24,7 @@ inline double hat(const std::vector<double>& knots, std::size_t k, double t) {
   return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
 }
 
-/// What a scalar makes of directions: nothing, unless it carries slopes.
+/// Access to the sensitivities of a scalar; without effect for types that carry none.
 template <class T>
 struct Seeds {
   static void add(T&, std::size_t, double) {}
@@ -35,7 +35,8 @@ template <>
 struct Seeds<sim::D8> {
   static void add(sim::D8& x, std::size_t direction, double by) { x.d[direction] += by; }
   static double slope(const sim::D8& x, std::size_t direction) { return x.d[direction]; }
-  /// Slopes count a hundredth: a fit forgives them more than a value.
+  /// Returns the size for error control; sensitivities count a hundredth, because a fit tolerates their
+  /// errors better.
   static double size(const sim::D8& x) {
     double worst = std::abs(x.a);
     for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));
@@ -43,11 +44,11 @@ struct Seeds<sim::D8> {
   }
 };
 
-/// On which side of which instant the plant is.
+/// Side of a switching time.
 struct Side {
   int segment = 0;             ///< of the voltage curve
-  double last_moment = 1e300;  ///< effects see at most this time [s]
-  bool isolated = false;       ///< from the grid
+  double last_moment = 1e300;  ///< largest time that effects receive [s]
+  bool isolated = false;       ///< disconnected from the grid
 };
 
 template <class T>
@@ -55,12 +56,12 @@ class DrivenEquations {
  public:
   using Kind = Direction::Kind;
 
-  /// At the operating point, with slopes along the directions where T has them.
+  /// Constructs the equations at the operating point, with sensitivities if T carries them.
   DrivenEquations(const Drive& run, std::span<const Direction> directions)
       : DrivenEquations(run, directions, sim::plant::OperatingOf<T>{}) {
     start();
   }
-  /// From what is known of the operating point.
+  /// Constructs the equations from a known operating point.
   DrivenEquations(const Drive& run, std::span<const Direction> directions, sim::plant::OperatingOf<T> at)
       : c(std::move(at.c)),
         x0(std::move(at.x)),
@@ -79,18 +80,18 @@ class DrivenEquations {
   }
 
   Side side;
-  std::vector<T> c, x0;                 ///< coefficients; states at the start
-  T Efd, Tm;                            ///< held where no exciter or governor sets them
-  T more_torque{0.0}, more_field{0.0};  ///< added where an input is
-  sim::Signals<T> signals;              ///< as they were evaluated last
+  std::vector<T> c, x0;                 ///< coefficients; initial states
+  T Efd, Tm;                            ///< constant values without exciter or governor
+  T more_torque{0.0}, more_field{0.0};  ///< offsets of the inputs
+  sim::Signals<T> signals;              ///< of the last evaluation
 
   [[nodiscard]] const sim::plant::PlantEquations<T>& of_plant() const { return equations_; }
   template <class F>
   void each(F f) const {
     for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
   }
-  /// Over to the other side of a switching of the curve. Where the voltage's angle turns by more than was
-  /// recorded, the rotor turns back by as much: nothing but the angle between the two counts.
+  /// Moves to the other side of a switching of the curve. A turn of the voltage's angle that the record lacks
+  /// is applied to the rotor with opposite sign, because only the angle between the two matters.
   void pass(int switching, T* x) {
     ++side.segment;
     side.isolated = side.isolated || breaker_;
@@ -100,9 +101,9 @@ class DrivenEquations {
       if (d.kind == Kind::turn && d.index == switching) Seeds<T>::add(x[0], i, -d.scale);
     });
   }
-  /// A converter and a recorded machine have none, which might stand elsewhere.
+  /// Returns whether the machine has a rotor angle; a converter and a recorded machine have none.
   [[nodiscard]] bool has_rotor() const { return !recorded_ && !run_.plant->machine.effect->converter; }
-  /// As seen from a frame that turns with the pre-event angle.
+  /// Returns the voltage [pu] in a frame that rotates with the pre-event angle.
   [[nodiscard]] Complex voltage(double t) {
     if (breaker_) return run_.start.voltage;
     if (t == voltage_at_ && side.segment == voltage_segment_) return voltage_;
@@ -112,7 +113,7 @@ class DrivenEquations {
     if (run_.start.drift != 0) voltage_ = voltage_ * std::polar(1.0, -run_.start.drift * t);
     return voltage_;
   }
-  /// Signals and derivative at states x and time t.
+  /// Computes signals and derivatives at states x and time t.
   void evaluate(double t, const T* x, T* dx) {
     const Complex v = voltage(t);
     evaluate_at(T(v.real()), T(v.imag()), t, x, dx);
@@ -140,7 +141,7 @@ class DrivenEquations {
                                added(run_.field, Kind::field, std::min(t, side.last_moment)) + more_field, s,
                                dx);
   }
-  /// By the signals as they stand.
+  /// Returns the outputs at the last evaluated signals.
   [[nodiscard]] std::array<T, kOutputs> outputs(const T* x) const {
     const T to_record(run_.plant->mva / run_.record->base.mva);
     T P, Q;
@@ -190,7 +191,7 @@ class DrivenEquations {
       if (d.kind == Kind::speed) Seeds<T>::add(x0[1], i, d.scale);
     });
   }
-  /// The governor's state that is its gate or valve.
+  /// Finds the governor's state that is its gate or valve.
   void find_gate() {
     std::size_t state = run_.plant->machine.effect->states.size();
     for (const auto& block : run_.plant->controls)
@@ -201,7 +202,7 @@ class DrivenEquations {
         ++state;
       }
   }
-  /// What was done to the plant.
+  /// Applies the staged events.
   void stage(sim::Signals<T>& s) const {
     using Staged = record::StagedEvent::Kind;
     for (const record::StagedEvent& e : run_.record->staged) {
@@ -213,7 +214,7 @@ class DrivenEquations {
         s.dPref = s.dPref + T(e.size * run_.record->base.mva / run_.plant->mva);
     }
   }
-  /// The terminal voltage at which no current flows.
+  /// Computes the terminal voltage at zero current.
   void without_current(const T* x, const T& er, const T& ei, sim::Signals<T>& s) {
     s.Ir = s.Ii = T(0.0);
     equations_.voltages(c.data(), er, ei, s);
@@ -228,7 +229,7 @@ class DrivenEquations {
     }
     s.Ir = s.Ii = T(0.0);
   }
-  /// What the record says of everything but the voltage.
+  /// Applies the recorded inputs other than the voltage.
   void give(const T& vr, const T& vi, double t, sim::Signals<T>& s) {
     if (!recorded_ && !run_.given) return;
     const Given::At at = run_.given ? (*run_.given)(side.segment, t) : Given::standing(run_.start);
@@ -260,8 +261,8 @@ class DrivenEquations {
   std::vector<T> scratch_;
   bool recorded_, breaker_;  ///< the machine is the recorded one; its breaker opens
   bool has_torque_ = false, has_field_ = false;
-  int gate_ = -1;    ///< state that is compared with a recorded gate
-  Complex voltage_;  ///< as it was asked for last
+  int gate_ = -1;    ///< index of the state compared with a recorded gate
+  Complex voltage_;  ///< cached voltage of the last call
   double voltage_at_ = std::numeric_limits<double>::quiet_NaN();
   int voltage_segment_ = 0;
 };

@@ -65,7 +65,8 @@ class DrivenByPower {
     std::ranges::stable_sort(instants_, {}, &Instant::time);
   }
 
-  /// Of E conj(V) = |V|^2 + Z conj(S): a quadratic in |V|^2 with two solutions, whose product is |Z S|^2.
+  /// Returns the voltage from E conj(V) = |V|^2 + Z conj(S), a quadratic in |V|^2 with two solutions, whose
+  /// product is |Z S|^2; the recorded voltage selects one.
   [[nodiscard]] std::optional<Complex> behind_impedance(Complex e, Complex s, double recorded) const {
     const double* z = equations_.impedance(c_.data());
     const Complex b = Complex(z[0], z[1]) * std::conj(s);
@@ -75,8 +76,8 @@ class DrivenByPower {
                                                         : std::norm(b) / (middle + std::sqrt(rest));
     return std::conj((w + b) / e);
   }
-  /// For a machine whose current is no linear function of its voltage: Newton on V conj(I) = S at the grid's
-  /// side, in the voltage of the machine's own terminal, from the last solution, differences for slopes.
+  /// Solves V conj(I) = S at the grid side for a machine whose current is a nonlinear function of its
+  /// voltage: Newton's method in the terminal voltage, from the last solution, with finite differences.
   std::optional<Complex> by_newton(const double* x, Complex s, sim::Signals<double>& signals) {
     const auto grid_side = [&](Complex v) {
       signals.Vr = v.real();
@@ -106,7 +107,7 @@ class DrivenByPower {
     return std::nullopt;
   }
 
-  /// False if no voltage delivers P + jQ.
+  /// Computes the derivatives; returns false if no voltage delivers P + jQ.
   bool evaluate(double t, const double* x, double* dx) {
     signals_.Efd = Efd_;
     signals_.Tm = Tm_;
@@ -215,14 +216,14 @@ class DrivenByPower {
 }  // namespace
 
 VoltageCurve power_curve(const record::Record& record, std::vector<Switching> switchings) {
-  record::Record power;  // a phasor of V and theta, whatever it stands for
+  record::Record power;  // P + jQ stored as a phasor V, theta
   power.name = record.name;
   power.t = record.t;
   for (std::size_t k = 0; k < record.t.size(); ++k) {
     power.V.push_back(std::hypot(record.P[k], record.Q[k]));
     power.theta.push_back(std::atan2(record.Q[k], record.P[k]));
   }
-  for (auto& s : switchings) s.has_before = s.has_after = false;  // those of the voltage
+  for (auto& s : switchings) s.has_before = s.has_after = false;  // these are one-sided voltages
   return {power, std::move(switchings)};
 }
 

@@ -1,9 +1,10 @@
 #pragma once
-// Interpolation between two nodes of a run.
+// Hermite interpolation between two nodes of a run.
 
 namespace swingbank::validate::playin {
 
-/// The cubic with these values and slopes at the ends of an interval of h, at a share of it.
+/// Returns the cubic with these values and derivatives at the ends of an interval of length h, at the
+/// fraction `share`.
 inline double hermite(double share, double h, double from, double slope_from, double to, double slope_to) {
   const double rest = 1 - share;
   return rest * rest * ((1 + 2 * share) * from + share * h * slope_from) +

@@ -1,4 +1,4 @@
-// Slopes of a driven plant's answer from the plant as it is linear about the ends of each step.
+// Approximate sensitivities of a response from the plant linearised at both ends of each step.
 #include "validate/playin/detail/linear_slopes.hpp"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ using Kind = Direction::Kind;
 using NodeKind = Trace::Node::Kind;
 using sim::P8;
 
-constexpr double kNodeMove = 1e-6;  ///< of a difference, relative to 1 + |state|
-constexpr double kAtLimit = 1e-9;   ///< relative to 1 + |state|
+constexpr double kNodeMove = 1e-6;  ///< step of a finite difference, relative to 1 + |state|
+constexpr double kAtLimit = 1e-9;   ///< distance of a state at its limit, relative to 1 + |state|
 constexpr auto kLanes = std::size_t(P8::lanes);
 
 /// A matrix stored by packs of eight columns, the rows of each pack contiguous.
@@ -29,7 +29,7 @@ class Matrix {
   [[nodiscard]] std::size_t packs() const { return packs_; }
   P8* pack(std::size_t p) { return all_.data() + p * rows_; }
   [[nodiscard]] const P8* pack(std::size_t p) const { return all_.data() + p * rows_; }
-  /// Row i + 1 of the column is kLanes further.
+  /// Row i + 1 of the column is kLanes numbers after row i.
   double* column(std::size_t j) { return reinterpret_cast<double*>(pack(j / kLanes)) + j % kLanes; }
   [[nodiscard]] const double* column(std::size_t j) const {
     return reinterpret_cast<const double*>(pack(j / kLanes)) + j % kLanes;
@@ -87,18 +87,19 @@ void invert(Matrix& left, Matrix& inverse) {
       rows[k] = row;
     };
     for (std::size_t p = 0; p < inverse.packs(); ++p) eliminate(inverse.pack(p));
-    for (std::size_t p = left.packs(); p-- > k / kLanes;) eliminate(left.pack(p));  // the factors' own last
+    for (std::size_t p = left.packs(); p-- > k / kLanes;)
+      eliminate(left.pack(p));  // the pack of the factors last
   }
 }
 
-/// The plant about a node: x' = A x + B, y = C x + D, by states and inputs, and by directions. The last row
-/// of C and D is the guard that is passed.
+/// Linearised plant at a node: x' = A x + B, y = C x + D. A and C refer to states and inputs, B and D to
+/// sensitivity parameters. The last row of C and D is the guard that passes zero.
 struct Linear {
   Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
       : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), held(n, 0) {}
   Matrix A, B, C, D;
-  std::vector<std::size_t> hats;  ///< packs of B and D with hats that are not zero
-  std::vector<char> held;         ///< states that stand at a limit; their slopes are the limit's
+  std::vector<std::size_t> hats;  ///< packs of B and D with non-zero hat functions
+  std::vector<char> held;         ///< states clamped at a limit; their sensitivities are the limit's
 };
 
 class LinearSlopes {
@@ -174,14 +175,14 @@ class LinearSlopes {
   }
 
  private:
-  /// Eight copies of the plant, each moved in its own way.
+  /// Eight copies of the plant in a SIMD batch, each perturbed in another direction.
   struct Copies {
     DrivenEquations<P8> equations;
-    bool by_state;     ///< else by direction
-    std::size_t pack;  ///< of columns that are their slopes
+    bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
+    std::size_t pack;  ///< columns that receive their sensitivities
   };
   static std::size_t copies_for(std::size_t columns) { return (columns + kLanes - 1) / kLanes; }
-  /// Packs of directions whose input has begun.
+  /// Returns the number of packs of parameters whose input has begun.
   [[nodiscard]] std::size_t wide() const { return copies_for(active_); }
   static bool is_input(const Direction& d) { return d.kind == Kind::torque || d.kind == Kind::field; }
   [[nodiscard]] const PiecewiseLinear& input_of(Kind kind) const {
@@ -191,8 +192,8 @@ class LinearSlopes {
     return d.kind == Kind::parameter || d.kind == Kind::P || d.kind == Kind::Q;
   }
 
-  /// Slopes of the start, and the moved copies: by states and inputs, and by directions that are in the
-  /// coefficients.
+  /// Computes the sensitivities of the initial state, and prepares the perturbed copies: by states and
+  /// inputs, and by parameters that change the coefficients.
   void start() {
     sim::plant::OperatingOf<P8> at;
     for (std::size_t first = 0; first < m_; first += kLanes) {
@@ -227,7 +228,7 @@ class LinearSlopes {
     guards_.assign(static_cast<std::size_t>(copies_.front().equations.of_plant().guards()), P8(0.0));
   }
 
-  /// Finds the states at their limits, and how the others may be moved.
+  /// Finds the states at their limits, and the admissible perturbations of the others.
   void find_limits(const double* x, const double* dx) {
     for (std::size_t i = 0; i < n_; ++i) move_[i] = kNodeMove * (1 + std::abs(x[i]));
     std::ranges::fill(now_.held, 0);
@@ -242,8 +243,7 @@ class LinearSlopes {
       const double scale = 1 + std::abs(x[i]);
       const double up = (x_[i][kUp] - x[i]) / scale, down = (x[i] - x_[i][kDown]) / scale;
       const bool high = up < kAtLimit, low = down < kAtLimit;
-      if (low || (!high && up < kNodeMove * (1 - 1e-3)))
-        move_[i] = -move_[i];  // a state is moved away from its limit
+      if (low || (!high && up < kNodeMove * (1 - 1e-3))) move_[i] = -move_[i];  // perturb away from the limit
       if (!(high || low) || dx[i] != 0.0) continue;
       now_.held[i] = 1;
       any_held_ = true;
@@ -251,7 +251,7 @@ class LinearSlopes {
       outward_[i] = (high ? 1.0 : -1.0) * scale;
     }
   }
-  /// The states of a node, those that are held at the limit of each lane.
+  /// Sets the states of a node; clamped states take the limit of each lane.
   void place(const DrivenEquations<P8>& equations, const double* x) {
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
     if (!any_held_) return;
@@ -262,14 +262,14 @@ class LinearSlopes {
     for (std::size_t i = 0; i < n_; ++i)
       if (!now_.held[i]) x_[i] = P8(x[i]);
   }
-  /// Makes `now_` the plant about a node, and `before_` what that was.
+  /// Linearises the plant at a node into `now_`, and keeps the previous one in `before_`.
   void linearise(std::size_t k, std::size_t sample) {
     std::swap(before_, now_);
     const Trace::Node& node = trace_.nodes[k];
     const double *x = trace_.x.data() + k * n_, *dx = trace_.dx.data() + k * n_;
     const P8 vr(trace_.v[k].real()), vi(trace_.v[k].imag());
     const bool is_sample = node.kind == NodeKind::sample, at_guard = node.passed.guard >= 0;
-    // a copy may have been moved to the other side of the jump
+    // a perturbed copy may lie on the other side of the discontinuity
     const bool jumps = at_guard || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
     if (jumps) now_ = before_;
     find_limits(x, dx);
@@ -303,7 +303,8 @@ class LinearSlopes {
     }
     raise_hats(std::min(node.t, node.side.last_moment));
   }
-  /// Columns of inputs that have begun by t: what the input does, times how high their hat is.
+  /// Sets the columns of inputs that have begun by t: effect of the input times the value of their hat
+  /// function.
   void raise_hats(double t) {
     while (begun_ < begins_.size() && begins_[begun_].first <= t)
       active_ = std::max(active_, begins_[begun_++].second);
@@ -328,14 +329,15 @@ class LinearSlopes {
     for (std::size_t o = 0; o <= shown_; ++o) now_.D(o, d) = now_.C(o, input) * height;
   }
 
-  /// A state that is held at the end alone moved until then.
+  /// Returns whether a state reaches its limit within the step: clamped at the end, not at the beginning.
   [[nodiscard]] bool meets_a_limit() const {
     for (std::size_t i = 0; any_held_ && i < n_; ++i)
       if (now_.held[i] && !before_.held[i]) return true;
     return false;
   }
-  /// Over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0 S0/3 + h (B0 + B)/2 - h^2 A
-  /// B/6, which is the formula with the derivatives of A and B between the two nodes as their differences.
+  /// Integrates the sensitivities over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0
+  /// S0/3 + h (B0 + B)/2 - h^2 A B/6. This is the formula with the derivatives of A and B replaced by
+  /// differences between the two nodes.
   void step(double h) {
     const Linear& end = meets_a_limit() ? before_ : now_;
     const P8 half(h / 2), third(h / 3), sixth(h / 6), square(h * h / 6);
@@ -364,18 +366,18 @@ class LinearSlopes {
       add_product(inverse_, n_, right, S);
     }
   }
-  /// To the other side of a switching time.
+  /// Moves the sensitivities across a switching time.
   void cross(std::size_t k) {
     const Trace::Passed& passed = trace_.nodes[k - 1].passed;
     if (passed.guard < 0) return switch_over(k);
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
     for (std::size_t d = 0; d < active_; ++d) {
-      double moved = before_.D(shown_, d);  // the guard, while its time stands
+      double moved = before_.D(shown_, d);  // sensitivity of the guard at constant time
       for (std::size_t i = 0; i < n_; ++i) moved += before_.C(shown_, i) * S_(i, d);
       for (std::size_t i = 0; i < n_; ++i) S_(i, d) -= moved / passed.rate * (before[i] - after[i]);
     }
   }
-  /// To the other side of a switching, which its directions move and turn.
+  /// Moves them across a switching of the curve, whose time and turn may be sensitivity parameters.
   void switch_over(std::size_t k) {
     const int switching = trace_.nodes[k].switching;
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
@@ -400,22 +402,23 @@ class LinearSlopes {
   std::span<const Direction> directions_;
   const Trace& trace_;
   Response& answer_;
-  const std::size_t n_, m_, inputs_;  ///< states, directions; states, torque and field voltage
-  std::size_t active_ = 0;            ///< directions whose input has begun
-  std::size_t begun_ = 0;             ///< of these:
-  std::vector<std::pair<double, std::size_t>> begins_;  ///< of a direction's input [s], and its number + 1
-  std::array<std::vector<std::size_t>, 2> hats_;        ///< directions of the hats of torque and field
+  const std::size_t n_, m_, inputs_;  ///< states; sensitivity parameters; states, torque and field voltage
+  std::size_t active_ = 0;            ///< sensitivity parameters whose input has begun
+  std::size_t begun_ = 0;             ///< entries of `begins_` that have begun
+  std::vector<std::pair<double, std::size_t>>
+      begins_;                                    ///< start of a parameter's input [s], and its number + 1
+  std::array<std::vector<std::size_t>, 2> hats_;  ///< parameters of the hat functions of torque and field
   std::vector<Copies> copies_;
   Matrix S_, limits_, some_, right_;
-  std::size_t shown_;  ///< outputs whose slopes are asked for
+  std::size_t shown_;  ///< number of outputs with sensitivities
   Linear before_, now_;
   Matrix left_, inverse_, y_;
-  std::vector<char> has_coefficients_;  ///< whether a pack of directions moves any
+  std::vector<char> has_coefficients_;  ///< whether a pack of parameters changes any coefficient
   bool any_held_ = false;
-  std::array<P8, kLanes> lane_;  ///< one in the lane, zero elsewhere
+  std::array<P8, kLanes> lane_;  ///< unit vectors: one in the lane, zero elsewhere
   std::vector<P8> x_, dx_, guards_;
   std::vector<double> move_, limit_, outward_;
-  std::vector<double*> to_;  ///< the answer's slopes [direction][output]
+  std::vector<double*> to_;  ///< destinations of the sensitivities [parameter][output]
 };
 
 }  // namespace

@@ -1,19 +1,19 @@
 #pragma once
-// The pairs of Runge-Kutta formulas by which a plant is driven.
+// Runge-Kutta pairs of the playback integrators.
 #include "sim/plant/tableau.hpp"
 
 namespace swingbank::validate::playin {
 
-/// An embedded Runge-Kutta pair whose last stage is the first of the next step.
+/// Embedded Runge-Kutta pair whose last stage is the first of the next step (FSAL).
 struct Pair {
   int stages;
-  double exponent;  ///< of the error in step control
+  double exponent;  ///< exponent of the error in step control
   const double (*a)[6];
   const double *c, *error;
 };
 inline constexpr Pair kFineSteps{sim::plant::dp54::kStages, -1.0 / 5, sim::plant::dp54::a,
                                  sim::plant::dp54::c, sim::plant::dp54::error};
-/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work where a step must end at every
+/// Bogacki and Shampine 3(2), Appl. Math. Lett. 2 (1989) 321: half the work if a step must end at every
 /// sample anyway and the voltage is noisy.
 inline constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9, 1.0 / 3, 4.0 / 9}};
 inline constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};

@@ -1,6 +1,6 @@
 #pragma once
-// Where the recorded machine finds what was recorded: at the operating point in its parameters, later in its
-// scratch.
+// Inputs of the recorded machine: values at the operating point in its parameters, later changes in its
+// scratch memory.
 #include <vector>
 
 namespace swingbank::validate::playin::recorded {

@@ -10,9 +10,9 @@ namespace swingbank::validate::record {
 namespace {
 
 constexpr std::size_t kHighestDegree = 7;
-constexpr double kRounding = 1e-9;  ///< of the values: no fit is better
+constexpr double kRounding = 1e-9;  ///< relative residual below which fits count as equal
 
-/// A vector over the values, and over where values are asked for.
+/// A vector over the given values, followed by the abscissae of interpolation.
 using Curve = std::vector<double>;
 
 double dot(const Curve& a, const Curve& b, std::size_t n) {
@@ -23,8 +23,8 @@ double dot(const Curve& a, const Curve& b, std::size_t n) {
 void add(Curve& a, double part, const Curve& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += part * b[i];
 }
-/// Of `count` values, of which the fit has `free` numbers (the noise is one) and leaves the sum of squares
-/// `left`.
+/// Returns the corrected Akaike criterion of a fit to `count` values with `free` parameters (including the
+/// noise variance) and the residual sum of squares `left`.
 double criterion(double left, std::size_t count, std::size_t free) {
   const auto n = static_cast<double>(count), k = static_cast<double>(free);
   if (free + 1 >= count) return std::numeric_limits<double>::infinity();
@@ -38,7 +38,7 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
   const std::size_t n = at.size();
   Curve x = at;
   x.insert(x.end(), inside.begin(), inside.end());
-  Curve rest = value;  // what the polynomial leaves; beyond the values, what it is, turned about
+  Curve rest = value;  // residual of the polynomial; beyond the values, the negated polynomial
   rest.resize(x.size(), 0.0);
   Curve step(x.size()), before(x.size(), 0.0), now(x.size(), 1.0);
   std::ranges::transform(x, step.begin(), [](double t) { return t > 0 ? 1.0 : 0.0; });

@@ -30,12 +30,12 @@ std::vector<Gap> gaps_of(std::size_t n, Lost lost) {
   return gaps;
 }
 
-constexpr double kJump = 0.02;  // pu and rad, what is taken for a switching elsewhere too
+constexpr double kJump = 0.02;  // [pu], [rad]: as for the detection of switchings
 
-constexpr std::size_t kReach = 8;  // samples of each side: at 30/s a third of a swing's period
+constexpr std::size_t kReach = 8;  // samples on each side: at 30/s a third of a swing's period
 
-/// Samples about the gap that tell what lies in it, up to the next gap or jump. A third difference leaves of
-/// a swing little and of a jump all.
+/// Returns the samples around a gap that are used for interpolation, up to the next gap or step. A third
+/// difference suppresses a swing but not a step.
 std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
   const auto walk = [&](std::size_t from, std::ptrdiff_t out, std::size_t room) {
@@ -57,7 +57,7 @@ std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
   return all;
 }
 
-/// What these samples of one channel tell of the gap.
+/// Interpolates one channel across the gap from these samples.
 Across told_across(const std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
   const auto place = [&](std::size_t k) {
     return (static_cast<double>(k) - static_cast<double>(gap.first + gap.last) / 2) /
@@ -68,8 +68,8 @@ Across told_across(const std::vector<double>& y, const Gap& gap, const std::vect
   for (std::size_t k = gap.first; k <= gap.last; ++k) inside.push_back(place(k));
   return across(at, value, inside);
 }
-/// Whether the voltage jumps in the gap; of too few samples, whether it changes by more than the steps beside
-/// it.
+/// Returns whether the voltage steps in the gap. With too few samples, its change is compared with the
+/// adjacent ones.
 bool jumps_in(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
   if (told.size() >= kMinAcross)
     return std::abs(told_across(r.V, gap, told).jump) > kJump ||

@@ -1,15 +1,15 @@
 #pragma once
-// Short gaps of a record: how long they are, and what stands in them.
+// Interpolation of short gaps in a record.
 #include "validate/record/detail/times.hpp"
 
 namespace swingbank::validate::record {
 
-/// Cuts lost samples off both ends of the grid and says in about.notes what is missing. False where a gap is
-/// longer than kLongestGap.
+/// Removes lost samples at both ends of the grid and notes missing ones in about.notes. Returns false if a
+/// gap is longer than kLongestGap.
 bool gaps_are_short(EvenRows& rows, Record& about);
 
-/// Fills samples marked in record.lost: voltage, angle, frequency, speed, P and Q by what the samples on both
-/// sides tell, or held there (the voltage) where it jumps within the gap; other channels go straight.
+/// Fills samples marked in record.lost. Voltage, angle, frequency, speed, P and Q are interpolated from both
+/// sides, or held (the voltage) if it steps within the gap; other channels are linear.
 void bridge(Record& record);
 
 }  // namespace swingbank::validate::record

@@ -54,7 +54,7 @@ std::vector<double>* channel(Record& r, Quantity q) {
   return nullptr;
 }
 
-/// P + jQ = V conj(I), all per unit on the record's base.
+/// Computes P + jQ = V conj(I), per unit on the record's base.
 void power_from_current(Record& r, const std::vector<double>& current, const std::vector<double>& angle) {
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     const double s = r.V[k] * current[k], between = r.theta[k] - angle[k];
@@ -72,7 +72,7 @@ void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {
                    "give V as a magnitude and theta as its angle; are their columns swapped?");
 }
 
-/// Whether a frequency in mHz counts from nominal: its values are nowhere near that.
+/// Returns whether a frequency in mHz is a deviation: its values are far below nominal.
 bool is_deviation(const RawColumn& column, const RecordBase& base) {
   if (column.meaning.unit != Unit::millihertz || column.meaning.deviation) return false;
   return std::ranges::none_of(column.values, [&](double v) { return std::abs(v) > 250 * base.frequency; });
@@ -98,7 +98,7 @@ RawColumn& time_of(RawRecord& raw) {
 }
 std::vector<double>& times_of(RawRecord& raw) { return time_of(raw).values; }
 
-/// Seconds since an epoch: reports could not show them.
+/// Shifts times in seconds since an epoch to begin at zero, because reports cannot display them.
 void begin_at_zero(RawRecord& raw, Record& about) {
   std::vector<double>& t = times_of(raw);
   if (t.empty() || !(std::abs(t.front()) > 1e6)) return;
@@ -112,7 +112,7 @@ void begin_at_zero(RawRecord& raw, Record& about) {
   for (double& v : t) v -= first;
 }
 
-/// Leaves out what a person does not ask for, with its faults.
+/// Removes rows outside the requested time range, with their faults.
 void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) {
   if (std::isinf(options.from) && std::isinf(options.until)) return;
   const std::vector<double>& t = times_of(raw);
@@ -127,8 +127,8 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
   }
 }
 
-/// Whether a frame without this quantity is none: what drives a model must be there. Of a component, and of
-/// one file of several, every column may.
+/// Returns whether a frame without this quantity is lost, because the model's inputs are required. Of a
+/// component, and of one file of several, this applies to every column.
 bool drives(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (options.part || options.component != Component::plant) return true;
   const auto has = [&](Quantity wanted) {
@@ -138,14 +138,14 @@ bool drives(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (has(Quantity::theta)) return false;
   return q == Quantity::f || (!has(Quantity::f) && (q == Quantity::P || q == Quantity::Q));
 }
-/// Whether something that drives a model is missing in a row.
+/// Returns whether a required input is missing in a row.
 bool is_lost(const RawRecord& raw, const ReadOptions& options, std::size_t row) {
   return std::ranges::any_of(raw.columns, [&](const RawColumn& c) {
     return c.meaning.quantity != Quantity::time && !std::isfinite(c.values[row]) &&
            drives(raw, options, c.meaning.quantity);
   });
 }
-/// Whether a column has nothing on the grid for longer than kLongestGap.
+/// Returns whether a column has no value on the grid for longer than kLongestGap.
 bool is_long_without(const std::vector<double>& values, const EvenRows& rows) {
   if (rows.t.size() < 2) return false;
   const double step = (rows.t.back() - rows.t.front()) / static_cast<double>(rows.t.size() - 1);
@@ -157,7 +157,7 @@ bool is_long_without(const std::vector<double>& values, const EvenRows& rows) {
   return static_cast<double>(longest) * step > kLongestGap * (1 + 1e-6);
 }
 
-/// Rows on an even grid, without lost ones at either end; gaps that are too long are faults.
+/// Returns the rows on a uniform grid, without lost ones at either end; gaps that are too long become faults.
 EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFaults& faults) {
   check_magnitudes(raw, faults);
   const std::vector<double>& t = times_of(raw);
@@ -181,7 +181,7 @@ EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFau
   return rows;
 }
 
-/// A column's values at the places of the grid; NaN where none was recorded.
+/// Returns a column's values at the places of the grid; NaN if none was recorded.
 std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places) {
   std::vector<double> all;
   all.reserve(places.size());
@@ -197,8 +197,8 @@ std::vector<double> at_places(const std::vector<double>& values, const std::vect
   return all;
 }
 
-/// Straight lines over samples of the grid that a column has not, though their frames were recorded; which
-/// these are.
+/// Interpolates linearly over samples that a column lacks although their frames were recorded. Returns these
+/// samples.
 std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const EvenRows& rows) {
   std::vector<std::size_t> filled;
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -219,7 +219,7 @@ std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const Even
   return filled;
 }
 
-/// Marks the frames in which something that is compared has no value.
+/// Returns marks of the frames in which a compared channel has no value.
 std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
   std::vector<double> current, angle;
   std::vector<char> unmeasured;
@@ -262,7 +262,7 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
   return unmeasured;
 }
 
-/// Where no angle was recorded it is integrated from the frequency; without that it is nothing.
+/// Integrates the frequency if no angle was recorded; without a frequency there is no angle.
 void settle_angle(Record& r) {
   if (!r.theta.empty()) return;
   if (r.component == Component::exciter || r.component == Component::governor) {
@@ -288,7 +288,7 @@ void settle_angle(Record& r) {
         "An exciter alone needs no angle, and Efd is recorded: --component exciter tries it.");
 }
 
-/// Channels of `from` at the instants of `all`, by straight lines where they differ.
+/// Copies the channels of `from` to the times of `all`, with linear interpolation if they differ.
 void take_over(Record& from, Record& all, const std::string& files, Problems& problems) {
   const double slack = 1e-3 * all.step();
   const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
@@ -366,7 +366,7 @@ void SampleFaults::keep_rows(std::vector<std::size_t> rows) {
 }
 
 void SampleFaults::add_to(std::vector<Fault>& faults, Fault fault) {
-  // Several columns may run in step: look for this subject's last fault among the recent ones.
+  // Faults of several columns may alternate: search for this subject's last fault among the recent ones.
   const std::size_t recent = std::min<std::size_t>(faults.size(), 2 * kQuantities);
   for (auto f = faults.rbegin(); f != faults.rbegin() + static_cast<std::ptrdiff_t>(recent); ++f)
     if (f->subject == fault.subject && f->why == fault.why && f->last + 1 == fault.first) {

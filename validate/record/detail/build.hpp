@@ -1,6 +1,5 @@
 #pragma once
-// What all readers of records share: the choice of columns, the list of faults, and the way from columns as
-// written to a Record.
+// Common parts of the readers: choice of columns, list of faults, and conversion of raw columns to a Record.
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -14,36 +13,36 @@ namespace swingbank::validate::record {
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 struct Heading {
-  std::string name;  ///< as the file writes it
+  std::string name;  ///< as written in the file
   std::optional<ColumnMeaning> meaning;
-  std::string unit = {};  ///< as another header line writes it
-  /// Whether the heading, or the line of units, names a unit in brackets that is not known.
+  std::string unit = {};  ///< from another header line
+  /// Returns whether the heading, or the line of units, names an unknown unit in brackets.
   [[nodiscard]] bool unknown_unit() const;
 };
 
 /// Faults of single samples. Neighbouring samples with the same fault become one sentence.
 class SampleFaults {
  public:
-  /// Where samples first … last stand: "r.csv:5-9".
+  /// Returns the location of samples first … last: "r.csv:5-9".
   using Where = std::function<std::string(std::size_t first, std::size_t last)>;
   explicit SampleFaults(Where where) : where_(std::move(where)) {}
-  /// `subject` is what may repeat (a column), `what` is told of the first sample.
+  /// Adds a fault. `subject` identifies repetitions (a column); `what` describes the first sample.
   void add(const std::string& subject, std::string what, std::size_t sample, std::string why,
            std::string remedy);
-  /// A value that is missing: a fault only if the gap is longer than kLongestGap, which tell_missing() says.
+  /// Adds a missing value, which becomes a fault in tell_missing() if its gap is longer than kLongestGap.
   void lose(const std::string& subject, std::string what, std::size_t sample, std::string why,
             std::string remedy);
-  /// Marks the samples of lose(); empty if there are none.
+  /// Returns marks of the samples of lose(); empty if there are none.
   [[nodiscard]] std::vector<char> lost(std::size_t samples) const;
   void tell_missing();
-  /// Forgets faults of samples outside first .. last.
+  /// Removes faults of samples outside first .. last.
   void keep(std::size_t first, std::size_t last);
-  /// Samples are counted from `first` on.
+  /// Renumbers the samples so that `first` becomes 0.
   void shift(std::size_t first);
-  /// Only these samples are left, and are counted from 0.
+  /// Keeps only these samples, renumbered from 0.
   void keep_rows(std::vector<std::size_t> rows);
   [[nodiscard]] std::string where(std::size_t sample) const { return where_(sample, sample); }
-  /// Adds them to `problems`, in order; a long list is cut.
+  /// Adds the faults to `problems`, in order; a long list is truncated.
   void tell(Problems& problems, const std::string& file) const;
 
  private:
@@ -59,33 +58,33 @@ class SampleFaults {
 struct RawColumn {
   std::string name;
   ColumnMeaning meaning;
-  std::vector<double> values;  ///< as written; NaN where a fault was told
+  std::vector<double> values;  ///< as written; NaN if a fault was added
 };
 
-/// A file's columns, before units, and what only its reader knows.
+/// A file's columns before conversion of units, with facts that only its reader can supply.
 struct RawRecord {
   std::vector<RawColumn> columns;
-  double time_resolution = 0;  ///< what the times are rounded to [in their own unit]; 0: not known
-  bool uneven = false;         ///< samples may stand at any distance, with straight lines between them
+  double time_resolution = 0;  ///< rounding of the times [in their own unit]; 0: not known
+  bool uneven = false;         ///< arbitrary sample times, linear between samples
   Record about;                ///< name, format, terminal, start, ignored, notes
 };
 
-/// Columns to read, in the file's order; the meaning of those that options.columns names is set. Unknown ones
-/// go to `about.ignored`. Of several terminals the one asked for is taken, or the only complete one, or,
-/// where the voltage is measured at one and the current at another, both. Adds a problem for each column that
-/// is repeated, unitless or missing.
+/// Returns the columns to read, in the file's order, and sets the meaning of those that options.columns
+/// names. Unknown ones go to `about.ignored`. Of several terminals it chooses the requested one or the only
+/// complete one; if the voltage is measured at one and the current at another, both. Adds a problem for each
+/// column that is repeated, unitless or missing.
 std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems);
 
-/// Converts units and times, bridges short gaps, computes power from the current where P and Q are not given,
-/// and makes the angle continuous, or of the frequency where there is none. Throws InputError with
-/// `problems`, `faults` and what it finds itself.
+/// Converts units and times, interpolates short gaps, and computes power from the current if P and Q are not
+/// given. Unwraps the angle, or integrates the frequency if there is none. Throws InputError with `problems`,
+/// `faults` and further ones.
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
                     Problems problems, const std::string& file);
 
-/// The columns of several files of one event as one record, at the instants of the one that has P. Throws
-/// InputError if a quantity is there twice or is missing.
+/// Joins the columns of several files of one event to one record, at the samples of the file that contains P.
+/// Throws InputError if a quantity is missing or occurs twice.
 Record join_records(std::vector<Record> parts, const ReadOptions& options, const std::string& files);
 
 }  // namespace swingbank::validate::record

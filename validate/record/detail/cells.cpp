@@ -14,7 +14,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Digits in groups of three that `mark` divides; without the marks. None: they are no such groups.
+/// Returns digits in groups of three without the separating `mark`. None: no such groups.
 std::optional<std::string> ungrouped(std::string_view digits, std::string_view mark) {
   std::string all;
   std::size_t group = 0, groups = 0;
@@ -31,7 +31,7 @@ std::optional<std::string> ungrouped(std::string_view digits, std::string_view m
   return group == 3 && groups > 1 ? std::optional(all) : std::nullopt;
 }
 
-/// The number with a decimal point, without marks of thousands.
+/// Returns the number with a decimal point, without thousands separators.
 std::string plain(std::string_view cell, char separator, Number& n) {
   std::string sign;
   if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) {
@@ -45,7 +45,7 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   }
   const auto comma = cell.find(','), point = cell.find('.');
   const auto npos = std::string_view::npos;
-  // The last mark divides the decimals; one mark of another kind before it divides thousands.
+  // The last mark separates the decimals; one mark of another kind before it separates thousands.
   const auto last_comma = cell.rfind(','), last_point = cell.rfind('.');
   const bool commas_first = comma != npos && point != npos && last_comma < point;
   const bool points_first = comma != npos && point != npos && last_point < comma;
@@ -73,7 +73,7 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   return sign + std::string(cell);
 }
 
-/// Do blanks separate the values? So they do where three lines are numbers that nothing else separates.
+/// Returns whether blanks separate the values: three lines are numbers without another separator.
 bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {
@@ -89,7 +89,7 @@ bool by_blanks(std::string_view text) {
   return false;
 }
 
-/// What stands most often on the line.
+/// Returns the most frequent separator of the line.
 char separator_of(std::string_view line) {
   char best = ',';
   std::size_t most = split(line, best).size();
@@ -161,7 +161,7 @@ bool says_missing(std::string_view cell) {
   if (word.empty()) return true;
   if (cell.find("#IND") != std::string_view::npos || cell.find("#QNAN") != std::string_view::npos ||
       cell.find("#SNAN") != std::string_view::npos)
-    return true;  // "-1.#IND": how older programs on Windows write it
+    return true;  // "-1.#IND", as older programs on Windows write it
   return is_word_of(word, kWords) || word.starts_with("nan");
 }
 
@@ -206,7 +206,7 @@ TableTop find_top(std::string_view text, const ColumnMap& columns) {
       for (const auto cell : cells) quantities += counts(cell) ? 1 : 0;
       if (quantities > most) most = quantities, top = {separator, n}, found = true;
     }
-    // Without a heading that is known: the first line of several cells.
+    // Without a known heading: the first line of several cells.
     const char separator = blanks ? ' ' : separator_of(line);
     if (!found && first < 0 && split(line, separator).size() > 1) top = {separator, n}, first = n;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Cells of text in columns: separators, numbers, and ways to say that there is no value.
+// Cells of text columns: separators, numbers, and spellings of a missing value.
 #include <string_view>
 #include <vector>
 
@@ -9,37 +9,37 @@ namespace swingbank::validate::record {
 
 using Cells = std::vector<std::string_view>;
 
-/// Without blanks and quotes around it.
+/// Returns the text without surrounding blanks and quotes.
 std::string_view unquoted(std::string_view text);
-/// Cells of a line; a separator between quotes is text, and blanks separate in any number.
+/// Splits a line into cells. Separators between quotes are text; any number of blanks counts as one
+/// separator.
 Cells split(std::string_view line, char separator);
 
 struct Number {
-  double value;  ///< NaN where it is none
+  double value;  ///< NaN if the cell is no number
   int decimals = 0;
-  bool ok = false, comma = false, point = false;  ///< what divides the decimals
-  bool ambiguous = false;  ///< no number, since a comma may divide thousands or decimals
+  bool ok = false, comma = false, point = false;  ///< decimal mark
+  bool ambiguous = false;  ///< no number, because its comma may separate thousands or decimals
 };
-/// A number; decimal commas where commas do not separate, thousands divided by the other mark, by blanks or
-/// by apostrophes: "339,515.0", "339.515,0", "1 234,5".
+/// Parses a number. Decimal commas are allowed if commas are not separators. Thousands may be separated by
+/// the other mark, blanks or apostrophes: "339,515.0", "339.515,0", "1 234,5".
 Number parse_number(std::string_view cell, char separator);
 
-/// Ways to say that there is no value, in seven languages and by historians, and cells without a letter or
-/// digit.
+/// Returns whether a cell denotes a missing value: words in seven languages and of historians, or no letter
+/// or digit.
 bool says_missing(std::string_view cell);
-/// Whether a cell is a word, not a number that is written wrongly.
+/// Returns whether a cell is a word rather than an invalid number.
 bool is_word(std::string_view cell);
-/// Codes that instruments write instead of a value.
+/// Returns whether a value is a code that instruments write for a missing one.
 bool is_code(double value);
 
-/// Where the table of a text begins: its separator, and the line of its heading, counted from 0 over all
-/// lines.
+/// Start of the table in a text: its separator, and the line of its heading, counted from 0 over all lines.
 struct TableTop {
   char separator = ',';
   int line = 0;
 };
-/// The first lines decide by the line that names the most quantities, with any separator; lines before it may
-/// be written otherwise. Without such a line the first one that is no title decides.
+/// Finds the heading: the line among the first ones that names the most quantities, with any separator;
+/// earlier lines may have another format. Without such a line, the first one that is no title.
 TableTop find_top(std::string_view text, const ColumnMap& columns);
 
 }  // namespace swingbank::validate::record

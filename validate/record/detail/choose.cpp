@@ -1,5 +1,5 @@
-// Which columns of a file are read: by a person's names, by their own, of one terminal or of two that belong
-// together.
+// Choice of a file's columns: by the user's names, by their headings, from one terminal or two complementary
+// ones.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using enum Quantity;
 
 bool has(const Present& present, Quantity q) { return present[static_cast<std::size_t>(q)]; }
 
-/// The lists of quantities that a component cannot do without, of which the file has none.
+/// Returns the lists of alternative quantities that a component requires and of which the file has none.
 std::vector<std::vector<Quantity>> missing_lists(const Present& present, const ReadOptions& options) {
   std::vector<std::vector<Quantity>> all;
   for (const auto& words : options.needed) {
@@ -31,8 +31,8 @@ std::vector<std::vector<Quantity>> missing_lists(const Present& present, const R
   return all;
 }
 
-/// Quantities that a comparison cannot do without. P and Q, where they are needed, may also come from the
-/// current; the angle may come from the frequency.
+/// Returns the missing quantities that a comparison requires. P and Q, if required, may be computed from the
+/// current, and the angle from the frequency.
 std::vector<Quantity> missing(const Present& present, const ReadOptions& options) {
   std::vector<Quantity> all;
   if (!has(present, time)) all.push_back(time);
@@ -49,8 +49,8 @@ std::vector<Quantity> missing(const Present& present, const ReadOptions& options
   return all;
 }
 
-/// Whether a column of terminal `of` is one of terminal `chosen`: of no terminal, of the same one, or of what
-/// it is part of ("PLANT" of "PLANT.GSU", "32" of "32/1").
+/// Returns whether a column of terminal `of` belongs to terminal `chosen`: it has no terminal, the same one,
+/// or that of equipment which contains it ("PLANT" of "PLANT.GSU", "32" of "32/1").
 bool belongs(const std::string& of, const std::string& chosen) {
   if (of.empty() || of == chosen) return true;
   return chosen.starts_with(of) && (chosen[of.size()] == '.' || chosen[of.size()] == '/');
@@ -70,7 +70,7 @@ std::string listed(const std::set<std::string>& names) {
   return all;
 }
 
-/// All headings, so that a person sees what a map may name; a long list is cut.
+/// Returns all headings, to show the user the possible names; a long list is truncated.
 std::string seen(const std::vector<Heading>& headings) {
   constexpr std::size_t kHeadingsShown = 40;
   std::string all;
@@ -85,18 +85,18 @@ std::string seen(const std::vector<Heading>& headings) {
   return all + (rest > 0 ? fmt::format(" and {} more", rest) : "");
 }
 
-/// The terminal of the voltage and that of the power: mostly the same.
+/// Terminals of the voltage and of the power, usually the same.
 struct Terminals {
   std::string voltage, power;
-  bool frequency_of_power = false;  ///< where the voltage's has none
+  bool frequency_of_power = false;  ///< the voltage's terminal has no frequency
   [[nodiscard]] const std::string& of(Quantity q) const {
     if (q == f) return frequency_of_power ? power : voltage;
     return q == V || q == theta || q == time ? voltage : power;
   }
 };
 
-/// Where no terminal is complete: the only one with a voltage and the only one with P and Q, or with the
-/// current.
+/// Returns two terminals if none is complete: the only one with a voltage, and the only one with P and Q or
+/// with the current.
 std::optional<Terminals> two_devices(const std::vector<Heading>& headings, const std::set<std::string>& all) {
   std::set<std::string> voltage, power;
   const Present nameless = present_in(headings, {});
@@ -112,8 +112,8 @@ std::optional<Terminals> two_devices(const std::vector<Heading>& headings, const
   return both;
 }
 
-/// The terminal to read: the one asked for, the nameless one, the only complete one, or two that are complete
-/// together.
+/// Returns the terminal to read: the requested one, the nameless one, the only complete one, or two that
+/// complete each other.
 Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptions& options,
                            const std::string& where, Record& about, Problems& problems) {
   const std::string& asked = options.terminal;
@@ -186,8 +186,8 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-/// The heading that a person's text names: "#3", the heading itself, with its station, or but for case and
-/// blanks.
+/// Returns the heading that the user's text names: "#3", the heading itself, with its station, or ignoring
+/// case and blanks.
 std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, std::string_view text) {
   if (std::size_t n = 0; text.starts_with('#')) {
     const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), n);
@@ -207,11 +207,11 @@ std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, st
   if (const auto i =
           find([&](const Heading& h) { return h.meaning && h.meaning->terminal + "." + h.name == text; }))
     return i;
-  if (text.starts_with('-')) return std::nullopt;  // that is the sign
+  if (text.starts_with('-')) return std::nullopt;  // a sign
   return find([&](const Heading& h) { return !h.name.empty() && normalised(h.name) == normalised(text); });
 }
 
-/// "NAME [kV]" in parts.
+/// Parts of "NAME [kV]".
 struct Named {
   std::string_view name, unit;
   bool negated = false;
@@ -224,7 +224,7 @@ Named without_unit(Named named) {
           named.negated};
 }
 
-/// Sets the meaning of the columns that a person has named, and takes it from others of the same quantity.
+/// Sets the meaning of the columns named by the user, and clears it in others of the same quantity.
 class Mapper {
  public:
   Mapper(std::vector<Heading>& headings, const ReadOptions& options, const std::string& where, Record& about,
@@ -291,7 +291,8 @@ class Mapper {
   Problems& problems_;
 };
 
-/// Of columns that give the same quantity, those nearest to the terminal: "32/1" before "32".
+/// Returns whether a column is the nearest to the terminal among those of the same quantity: "32/1" before
+/// "32".
 bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const Terminals& terminals) {
   const ColumnMeaning& m = *one.meaning;
   return std::ranges::none_of(headings, [&](const Heading& h) {
@@ -311,7 +312,7 @@ bool Heading::unknown_unit() const {
   return !normalised(inside).empty() && !is_clock_word(inside) && !is_unit(inside);
 }
 
-/// Whether what is tried does not do without the quantity.
+/// Returns whether the tested component requires the quantity.
 static bool is_asked_for(Quantity q, const ReadOptions& options) {
   if (options.component == Component::plant) return true;
   return std::ranges::any_of(options.needed, [&](const auto& words) {

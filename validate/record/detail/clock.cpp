@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kDay = 86400;
 
-/// Values of clocks that count from a known date.
+/// Clock that counts from a known date.
 struct Clock {
-  double from, until;  ///< values between 1985 and 2128, of ticks and days between 1982 and 2100
+  double from, until;  ///< range of values: 1985 to 2128 for ticks, 1982 to 2100 for days
   Unit unit;
   double origin;  ///< 1970-01-01 [days]
   std::string_view what;
@@ -34,8 +34,8 @@ RawColumn& time_column(RawRecord& raw) {
                             [](const RawColumn& c) { return c.meaning.quantity; });
 }
 
-/// Step between finite values that a tenth of them fall short of; NaN where there are none. Where a
-/// simulation chose them, the longer ones say little.
+/// Returns the 10 % quantile of the steps between finite values; NaN if there are none. A simulation's
+/// variable steps make the longer ones unrepresentative.
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < t.size(); ++k)
@@ -53,13 +53,13 @@ const Clock* clock_of(const Clocks& clocks, double first) {
   return found == std::end(clocks) ? nullptr : found;
 }
 
-/// Days of which the first is `first`, as seconds from it.
+/// Converts days to seconds from the day `first`.
 void count_days(RawRecord& raw, RawColumn& time, double first, const Clock& clock) {
   for (double& v : time.values) v = (v - first) * kDay;
   raw.time_resolution *= kDay;
   time.meaning.unit = Unit::second;
   std::string start = utc_text((first - clock.origin) * kDay);
-  start.pop_back();  // no zone is known
+  start.pop_back();  // the zone is unknown
   start[start.find('T')] = ' ';
   raw.about.start = start;
   raw.about.notes.push_back(
@@ -70,7 +70,7 @@ void count_days(RawRecord& raw, RawColumn& time, double first, const Clock& cloc
 
 void settle_clock(RawRecord& raw) {
   constexpr double kMostOfASample =
-      1.2e-5;  // days: 1 s. Seconds that began so long ago come in longer steps.
+      1.2e-5;  // days: 1 s. In double precision, seconds since so long ago have longer steps.
   RawColumn& time = time_column(raw);
   auto& unit = time.meaning.unit;
   if (unit && unit != Unit::day) return;
@@ -93,8 +93,8 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
   const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
   const double step = usual_step(t);
   if (!(step > 0)) return false;
-  // Where most samples share a time, these were rounded or the clock stopped, which settle_rows reports:
-  // their steps are not those of the samples.
+  // If most samples share a time, times were rounded or the clock stopped, which settle_rows reports. Their
+  // steps are not those of the samples.
   std::size_t repeated = 0;
   for (std::size_t k = 1; k < t.size(); ++k) repeated += t[k] == t[k - 1];
   if (2 * repeated > t.size()) return false;

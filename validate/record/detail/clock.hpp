@@ -1,16 +1,16 @@
 #pragma once
-// The unit of a time column that names none, and whether the steps between samples are those of a record.
+// Inference of a missing unit of the time column, and plausibility of the sample interval.
 #include "validate/record/detail/build.hpp"
 
 namespace swingbank::validate::record {
 
-/// Gives the time column a unit where its heading names none: its values are seconds, milliseconds,
+/// Infers the unit of the time column from its values if its heading gives none: seconds, milliseconds,
 /// microseconds or nanoseconds since 1970, days of a spreadsheet (since 1899-12-30) or of MATLAB (since year
-/// 0), or seconds from any time. Days count from the first sample afterwards. What was decided is noted.
+/// 0), or seconds from any time. Days are then counted from the first sample. The result is noted.
 void settle_clock(RawRecord& raw);
 
-/// Adds a problem where the steps [s] are too long for any swing, or a record in ms or less is too short: the
-/// unit is likely another one. True where there is such a problem.
+/// Adds a problem, and returns true, if the time unit is probably wrong: the sample interval [s] is too long
+/// for any swing, or a record in ms or a smaller unit is too short.
 bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const ReadOptions& options,
                  const std::string& file, Problems& problems);
 

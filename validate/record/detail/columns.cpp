@@ -138,7 +138,7 @@ constexpr Alias kAliases[] = {
     {"currentangle", Quantity::phi},
 };
 
-/// Headings that are a unit and yet say what they are.
+/// Headings that consist of a unit and yet identify their quantity.
 constexpr struct {
   std::string_view name;
   Quantity quantity;
@@ -170,7 +170,7 @@ const Alias* find_alias(std::string_view name) {
   const auto found = std::ranges::find(kAliases, name, &Alias::name);
   return found == std::end(kAliases) ? nullptr : &*found;
 }
-/// `named`: the unit as the file writes it.
+/// Returns the meaning; `named` is the unit as written in the file.
 ColumnMeaning meaning(const Alias& alias, std::string_view named) {
   std::optional<Unit> unit = find_unit(named);
   if (unit && !fits(alias.quantity, *unit)) unit.reset();
@@ -179,7 +179,7 @@ ColumnMeaning meaning(const Alias& alias, std::string_view named) {
   return m;
 }
 
-/// "V (kV)" or "P [MW]": the part before, and the unit inside.
+/// Parses "V (kV)" or "P [MW]": the name and the unit in brackets.
 std::optional<ColumnMeaning> bracketed(std::string_view heading) {
   const char last = heading.empty() ? '\0' : heading.back();
   if (last != ')' && last != ']') return std::nullopt;
@@ -190,7 +190,7 @@ std::optional<ColumnMeaning> bracketed(std::string_view heading) {
   return meaning(*alias, heading.substr(open + 1, heading.size() - open - 2));
 }
 
-/// "V_kV_ln", "theta deg", "P/MW", "Time, s", "time in ms": the longest ending that is a unit.
+/// Parses "V_kV_ln", "theta deg", "P/MW", "Time, s", "time in ms": the longest ending that is a unit.
 std::optional<ColumnMeaning> suffixed(std::string_view heading) {
   constexpr std::string_view between = "_ /-,";
   for (std::size_t at = heading.find_first_of(between); at != std::string_view::npos;
@@ -210,7 +210,7 @@ std::optional<ColumnMeaning> without_terminal(std::string_view heading, std::str
   for (const auto& u : kUnitHeadings)
     if (name == u.name) return ColumnMeaning{u.quantity, u.unit, false, {}, false};
   if (auto m = phase_meaning(heading, unit)) return m;
-  // A name we know with something behind it that is no unit: better asked about than left out.
+  // A known name with an unknown ending is reported rather than ignored.
   if (const auto at = heading.find('_'); at != std::string_view::npos)
     if (const Alias* alias = find_alias(normalised(heading.substr(0, at))))
       return meaning(*alias, heading.substr(at + 1));
@@ -254,7 +254,7 @@ std::optional<ColumnMeaning> psse_channel(std::string_view heading) {
       {"XADIFD", {Quantity::Ifd, Unit::pu, false, {}, false}},
       {"XADI", {Quantity::Ifd, Unit::pu, false, {}, false}}};
   const std::string word = part[1].str(), id = part[3].str();
-  if (word == "ANGL" && !id.empty()) return std::nullopt;  // the rotor's angle, not the bus's
+  if (word == "ANGL" && !id.empty()) return std::nullopt;  // rotor angle, not the bus's
   ColumnMeaning m = words.at(word);
   m.terminal = id.empty() ? part[2].str() : part[2].str() + "/" + id;
   return m;

@@ -1,5 +1,5 @@
 #pragma once
-// Which quantity and unit a column's name means. The tables here are the documentation's source
+// Meaning of column names: quantity and unit. These tables are the source of the documentation
 // (validate/record/README.md).
 #include <optional>
 #include <string>
@@ -13,38 +13,38 @@ namespace swingbank::validate::record {
 
 struct ColumnMeaning {
   Quantity quantity;
-  std::optional<Unit> unit;  ///< none: a known quantity whose unit is missing or not known
+  std::optional<Unit> unit;  ///< none: unit missing or unknown
   bool deviation = false;    ///< values are deviations from nominal (speed), not 1 at nominal (omega)
   std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
-  bool negated = false;      ///< the file's values have the other sign
-  /// A unit is named, and it is none of the quantity's: values of a time without a unit may tell it, of a
-  /// time with an unknown one they may not.
+  bool negated = false;      ///< the file's sign is opposite
+  /// A unit is given but does not belong to the quantity. The values determine a missing unit of the time,
+  /// but not an unknown one.
   bool unknown_unit = false;
-  std::optional<Phase> phase = {};  ///< of one phase of three; none: the positive sequence
+  std::optional<Phase> phase = {};  ///< phase of a three-phase quantity; none: positive sequence
 };
 
-/// What a heading means: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" where another header
-/// line gives `unit`. Case, blanks, '_' and '-' within names do not matter. None: not a quantity we read.
+/// Returns the meaning of a heading: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" with `unit`
+/// from another header line. Case, blanks, '_' and '-' are ignored. None: not a quantity that is read.
 std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit = {});
 
-/// The quantity that a person's word means ("V", "omega"), without unit.
+/// Returns the quantity denoted by a user's word ("V", "omega"), without unit.
 std::optional<ColumnMeaning> quantity_of(std::string_view word);
 
-/// A unit of the quantity: `unit` where that is one, or the one with which the heading ends ("BUS1_kV",
+/// Returns a unit of the quantity: `unit` if it is one, else the one at the end of the heading ("BUS1_kV",
 /// "GSU_T1.MW", "Pgen [MW]").
 std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit);
 
-/// A channel of PSS/E as dyntools exports it: "VOLT 32 [NORTH 20.0]" is of terminal "32", "POWR 32 1" of
-/// "32/1".
+/// Returns the meaning of a PSS/E channel as exported by dyntools: "VOLT 32 [NORTH 20.0]" belongs to terminal
+/// "32", "POWR 32 1" to "32/1".
 std::optional<ColumnMeaning> psse_channel(std::string_view heading);
 
-/// The quantity's name in a map of columns: "V".
+/// Returns the quantity's name in a column map: "V".
 std::string_view word_of(Quantity q);
 
-/// Names a column of the quantity can have, with units: "P_pu, P_MW".
+/// Returns the column names of the quantity with units: "P_pu, P_MW".
 std::string names_of(Quantity q);
 
-/// Brings a value to the record's units: s, pu, rad; frequency and speed to deviations [pu].
+/// Converts a value to the record's units: s, pu, rad; frequency and speed to deviations [pu].
 double to_record_units(const ColumnMeaning& column, double value, const RecordBase& base);
 
 }  // namespace swingbank::validate::record

@@ -51,7 +51,7 @@ class Config {
     return comtrade_fields(comtrade_line(rest_));
   }
   void fault(std::string what, std::string why, std::string remedy) {
-    if (ended_) return;  // one sentence for a file that ends early
+    if (ended_) return;  // a single message for a truncated file
     problems_.add(std::move(what), fmt::format("{}:{}", name_, number_), std::move(why), std::move(remedy));
   }
 
@@ -69,11 +69,11 @@ class Config {
     c_.about.station = f[0];
     c_.about.device = f.size() > 1 ? f[1] : "";
     if (f.size() < 3 || f[2].empty()) {
-      c_.about.revision = 1991;  // names no revision
+      c_.about.revision = 1991;  // contains no revision
       return true;
     }
     const double year = number(f, 2, "revision year");
-    // Recorders write years in which they were made: there is one form between 1991's and 2013's.
+    // Some recorders write the year of manufacture; only the 1999 format lies between those of 1991 and 2013.
     const bool between = year > 1991 && year<2013, later = year> 2013 && year < 2100;
     c_.about.revision = year == 1991 ? 1991 : between ? 1999 : later || year == 2013 ? 2013 : 0;
     if (c_.about.revision != 0 && c_.about.revision != year)
@@ -86,7 +86,7 @@ class Config {
     return c_.about.revision != 0;
   }
 
-  /// "4A" -> 4; negative if it is none.
+  /// Parses "4A" to 4; negative if invalid.
   static long count(std::string_view field, char letter) {
     if (field.empty() || std::toupper(static_cast<unsigned char>(field.back())) != letter) return -1;
     field.remove_suffix(1);
@@ -185,7 +185,7 @@ class Config {
     const std::string_view first = comtrade_line(rest_);
     ++number_;
     c_.about.start = c_.about.revision == 1991 ? start_of_1991(trim(first)) : std::string(trim(first));
-    // Stamps are in microseconds, or nanoseconds where the dates have so many digits (2013, 7.4.7).
+    // Stamps are in microseconds, or in nanoseconds if the dates have as many digits (2013, 7.4.7).
     const auto point = first.rfind('.');
     std::size_t digits = 0;
     while (point != std::string_view::npos && point + 1 + digits < first.size() &&
@@ -208,7 +208,7 @@ class Config {
       fault("the time multiplier", "it must be positive", "export the configuration again");
   }
 
-  /// The last line, which came in 1999.
+  /// Reads the last line, which exists since 1999.
   double time_multiplier() {
     const bool given = !trim(rest_.substr(0, rest_.find('\n'))).empty();
     if (given) return number(next(), 0, "time multiplier");
@@ -218,7 +218,7 @@ class Config {
     return 1;
   }
 
-  /// "03/13/26,14:05:20.0" has the month first; the later revisions write "13/03/2026,14:05:20.0".
+  /// Converts "03/13/26,14:05:20.0" with the month first to the later form "13/03/2026,14:05:20.0".
   std::string start_of_1991(std::string_view text) {
     const Fields date_and_time = comtrade_fields(text);
     static const std::regex form(R"((\d{1,2})/(\d{1,2})/(\d{2}|\d{4}))");

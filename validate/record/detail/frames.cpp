@@ -17,7 +17,7 @@ const RawColumn* find(const RawRecord& raw, Quantity q) {
   return at == raw.columns.end() ? nullptr : &*at;
 }
 
-/// Columns of which a frame of zeros has none other than 0; empty where they could not tell.
+/// Returns the columns that are all zero in a lost frame; empty if they are not conclusive.
 std::vector<RawColumn*> phasors_of(RawRecord& raw) {
   std::vector<RawColumn*> all;
   bool power = false, voltage = false;
@@ -33,8 +33,8 @@ std::vector<RawColumn*> phasors_of(RawRecord& raw) {
   return all;
 }
 
-/// Whether V and the powers go on after row `after` as they were at row `before`: closer than 0.02 pu and 5 %
-/// of the power, or than they moved in as many rows before.
+/// Returns whether V and the powers continue after row `after` as at row `before`: within 0.02 pu and 5 % of
+/// the power, or within their movement in as many rows before.
 bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
   constexpr double kVoltageGoesOn = 0.02, kPowerGoesOn = 0.05;
   const auto moved = [&](const RawColumn& c) {
@@ -75,7 +75,7 @@ void drop_repeats(RawRecord& raw, SampleFaults& faults) {
   if (!(usual > 0)) return;
   std::vector<std::size_t> kept;
   std::size_t dropped = 0, first = 0;
-  // The kept row of the same time and values, if there is one.
+  // Returns whether a kept row has the same time and values.
   const auto repeats = [&](std::size_t k) {
     const auto at =
         std::ranges::lower_bound(kept, t[k] - 0.1 * usual, {}, [&](std::size_t i) { return t[i]; });
@@ -85,7 +85,7 @@ void drop_repeats(RawRecord& raw, SampleFaults& faults) {
     if (!kept.empty() && t[k] < t[kept.back()] - 0.5 * usual) {
       std::size_t end = k;
       while (end < t.size() && t[end] <= t[kept.back()] + 0.1 * usual && repeats(end)) ++end;
-      // Rows that all hold the same prove nothing: a clock may have been put back while nothing moved.
+      // Equal rows are not conclusive: a clock may have been set back while the signals were constant.
       bool varied = end == k + 1;
       for (std::size_t i = k; i + 1 < end; ++i) varied = varied || !same_rows(raw, i, i + 1);
       const bool whole = end == t.size() || t[end] > t[kept.back()] + 0.1 * usual;

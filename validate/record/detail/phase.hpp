@@ -6,14 +6,14 @@
 
 namespace swingbank::validate::record {
 
-/// A phase: 0, 1, 2 for a, b, c; of a voltage between two phases 0, 1, 2 for ab, bc, ca.
+/// Phase of a quantity: 0, 1, 2 for a, b, c; of a line-to-line voltage 0, 1, 2 for ab, bc, ca.
 struct Phase {
   std::size_t number = 0;
-  bool between = false;   ///< of two phases
+  bool between = false;   ///< line to line
   bool reversed = false;  ///< ba, cb, ac
   friend bool operator==(const Phase&, const Phase&) = default;
 };
-/// The phase in its usual spellings: "A", "an", "L1", "R", "U", "ab", "L1L2".
+/// Parses a phase in its usual spellings: "A", "an", "L1", "R", "U", "ab", "L1L2".
 std::optional<Phase> phase_of(std::string_view text);
 
 }  // namespace swingbank::validate::record

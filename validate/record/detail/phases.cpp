@@ -18,18 +18,18 @@ namespace {
 
 bool is_current(Quantity q) { return q == Quantity::I || q == Quantity::phi; }
 
-/// A heading without the unit at its end.
+/// Returns the heading without the unit at its end.
 std::string_view without_unit(std::string_view heading) {
   if (const auto open = heading.find_first_of("(["); open != std::string_view::npos && open > 0)
     return heading.substr(0, open);
   const auto at = heading.find_last_of("_ /-,");
-  // "Va_a" is an angle and "Va_A" none in amperes: a letter alone is no unit here.
+  // "Va_a" is an angle, and "Va_A" is not in amperes: a single letter is not accepted as a unit here.
   if (at == std::string_view::npos || heading.size() - at <= 2 || !is_unit(heading.substr(at + 1)))
     return heading;
   return heading.substr(0, at);
 }
 
-/// Lower case, with one '_' for whatever stands between words: "VB_A" is no "VBA".
+/// Returns lower case with one '_' for any separator of words: "VB_A" differs from "VBA".
 std::string parted(std::string_view text) {
   std::string all;
   for (const char c : text)
@@ -47,7 +47,7 @@ double median_finite(const std::vector<double>& values) {
   return finite.empty() ? kNoValue : upper_median(std::move(finite));
 }
 
-/// The columns of one quantity by phase; nullptr: not recorded.
+/// Columns of one quantity by phase; nullptr: not recorded.
 using Three = std::array<RawColumn*, 3>;
 Three three_of(RawRecord& raw, Quantity q) {
   Three all{};
@@ -92,7 +92,7 @@ class Combination {
                     c.meaning.unit == Unit::hertz ? "Hz" : "per unit"));
   }
 
-  /// The angles of two phases lie 120 degrees apart, in one unit only.
+  /// Infers the unit of angles: two phases are 120 degrees apart in one unit only.
   Unit unit_of_angles(const Three& angles) {
     const RawColumn& one = first_of(angles);
     if (one.meaning.unit) return *one.meaning.unit;
@@ -111,8 +111,8 @@ class Combination {
     refuse_unit(one, file_, "neither in degrees nor in radians are the phases 120 degrees apart");
   }
 
-  /// Magnitudes of the voltage lie near the nominal one, in one unit only; those of the current have the unit
-  /// that goes with it.
+  /// Infers the unit of magnitudes: voltages are near the nominal one in one unit only, and currents have the
+  /// corresponding unit.
   Unit unit_of_magnitudes(const Three& columns) {
     const RawColumn& one = first_of(columns);
     if (one.meaning.unit) return *one.meaning.unit;
@@ -177,7 +177,7 @@ class Combination {
                         fault->remedy});
     RawColumn size{names[0], {magnitude, Unit::pu, false, {}, false}, {}};
     RawColumn turned{first_of(angles).name, {angle, Unit::radian, false, {}, false}, {}};
-    // Conversion to pu knows voltages between phases as such: what positive_sequence() takes off is put back.
+    // Conversion to pu handles line-to-line voltages, so the factor of positive_sequence() is reversed.
     const double back = between ? std::sqrt(3.0) : 1.0;
     for (std::size_t k = 0; k < x[0].size(); ++k) {
       const Complex one = back * positive_sequence({x[0][k], x[1][k], x[2][k]}, between);
@@ -195,7 +195,7 @@ class Combination {
   RawRecord& raw_;
   const RecordBase& base_;
   const std::string& file_;
-  std::optional<Unit> of_voltage_;  ///< where the values settled it
+  std::optional<Unit> of_voltage_;  ///< if inferred from the values
 };
 
 }  // namespace
@@ -231,7 +231,7 @@ std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string
       angled || (!sized && unit_in(angle, heading, unit) && !unit_in(magnitude, heading, unit));
   const bool bare = without_unit(heading).size() == heading.size();
   const auto named = unit_in(turns ? angle : magnitude, bare ? "" : heading, unit);
-  if (!sized && !angled && !named) return std::nullopt;  // "Va" alone may be anything
+  if (!sized && !angled && !named) return std::nullopt;  // "Va" alone is ambiguous
   ColumnMeaning m{turns ? angle : magnitude, named, false, {}, false};
   if (!of->between && m.unit == Unit::kilovolt) m.unit = Unit::kilovolt_ln;
   if (!of->between && m.unit == Unit::volt) m.unit = Unit::volt_ln;
@@ -241,7 +241,7 @@ std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string
 
 void keep_needed_phases(std::vector<Heading>& headings) {
   struct Terminal {
-    std::map<Quantity, std::map<bool, std::set<std::size_t>>> phases;  ///< by whether between two
+    std::map<Quantity, std::map<bool, std::set<std::size_t>>> phases;  ///< by line-to-line or to neutral
     std::set<Quantity> whole;
   };
   std::map<std::string, Terminal> terminals;

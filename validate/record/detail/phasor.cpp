@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// One phase over the window from `from` to `to` [s].
+/// Returns the phasor of one phase over the window from `from` to `to` [s].
 Complex fourier(const std::vector<double>& samples, double rate, double skew, double omega, double from,
                 double to) {
   const double half = 0.5 / rate;
@@ -32,7 +32,7 @@ Complex fourier(const std::vector<double>& samples, double rate, double skew, do
 
 constexpr double kThird = constants::turn / 3;
 
-/// Magnitudes of positive and negative sequence with the phases taken as they are given.
+/// Summed magnitudes of positive and negative sequence, with the phases multiplied by given factors.
 struct Sequences {
   double positive = 0, negative = 0;
 };
@@ -74,7 +74,7 @@ std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex
                                             const std::array<std::string, 3>& names) {
   const Sequences as_is = sequences(x, {1.0, 1.0, 1.0});
   if (as_is.positive >= as_is.negative) return std::nullopt;
-  for (std::size_t p = 0; p < 3; ++p) {  // a reversed phase leaves a third to the positive sequence
+  for (std::size_t p = 0; p < 3; ++p) {  // a reversed phase reduces the positive sequence to a third
     std::array<Complex, 3> factor{1.0, 1.0, 1.0};
     factor[p] = -1.0;
     if (const Sequences s = sequences(x, factor); s.positive > 4 * s.negative)

@@ -8,33 +8,33 @@
 
 namespace swingbank::validate::record {
 
-/// One quantity in three phases, sampled evenly from t = 0, each phase with its own delay of sampling.
+/// One three-phase quantity, sampled evenly from t = 0, with a sampling delay for each phase.
 struct Waveforms {
   double rate = 0;                             ///< [1/s]
   std::array<std::vector<double>, 3> samples;  ///< phases a, b, c: instantaneous values
-  std::array<double, 3> skew{};                ///< sampled that much later than stamped [s]
+  std::array<double, 3> skew{};                ///< delay of sampling after the time stamp [s]
 };
 
-/// Phasors of the three phases at evenly spaced instants.
+/// Phasors of three phases at evenly spaced times.
 struct PhasorTrack {
   std::vector<double> t;                               ///< middle of each window [s]
   std::array<std::vector<std::complex<double>>, 3> x;  ///< rms, angle against cos(2 pi f0 t)
 };
 
-/// Slides a window of one nominal cycle (rectangular, one-cycle Fourier filter: Phadke and Thorp,
-/// Synchronized Phasor Measurements and Their Applications, 2) over the waveforms, `phasors_per_second` times
-/// a second, stamps in the middle. Harmonics and, off nominal, the negative-frequency image drop out of the
-/// positive sequence of balanced waveforms; the magnitude falls short by 1 - sinc(f/f0 - 1): 0.05 % at 1 Hz
-/// off. Samples at the window's ends count by the part of their interval inside, so that a cycle need not
-/// hold a whole number of them. Empty if the waveforms are shorter than a cycle.
+/// Computes phasors with a sliding window of one nominal cycle (rectangular, one-cycle Fourier filter: Phadke
+/// and Thorp, Synchronized Phasor Measurements and Their Applications, 2), `phasors_per_second` times a
+/// second, with time stamps in the middle. The positive sequence of balanced waveforms is free of harmonics
+/// and, off nominal, of the negative-frequency image. Its magnitude is low by 1 - sinc(f/f0 - 1): 0.05 % at 1
+/// Hz off nominal. Samples at the window's ends are weighted by the part of their interval inside, so a cycle
+/// need not contain a whole number of them. Empty if the waveforms are shorter than a cycle.
 PhasorTrack phase_phasors(const Waveforms& waves, double nominal, double phasors_per_second);
 
-/// Positive sequence of phasors of phases a, b, c, or of voltages ab, bc, ca, of which it is the one to
-/// neutral: a third of sqrt(3), 30 degrees earlier.
+/// Returns the positive sequence of phasors a, b, c. For voltages ab, bc, ca, it is the line-to-neutral one:
+/// divided by sqrt(3) and delayed by 30 degrees.
 std::complex<double> positive_sequence(const std::array<std::complex<double>, 3>& x, bool between);
 
-/// What is wrong with the order or the signs of three phases by their sequence components, summed in
-/// magnitude: the phase sequence A-C-B, or one phase reversed. Empty where the positive sequence prevails.
+/// Error in the order or signs of three phases, from the summed magnitudes of their sequence components:
+/// phase sequence A-C-B, or one phase reversed. None if the positive sequence dominates.
 struct SequenceFault {
   std::string what, remedy;
 };

@@ -17,7 +17,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// Parts between blanks, commas and tabs; text in quotes is one.
+/// Splits a line at blanks, commas and tabs; quoted text is one word.
 Words words_of(std::string_view line) {
   Words words;
   constexpr std::string_view between = " ,\t\r";
@@ -70,7 +70,7 @@ class Playback {
   }
 
  private:
-  /// Steps into the braces and finds out what the fields are.
+  /// Enters the braces and identifies the fields.
   void find_block() {
     powerworld_ = true;
     const auto open = text_.find('['), close = text_.find(']', open), brace = text_.find('{', close);

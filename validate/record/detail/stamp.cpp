@@ -13,7 +13,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Names of the months, normalised; an abbreviation is a beginning of at least three letters.
+/// Names of the months, normalised; an abbreviation has at least the first three letters.
 constexpr std::array<std::string_view, 12> kMonths = {
     "january januar janner janvier enero janeiro gennaio январь января",
     "february februar feber fevrier febrero fevereiro febbraio февраль февраля",
@@ -27,12 +27,12 @@ constexpr std::array<std::string_view, 12> kMonths = {
     "october oktober octobre octubre outubro ottobre октябрь октября",
     "november novembre noviembre novembro ноябрь ноября",
     "december dezember decembre diciembre dezembro dicembre декабрь декабря"};
-/// Words of a date that say nothing new.
+/// Words of a date that carry no information.
 constexpr std::string_view kIdleInDates =
     "de del di of the den le mon tue tues wed thu thur thurs fri sat sun monday tuesday wednesday thursday friday "
     "saturday sunday g г";
 
-/// 1 to 12; 0: no month, or no single one.
+/// Returns the month, 1 to 12; 0 if there is none, or several fit.
 long month_of(std::string_view word) {
   const std::size_t letters = static_cast<std::size_t>(
       std::ranges::count_if(word, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -57,7 +57,7 @@ bool is_letter(char c) {
 struct Part {
   std::string_view text;
   bool number = false;
-  char before = '\0';  ///< what divides it from the part before
+  char before = '\0';  ///< separator from the part before
 };
 
 long number_of(std::string_view digits) {
@@ -89,7 +89,7 @@ class Reader {
   }
 
  private:
-  /// A time of day without a date begins with one or two digits and a colon.
+  /// Parses a time of day without a date, which begins with one or two digits and a colon.
   [[nodiscard]] bool time_alone() {
     const auto colon = rest_.find(':');
     if (colon == 0 || colon > 2 ||
@@ -98,7 +98,7 @@ class Reader {
     return time();
   }
 
-  /// Digits, or letters, and what stands before them.
+  /// Reads digits or letters, and the separator before them.
   std::optional<Part> part() {
     Part p;
     while (!rest_.empty() && !is_digit(rest_.front()) && !is_letter(rest_.front())) {
@@ -115,7 +115,8 @@ class Reader {
     return p;
   }
 
-  /// Three numbers, two and a month's name in any order, or eight digits; then what divides it from the time.
+  /// Reads three numbers, two and a month's name in any order, or eight digits; then the separator from the
+  /// time.
   bool date() {
     std::vector<Part> numbers;
     long month = 0;
@@ -163,7 +164,7 @@ class Reader {
     return ok && divide();
   }
 
-  /// What stands between the date and the time: blanks, a comma, "T", a colon, a hyphen, "at".
+  /// Skips the separator of date and time: blanks, a comma, "T", a colon, a hyphen, "at".
   bool divide() {
     const std::size_t size = rest_.size();
     while (!rest_.empty() && std::string_view(" ,_T").find(rest_.front()) != std::string_view::npos)
@@ -177,7 +178,7 @@ class Reader {
     return rest_.size() < size;
   }
 
-  /// "12:56:20.033", "12:56:20:033", "125620.033", "12.56.20,033" after a date, "56:20.0", "12:56".
+  /// Reads "12:56:20.033", "12:56:20:033", "125620.033", "12.56.20,033" after a date, "56:20.0", "12:56".
   bool time() {
     std::array<long, 3> hms{};
     std::size_t n = 0;
@@ -220,7 +221,7 @@ class Reader {
     return hms[0] < 24 && hms[1] < 60 && hms[2] < 61;
   }
 
-  /// "PM", "p. m.", "Z", "+02:00", "CET", "UTC+1".
+  /// Reads "PM", "p. m.", "Z", "+02:00", "CET", "UTC+1".
   bool end() {
     const auto skip = [&] {
       while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
@@ -230,7 +231,7 @@ class Reader {
     const std::string half = letter < 5 ? normalised(rest_.substr(0, letter + 1)) : std::string();
     if (half == "am" || half == "pm") {
       const double hour = 3600;
-      // Some write 13:05 PM: an hour past noon needs none added.
+      // Some write 13:05 PM, to which no hours are added.
       if (half == "pm" && stamp_.second < 12 * hour) stamp_.second += 12 * hour;
       if (half == "am" && stamp_.second >= 13 * hour) return false;
       if (half == "am" && stamp_.second >= 12 * hour) stamp_.second -= 12 * hour;
@@ -245,7 +246,7 @@ class Reader {
     const bool utc = is_word_of(zone, "z utc gmt");
     if (letters > 5 || (letters > 0 && !utc && letters < 3)) return false;
     rest_.remove_prefix(letters);
-    stamp_.zoned = utc || letters == 0;  // what another name means differs from country to country
+    stamp_.zoned = utc || letters == 0;  // the meaning of other names depends on the country
     if (rest_.empty()) return true;
     const bool east = rest_.front() == '+';
     if ((!east && rest_.front() != '-') || (letters > 0 && !utc)) return false;
@@ -270,7 +271,7 @@ class Reader {
 }  // namespace
 
 std::optional<Stamp> parse_stamp(std::string_view text) {
-  // Numbers are none, but for fourteen digits: year to second.
+  // Plain numbers are not stamps, except fourteen digits: year to second.
   const auto other = text.find_first_not_of("0123456789.+-eE");
   if (other == std::string_view::npos) {
     const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());

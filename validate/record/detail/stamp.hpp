@@ -1,5 +1,5 @@
 #pragma once
-// Time stamps as text: ISO 8601, dates with month names, compact forms of historians, times of day.
+// Parser of time stamps: ISO 8601, dates with month names, compact forms of historians, times of day.
 #include <optional>
 #include <string_view>
 
@@ -8,15 +8,15 @@ namespace swingbank::validate::record {
 struct Stamp {
   long day = 0;           ///< since 1970-01-01; 0 for a time of day alone
   double second = 0;      ///< of the day
-  double resolution = 1;  ///< what the text rounds the seconds to [s]
+  double resolution = 1;  ///< rounding of the seconds [s]
   bool zoned = false;     ///< the text names a zone, and day and second are UTC
-  bool in_hour = false;   ///< minutes and seconds alone, as spreadsheets show times ("56:20.0")
+  bool in_hour = false;   ///< only minutes and seconds, as spreadsheets display times ("56:20.0")
 };
 
-/// "2024-05-01T12:00:00.033Z", "5/1/2024 12:00:00.033 PM" (month first unless that cannot be), "1.5.2024
+/// Parses "2024-05-01T12:00:00.033Z", "5/1/2024 12:00:00.033 PM" (month first unless impossible), "1.5.2024
 /// 12:00:00,033" (day first), "08-Aug-2026 12:56:20.000" and "Mar 13 2026 …" (months in English, German,
 /// French, Spanish, Portuguese, Italian, Russian), "20260313 125620.000", "12:56:20:033", "12:00:00.033" and
-/// "56:20.0". None: it is no such stamp.
+/// "56:20.0". None: no such stamp.
 std::optional<Stamp> parse_stamp(std::string_view text);
 
 }  // namespace swingbank::validate::record

@@ -24,7 +24,7 @@ bool ends_with(const std::string& name, std::string_view ending) {
   throw InputError({what, name, why, remedy});
 }
 
-/// Length of the UTF-8 sequence at `at`; 0: it is none.
+/// Returns the length of the UTF-8 sequence at `at`; 0 if invalid.
 std::size_t sequence(std::string_view s, std::size_t at) {
   const auto c = static_cast<unsigned char>(s[at]);
   const std::size_t n = c < 0x80                ? 1
@@ -77,7 +77,8 @@ std::uint32_t from_1251(unsigned char c) {
 }
 std::uint32_t from_1252(unsigned char c) { return c >= 0x80 && c < 0xA0 ? k1252[c - 0x80U] : c; }
 
-/// Words of Cyrillic are rows of bytes above 0xC0; in western text such letters stand alone.
+/// Returns whether letters above 0xC0 are mostly adjacent, as in Cyrillic words; in western text they are
+/// isolated.
 bool is_cyrillic(std::string_view s) {
   std::size_t letters = 0, beside = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
@@ -106,7 +107,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   if (ends_with(name, ".raw") || ends_with(name, ".dyr"))
     refuse("a case of PSS/E", name, "a record was asked for",
            "give the record as --records; swingbank plant makes a plant file of the case");
-  // A spreadsheet is a zip, too: its parts stand under xl/ (Excel) or it names its type first (LibreOffice).
+  // A spreadsheet is a zip file that contains xl/ (Excel) or begins with its type (LibreOffice).
   const std::string_view begin = bytes.substr(0, 4096);
   const bool sheet = begin.find("xl/") != std::string_view::npos ||
                      begin.find("[Content_Types].xml") != std::string_view::npos ||

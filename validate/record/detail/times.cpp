@@ -20,18 +20,18 @@ std::vector<double> steps_of(const std::vector<double>& t) {
   return steps;
 }
 
-/// Of a record after missing ones are counted: more than an hour at 480 samples/s. What would be longer holds
-/// a time that is none.
+/// Maximum length of a record including missing samples: more than an hour at 480 samples/s. A longer one
+/// contains an invalid time.
 constexpr std::size_t kMostSamples = 2'000'000;
 
-/// Times rounded more coarsely than this share of a step do not tell a lost frame.
+/// Coarsest rounding of times, as a fraction of a step, at which a lost frame is recognised.
 constexpr double kCoarsest = 0.75;
 
-/// A row that is off the grid lies less than this many steps behind the row before.
+/// Largest distance of a row off the grid from the row before [steps].
 constexpr double kFarBack = 0.98;
 
-/// A simulation writes a time twice or thrice where something switches. More rows in a row at one time, or
-/// more than this share of all rows, come of a clock that stands still.
+/// Maximum number of consecutive rows at one time, and share of repeated rows. A simulation writes a time two
+/// or three times at a switching; more result from a clock that stopped.
 constexpr std::size_t kMostAtOneTime = 3;
 constexpr double kMostRepeated = 0.05;
 
@@ -42,12 +42,12 @@ bool is_even(const std::vector<double>& t) {
          std::ranges::all_of(steps, [&](double s) { return std::abs(s - usual) <= 0.01 * usual; });
 }
 
-/// Puts times that are rounded to `resolution` on an even grid if all of them fit one.
+/// Puts times rounded to `resolution` on a uniform grid if all of them fit one.
 bool snap(std::vector<double>& t, double resolution, Record& about) {
   const auto last = static_cast<double>(t.size() - 1);
   double h = (t.back() - t.front()) / last;
   if (!(h > 0) || !(resolution <= kCoarsest * h)) return false;
-  // Instruments sample a whole number of times per second; the end points alone leave h uncertain.
+  // Instruments take a whole number of samples per second; the end points alone determine h too inaccurately.
   const double rate = std::round(1 / h);
   if (rate >= 1 && std::abs(rate * h - 1) <= 2 * resolution / (t.back() - t.front())) h = 1 / rate;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -65,8 +65,8 @@ bool snap(std::vector<double>& t, double resolution, Record& about) {
   return true;
 }
 
-/// A clock that was put back, or on to another hour, while the samples went on evenly: `t` goes on too. At
-/// most three times; what may be a gap or rows out of order is left as it is.
+/// Corrects at most three adjustments of a clock (set back, or changed to another hour) between continuous
+/// samples. Possible gaps and rows out of order are left unchanged.
 void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std::string>& notes) {
   constexpr double kSeconds = 1.5, kHalfHour = 1800;
   const std::vector<double> steps = steps_of(t);
@@ -90,7 +90,7 @@ void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std:
   }
 }
 
-/// Steps of the grid that the rows may stand on [s].
+/// Returns the candidate steps of the grid [s].
 std::vector<double> possible_steps(const std::vector<double>& t, double resolution) {
   const double usual = upper_median(steps_of(t)), length = t.back() - t.front();
   if (!(length > 0)) return {};
@@ -107,12 +107,12 @@ std::vector<double> possible_steps(const std::vector<double>& t, double resoluti
   return all;
 }
 
-/// Rows on a grid of a given step, with gaps where frames are missing.
+/// Assignment of rows to a grid with a given step, with gaps at missing frames.
 class Grid {
  public:
   Grid(const Rows& rows, const std::vector<double>& t, double step) : rows_(rows), t_(t), h_(step) {}
 
-  /// `first`: the row that the grid starts from; rows before it are left out.
+  /// `first_row`: start of the grid; earlier rows are left out.
   std::optional<EvenRows> fit(std::size_t first_row, Record& about, SampleFaults& faults) {
     if (!count(first_row)) return std::nullopt;
     const auto last = static_cast<double>(index_.back());
@@ -136,13 +136,13 @@ class Grid {
  private:
   [[nodiscard]] bool coarse() const { return rows_.resolution > 0.15 * h_; }
 
-  /// Of a hundred rows one may be off the grid, and of few rows two.
+  /// Leaves out a row off the grid; returns false beyond one in a hundred, or two in a short record.
   [[nodiscard]] bool leave_out(std::size_t row) {
     off_.push_back(row);
     return off_.size() <= std::max<std::size_t>(2, t_.size() / 100);
   }
 
-  /// False where the rows do not stand on such a grid.
+  /// Assigns the rows; returns false if they do not fit such a grid.
   bool count(std::size_t first) {
     row_ = {first}, index_ = {0}, moved_ = {0};
     for (std::size_t k = 0; k < first; ++k)
@@ -215,23 +215,22 @@ class Grid {
   const Rows& rows_;
   const std::vector<double>& t_;
   double h_;
-  std::vector<std::size_t> row_, index_;  ///< rows that stay, and their places on the grid
-  std::vector<char> moved_;               ///< by row that stays: its stamp was wrong
+  std::vector<std::size_t> row_, index_;  ///< rows on the grid, and their places
+  std::vector<char> moved_;               ///< for each row on the grid: its stamp was corrected
   std::vector<std::size_t> twice_, stuck_, off_;
 };
 
-/// Whether more than a fifth of the steps are a tenth off the usual one.
+/// Returns whether more than a fifth of the steps deviate by a tenth from the median.
 bool differ(const std::vector<double>& steps) {
   const double usual = upper_median(steps);
   const auto off = std::ranges::count_if(steps, [&](double s) { return std::abs(s - usual) > 0.1 * usual; });
   return 5 * static_cast<std::size_t>(off) > steps.size();
 }
 
-/// Rows that repeat the time of the row before: how many, the first, and the most in a row.
+/// Rows that repeat the time of the row before: number, first one, longest run.
 struct StandingClock {
   std::size_t rows = 0, first = 0, longest = 0;
-  /// The steps between times that differ are alike. A simulation's are not, and it repeats a time at an
-  /// event.
+  /// The steps between different times are equal. A simulation's are not, and it repeats a time at an event.
   bool even = true;
 };
 StandingClock standing(const std::vector<double>& t) {
@@ -249,14 +248,13 @@ StandingClock standing(const std::vector<double>& t) {
   return found;
 }
 
-/// Whether many steps differ, as where a simulation chose them.
+/// Returns whether many steps differ, as in a simulation with variable steps.
 bool varies(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
   return std::ranges::none_of(steps, [](double s) { return s < 0; }) && differ(steps);
 }
 
-/// The rows at even instants by straight lines, as a playback of them is meant. None where they run
-/// backwards.
+/// Resamples the rows at uniform times by linear interpolation, as in a playback. None if times decrease.
 std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   constexpr std::array<double, 5> kRates = {30, 60, 120, 240, 480};
   const std::vector<double>& t = rows.t;
@@ -268,7 +266,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
                      static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size())))
     return std::nullopt;
   const auto apart = static_cast<double>(std::ranges::count_if(steps, [](double s) { return s > 1e-6; }));
-  // A step stands at a time that is there twice: it needs closer samples than what moves slowly.
+  // A repeated time marks a step, which requires closer samples than slow movements.
   const bool steps_up = std::ranges::any_of(steps, [](double s) { return s < 1e-6; });
   const double least = std::max(apart / length, steps_up ? 120.0 : 0.0);
   const auto* rate = std::ranges::find_if(kRates, [&](double r) { return r >= least; });
@@ -291,13 +289,13 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   return even;
 }
 
-/// Times that many samples share, as one fault; true where there are such.
+/// Reports times shared by many samples as one fault; returns whether there are any.
 bool tell_standing(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const StandingClock clock = standing(t);
   if (!clock.even || (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size())) return false;
   const double length = t.back() - t.front();
-  // Rounding makes groups of equal times all along; a clock that stands makes one.
+  // Rounding repeats times throughout the record; a stopped clock does so once.
   const auto apart = static_cast<double>(t.size() - clock.rows);
   const bool rounded = clock.longest < t.size() / 4 || !(length > 0);
   const std::string what =
@@ -320,7 +318,7 @@ bool tell_standing(const Rows& rows, SampleFaults& faults) {
   return true;
 }
 
-/// Every step that is not like the others.
+/// Reports every step that differs from the others.
 void tell_steps(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const std::vector<double> steps = steps_of(t);
@@ -332,7 +330,7 @@ void tell_steps(const Rows& rows, SampleFaults& faults) {
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (!std::isfinite(steps[k])) continue;  // already told as a value
+    if (!std::isfinite(steps[k])) continue;  // already reported as a value
     if (steps[k] < 0 || (steps[k] == 0 && !stands)) {
       faults.add(steps[k] == 0 ? "repeated" : "backwards",
                  fmt::format("t = {:.10g} s after t = {:.10g} s", t[k + 1], t[k]), k + 1,

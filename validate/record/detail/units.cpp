@@ -44,7 +44,7 @@ constexpr struct {
     {Unit::kiloampere, "ka kiloamp kiloamps kiloampere kiloamperes"},
     {Unit::ampere, "a amp amps ampere amperes"},
 };
-/// Words behind a unit that change nothing; those behind a voltage that say between what it is measured.
+/// Ignored qualifiers after a unit, and those after a voltage that state line to line or line to neutral.
 constexpr std::string_view kIdleBehindUnits =
     "pos positive seq sequence rms prim primary utc gmt local unix epoch since from after start trigger "
     "event 1970";
@@ -129,7 +129,7 @@ std::optional<Unit> find_unit(std::string_view text) {
 bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
 
 std::string normalised(std::string_view text) {
-  // Letters with accents from U+00C0 on; blanks stand for what has none.
+  // Letters with accents from U+00C0 on; a blank marks characters without a plain form.
   constexpr std::string_view plain = "aaaaaaaceeeeiiiidnooooo ouuuuypsaaaaaaaceeeeiiiidnooooo ouuuuypy";
   std::string name;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -141,7 +141,7 @@ std::string normalised(std::string_view text) {
     }
     if ((c == 0xC2 && next == 0xB5) || (c == 0xCE && next == 0xBC)) {  // micro sign, Greek mu
       name += 'u', ++i;
-    } else if (c == 0xC2 && next == 0xA0) {  // a blank that does not break
+    } else if (c == 0xC2 && next == 0xA0) {  // no-break space
       ++i;
     } else if (c == 0xC3 && next >= 0x80) {
       const char letter = plain[next - 0x80U];
@@ -181,7 +181,7 @@ std::string_view needs_base(Quantity quantity, Unit unit) {
 
 namespace {
 
-/// Field voltage and current: the record's own unit (pu, V, A) to the model's pu.
+/// Converts field voltage and current from the record's unit (pu, V, A) to the model's pu.
 double field_units(const ColumnMeaning& column, double v, double base) {
   const Unit unit = column.unit.value_or(Unit::pu);
   if (unit == Unit::kilovolt || unit == Unit::kiloampere) v *= 1e3;

@@ -1,5 +1,5 @@
 #pragma once
-// Units of measured quantities: their names in headings, and how names are compared.
+// Units of measured quantities: names in headings, and comparison of names.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,7 +8,8 @@ namespace swingbank::validate::record {
 
 enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi, Vs, Vref, Pm, Pref, gate };
 constexpr int kQuantities = 16;
-/// Whether only components are driven by it or compared with it: such columns of other records are left out.
+/// Returns whether only components use the quantity, as an input or for comparison; other records ignore its
+/// column.
 constexpr bool is_inner(Quantity q) { return q >= Quantity::Vs; }
 enum class Unit {
   second,
@@ -39,26 +40,28 @@ enum class Unit {
   ampere
 };
 
-/// A unit, with words behind it that may stand there: "kV L-L", "kV_ln", "pu, pos. seq.", "ms since epoch".
-/// None: it is no unit, or words behind it are not known ("kV peak").
+/// Parses a unit with optional qualifiers: "kV L-L", "kV_ln", "pu, pos. seq.", "ms since epoch". None: no
+/// unit, or unknown qualifiers ("kV peak").
 std::optional<Unit> find_unit(std::string_view text);
-/// Is the text a unit we know ("kV", "deg.", "p.u.")?
+/// Returns whether the text is a known unit ("kV", "deg.", "p.u.").
 bool is_unit(std::string_view text);
-/// Whether values of the quantity may be written in the unit.
+/// Returns whether values of the quantity may be written in the unit.
 bool fits(Quantity quantity, Unit unit);
 
-/// Whether a heading names a clock, a zone or a pattern where others have the unit: "Time (UTC)",
+/// Returns whether a heading names a clock, a zone or a pattern in place of the unit: "Time (UTC)",
 /// "Time (hh:mm:ss)".
 bool is_clock_word(std::string_view text);
 
-/// Does the quantity in that unit need base.kv?
+/// Returns whether the quantity in that unit requires base.kv.
 bool needs_kv(Quantity quantity, Unit unit);
-/// The key of the plant file under [record] that the quantity in that unit needs: "efd_base"; empty: none.
+/// Returns the key under [record] of the plant file that the quantity in that unit requires: "efd_base";
+/// empty: none.
 std::string_view needs_base(Quantity quantity, Unit unit);
 
-/// Lower case without accents, letters and digits only ("°" counts as a letter): how names are compared.
+/// Returns the text for comparison of names: lower case without accents, letters and digits only ("°" counts
+/// as a letter).
 std::string normalised(std::string_view text);
-/// Whether `list`, words divided by blanks, has the word.
+/// Returns whether `list`, words separated by blanks, contains the word.
 bool is_word_of(std::string_view word, std::string_view list);
 
 }  // namespace swingbank::validate::record

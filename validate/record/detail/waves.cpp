@@ -21,7 +21,7 @@ bool is_quantity(std::string_view word, bool voltage) {
                  : word == "current" || word == "amps";
 }
 
-/// "VA_G1" in words of letters and digits: "va", "g1", with the text of each as written.
+/// Alphanumeric words of a name: "VA_G1" gives "va", "g1", and each as written.
 struct NameParts {
   std::vector<std::string> lower, written;
 };
@@ -44,7 +44,7 @@ struct Named {
   Phase phase;
   std::string circuit;
 };
-/// The circuit: all words but those from `first` to before `end`, and `rest` in their place.
+/// Returns the circuit: all words except those from `first` to before `end`, which `rest` replaces.
 std::string other_words(const NameParts& words, std::size_t first, std::size_t end,
                         const std::string& rest = {}) {
   std::string all;
@@ -55,14 +55,14 @@ std::string other_words(const NameParts& words, std::size_t first, std::size_t e
   return all;
 }
 
-/// Words of phasors, of which the channels are no waveforms.
+/// Returns whether the word denotes phasors, whose channels are not waveforms.
 bool is_of_phasors(const std::string& word) {
   return word.starts_with("mag") || word.starts_with("ang") || word == "rms" || word == "pm" || word == "pa";
 }
 
-/// Phase and circuit in a channel's name: "VA_G1", "G1 VA", "G1-V-A", "VA1", "G1VA". Where the phase is
-/// `known`, no other is read from it. Phases that are numbers ("V1", which may be the positive sequence) must
-/// be alone.
+/// Finds phase and circuit in a channel's name: "VA_G1", "G1 VA", "G1-V-A", "VA1", "G1VA". If the phase is
+/// `known`, only this one is accepted. Numeric phases ("V1", possibly the positive sequence) must form a
+/// separate word.
 std::optional<Named> named_in(std::string_view id, bool voltage, const std::optional<Phase>& known) {
   const NameParts words = parts_of_name(id);
   const std::size_t n = words.lower.size();
@@ -73,7 +73,7 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
     const auto phase = phase_of(text);
     return phase && (!known || *phase == *known) ? phase : std::nullopt;
   };
-  // A name such as "VBUS" has a phase only if it is known to be of that one.
+  // A name such as "VBUS" contains a phase only if its phase is known.
   const auto may_follow = [&](std::string_view rest) {
     return known || std::isdigit(static_cast<unsigned char>(rest[0])) || (rest.size() == 1 && rest[0] >= 'w');
   };
@@ -88,7 +88,7 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
   for (std::size_t k = 0; k < n; ++k) {  // "vag1", "g1va": the longest phase first
     const std::string &word = words.lower[k], &written = words.written[k];
     for (std::size_t length = 4; length > 0; --length) {
-      if (word.size() <= length + 1 || word[length] == 'g') continue;  // "VAG1" is of G1
+      if (word.size() <= length + 1 || word[length] == 'g') continue;  // "VAG1" belongs to G1
       const std::string_view rest = std::string_view(word).substr(1 + length);
       if (is_quantity(word.substr(0, 1), voltage) && may_follow(rest))
         if (const auto phase = fits(std::string_view(word).substr(1, length)))
@@ -102,7 +102,7 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
   return std::nullopt;
 }
 
-/// The waves as sets of three, those of one circuit or, without a name, all of them.
+/// Waves by phase, of one circuit or, without a name, of all.
 struct Found {
   std::vector<const Wave*> phases[3], pairs[3];
 };
@@ -114,8 +114,8 @@ Found found_in(const std::vector<Wave>& waves, bool voltage, const std::string* 
   return found;
 }
 
-/// Three of them, or two of which the third follows: always of voltages between phases, of currents where no
-/// phase is recorded twice. None where one is missing or comes twice.
+/// Returns a set of three waves, or of two that determine the third: always for line-to-line voltages, for
+/// currents if no phase is recorded twice. None if one is missing or occurs twice.
 std::optional<WaveSet> set_of(const std::vector<const Wave*> (&of)[3], bool two_are_enough, bool between,
                               const std::string& circuit) {
   WaveSet set{{}, between, circuit};
@@ -159,7 +159,7 @@ std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage
   const char* const kind = voltage ? "voltage" : "current";
   const std::string asked = normalised(options.terminal);
   std::set<std::string> circuits;
-  bool incomplete = false;  // the circuit asked for
+  bool incomplete = false;  // the requested circuit
   for (const Wave& w : waves)
     if (w.voltage == voltage) circuits.insert(w.circuit);
   std::vector<WaveSet> sets;
@@ -171,7 +171,7 @@ std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage
     incomplete = incomplete || wanted;
   }
   if (incomplete) sets.clear();
-  // Three phases outweigh two of another circuit, of which the third is only inferred.
+  // Three phases have priority over two of another circuit, whose third is only inferred.
   const auto whole = [](const WaveSet& s) { return std::ranges::count(s.waves, nullptr) == 0; };
   if (std::ranges::any_of(sets, whole)) std::erase_if(sets, [&](const WaveSet& s) { return !whole(s); });
   if (sets.empty() && !incomplete)

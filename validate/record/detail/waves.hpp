@@ -1,6 +1,6 @@
 #pragma once
-// Channels of a COMTRADE record as three-phase waveforms: which phase of which circuit each of them is, and
-// the choice of one voltage and one current.
+// Three-phase waveforms among the channels of a COMTRADE record: phase and circuit of each channel, and
+// choice of one voltage and one current.
 #include <array>
 #include <optional>
 #include <string>
@@ -17,21 +17,21 @@ struct Wave {
   const ComtradeChannel* channel;
   bool voltage;
   Phase phase;
-  std::string circuit;  ///< the channel's component, else what its name has beside quantity and phase
-  double scale;         ///< to kV or kA
+  std::string circuit;  ///< the channel's component, else the rest of its name beside quantity and phase
+  double scale;         ///< factor to kV or kA
 };
-/// A voltage or current of which the unit and the phase are known.
+/// Returns the channel as a voltage or current with known unit and phase.
 std::optional<Wave> wave_of(const ComtradeChannel& channel);
 
-/// Three waveforms that give the positive sequence; a channel may be the negative sum of the two others.
+/// Three waveforms of a positive sequence; one may be missing, as the negative sum of the other two.
 struct WaveSet {
-  std::array<const Wave*, 3> waves{};  ///< at most one is none
+  std::array<const Wave*, 3> waves{};  ///< at most one is null
   bool between = false;                ///< voltages ab, bc, ca
   std::string circuit;
 };
 
-/// The only complete set of that kind, or that of the circuit asked for. Adds a problem where there is none,
-/// or several.
+/// Returns the only complete set of voltages or currents, or that of the requested circuit. Adds a problem if
+/// there are none or several.
 std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage, const ReadOptions& options,
                                     const std::string& where, Problems& problems);
 
