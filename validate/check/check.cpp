@@ -311,12 +311,12 @@ class Check : Findings {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
     // If the angle hardly steps, it fits in either unit, which is not conclusive.
-    return fits(radians) && 3 * radians.reduced_chi2 < fit_jumps(other, jumps_, delay).reduced_chi2;
+    return fits(radians) && 3 * radians.residual < fit_jumps(other, jumps_, delay).residual;
   }
   /// Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
   [[nodiscard]] bool fits(const JumpFit& fit) const {
     const double noise = noise_share(fit);
-    return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 3 * noise;
+    return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 3 * noise;
   }
 
   void angle() {
@@ -369,15 +369,15 @@ class Check : Findings {
       const std::vector<Jump> there = clear_jumps(alternative);
       const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
       const double noise = noise_share(fit);
-      if (!(fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.01 + 2 * noise)) continue;
+      if (!(fit.reactance > 0 && noise < 0.1 && fit.residual < 0.01 + 2 * noise)) continue;
       if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
         continue;
       // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
-      const bool sound = same.reactance > 0 && (same.reduced_chi2 < m.sound + 2 * noise ||
-                                                same.reduced_chi2 < 5 * fit.reduced_chi2);
+      const bool sound = same.reactance > 0 && (same.residual < m.sound + 2 * noise ||
+                                                same.residual < 5 * fit.residual);
       // Of two mistakes that explain the steps almost equally well, the first in the list is the more common
       // one.
-      if (!sound && fit.reduced_chi2 < least / 2) best = &m, least = fit.reduced_chi2;
+      if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;
     }
     if (best && apart())
       warn("time_skew", "voltage and current jump up to a sample apart", "one of them is late",
@@ -399,7 +399,7 @@ class Check : Findings {
         if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
       const JumpFit fit = fit_jumps(r_, wide, 0);
       const double noise = noise_share(fit);
-      return fit.reactance > 0 && noise < 0.1 && fit.reduced_chi2 < 0.03 + 2 * noise;
+      return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 2 * noise;
     });
   }
   /// Returns the step of the angle as written [rad].
