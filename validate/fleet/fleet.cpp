@@ -1,4 +1,4 @@
-// What one plant of a fleet leaves behind.
+// Diagnosis of one plant of a fleet and its result files.
 #include "validate/fleet/fleet.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kFormat = "swingbank-fleet-plant-3";
 
-/// Files that a name or glob stands for, in order; "RUN.h5#TERMINAL" keeps its terminal.
+/// Returns the sorted files of a name or glob; "RUN.h5#TERMINAL" keeps its terminal.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
   const std::string whole = (folder / text).string();
   if (whole.find_first_of("*?[") == std::string::npos || fs::exists(whole)) return {whole};
@@ -44,7 +44,7 @@ std::vector<std::string> matching(const std::string& text, const fs::path& folde
   return files;
 }
 
-/// A plant with everything read.
+/// Plant with its model and records.
 struct Loaded {
   plant::PlantModel model;
   std::vector<std::string> files;
@@ -71,13 +71,13 @@ Loaded load(const Fleet& fleet, const FleetPlant& plant) {
 
 json block_json(const sim::plant::Block& b) {
   if (b.effect == nullptr) return nullptr;
-  json values = json::array();  // bits, so that no digit is lost
+  json values = json::array();  // hexadecimal, so that no digit is lost
   for (const double v : b.p) values.push_back(fmt::format("{:a}", v));
   return {std::string(b.effect->name), values};
 }
 
-/// Hash of all that the diagnosis depends on. A plant file may refer to others (laws, a grid): the values
-/// they gave and the laws' own bytes count.
+/// Returns the hash of all inputs of the diagnosis. A plant file may refer to other files (user-defined
+/// models, a grid); their values and the bytes of the user-defined models are included.
 std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   const plant::PlantModel& m = l.model;
   json j = {kFormat, SWINGBANK_VERSION, plant.name, m.sha256};
@@ -124,7 +124,7 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
   return row;
 }
 
-/// The row that an earlier run left, if it is of the same inputs and its diagnosis is there.
+/// Reads the row of an earlier run. Returns whether it has the same inputs and its result files exist.
 bool finished(const fs::path& folder, const std::string& inputs, FleetRow& row) {
   if (!fs::exists(folder / "diagnosis.json") || !fs::exists(folder / "report.html")) return false;
   try {
@@ -135,7 +135,7 @@ bool finished(const fs::path& folder, const std::string& inputs, FleetRow& row) 
   return row.inputs == inputs && !row.failed();
 }
 
-/// Puts a folder that was filled under a temporary name in place of what an earlier run left.
+/// Replaces the folder of an earlier run by the temporary folder.
 void put_in_place(const fs::path& temporary, const fs::path& folder) {
   const fs::path old = folder.parent_path() / ("." + folder.filename().string() + ".old");
   fs::remove_all(old);
@@ -144,7 +144,7 @@ void put_in_place(const fs::path& temporary, const fs::path& folder) {
   fs::remove_all(old);
 }
 
-/// Only what a fleet run has written is replaced.
+/// Throws InputError if the folder was not written by a fleet run, so that only such folders are replaced.
 void check_ours(const fs::path& folder) {
   if (!fs::exists(folder) || fs::exists(folder / "plant.json")) return;
   throw InputError({"a folder that no fleet run has written", folder.string(), "it has no plant.json",
@@ -174,12 +174,12 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
   const fs::path folder = out / plant.name, temporary = out / ("." + plant.name + ".part");
   const auto failed = [&](const std::string& why) {
     const FleetRow row = failed_row(plant.name, why);
-    try {  // nothing that an earlier run said of other inputs may stay
+    try {  // results of an earlier run with other inputs must not remain
       check_ours(folder);
       fs::remove_all(temporary);
       write_file(temporary / "plant.json", plant_json(row));
       put_in_place(temporary, folder);
-    } catch (const std::exception&) {  // the row says enough; it is printed in any case
+    } catch (const std::exception&) {  // the row is printed in any case
     }
     return FleetOutcome{row, false};
   };
@@ -211,7 +211,7 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
     write_file(temporary / "plant.json", plant_json(o.row));
     put_in_place(temporary, folder);
     return o;
-  } catch (const std::exception& error) {  // also what no input explains: the others must go on
+  } catch (const std::exception& error) {  // including internal errors, so that the other plants continue
     return failed(error.what());
   }
 }

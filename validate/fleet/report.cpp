@@ -19,7 +19,7 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 }
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// "SEXS 97 %", "TGOV1 + SEXS 88 %", "SEXS 62 % or ESST1A 34 %".
+/// Text of the effects: "SEXS 97 %", "TGOV1 + SEXS 88 %", "SEXS 62 % or ESST1A 34 %".
 std::string effect_text(const FleetRow& r) {
   const auto with_probability = [&](const std::string& name) {
     const auto p = r.probabilities.find(name);
@@ -82,7 +82,7 @@ std::string fleet_summary(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_caution(const std::vector<FleetRow>& rows) {
-  double any = 0;  // expected number of effects that noise alone names
+  double any = 0;  // expected number of effects named because of noise alone
   bool named = false;
   for (const auto& r : rows)
     if (std::isfinite(r.chance)) any += r.chance, named = true;

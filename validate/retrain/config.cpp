@@ -1,4 +1,4 @@
-// Dataset and experiment files of the two networks, made from the user's dataset config.
+// Dataset and experiment configs of the two networks, derived from the user's dataset config.
 #include "base/config.hpp"
 
 #include <fmt/format.h>
@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDecided = 0.5;  ///< share of an interval that records decide, above which it is varied
-constexpr int kLongestWindow = 8, kShortestWindow = 2;  ///< what networks read of an event [s]
-constexpr int kComponents = 4;                          ///< of each second
+constexpr double kDecided = 0.5;  ///< least share determined by the records for a varied parameter
+constexpr int kLongestWindow = 8, kShortestWindow = 2;  ///< time window of the networks [s]
+constexpr int kComponents = 4;                          ///< principal components per second
 
-/// Six digits: a fit repeated on another machine gives the same config.
+/// Rounds to `digits` significant digits, so that a fit repeated on another machine gives the same config.
 double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
 
 toml::table read_base(const fs::path& file) {
-  static_cast<void>(Config(file));  // tells what is no TOML
+  static_cast<void>(Config(file));  // throws if the file is not TOML
   return toml::parse(read_text(file), file.string());
 }
 
@@ -70,7 +70,7 @@ class Base {
   std::vector<std::string> plants_;
 };
 
-/// The table at a path of names below `root`, made where it is not there.
+/// Returns the table at a path of names below `root`; missing tables are created.
 toml::table& below(toml::table& root, const std::vector<std::string>& names) {
   toml::table* at = &root;
   for (const auto& name : names) {
@@ -80,7 +80,7 @@ toml::table& below(toml::table& root, const std::vector<std::string>& names) {
   return *at;
 }
 
-/// "2:SEXS:TAoverTB=0.1,…" at the fitted values.
+/// Attachment text "2:SEXS:TAoverTB=0.1,…" with the fitted values.
 std::string attachment(const std::string& plant, const sim::plant::Block& block) {
   std::string text = plant + ":" + std::string(block.effect->name);
   for (std::size_t i = 0; i < block.p.size(); ++i)
@@ -89,7 +89,7 @@ std::string attachment(const std::string& plant, const sim::plant::Block& block)
   return text;
 }
 
-/// The block that the hypothesis put into its slot; nullptr: it only set parameters.
+/// Returns the block that the hypothesis added; nullptr: it only set parameters.
 const sim::plant::Block* added_block(const add::Addition& added) {
   if (added.hypothesis.slot < 0) return nullptr;
   const auto slot = static_cast<sim::Slot>(added.hypothesis.slot);
@@ -97,7 +97,7 @@ const sim::plant::Block* added_block(const add::Addition& added) {
   if (plant.transformer.effect != nullptr && slot == sim::Slot::transformer) return &plant.transformer;
   const sim::plant::Block* found = nullptr;
   for (const auto& block : plant.controls)
-    if (block.effect->slot == slot) found = &block;  // the last one: what was added stands behind
+    if (block.effect->slot == slot) found = &block;  // the added block is the last one of its slot
   return found;
 }
 
@@ -138,7 +138,7 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
                       "add it without --retrain"});
 }
 
-/// Channels that both networks can read.
+/// Returns the channels that both networks read.
 std::vector<std::string> channels_of(const add::Addition& added, const std::vector<record::Record>& records) {
   std::vector<std::string> channels = {"P", "Q", "V", "frequency"};
   const auto all = [&](auto member) {
@@ -152,7 +152,8 @@ std::vector<std::string> channels_of(const add::Addition& added, const std::vect
   return channels;
 }
 
-/// Whole seconds behind the event that every record holds.
+/// Returns the whole seconds after the event that every record has. Throws InputError if fewer than
+/// kShortestWindow.
 int seconds_of(const add::Addition& added) {
   double least = kLongestWindow;
   Problems problems;
@@ -219,7 +220,7 @@ std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const p
     side.name = k == 0 ? "without" : "with";
     side.folder = folder / side.name;
     side.dataset = side.folder / "dataset.toml";
-    side.experiment = side.folder / (side.name + ".toml");  // results bear its name
+    side.experiment = side.folder / (side.name + ".toml");  // results are named after it
     side.data = side.folder / "data";
     side.results = side.folder / "results";
     toml::table dataset = base.table();

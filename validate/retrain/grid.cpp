@@ -1,5 +1,5 @@
-// A small grid about a plant for which the user has no dataset config: the plant, three lines in a row and a
-// large machine behind them, at the operating point of the records.
+// Small grid for a plant without a dataset config: the plant, three lines in series and a large machine, at
+// the operating point of the records.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reactance of each line [pu on the plant's base]; its resistance is a tenth. Faults at the buses between
-/// them leave the plant from nothing to most of its voltage.
+/// Reactance of each line [pu on the plant's base]; the resistance is a tenth. Faults at the buses reduce the
+/// plant's voltage to between zero and most of its value.
 constexpr double kLines[] = {0.05, 0.10, 0.15};
-constexpr double kLarge = 100;  ///< base of the large machine, in bases of the plant
+constexpr double kLarge = 100;  ///< base of the large machine / base of the plant
 
 void require_expressible(const plant::PlantModel& model) {
   Problems problems;
@@ -114,7 +114,7 @@ std::string config_text(const plant::PlantModel& model, double range) {
   for (const auto& f : fit::free_parameters(plant, sim::plant::kMachineBlock, 0.2)) {
     const auto& record = sim::plant::parameter_record(plant, f.id);
     const double value = sim::plant::parameter_value(plant, f.id);
-    if (value < record.low || value > record.high) continue;  // unusual: it stays as the .dyr has it
+    if (value < record.low || value > record.high) continue;  // outside the usual range: constant
     const double one = value / range, other = value * range;
     text += fmt::format("{} = [{}, {}]\n", record.name, std::max(record.low, std::min(one, other)),
                         std::min(record.high, std::max(one, other)));

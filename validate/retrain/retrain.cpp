@@ -23,7 +23,7 @@ const calibrate::NetworkEstimate::Parameter* find(const calibrate::NetworkEstima
   return at == e.parameters.end() ? nullptr : &*at;
 }
 
-/// What the estimates are held against.
+/// Returns the reference values: the truth, else the fitted values.
 calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth& truth) {
   if (!truth.empty()) return truth;
   calibrate::Truth fitted;
@@ -31,7 +31,7 @@ calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth
   return fitted;
 }
 
-/// Parameters with a reference, those of both networks first.
+/// Returns the parameters with a reference value, those of both networks first.
 std::vector<RetrainedParameter> parameters_of(const std::array<calibrate::NetworkEstimate, 2>& estimates,
                                               const calibrate::Truth& reference) {
   std::vector<RetrainedParameter> all;
@@ -58,7 +58,7 @@ double estimate_of(const calibrate::NetworkEstimate& e, std::size_t record, cons
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The model with a network's estimates, averaged over the events seen.
+/// Returns the model with a network's estimates, averaged over the fitted events.
 sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::PlantModel& model,
                              const std::vector<RetrainedEvent>& events) {
   sim::plant::Plant plant = model.plant;
@@ -81,7 +81,7 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
   return plant;
 }
 
-/// What a plant leaves of an event that has a state of its own.
+/// Computes reduced chi-square and RMS of P and Q [MW, Mvar] of one event, with its state fitted.
 void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& alone, double& reduced_chi2,
            double& rms) {
   reduced_chi2 = rms = kInfinity;
@@ -92,7 +92,7 @@ void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents
   const auto& model = own.events.front().model;
   double sum = 0;
   std::size_t n = 0;
-  for (std::size_t c = 0; c < 2; ++c) {  // P and Q stand first
+  for (std::size_t c = 0; c < 2; ++c) {  // P and Q are the first channels
     const auto& measured = event.measured(event.channels[c]);
     for (std::size_t k = 0; k < measured.size(); ++k, ++n) sum += std::pow(model[c][k] - measured[k], 2);
   }

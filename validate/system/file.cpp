@@ -1,4 +1,4 @@
-// System files: a grid, an event, and the records of several terminals.
+// System file: grid, event, and records of several terminals.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string sha256_of(const fs::path& file) {
   return sha256(bytes);
 }
 
-/// Problems of a part, told at the key they belong to.
+/// Reports the problems of a part at its key.
 void tell(Config& c, const std::string& key, const Problems& problems) {
   for (const auto& p : problems.list()) c.problem(key, p.what, p.where + ": " + p.why, p.remedy);
 }
@@ -99,7 +99,7 @@ void read_grid(Config& c, SystemCase& s) {
   tell(c, "system.load", problems);
 }
 
-/// Index of a plant of the grid; -1 with a problem.
+/// Returns the index of a plant of the grid; -1 and a problem if there is none.
 int plant_named(Config& c, const std::string& key, const std::string& name, const sim::grid::Grid& grid) {
   std::string all;
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
@@ -110,7 +110,7 @@ int plant_named(Config& c, const std::string& key, const std::string& name, cons
   return -1;
 }
 
-/// What can be said of a record of a bus, which has no power.
+/// Checks a record of a bus, which has no power.
 void check_bus_record(const record::Record& r, Problems& problems) {
   const double level = std::accumulate(r.V.begin(), r.V.end(), 0.0) / static_cast<double>(r.V.size());
   if (level < 0.5 || level > 1.5)
@@ -118,7 +118,7 @@ void check_bus_record(const record::Record& r, Problems& problems) {
                  "name the column by its unit (V_kV with record.base_kv), or give per-unit values");
 }
 
-/// Whether an instrument answers, and always the same: a model has neither noise nor gaps.
+/// Returns whether an instrument is deterministic and without gaps, as a simulated response requires.
 bool is_repeatable(const sim::plant::Block& instrument, double frequency) {
   constexpr int kSamples = 240;
   sim::Phasors one{60.0, frequency, {}, {}, std::vector<double>(kSamples, 0.0)};
@@ -129,10 +129,10 @@ bool is_repeatable(const sim::plant::Block& instrument, double frequency) {
   sim::Phasors other = one;
   instrument.effect->measure(instrument.p.data(), 1, one);
   instrument.effect->measure(instrument.p.data(), 2, other);
-  return one.V == other.V && one.I == other.I;  // a sample that is missing is not a number
+  return one.V == other.V && one.I == other.I;  // missing samples are NaN and compare unequal
 }
 
-/// Those of the plant, then those of the file.
+/// Adds the instruments of the plant, then those of the file.
 void add_instruments(Config& c, const std::string& key, const SystemCase& s, SystemTerminal& t) {
   if (t.plant >= 0) t.instruments = s.grid.plants[static_cast<std::size_t>(t.plant)].measurements;
   Problems problems;
@@ -182,7 +182,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
       const sim::plant::Plant& recorded = s.grid.plants[static_cast<std::size_t>(t.plant)];
       auto findings = check::check_record(
           t.record, {recorded.mva, s.base.frequency, !recorded.machine.effect->converter});
-      // Far from the event a terminal may hardly feel it; that is no fault of the record.
+      // A terminal far from the event may hardly respond, which is no error of the record.
       std::erase_if(findings, [](const check::Finding& f) { return f.kind == "no_event"; });
       for (auto& warning : check::warnings_of(findings)) t.warnings.push_back(std::move(warning));
     }
@@ -191,7 +191,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   });
 }
 
-/// Clocks must be common: seconds since an epoch were taken off each record by itself.
+/// Checks for a common clock, because the start epoch was subtracted from each record separately.
 void check_clocks(Config& c, const SystemCase& s) {
   for (const auto& t : s.terminals)
     if (t.record.start != s.terminals.front().record.start)
@@ -229,7 +229,7 @@ SystemCase load_system(const fs::path& file) {
   const auto names = c.keys("terminal");
   if (names.empty())
     c.problem("terminal", "no terminal", "nothing was measured", "give one [terminal.NAME] at least");
-  if (!c.sound()) {  // the grid's faults first; what refers to it cannot be told yet
+  if (!c.sound()) {  // errors of the grid first; references to it cannot be checked yet
     c.ignore("terminal");
     c.raise();
   }

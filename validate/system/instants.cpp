@@ -1,4 +1,4 @@
-// When the event of a system comparison happened, by the records.
+// Estimation of the switching times of a system comparison from its records.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 namespace swingbank::validate::system {
 namespace {
 
-constexpr double kAfterLast = 1.0;  // s after the last switching that a fit looks at
+constexpr double kAfterLast = 1.0;  // duration of the fit after the last switching [s]
 
-/// Instants of the jumps in one record.
+/// Returns the voltage steps of one record.
 std::vector<playin::Switching> jumps_of(const record::Record& r) {
   std::vector<char> smeared;
   return event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
 }
 
-/// Up to `end`, everything that is looked at.
+/// Returns the case with its records cut off after `end` [s].
 SystemCase shortened(SystemCase s, double end) {
   for (auto& t : s.terminals) {
     record::Record& r = t.record;
@@ -42,10 +42,10 @@ class InstantFit {
     mark_smeared();
   }
 
-  /// Golden section on one instant after the other, within `reach` of where it was found.
+  /// Golden-section search for each switching time in turn, within `reach` [s] of its detected value.
   std::vector<double> run(double reach) {
     constexpr int kSweeps = 2, kSteps = 9;  // 9 steps leave 1.3 % of the interval
-    constexpr double kEnough = 2.5e-4;      // [s]; a filter makes intervals long
+    constexpr double kEnough = 2.5e-4;      // [s]; required for the long intervals behind a filter
     const auto middle = best_;
     for (int sweep = 0; sweep < kSweeps; ++sweep)
       for (std::size_t k = 0; k < best_.size(); ++k) {
@@ -72,7 +72,8 @@ class InstantFit {
         event::find_switchings(t.record, playin::kJumpThreshold / 2, jumps, smeared_.back());
     }
   }
-  /// Sum of squares over every terminal, in units of the pre-event's spread, with instant k at t.
+  /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
+  /// time k at t [s].
   double reduced_chi2(std::size_t k, double t) {
     auto instants = best_;
     instants[k] = t;
@@ -107,7 +108,7 @@ class InstantFit {
 
   SystemCase s_;
   std::vector<double> written_, best_;
-  /// By terminal: samples smeared by a filter that is not declared, so that no instant meets them.
+  /// Per terminal: samples within steps filtered by an undeclared filter, which no switching time can fit.
   std::vector<std::vector<char>> smeared_;
 };
 
@@ -141,7 +142,7 @@ std::vector<double> found_instants(const SystemCase& s, double& uncertainty) {
 std::string clock_doubt(const record::Record& record, const std::vector<double>& instants) {
   const auto jumps = jumps_of(record);
   if (jumps.size() != instants.size()) return {};
-  constexpr double kSlack = 1e-3;  // s; what stamps may be off
+  constexpr double kSlack = 1e-3;  // tolerance of time stamps [s]
   bool off = false;
   std::string seen;
   for (std::size_t k = 0; k < jumps.size(); ++k) {

@@ -1,4 +1,4 @@
-// A system comparison for a terminal, as JSON and as a page.
+// Report of a system comparison as terminal text, JSON and page.
 #include "validate/compare/report.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ std::vector<compare::LabelledMap> maps_of(const std::vector<compare::EventCompar
       maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
   return maps;
 }
-/// Tables of events, said of terminals.
+/// Renames events to terminals in a table and its caption.
 report::Table of_terminals(report::Table table) {
   for (auto& h : table.header)
     if (h == "event") h = "terminal";
@@ -33,7 +33,7 @@ report::Table of_terminals(report::Table table) {
   return table;
 }
 
-/// RMS and largest error of every channel, whole record.
+/// Table of RMS and largest error of every channel over the whole record.
 report::Table summary(const std::vector<compare::EventComparison>& terminals) {
   report::Table table{"Residual (modelled − measured) over the whole record.",
                       {"terminal", "channel", "RMS", "largest", "at", "noise σ", "RMS / noise"},
@@ -72,7 +72,7 @@ std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
   return lines;
 }
 
-/// What model and records differ by before the event.
+/// Table of the differences between model and records before the event.
 report::Table initial_table(const SystemCase& s, const SystemComparison& c) {
   report::Table table{
       "Before the event: model less record, mean.", {"terminal", "at", "V", "angle", "P", "Q"}, {}};

@@ -1,4 +1,4 @@
-// The event in the full grid beside the records of its terminals.
+// Comparison of a simulated event with the records of all terminals, and ranking of the terminals.
 #include "validate/system/system.hpp"
 
 #include <fmt/format.h>
@@ -21,12 +21,12 @@ namespace swingbank::validate::system {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kMinQuiet = 5;  // samples before the event, from which its noise is estimated
+constexpr int kMinQuiet = 5;  // least number of pre-event samples for the noise
 
 double mean_of(const std::vector<double>& v, std::size_t n) {
   return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n);
 }
-/// a - b, whole turns taken off such that it starts within half a turn of zero.
+/// Returns a - b [rad] less whole turns, so that the first value is within half a turn of zero.
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> d(a.size());
   std::ranges::transform(a, b, d.begin(), std::minus<>());
@@ -35,8 +35,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return d;
 }
 
-/// How far to either side of a switching instruments without a declared filter smear it, by their records
-/// [s]. 0: they do not.
+/// Returns the half width of filtered steps in records without a declared filter [s]; 0: no filtering.
 double smear_of(const SystemCase& system) {
   std::vector<record::Record> records;
   for (const SystemTerminal& t : system.terminals)
@@ -52,7 +51,7 @@ double smear_of(const SystemCase& system) {
   return farthest;
 }
 
-/// Compares one terminal after the other.
+/// Comparison of the terminals one by one.
 class Comparer {
  public:
   Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
@@ -84,14 +83,14 @@ class Comparer {
   }
 
  private:
-  /// How far to either side of a switching the terminal's samples are not compared [s]. This is its filter's
-  /// window, and the stretch that the cubic through the simulation's samples bends beside a jump. Within it
-  /// an instant that is wrong by a fraction of a millisecond shows.
+  /// Returns the distance from a switching within which samples are not compared [s]: the filter's window
+  /// plus the range in which the cubic through the simulation's samples is wrong beside a step. Within it an
+  /// error of the switching time of a fraction of a millisecond is visible.
   [[nodiscard]] double smear_at(const SystemTerminal& t) const {
     const double memory = sim::plant::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
   }
-  /// Samples as near to a switching [s] are not compared.
+  /// Marks samples within `reach` [s] of a switching as not compared.
   void leave_out(compare::EventComparison& e, double reach) const {
     e.left_out.resize(e.record.t.size(), 0);
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
@@ -110,7 +109,7 @@ class Comparer {
   void channels(std::size_t i, compare::EventComparison& e) {
     const Modelled& m = run_.answers[i];
     const record::Record& r = s_.terminals[i].record;
-    // While a bolted fault holds V near zero its angle is noise.
+    // The angle is undefined while a bolted fault reduces V to nearly zero.
     const bool gone = std::ranges::any_of(r.V, [](double v) { return v < 0.05; });
     out_.initial.push_back(add(e, {"V", "pu", 1, event::kLeastNoise, shift()}, r.V, m.V));
     out_.initial.push_back(angle(i, e, gone));
@@ -127,9 +126,9 @@ class Comparer {
     output(playin::Output::Efd, r.Efd, m.Efd);
     output(playin::Output::Ifd, r.Ifd, m.Ifd);
   }
-  /// Compares angles relative to the reference where there is one. The reference's own angle, all angles
-  /// where there is no reference, and what a record has in place of an angle are compared as frequency.
-  /// Returns the angle that the model starts off by; NaN where the frequency is compared.
+  /// Compares the angle relative to the reference terminal. The reference's own angle, all angles without a
+  /// reference, and recorded frequencies are compared as frequency. Returns the model's angle error before
+  /// the event [rad]; NaN if the frequency is compared.
   double angle(std::size_t i, compare::EventComparison& e, bool gone) {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
@@ -139,7 +138,7 @@ class Comparer {
     if (s_.reference < 0 || i == reference || by_meter) {
       const double nominal = s_.base.frequency;
       const std::vector<char> compared = e.left_out;
-      if (by_meter) leave_out(e, event::kPeakReach * r.step());  // it shows an angle's jump late or smoothed
+      if (by_meter) leave_out(e, event::kPeakReach * r.step());  // meters delay or smooth an angle step
       add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.answers[i].theta, nominal));
@@ -162,7 +161,7 @@ class Comparer {
   }
   [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
 
-  /// Adds a channel. Returns what the model starts off by; NaN where nothing was measured.
+  /// Adds a channel. Returns the model's mean error before the event; NaN if the channel was not measured.
   double add(compare::EventComparison& e, const compare::ChannelRule& rule,
              const std::vector<double>& measured, std::vector<double> modelled) {
     if (measured.empty()) return kNaN;
@@ -180,7 +179,7 @@ class Comparer {
   double undeclared_;
 };
 
-/// The cell of a comparison that is furthest beyond its bound, or nearest to it.
+/// Returns the bin with the largest normalised RMS / bound: the ratio and the bin's name.
 std::pair<double, std::string> worst_cell(const compare::EventComparison& e) {
   double worst = 0;
   std::string where;
@@ -204,20 +203,20 @@ std::pair<double, std::string> worst_cell(const compare::EventComparison& e) {
   return {worst, where};
 }
 
-/// A plant's record played into its own model.
+/// Plays a plant's record into its own model.
 void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
   const SystemTerminal& t = s.terminals[rank.terminal];
   plant::PlantModel model;
   model.name = t.name;
   model.plant = s.grid.plants[static_cast<std::size_t>(t.plant)];
-  // a filter is left out: what it does to the played-in voltage it does to P and Q too
+  // filters are omitted, because they act on the played-in voltage as on P and Q
   model.plant.measurements.clear();
   std::ranges::copy_if(t.instruments, std::back_inserter(model.plant.measurements),
                        [](const sim::plant::Block& b) { return playin::can_be_taken_back(*b.effect); });
   model.conventions = s.grid.conventions;
   model.record_base = s.base;
   record::Record record = t.record;
-  if (clock_doubt(record, c.instants).empty()) record.switched = c.instants;  // else by its own jumps
+  if (clock_doubt(record, c.instants).empty()) record.switched = c.instants;  // else the record's own steps
   try {
     std::vector<compare::EventComparison> one = {compare::compare_event(model, std::move(record))};
     one.front().record.name = t.name;

@@ -14,17 +14,18 @@ namespace {
 
 using Scales = std::vector<std::optional<double>>;
 
-constexpr int kAttempts = 60;           ///< whole worlds drawn before giving up
-constexpr int kEventTries = 12;         ///< draws of one event within a world
-constexpr double kDip = 0.05;           ///< a fault that moves V by less at the plant is drawn again [pu]
-constexpr double kLeftByAFault = 0.02;  ///< so is one that leaves less, which no angle can be told of [pu]
-constexpr double kUntripped = 0.02;     ///< deviation of the speed below which no governor trips a unit [pu]
-constexpr double kSizeMet = 0.1;        ///< a size is met within that part of it
-constexpr int kSizeTries = 8;           ///< simulations of all events while a size is sought
+constexpr int kAttempts = 60;    ///< largest number of systems drawn for a case
+constexpr int kEventTries = 12;  ///< largest number of draws of one event
+constexpr double kDip = 0.05;    ///< least voltage dip of a fault at the plant [pu]
+constexpr double kLeftByAFault =
+    0.02;  ///< least voltage during a fault, below which the angle is undefined [pu]
+constexpr double kUntripped = 0.02;  ///< largest speed deviation, above which a unit would trip [pu]
+constexpr double kSizeMet = 0.1;     ///< relative tolerance of a size
+constexpr int kSizeTries = 8;        ///< largest number of simulations in the search for a size
 
-constexpr double kHuge = 1e300;  ///< size of what cannot be simulated
+constexpr double kHuge = 1e300;  ///< size of an effect that cannot be simulated
 
-/// Whether a kind's path ends at another position of a switch, which has no middle.
+/// Returns whether a kind's path changes a code, which has no intermediate values.
 bool turns_a_switch(const BlindKind& kind) {
   return std::ranges::any_of(kind.path, [](const BlindPath& path) {
     const sim::Effect* effect = blind_effect(path.target);
@@ -33,7 +34,7 @@ bool turns_a_switch(const BlindKind& kind) {
   });
 }
 
-/// A draw that cannot be simulated; another one is made.
+/// Thrown for a draw that cannot be simulated; another draw follows.
 struct Unstable {};
 
 class Maker {
@@ -76,17 +77,17 @@ class Maker {
   [[nodiscard]] const sim::plant::Plant& target(const sim::grid::Grid& grid) const {
     return grid.plants[static_cast<std::size_t>(world_.plant())];
   }
-  /// The unit that is recorded with it; nullptr: none.
+  /// Returns the second unit in the record; nullptr: none.
   [[nodiscard]] const sim::plant::Plant* other(const sim::grid::Grid& grid) const {
     if (world_.recorded().size() < 2) return nullptr;
     return &grid.plants[static_cast<std::size_t>(world_.recorded()[1])];
   }
-  /// Machine bases of all that is recorded [MVA].
+  /// Returns the sum of the machine bases in the record [MVA].
   [[nodiscard]] double recorded_mva() const {
     const sim::plant::Plant* beside = other(world_.plain());
     return target(world_.plain()).mva + (beside ? beside->mva : 0.0);
   }
-  /// The run of one event; throws Unstable where it does not stay in bounds.
+  /// Simulates one event. Throws Unstable if synchronism is lost or a speed deviates by kUntripped.
   [[nodiscard]] sim::reference::ReferenceRun run(const sim::grid::Grid& grid, const BlindEvent& event) const {
     sim::reference::ReferenceRun fine = simulate_fine(grid, world_.recorded(), event, config_);
     if (fine.outcome != sim::Outcome::stable) throw Unstable{};
@@ -95,7 +96,7 @@ class Maker {
         if (!(std::abs(fine.at(static_cast<int>(u), 4)[k]) < kUntripped)) throw Unstable{};
     return fine;
   }
-  /// Of the target, and of `beside` with it.
+  /// Returns the records of the target, and of `beside` together with it, without noise.
   [[nodiscard]] std::vector<record::Record> records(const sim::grid::Grid& grid,
                                                     const sim::plant::Plant* beside = nullptr) const {
     std::vector<record::Record> all;
@@ -125,13 +126,13 @@ class Maker {
                                   world_.plain().conventions.frequency,
                                   seed_ + static_cast<std::uint64_t>(k)));
         return event;
-      } catch (const Unstable&) {  // drawn again
+      } catch (const Unstable&) {  // another draw
       }
     }
     throw Unstable{};
   }
-  /// Seeks the scale at which an effect has its size: what is left grows steadily with the scale, almost
-  /// in proportion where the path is linear.
+  /// Searches for the scale at which each effect has its wanted size. The size grows monotonically with the
+  /// scale, almost in proportion for a linear path.
   void choose_sizes() {
     if (spec_.hidden.empty()) return;
     const sim::grid::Grid& plain = world_.plain();
@@ -155,7 +156,7 @@ class Maker {
   }
   void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
     double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
-    const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;  // a right value has no size
+    const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;  // a correct value has size 0
     for (int i = 0; i < kSizeTries; ++i) {
       alone[k] = scale;
       const auto [left, visible] = sizes(size, alone, *truth.kind);
@@ -172,17 +173,17 @@ class Maker {
       (left > truth.wanted ? high_left : low_left) = left;
       scale = next_scale(logarithmic, truth.wanted, low, low_left, high, high_left);
     }
-    // An effect that stays below its own detection limit at full size shows nothing in these events.
+    // An effect below its detection limit at full size is not observable in these events.
     if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
   }
-  /// Size left and visible at these scales; huge where the grid does not stay stable.
+  /// Returns the sizes after and before the refit at these scales; kHuge if the grid is unstable.
   [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales,
                                                 const BlindKind& kind) const {
     try {
       const std::vector<record::Record> with = records(world_.grid(scales));
       const std::span<const BlindPath> but(kind.path);
       return {size.left(with, kind.value ? but : but.first(0)), size.visible(with)};
-    } catch (const Unstable&) {  // too strong: larger than anything asked for
+    } catch (const Unstable&) {  // too strong: above any wanted size
       return {kHuge, kHuge};
     }
   }
@@ -190,13 +191,14 @@ class Maker {
                            double high_left) {
     const double middle = 0.5 * (low + high);
     if (high_left >= kHuge) return middle;
-    if (logarithmic && low_left == 0.0) return 0.0;  // tries whether even the smallest is too large
+    if (logarithmic && low_left == 0.0) return 0.0;  // tests whether the smallest scale is too large
     double guess = high * wanted / high_left;
     if (logarithmic)
       guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);
     return guess > low && guess < high ? guess : middle;
   }
-  /// The owner's model: no hidden effect, every machine parameter off by 10 to 20 % (or as configured).
+  /// Draws the owner's model: no hidden effect, every machine parameter wrong by 10 to 20 % (or as
+  /// configured).
   void draw_model() {
     made_.model = target(world_.plain());
     if (!mislead(made_.model.machine, config_.wrong, draw_)) throw Unstable{};
@@ -223,7 +225,7 @@ BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
       BlindCase made = Maker(config, spec, draw).make();
       made.attempts = attempt + 1;
       return made;
-    } catch (const Unstable&) {  // another world
+    } catch (const Unstable&) {  // another draw
     } catch (const InputError& error) {
       last = error.what();
     }

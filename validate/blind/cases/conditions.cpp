@@ -1,5 +1,5 @@
-// What a clean record of a quiet grid does not have: other rates, filters, loads that move, an angle that
-// wanders.
+// Field conditions of blind cases: reporting rates, filters, load variation, variation of the angle
+// reference.
 #include "validate/blind/cases/detail/conditions.hpp"
 
 #include <fmt/format.h>
@@ -12,18 +12,18 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr double kStair = 0.025;     ///< loads move in stairs of that length [s]
-constexpr double kOffset = 0.0137;   ///< of the stairs, so that they lie off the samples of any rate [s]
-constexpr double kMemory = 1.0;      ///< of the ambient noise [s],
-constexpr double kSmooth = 0.2;      ///< which is smoothed, so that its stairs are no jumps [s]
-constexpr double kReactive = 0.2;    ///< Q that moves with P, as a load step's does
-constexpr double kDipStart = 1.5;    ///< [s]
-constexpr double kAfterDip = 5.0;    ///< recorded after it [s]
+constexpr double kStair = 0.025;     ///< duration of one step of the load variation [s]
+constexpr double kOffset = 0.0137;   ///< start of the steps, off the samples of any rate [s]
+constexpr double kMemory = 1.0;      ///< time constant of the ambient variation [s]
+constexpr double kSmooth = 0.2;      ///< time constant of its smoothing, so that steps stay undetected [s]
+constexpr double kReactive = 0.2;    ///< change of Q / change of P, as for a load step
+constexpr double kDipStart = 1.5;    ///< start of a frequency dip [s]
+constexpr double kAfterDip = 5.0;    ///< duration of the record after the dip [s]
 constexpr double kPerMinute = 60.0;  ///< [s]
 
 Complex power_of(const sim::network::Load& load) { return load.power + load.current + load.admittance; }
 
-/// Gives every load of the network a course, as parts of its power on each stair up to `end`.
+/// Adds load steps up to `end`: `course(k, t)` is the change of each load as a share of its power.
 template <class Course>
 void move(BlindEvent& event, const sim::network::Network& network, double end, Course course) {
   for (const sim::network::Load& load : network.loads) {

@@ -1,5 +1,5 @@
-// The events of a blind case, drawn: load steps, faults, frequency events, at instants that are no sample of
-// any rate in use.
+// Random events of a blind case: load steps, faults and frequency events, switched between the sampling
+// times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,9 +10,10 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-/// An instant that is no sample at 30, 60 or 120/s, nor of the fine run of cases.toml.
+/// Draws a time that is no sampling time at 30, 60 or 120/s, nor of the fine simulation of cases.toml.
 double off_grid(double low, double high, BlindDraw& draw) {
-  constexpr double kFinest = 960.0 * 4, kAway = 0.05;  // of a quarter of the fine step
+  constexpr double kFinest = 960.0 * 4,
+                   kAway = 0.05;  // least distance as a share of a quarter of the fine step
   for (;;) {
     const double t = draw.uniform(low, high), x = t * kFinest;
     if (std::abs(x - std::round(x)) > kAway) return t;
@@ -47,7 +48,7 @@ BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw) {
     bus = static_cast<int>(draw.below(network.buses.size()));
   } while (
       bus == target(world).bus ||
-      network.buses[static_cast<std::size_t>(bus)].is_star());  // V = 0 there would leave no angle to measure
+      network.buses[static_cast<std::size_t>(bus)].is_star());  // V = 0 at the plant would leave no angle
   BlindEvent event;
   sim::network::BusFault fault{bus, off_grid(1.5, 2.0, draw), 0.0, {}};
   fault.t_off = fault.t_on + off_grid(0.05, 0.15, draw);

@@ -1,4 +1,4 @@
-// The folder of a blind case (model and records) and its truth, as files.
+// Files of a blind case: its folder with model and records, and its truth.
 #include <fmt/format.h>
 
 #include "base/write_file.hpp"
@@ -80,7 +80,7 @@ std::string model_file(const sim::plant::Plant& plant, const std::string& name,
   return plant::plant_text(model, {what});
 }
 
-/// Both units behind the point, as `--point` reads them (configs/plants/README.md).
+/// File of both units at the point of common coupling, as `--point` reads it (configs/plants/README.md).
 std::string point_file(const BlindCase& made) {
   const double share = made.other->mva / (made.other->mva + made.model.mva);
   return fmt::format(

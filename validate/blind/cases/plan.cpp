@@ -23,7 +23,7 @@ std::vector<const BlindKind*> of(const BlindConfig& config, bool listed) {
   return list;
 }
 
-/// Deals kinds out in turn, each class in an order of its own drawn from the seed.
+/// Assigns kinds in turn, each class in its own random order.
 class Dealer {
  public:
   Dealer(const BlindConfig& config, BlindDraw& draw)
@@ -103,7 +103,7 @@ BlindPlan plan_blind(const BlindConfig& config, const std::vector<std::string>& 
   Dealer dealer(config, draw);
   Problems problems;
   std::vector<std::string> words = kinds;
-  if (words.empty()) {  // asked for: 200 listed, 200 nothing, 60 odd, 40 pairs
+  if (words.empty()) {  // for 500 cases: 200 listed, 200 nothing hidden, 60 unlisted, 40 pairs
     for (int k = 0; k < 10; ++k) words.insert(words.end(), {"listed", "none"});
     words.insert(words.end(), {"odd", "odd", "odd", "pairs", "pairs"});
   }
@@ -125,7 +125,7 @@ void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::fi
   if (!std::filesystem::exists(file)) {
     try {
       write_file(file, text);
-    } catch (const InputError&) {  // another part of the run may have been faster; it is compared below
+    } catch (const InputError&) {  // another part may have written it meanwhile; compared below
       if (!std::filesystem::exists(file)) throw;
     }
   }

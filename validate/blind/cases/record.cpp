@@ -1,4 +1,4 @@
-// What instruments make of a run: phasors, filter, noise, and the record as CSV.
+// Simulated instruments of blind cases: phasors, filter and noise, and the record as CSV.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-/// The filter looks ahead by that much at most: two cycles, or half the window of class M at 30/s [s].
+/// Largest look-ahead of the filters: two cycles for class P, half the window of class M at 30/s [s].
 constexpr double kAhead = 0.05, kAheadM = 0.2;
 
 enum FineChannel { kFineV, kFineTheta, kFineP, kFineQ, kFineSpeed, kFineIfd };
 
-/// The reference P-class filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of nominal
-/// frequency, w(k) = 1 - 2|k|/(N + 2), here normalised. Ends are held.
+/// Applies the reference class P filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of
+/// nominal frequency, w(k) = 1 - 2|k|/(N + 2), normalised. The end values extend the series.
 std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double frequency) {
   const int half = static_cast<int>(std::lround(rate / frequency)) - 1;
   const int last = static_cast<int>(x.size()) - 1;
@@ -36,7 +36,7 @@ std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double 
   return y;
 }
 
-/// The reference filter of class M for these reports per second.
+/// Applies the reference class M filter for the reporting rate `reports` [1/s].
 void m_class(sim::Phasors& p, double reports) {
   const sim::Effect& filter = *sim::library::compiled().find("PMUFILTER");
   std::vector<double> values = filter.default_parameters();
@@ -45,7 +45,7 @@ void m_class(sim::Phasors& p, double reports) {
   filter.measure(values.data(), 0, p);
 }
 
-/// Of all units that are recorded, on the base of the first.
+/// Returns the power of all recorded units on the base of the first [pu].
 Complex power(const sim::reference::ReferenceRun& fine, std::span<const double> mva, int k) {
   Complex sum = 0;
   for (std::size_t u = 0; u < mva.size(); ++u) {

@@ -1,4 +1,4 @@
-// How large the hidden effect is in the records of a case, in units of their noise.
+// Size of a hidden effect in the records of a case, in units of their noise.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,11 +11,11 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr double kRunTolerance = 1e-7;   ///< of the integration: a thousandth of the smallest noise
-constexpr double kSwitchingUnit = 2e-4;  ///< one unit of a switching instant [s]
-constexpr Eigen::Index kStates = 4;      ///< of an event's start: P, Q, angle, speed
+constexpr double kRunTolerance = 1e-7;   ///< tolerance of the integration: a thousandth of the smallest noise
+constexpr double kSwitchingUnit = 2e-4;  ///< scale of a switching time [s]
+constexpr Eigen::Index kStates = 4;      ///< number of start variables of an event: P, Q, angle, speed
 
-/// P and Q of the compared samples, one after the other.
+/// Returns P and Q of the compared samples, interleaved.
 Eigen::VectorXd interleaved(const event::FitEvent& e, const std::vector<double>& P,
                             const std::vector<double>& Q) {
   Eigen::VectorXd all(e.values());
@@ -28,8 +28,8 @@ Eigen::VectorXd interleaved(const event::FitEvent& e, const std::vector<double>&
   return all;
 }
 
-/// Marks samples next to a switching. A current that is late by a thousandth of a second shows in one of
-/// these alone, where a diagnosis cannot tell it from the instant.
+/// Marks samples next to a switching. A current with 1 ms of delay affects one of these only, where a
+/// diagnosis cannot distinguish it from a shifted switching time.
 std::vector<char> beside_switchings(const record::Record& record, const std::vector<double>& switchings) {
   std::vector<char> beside;
   for (const double t : record.t)
@@ -48,7 +48,7 @@ event::FitEvent prepared(const record::Record& record, const BlindEvent& event) 
   return e;
 }
 
-/// The noise of an event where P and Q, and V and theta, have these standard deviations.
+/// Returns the noise of an event for these standard deviations of P and Q, and of V and theta.
 event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e, double power,
                            double voltage) {
   const playin::VoltageCurve curve(e.record, e.switchings);
@@ -105,7 +105,7 @@ playin::Response BlindSize::answer(std::size_t event, const record::Record& reco
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {
-  // what interpolation and filter leave even without the effect is taken off
+  // less the residual of interpolation and filter without the effect
   const playin::Response r = answer(event, record, {});
   return interleaved(prepared_[event], record.P, record.Q) -
          interleaved(prepared_[event], r.of(playin::Output::P), r.of(playin::Output::Q)) -
@@ -124,7 +124,7 @@ void BlindSize::add_columns(std::size_t event) {
   for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({.kind = kind});
   const playin::Response r = answer(event, plain_[event], along);
 
-  auto first = static_cast<Eigen::Index>(shared);  // columns of this event's own
+  auto first = static_cast<Eigen::Index>(shared);  // first column of this event
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
   event::RowMatrix own = event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {

@@ -1,5 +1,5 @@
-// The private set: drives that no hypothesis of the list names. They follow the effect contract but are never
-// registered, and exist in the scalars of the reference integrator only.
+// Unlisted effects, which no hypothesis of the list covers. They satisfy the effect interface but are never
+// registered, and exist only for the scalar types of the reference integrator.
 #include <fmt/format.h>
 
 #include <array>
@@ -13,15 +13,15 @@ namespace {
 
 using namespace sim;
 
-constexpr double kLongestRecord = 130.0;  ///< no record lasts longer [s]
+constexpr double kLongestRecord = 130.0;  ///< longest record [s]
 
-/// What every odd drive is: any parameters, no check of its own beyond their ranges.
+/// Base of the unlisted effects: no checks beyond the parameters' ranges.
 struct Unlisted {
   static void check(const void*, const double*, const std::string&, Problems&) {}
   static std::string_view unphysical(const double*) { return ""; }
 };
 
-/// Sawtooth torque: rises evenly over each period and falls at once.
+/// Sawtooth torque: rises linearly over each period and then steps down.
 struct Sawtooth : Unlisted {
   static constexpr std::string_view name = "ODD_SAWTOOTH", title = "sawtooth torque";
   static constexpr sim::Slot slot = sim::Slot::shaft;
@@ -47,7 +47,7 @@ struct Sawtooth : Unlisted {
   }
 };
 
-/// A random walk of the torque, straight between its knots.
+/// Random walk of the torque, piecewise linear.
 struct RandomWalk : Unlisted {
   static constexpr std::string_view name = "ODD_RANDOMWALK", title = "random walk of the torque";
   static constexpr sim::Slot slot = sim::Slot::shaft;
@@ -63,7 +63,7 @@ struct RandomWalk : Unlisted {
     for (double t = p[start]; t < kLongestRecord; t += p[step]) all.push_back(t);
     return all;
   }
-  /// In [-1, 1), from the number of walk and knot.
+  /// Returns a pseudo-random change in [-1, 1) of a walk at a knot.
   static double change(double walk, int knot) {
     const double x = std::sin(12.9898 * (walk + 1.0) + 78.233 * knot) * 43758.5453;
     return 2.0 * (x - std::floor(x)) - 1.0;
@@ -84,7 +84,7 @@ struct RandomWalk : Unlisted {
   }
 };
 
-/// Play in the valve's linkage: the torque follows only what goes beyond the play, 5 ms late.
+/// Backlash of the valve linkage: the torque follows beyond the dead band with a time constant of 5 ms.
 struct Backlash : Unlisted {
   static constexpr std::string_view name = "ODD_BACKLASH", title = "hysteresis of the valve";
   static constexpr sim::Slot slot = sim::Slot::shaft;
@@ -106,7 +106,7 @@ struct Backlash : Unlisted {
   }
 };
 
-/// A limit cycle of the field voltage (van der Pol), woken by the dip of the voltage.
+/// Limit cycle of the field voltage (van der Pol oscillator), excited by a voltage dip.
 struct LimitCycle : Unlisted {
   static constexpr std::string_view name = "ODD_LIMITCYCLE", title = "limit cycle of the field voltage";
   static constexpr sim::Slot slot = sim::Slot::exciter;
@@ -131,7 +131,7 @@ struct LimitCycle : Unlisted {
   }
 };
 
-/// A part of the field voltage is lost for good.
+/// Permanent loss of a part of the field voltage.
 struct FieldLoss : Unlisted {
   static constexpr std::string_view name = "ODD_FIELDLOSS", title = "sudden loss of a part of the field";
   static constexpr sim::Slot slot = sim::Slot::exciter;
@@ -151,8 +151,7 @@ struct FieldLoss : Unlisted {
   }
 };
 
-/// Stick-slip: a shaft seal is dragged along until its spring breaks it loose, and lets go (Stribeck's
-/// falling friction, smoothed within 1e-4 pu of speed).
+/// Stick-slip friction on the shaft: friction falls with speed (Stribeck), smoothed within 1e-4 pu of speed.
 struct StickSlip : Unlisted {
   static constexpr std::string_view name = "ODD_STICKSLIP", title = "stick-slip on the shaft";
   static constexpr sim::Slot slot = sim::Slot::shaft;

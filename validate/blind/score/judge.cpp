@@ -21,7 +21,7 @@ std::vector<fs::path> event_files(const fs::path& folder) {
   return files;
 }
 
-/// Every evidence, so that what is made of them can be tried again without the records.
+/// Returns all evidences, so that the probabilities can be recomputed without the records.
 nlohmann::json basis_of(const diagnose::Diagnosis& d) {
   const auto input = [&](const reduced::FreeInput& m) {
     return nlohmann::json{{"evidence", m.evidence},

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kBins = std::size(kReliabilityEdges) - 1;
 constexpr int kResampled = 2000;
-constexpr double kBeyond95 = 0.025;  ///< outside a 95 % interval, on either side
+constexpr double kBeyond95 = 0.025;  ///< probability outside a 95 % interval on either side
 
-/// Place of the bin; kBins: it is told of no case.
+/// Returns the index of the bin; kBins: below the first edge.
 std::size_t bin_of(double p) {
   if (p < kReliabilityEdges[0]) return kBins;
   std::size_t bin = 0;
@@ -41,7 +41,7 @@ double calibration_error(const std::vector<First>& firsts) {
 }
 
 void resample(const std::vector<First>& firsts, Reliability& r) {
-  std::mt19937_64 random(1);  // the same interval every time
+  std::mt19937_64 random(1);  // fixed seed for reproducible intervals
   std::uniform_int_distribution<std::size_t> any(0, firsts.size() - 1);
   std::vector<double> errors;
   for (int k = 0; k < kResampled; ++k) {
@@ -54,7 +54,7 @@ void resample(const std::vector<First>& firsts, Reliability& r) {
   r.error_high = errors[static_cast<std::size_t>((1 - kBeyond95) * kResampled)];
 }
 
-/// Size of the set that makes up 95 %.
+/// Returns the number of explanations in the 95 % set.
 std::size_t set_size(const Forecast& f) {
   double sum = 0;
   std::size_t n = 0;

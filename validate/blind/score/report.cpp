@@ -1,4 +1,4 @@
-// The score of a blind run as Markdown and as JSON.
+// Score of a blind run as Markdown and JSON.
 #include <fmt/format.h>
 
 #include <set>
@@ -73,7 +73,7 @@ std::string matrix(const BlindScore& score) {
   return text;
 }
 
-/// Empty where no case was recorded under any.
+/// Table of hit rates per recording condition; empty without conditions.
 std::string conditions(const BlindScore& score) {
   if (score.by_condition.empty()) return "";
   std::string text =

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char *kPowerOnly = "P, Q only", *kWithChannels = "with speed, Ifd";
-constexpr double kFrom = 2.0;  ///< rates are asked for from that many detection limits up
+constexpr double kFrom = 2.0;  ///< least size that counts for the rates [detection limits]
 
 bool same(const std::string& a, const std::string& b) {
   return std::ranges::equal(
@@ -28,7 +28,7 @@ bool share(const std::vector<std::string>& a, const std::vector<std::string>& b)
   return std::ranges::any_of(a, [&](const std::string& one) { return among(b, one); });
 }
 
-/// "A + B": what acts together.
+/// Splits "A + B" into its effects.
 std::vector<std::string> together(const std::string& entry) {
   constexpr std::string_view kAnd = " + ";
   std::vector<std::string> names;
@@ -181,7 +181,7 @@ Forecast ScoredCase::forecast() const {
            std::ranges::all_of(answers, [&](const auto& a) { return share(a, said); });
   };
   std::vector<std::pair<double, char>> said;
-  double nothing = 0;  // wrong parameters are no hidden effect
+  double nothing = 0;  // includes wrong parameters, which are no missing effect
   for (const auto& [explanation, probability] : verdict.probabilities)
     if (explanation.starts_with(hypothesis::kNothingMissing))
       nothing += probability;

@@ -52,7 +52,7 @@ std::vector<std::string> names(const json& j, const char* key, const fs::path& f
   return list;
 }
 
-/// [["SEXS", 0.97], ...]; nothing where a judge gives none.
+/// Reads [["SEXS", 0.97], ...]; empty if the judge gives none.
 std::vector<std::pair<std::string, double>> probabilities(const json& j, const fs::path& file,
                                                           Problems& problems) {
   const auto at = j.find("probabilities");
@@ -63,7 +63,7 @@ std::vector<std::pair<std::string, double>> probabilities(const json& j, const f
         std::ranges::all_of(list, [](const auto& e) { return e.second >= 0 && e.second <= 1; });
     if (sound && std::ranges::is_sorted(list, std::greater<>(), &std::pair<std::string, double>::second))
       return list;
-  } catch (const json::exception&) {  // told below
+  } catch (const json::exception&) {  // reported below
   }
   problems.add("no list of probabilities", file.string() + ", key probabilities",
                "it holds pairs of a name and a number from 0 to 1, the most probable first",
@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, double>> probabilities(const json& j, const f
   return {};
 }
 
-/// Runs program with two arguments; its exit code, -1 if it could not be started.
+/// Runs the program with two arguments. Returns its exit code; -1 if it did not run to its end.
 int run(const std::string& program, const fs::path& folder, const fs::path& file) {
   const pid_t child = fork();
   if (child == 0) {

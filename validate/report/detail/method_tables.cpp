@@ -41,7 +41,7 @@ Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
   return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
 }
 
-/// Returns the methods with runs at a noise level, and those of the thesis.
+/// Returns the methods with runs at a noise level.
 std::vector<std::string> methods_at(const Task& task, double noise) {
   std::vector<std::string> names;
   for (const auto& m : task.methods())
@@ -49,6 +49,7 @@ std::vector<std::string> methods_at(const Task& task, double noise) {
   return names;
 }
 
+/// Returns the thesis's networks, then the task's other methods.
 std::vector<std::string> with_thesis(const Task& task) {
   std::vector<std::string> names;
   for (const auto& cell : kThesisCells)

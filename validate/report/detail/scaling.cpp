@@ -99,7 +99,7 @@ PlotSeries law_of(const ScalingSeries& s, double Size::*of, const PowerLaw& fitt
   return line;
 }
 
-/// Returns the transposed table, with the header as first column.
+/// Returns a table of the given columns, with the header of `table` as first column.
 Table turned(Table table, const std::vector<std::vector<Cell>>& columns) {
   Table out{std::move(table.caption), {table.header.front()}, {}};
   for (const auto& column : columns) out.header.push_back(column.front().text);

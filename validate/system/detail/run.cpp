@@ -21,8 +21,9 @@ std::vector<double> scaled(const double* values, int n, double factor) {
   return out;
 }
 
-/// A jump between two samples would pass for a ramp about their middle: the nearer one takes a share of it,
-/// which leaves an average over a window as if the jump stood where it is. `at` [samples].
+/// Corrects the samples beside a step at position `at` [samples]. Sampling would place the step half-way
+/// between them; the nearer sample gets a share of it, so that window averages correspond to its true
+/// position.
 void place_jump(std::vector<Complex>& y, double at) {
   const double before = std::floor(at + 1e-6);
   if (before < 0 || before + 2 > static_cast<double>(y.size())) return;
@@ -43,7 +44,7 @@ class Player {
  public:
   Player(const SystemCase& system, const sim::network::Event& event) : s_(system), event_(event) {
     out.answers.resize(s_.terminals.size());
-    // Terminals that were sampled at the same instants share a simulation, which then needs no interpolation.
+    // Terminals with equal sampling times share a simulation without interpolation.
     std::map<std::tuple<double, double, int>, std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
       const record::Record& r = s_.terminals[i].record;
@@ -55,11 +56,11 @@ class Player {
   SystemRun out;
 
  private:
-  /// What of the grid is recorded for a group of terminals.
+  /// Sampling of a group of terminals.
   struct Sampling {
     double first, rate;  ///< [s], [1/s]
-    int stride;          ///< of the record's samples in those of the simulation
-    int samples;         ///< of the record
+    int stride;          ///< simulation samples per record sample
+    int samples;         ///< samples of the record
   };
 
   void play(double first, double step, int samples, const std::vector<std::size_t>& members) {
@@ -81,7 +82,7 @@ class Player {
       (t.plant >= 0 ? plants : buses).push_back(i);
       (t.plant >= 0 ? o.plants : o.buses).push_back(t.plant >= 0 ? t.plant : t.bus);
     }
-    if (o.plants.empty()) o.plants = {0};  // none would mean all
+    if (o.plants.empty()) o.plants = {0};  // an empty list means all plants
     const sim::network::Event event = moved(event_, [&](double t) { return t - first; });
     const sim::reference::ReferenceRun run = sim::reference::run_reference(s_.grid, event, o);
     if (run.outcome != sim::Outcome::stable && run.outcome != sim::Outcome::lost_synchronism)
@@ -118,7 +119,7 @@ class Player {
     record::unwrap(m.theta);
   }
 
-  /// The terminal's answer as its instruments show it, at the record's samples.
+  /// Applies the terminal's instruments and reduces the response to the record's samples.
   void measure(std::size_t terminal, const Sampling& at) {
     Modelled& m = out.answers[terminal];
     const SystemTerminal& t = s_.terminals[terminal];
@@ -159,7 +160,6 @@ SystemRun run_system(const SystemCase& system, const sim::network::Event& event)
   return std::move(Player(system, event).out);
 }
 
-/// Instants at which something is switched, sorted.
 std::vector<double> instants_of(const sim::network::Event& e) {
   std::set<double> all;
   for (const auto& f : e.faults) all.insert({f.t_on, f.t_off});

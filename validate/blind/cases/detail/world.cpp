@@ -12,7 +12,7 @@
 namespace swingbank::validate::blind::cases {
 namespace {
 
-constexpr int kBlockTries = 200;  ///< draws of one block until its checks accept it
+constexpr int kBlockTries = 200;  ///< largest number of draws of one block
 
 constexpr const char* kKnownTransformer = "STEPUP:X=0.1";
 constexpr const char* kKnownExciter = "SEXS:K=150";
@@ -22,8 +22,8 @@ constexpr const char* kKnownGovernor = "TGOV1:VMAX=1.2";
   throw InputError({what, "blind case", why, "change the kinds in the config"});
 }
 
-/// Whether a parameter is a limit. Limits stay where they are, because a ceiling moved below the operating
-/// point would refuse the plant.
+/// Returns whether a parameter is a limit. Limits are not varied, because a ceiling below the operating point
+/// would make the plant invalid.
 bool is_limit(std::string_view name) {
   return name.find("MAX") != name.npos || name.find("MIN") != name.npos || name == "GMAX" || name == "GMIN";
 }
@@ -41,7 +41,7 @@ sim::plant::Block block_of(const std::string& text) {
 
 void put(sim::plant::Plant& plant, sim::plant::Block block) {
   const bool unlisted = sim::library::compiled().find(block.effect->name) != block.effect;
-  if (unlisted) {  // several may act where a slot holds one: after everything else of that slot
+  if (unlisted) {  // unlisted effects do not occupy their slot; they act after its other effects
     plant.controls.push_back(std::move(block));
     std::ranges::stable_sort(plant.controls, {}, [](const sim::plant::Block& b) { return b.effect->slot; });
     return;
@@ -49,7 +49,7 @@ void put(sim::plant::Plant& plant, sim::plant::Block block) {
   if (auto problem = sim::plant::place(plant, std::move(block), "blind case")) throw InputError(*problem);
 }
 
-/// Another machine in the place of the plant's, with its values under the same names.
+/// Replaces the plant's machine and keeps the values of parameters with equal names.
 void take_machine(sim::plant::Plant& plant, sim::plant::Block machine) {
   for (std::size_t i = 0; i < machine.p.size(); ++i)
     if (const int k = plant.machine.effect->parameter_index(machine.effect->parameters[i].name); k >= 0)
@@ -68,7 +68,7 @@ bool set(sim::plant::Block& block, const BlindPath& path, double value) {
   return true;
 }
 
-/// Sets one point of a path in a plant that has the effect, or in the hidden blocks.
+/// Sets a path's parameter in the plant or its conventions.
 void set_path(sim::plant::Plant& plant, sim::Conventions& conventions, const BlindPath& path, double value) {
   if (path.target == "conventions") {
     conventions.speed_voltage = value > 0.5;
@@ -196,14 +196,14 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
     jitter(block, 0.15, draw);
     put(plant, block);
   }
-  for (const BlindKind* kind : hidden_)  // a path through what is known starts at neutral
+  for (const BlindKind* kind : hidden_)  // paths through known blocks start at their null value
     for (const BlindPath& path : kind->path)
       set_path(plant, grid_.conventions, path, along(path, 0.0, kind->logarithmic));
 }
 
-/// A part of the plant becomes a unit of its own at the same bus, with values and controls of its own. Not
-/// where an instrument's error is hidden: it would be one of the sum, which no hypothesis about one unit
-/// says.
+/// Splits off a part of the plant as a second unit at the same bus, with its own values and controls. Cases
+/// with a hidden instrument error are not split: the error would be one of the sum, which no hypothesis about
+/// a single unit covers.
 void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   const double share = config.conditions.second_unit_share;
   if (!(share > 0 && draw.coin(share)) || std::ranges::any_of(hidden_, &BlindKind::of_instrument)) return;
