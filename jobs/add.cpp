@@ -94,7 +94,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
   result["format"] = "swingbank-add-3";
   result["command"] = a.command;
-  result["standard_values"] = before.standard;
+  result["standard_values"] = before.defaults;
   result["records"] = a.told;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);

@@ -10,8 +10,8 @@
 
 #include "base/in_parallel.hpp"
 #include "sim/laws/law.hpp"
-#include "validate/laws/detail/progress_plan.hpp"
 #include "validate/laws/detail/text.hpp"
+#include "validate/laws/detail/time_series.hpp"
 #include "validate/laws/detail/traces.hpp"
 #include "validate/thresholds/thresholds.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "sim/laws/law.hpp"
 #include "tests/validate/playin/support.hpp"
-#include "validate/laws/detail/progress_plan.hpp"
 #include "validate/laws/detail/text.hpp"
+#include "validate/laws/detail/time_series.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::laws {

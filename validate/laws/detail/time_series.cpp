@@ -1,4 +1,4 @@
-#include "validate/laws/detail/progress_plan.hpp"
+#include "validate/laws/detail/time_series.hpp"
 
 namespace swingbank::validate::laws {
 namespace {
