@@ -11,7 +11,7 @@ namespace {
 
 // sanitizers, which clang is used for here, have their own allocators
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-TEST(Memory, BeginsAtACacheLine) {
+TEST(Memory, IsAlignedToCacheLines) {
   constexpr std::uintptr_t kLine = 64;
   std::vector<std::vector<double>> kept;
   for (std::size_t n = 1; n < 200; ++n) {

@@ -34,7 +34,7 @@ TEST(InParallel, RunsContinuationsOneAtATime) {
   EXPECT_EQ(std::set(pieces.begin(), pieces.end()).size(), kPieces);
 }
 
-TEST(InParallel, AFailureReachesTheCallerOnceAllHaveEnded) {
+TEST(InParallel, RethrowsAFailureAfterAllPiecesEnd) {
   std::size_t finished = 0;
   const auto work = [](std::size_t k) {
     if (k % 5 == 0) throw std::runtime_error("broken");

@@ -38,7 +38,7 @@ class InputFile : public ::testing::Test {
   fs::path before_, root_;
 };
 
-TEST_F(InputFile, MissingSaysWhereItWasLookedFor) {
+TEST_F(InputFile, MissingFileReportsTheFoldersSearched) {
   EXPECT_EQ(sentence("mine.toml"),
             "no plant file at mine.toml (there is no such file; it was looked for in " +
                 (root() / "here").string() + "): give another");
@@ -46,7 +46,7 @@ TEST_F(InputFile, MissingSaysWhereItWasLookedFor) {
             "no plant file at /nowhere/mine.toml (there is no such file): give another");
 }
 
-TEST_F(InputFile, MissingNamesTheExampleOfThatPath) {
+TEST_F(InputFile, MissingFileNamesTheExampleOfThatPath) {
   const std::string example = (root() / "share/configs/plants/one.toml").string();
   for (const char* named : {"configs/plants/one.toml", "plants/one.toml"})
     EXPECT_THAT(sentence(named),
@@ -54,7 +54,7 @@ TEST_F(InputFile, MissingNamesTheExampleOfThatPath) {
   EXPECT_THAT(sentence("configs/plants/two.toml"), Not(HasSubstr("example")));
 }
 
-TEST_F(InputFile, PatternThatTheShellCouldNotReplace) {
+TEST_F(InputFile, ReportsAPatternWithoutMatchingFiles) {
   EXPECT_THAT(sentence("configs/plants/o*.toml"),
               AllOf(HasSubstr("none that matches"), HasSubstr((root() / "share/configs/plants").string())));
   EXPECT_THAT(sentence("o*.toml"), AllOf(HasSubstr("none that matches"), HasSubstr("give another")));

@@ -7,14 +7,14 @@ namespace {
 
 const std::vector<std::string> kEffects = {"GENCLS", "GENROU", "GENSAL", "SEXS", "ESDC1A", "ESDC2A"};
 
-TEST(NearestWord, ReturnsTheWordOfTheFewestSlips) {
+TEST(NearestWord, ReturnsTheWordWithTheFewestEdits) {
   EXPECT_EQ(nearest_word("GENRUO", kEffects), "GENROU");
   EXPECT_EQ(nearest_word("GENRUO", {"GENROE", "GENROU"}), "GENROU");  // two letters swapped
   EXPECT_EQ(nearest_word("Xddp", {"Xdp", "Xdpp"}), "Xdpp");           // of the same length
   EXPECT_EQ(nearest_word("ESDC2", kEffects), "ESDC2A");
   EXPECT_EQ(nearest_word("ESDC2B", kEffects), "ESDC2A");
 }
-TEST(NearestWord, TakesTheBeginOfAWordAndAnyCase) {
+TEST(NearestWord, AcceptsPrefixesInAnyCase) {
   EXPECT_EQ(nearest_word("SEX", kEffects), "SEXS");
   EXPECT_EQ(nearest_word("sexs", kEffects), "SEXS");
 }

@@ -40,7 +40,7 @@ std::string outcome(const std::filesystem::path& file) {
   return text;
 }
 
-TEST(SealedFile, EveryFlippedOrMissingByteIsFound) {
+TEST(SealedFile, DetectsEveryFlippedOrMissingByte) {
   const auto folder = std::filesystem::temp_directory_path() / ("sealed-" + std::to_string(::getpid()));
   make_folder(folder);
   const auto file = folder / "f.sealed";

@@ -8,7 +8,7 @@
 namespace swingbank {
 namespace {
 
-TEST(WhiteVariance, IsThatOfTheNoiseWhateverStraightCourseItLiesOn) {
+TEST(WhiteVariance, IgnoresALinearTrend) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(0, 0.3);
   std::vector<double> x;

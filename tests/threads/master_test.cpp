@@ -20,7 +20,7 @@ store::JournalLine line(std::uint64_t shard) {
   return {shard, "shards/a.h5", 1, 1, 1, "0000000000000000", "0000000000000000", {}};
 }
 
-TEST(Master, LeasesEveryShardOnceWhileItsWatcherLooks) {
+TEST(Master, LeasesEveryShardOnceUnderAWatcher) {
   std::multiset<std::uint64_t> written, leased;
   JournalKeeper keeper([&](std::span<const store::JournalLine> lines) {
     for (const auto& l : lines) written.insert(l.shard);

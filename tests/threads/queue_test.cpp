@@ -14,7 +14,7 @@
 namespace swingbank::mpi::ranks {
 namespace {
 
-TEST(ItemQueue, ResultsReachTheCallerWhole) {
+TEST(ItemQueue, ReturnsCompleteResults) {
   SharedItems shared;
   shared.items.resize(50);
   std::iota(shared.items.begin(), shared.items.end(), 0);

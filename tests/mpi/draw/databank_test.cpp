@@ -58,7 +58,7 @@ TEST(DatabankDraw, EqualsTheSerialDefinition) {
   EXPECT_EQ(draw(c, 3000).values, brute_force(c, 3000));
 }
 
-TEST(DatabankDraw, EveryPairKeepsItsDistance) {
+TEST(DatabankDraw, EveryPairKeepsTheMinimumDistance) {
   EXPECT_GE(closest_pair(draw(test::genrou_box(), 4000)), 0.7);
 }
 
@@ -95,13 +95,13 @@ TEST(DatabankDraw, SeedChangesThePoints) {
   EXPECT_NE(draw(c, 10).values, a.values);
 }
 
-TEST(DatabankDraw, WithoutDistanceNothingIsTooClose) {
+TEST(DatabankDraw, AcceptsEveryPointWithoutDistance) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 0.0;
   EXPECT_EQ(draw(c, 5000).too_close, 0u);
 }
 
-TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
+TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.scaled = true;
   c.databank.distance = 1.5;  // of a unit cube's diagonal of 3.6: a few hundred points at most
@@ -116,7 +116,7 @@ TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
 
 // Most draws are too close here (19 of 20 admissible ones), so that the forecast decides after the first
 // batch.
-TEST(DatabankDraw, AReachableCountIsNotGivenUp) {
+TEST(DatabankDraw, DoesNotAbort_WhenTheCountIsReachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 2.0;
   c.databank.candidates_per_point = 1000;

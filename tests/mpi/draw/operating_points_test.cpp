@@ -75,7 +75,7 @@ TEST(OperatingPoint, PowerIsBalancedAtEveryBus) {
   }
 }
 
-TEST(OperatingPoint, RangesAreTheConfigs) {
+TEST(OperatingPoint, StaysWithinTheConfiguredRanges) {
   const Study study = load_study(config());
   const OperatingPointConfig& c = *study.config.operating_point;
   OperatingPoints points(study);
@@ -138,7 +138,7 @@ TEST(OperatingPoint, RedrawsAndCountsInfeasiblePoints) {
   }
 }
 
-TEST(OperatingPoint, LinesOutLeaveTheGridWhole) {
+TEST(OperatingPoint, LineOutagesKeepTheGridConnected) {
   DatasetConfig c = config();
   c.operating_point->lines_out_high = 2;
   const Study study = load_study(c);
@@ -210,15 +210,15 @@ void expect_rows_are_their_grids(const DatasetConfig& config) {
   }
 }
 
-TEST(OperatingPointRows, AreTheirGridsOwnRecords) { expect_rows_are_their_grids(config()); }
-TEST(OperatingPointRows, AlsoWhereOneGeneratorVaries) {
+TEST(OperatingPointRows, EqualRecordsOfTheirGrid) { expect_rows_are_their_grids(config()); }
+TEST(OperatingPointRows, EqualRecordsOfTheirGrid_WhenOneGeneratorVaries) {
   DatasetConfig c = config("ieee39_genrou", 60);
   c.operating_point = config().operating_point;
   expect_rows_are_their_grids(c);
 }
 
 /// Ranks and shards cut a dataset anywhere, also inside a block.
-TEST(OperatingPointRows, PartsMakeTheWhole) {
+TEST(OperatingPointRows, PartsEqualTheWhole) {
   Case c(config());
   const store::ShardData whole = c.make(0, 24), first = c.make(0, 11), rest = c.make(11, 13);
   auto hashes = store::row_hashes(first), more = store::row_hashes(rest);
@@ -230,7 +230,7 @@ TEST(OperatingPointRows, PartsMakeTheWhole) {
   EXPECT_EQ(redrawn.size(), 48u);
 }
 
-TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
+TEST(OperatingPointConfigFile, HashCoversEveryKeyAndRefusalsNameThem) {
   const test::Folder folder;
   const std::string text = read_text(kPointConfigs / "ieee39_gencls_points.toml");
   const auto read = [&](const std::string& from, const std::string& to) {
@@ -264,7 +264,7 @@ TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
   EXPECT_THAT(refusal("voltage = 0.03", "volts = 0.03"), HasSubstr("unknown key operating_point.volts"));
 }
 
-TEST(OperatingPointRows, WithoutTheTableThereAreNone) {
+TEST(OperatingPointRows, AreAbsentWithoutTheTable) {
   DatasetConfig c = config();
   const std::string with = c.canonical();
   c.operating_point.reset();

@@ -35,7 +35,7 @@ std::size_t channel_index(const MadeCase& c, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
+TEST(Sampling, GeneratorsAlternateAndFaultsShareADatabankPoint) {
   MadeCase c("ieee39_gencls", 40);
   Sampler sampler(c.study, c.bank);
   for (std::uint64_t id = 0; id < 40; ++id) {
@@ -52,7 +52,7 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
   EXPECT_NE(shared.draw(0).job.event.faults[0].t_off, shared.draw(1).job.event.faults[0].t_off);
 }
 
-TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
+TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
   MadeCase c("ieee39_gencls", 20);
   const store::ShardData d = c.maker.make(0, 20, no_tick);
   ASSERT_GT(d.rows, 10u);
@@ -78,7 +78,7 @@ TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
   }
 }
 
-TEST(ShardMaking, PartsMakeTheWhole) {
+TEST(ShardMaking, PartsEqualTheWhole) {
   MadeCase c("ieee39_genrou", 24);
   const store::ShardData whole = c.maker.make(0, 24, no_tick), first = c.maker.make(0, 7, no_tick),
                          rest = c.maker.make(7, 17, no_tick);
@@ -94,7 +94,7 @@ TEST(ShardMaking, TicksCountEveryRun) {
   EXPECT_EQ(ticks, 30u);
 }
 
-TEST(ShardMaking, UnstableDrawsLeaveNoRowButAreListed) {
+TEST(ShardMaking, UnstableDrawsAreListedWithoutARow) {
   MadeCase c("ieee39_genrou", 60);
   const store::ShardData d = c.maker.make(0, 60, no_tick);
   ASSERT_EQ(d.draw_outcome.size(), 60u);
@@ -114,7 +114,7 @@ TEST(ShardMaking, AllVaryGivesARowPerGenerator) {
   EXPECT_NE(d.parameters[0], d.parameters[2]);
 }
 
-TEST(ShardMaking, AngleIsMarkedInvalidExactlyWhereTheTerminalIsShorted) {
+TEST(ShardMaking, AngleIsInvalidOnlyDuringATerminalFault) {
   MadeCase c("ieee39_gencls_all", 1);
   // A fault at the terminal of bus 30, 0.1 s: samples in (2.0, 2.1] see V = 0, the one at 2.0 is the value
   // before.

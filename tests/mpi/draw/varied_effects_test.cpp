@@ -98,7 +98,7 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(refusal("attach = [", "laws = [\"none.toml\"]\nattach = ["), HasSubstr("none.toml"));
 }
 
-TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
+TEST(VariedEffects, HashCoversThemAndOlderConfigsKeepTheirHash) {
   const std::string base = config_hash(varied_config(), "k");
   EXPECT_NE(config_hash(varied_config({{"K=100,TE=0.1", "K=100,TE=0.11"}}), "k"), base);
   EXPECT_NE(config_hash(varied_config({{"TE = [0.02, 0.5]", "TE = [0.02, 0.51]"}}), "k"), base);
@@ -190,7 +190,7 @@ TEST(VariedEffects, AStepUpTransformerVariesToo) {
   expect_rows_are_runs(c);
 }
 
-TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
+TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
   const std::string law = (fs::path(SWINGBANK_SOURCE) / "configs/laws/sexs.toml").string();
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
@@ -208,7 +208,7 @@ TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
     ASSERT_NEAR(both[0].records[i], both[1].records[i], 5e-6) << i;
 }
 
-TEST(VariedEffects, ShardsSayWhoseParametersTheyHold) {
+TEST(VariedEffects, ShardsNameTheEffectsOfTheirParameters) {
   const Study s = load_study(varied_config());
   store::ShardData d = test::sample_shard();
   d.attributes.parameter_effects = {"GENCLS", "SEXS"};

@@ -23,7 +23,7 @@ std::deque<std::uint64_t> first_shards(std::uint64_t n) {
   return all;
 }
 
-TEST(Leases, LastAsLongAsAskedOnceTheCostIsKnown) {
+TEST(Leases, LastTheRequestedTimeOnceTheCostIsKnown) {
   Leases leases(first_shards(10000), 10.0, 2);
   const auto now = Leases::Clock::now();
   EXPECT_EQ(leases.give(1, false, now), Shards{0});
@@ -32,7 +32,7 @@ TEST(Leases, LastAsLongAsAskedOnceTheCostIsKnown) {
   EXPECT_EQ(leases.give(0, true, now).size(), 1u);  // the master's own group hands in each
 }
 
-TEST(Leases, EndTogether) {
+TEST(Leases, ShrinkTowardsACommonEnd) {
   Leases leases(first_shards(101), 10.0, 5);
   const auto now = Leases::Clock::now();
   leases.give(1, false, now);
@@ -68,7 +68,7 @@ std::vector<store::JournalLine> line(std::uint64_t shard) {
   return {{shard, "shards/a.h5", 1, 1, 1, "0000000000000000", "0000000000000000", {}}};
 }
 
-TEST(JournalKeeper, FlushesOnceForAllThatWait) {
+TEST(JournalKeeper, FlushesOnceForAllPendingLines) {
   std::atomic<int> flushes = 0;
   std::set<std::uint64_t> written;
   JournalKeeper keeper([&](std::span<const store::JournalLine> lines) {
@@ -82,7 +82,7 @@ TEST(JournalKeeper, FlushesOnceForAllThatWait) {
   EXPECT_LE(flushes, 3);
 }
 
-TEST(JournalKeeper, SaysWhyAndWritesNoMore) {
+TEST(JournalKeeper, ReportsTheReasonAndStopsWriting) {
   int calls = 0;
   JournalKeeper keeper([&](std::span<const store::JournalLine>) {
     ++calls;

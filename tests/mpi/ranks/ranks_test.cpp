@@ -76,7 +76,7 @@ TEST_F(Ranks, RanksWithoutRowsTakePart) {
   EXPECT_EQ(store::read_shard(folder / "a.h5").rows, receipt.rows);
 }
 
-TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
+TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
   const swingbank::mpi::ranks::Ranks ranks{MPI_COMM_WORLD};
   std::vector<int> told(20, 0);
   int own = 0;
@@ -104,7 +104,7 @@ TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
   }
 }
 
-TEST(ItemLimit, AnItemThatTakesTooLongEndsTheRunWithItsName) {
+TEST(ItemLimit, SlowItemEndsTheRunWithItsName) {
   SharedItems shared;
   shared.items = {0, 1};
   shared.work = [](std::size_t i) {
@@ -118,7 +118,7 @@ TEST(ItemLimit, AnItemThatTakesTooLongEndsTheRunWithItsName) {
               "plant 1 takes longer than 0.05 s at rank 0");
 }
 
-TEST_F(Ranks, FailureOfOneIsToldByAll) {
+TEST_F(Ranks, AllRanksReportTheFailureOfOne) {
   try {
     agree(MPI_COMM_WORLD, "here", [&] {
       if (rank == size - 1) throw InputError({"disk full", "/x", "no space", "free some"});
@@ -176,7 +176,7 @@ TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Report, SurvivesTheJourney) {
+TEST(Report, RoundTripKeepsAllFields) {
   Report r;
   r.finished = {
       {3,
@@ -200,7 +200,7 @@ TEST(Report, SurvivesTheJourney) {
   EXPECT_EQ(back.problems[0].remedy, r.problems[0].remedy);
 }
 
-TEST(Report, PathThatIsNoUtf8Travels) {
+TEST(Report, RoundTripKeepsPathsThatAreNotUtf8) {
   Report r;
   r.problems = {{"disk full", "/data/m\xfcller", "no space", "free some"}};
   EXPECT_EQ(unpack(pack(r)).problems.at(0).where, "/data/m\xEF\xBF\xBDller");  // U+FFFD

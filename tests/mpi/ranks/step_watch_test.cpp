@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-TEST(StepWatch, TellsOfAStepThatHangs) {
+TEST(StepWatch, ReportsAStepThatHangs) {
   testing::internal::CaptureStderr();
   {
     const StepWatch watch(3, "create", "shards/0.h5", milliseconds(20));
@@ -28,7 +28,7 @@ TEST(StepWatch, TellsOfAStepThatHangs) {
   EXPECT_EQ(told.find("rank 3"), told.rfind("rank 3"));
 }
 
-TEST(StepWatch, IsSilentOfStepsThatEnd) {
+TEST(StepWatch, IgnoresStepsThatEnd) {
   testing::internal::CaptureStderr();
   for (int k = 0; k < 300; ++k) const StepWatch watch(0, "close", "shards/0.h5");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -115,7 +115,7 @@ void journal_as_it_is(const std::filesystem::path& folder) {
   });
 }
 
-TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsAChangedRow) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000000.h5";
   ShardData d = read_shard(file);
@@ -129,7 +129,7 @@ TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
               HasSubstr("changed shard at " + file.string() + " (its hash"));
 }
 
-TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsAShardOfAnotherConfig) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000000.h5";
   ShardData d = read_shard(file);
@@ -143,7 +143,7 @@ TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
               HasSubstr("a shard of another config"));
 }
 
-TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsWrongCountsInTheJournal) {
   const std::pair<std::function<void(JournalLine&)>, std::string> wrong[] = {
       {[](JournalLine& l) { l.rows = 1'000'000'000'000'000; }, "wrong shape of /records"},
       {[](JournalLine& l) { l.rows = 4; }, "wrong shape of /records"},
@@ -161,7 +161,7 @@ TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
   }
 }
 
-TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
+TEST(DatasetFolder, RefusesShapesThatContradictTheHeader) {
   const std::pair<std::function<void(ShardData&)>, std::string> wrong[] = {
       {[](ShardData& d) { d.samples = 3; }, "it is 5 x 2 x 3, not 5 x 2 x 9"},
       {[](ShardData& d) {
@@ -189,7 +189,7 @@ TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
   }
 }
 
-TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
+TEST(DatasetFolder, RefusesHeadersThatJsonCannotHold) {
   const Folder folder;
   DatasetHeader h;
   h.name = "b\xff";
@@ -198,7 +198,7 @@ TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
-TEST(DatasetFolder, HeaderSaysWhatTheMachinesHold) {
+TEST(DatasetFolder, HeaderDescribesTheMachines) {
   const Folder folder;
   DatasetHeader h;
   h.draws_per_shard = 1;
@@ -224,7 +224,7 @@ TEST(DatasetFolder, HeaderSaysWhatTheMachinesHold) {
               HasSubstr("held or machine_base is not given for each of its generators"));
 }
 
-TEST(DatasetFolder, NoDatasetIsNamed) {
+TEST(DatasetFolder, NamesFoldersWithoutADataset) {
   const Folder folder;
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
 }
@@ -252,10 +252,10 @@ void flip_every(std::size_t step) {
   ::testing::Test::RecordProperty("flipped", flipped);
 }
 
-TEST(DatasetFolder, FlippedBytesAreFound) { flip_every(37); }
-TEST(DatasetFolderFull, EveryFlippedByteIsFound) { flip_every(1); }
+TEST(DatasetFolder, DetectsFlippedBytes) { flip_every(37); }
+TEST(DatasetFolderFull, DetectsEveryFlippedByte) { flip_every(1); }
 
-TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
+TEST(JournalFile, DropsAHalfWrittenLastLine) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
   std::ofstream(file, std::ios::app) << "{\"shard\":2,\"fi";
@@ -299,7 +299,7 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   EXPECT_EQ(lines[0].shard, 0u);
 }
 
-TEST(JournalFile, ACountThatIsNoneIsDamageThoughTheSumIsTrue) {
+TEST(JournalFile, RefusesInvalidCountsWithACorrectChecksum) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
   const std::string text = read_text(file);
@@ -314,7 +314,7 @@ TEST(JournalFile, ACountThatIsNoneIsDamageThoughTheSumIsTrue) {
   }
 }
 
-TEST(JournalFile, PartsAreReadAsOne) {
+TEST(JournalFile, ReadsAllPartsTogether) {
   const TwoShards folder;
   const std::string text = read_text(folder.path / "journal.jsonl"),
                     first = text.substr(0, text.find('\n') + 1);

@@ -28,7 +28,7 @@ std::string refusal_of(const std::function<void()>& work) {
   return "nothing thrown";
 }
 
-TEST(Shard, ComesBackAsWritten) {
+TEST(Shard, RoundTripKeepsAllData) {
   const Folder folder;
   const ShardData d = sample_shard();
   write_shard(folder.path / "a.h5", d);
@@ -104,7 +104,7 @@ TEST(Shard, EqualContentMakesEqualBytes) {
   EXPECT_EQ(read_text(folder.path / "a.h5"), read_text(folder.path / "b.h5"));
 }
 
-TEST(Shard, EveryByteOfARowCounts) {
+TEST(Shard, HashCoversEveryByteOfARow) {
   const std::uint64_t hash = shard_hash(sample_shard());
   ShardData d = sample_shard();
   d.records.back() += 1.0F;
@@ -153,7 +153,7 @@ TEST(Shard, AnotherConfigIsRefused) {
               HasSubstr("another config"));
 }
 
-TEST(Shard, ReadApartIsTheSame) {
+TEST(Shard, SeparateProcessReadsTheSameData) {
   const Folder folder;
   const std::filesystem::path file = folder.path / "s.h5";
   for (const bool points : {false, true}) {
@@ -172,7 +172,7 @@ TEST(Shard, ReadApartIsTheSame) {
     EXPECT_EQ(apart.machine_base, here.machine_base);
   }
 }
-TEST(Shard, DamagedIsToldApart) {
+TEST(Shard, DistinguishesDamagedFiles) {
   const Folder folder;
   const std::filesystem::path file = folder.path / "s.h5";
   write_shard(file, test::sample_shard());

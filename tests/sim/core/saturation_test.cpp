@@ -41,7 +41,7 @@ TEST(QuadraticSaturation, FactorsThatHardlyDifferPutTheVertexBelowZero) {
   EXPECT_EQ(field_demand(0.3, 0.37, 1e-6), 0.0);
 }
 
-TEST(QuadraticSaturation, NoFactorAtRatedFluxIsNone) {
+TEST(QuadraticSaturation, ZeroFactorAtRatedFluxMeansNoSaturation) {
   EXPECT_EQ(field_demand(0.0, 1.0, 1.2), 0.0);
   EXPECT_FALSE(QuadraticSaturation::possible(1.0, 0.8));
 }

@@ -70,7 +70,7 @@ TEST(Direct, FindsInertiaAndDampingOfClassicalMachines) {
   }
 }
 
-TEST(Direct, AStretchThatIsTooShortGivesNothing) {
+TEST(Direct, ReturnsNothing_WhenTheSegmentIsTooShort) {
   const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   Recording r = recorded(grid, 16, 2.063).front();
   for (auto* channel : {&r.V, &r.theta, &r.P, &r.Q, &r.speed, &r.Ifd}) channel->resize(270);

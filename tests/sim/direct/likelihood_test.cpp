@@ -82,7 +82,7 @@ TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
   EXPECT_LT(j.ratio, 1.6);
 }
 
-TEST(Likelihood, NamesMachinesThatItCannotPlay) {
+TEST(Likelihood, NamesUnsupportedMachines) {
   EXPECT_TRUE(has_likelihood(*library::compiled().find("GENROU")));
   EXPECT_TRUE(has_likelihood(*library::compiled().find("GENCLS")));
   EXPECT_FALSE(has_likelihood(*library::compiled().find("GENTPJ")));

@@ -112,7 +112,7 @@ TEST(Conformance, RecordsAreComplete) {
   }
 }
 
-TEST(Conformance, SteadyStateStandsStill) {
+TEST(Conformance, SteadyStateHasZeroDerivatives) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (const Effect* e : machines())
@@ -176,7 +176,7 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
   }
 }
 
-TEST(Conformance, StatesStandStillWithoutTheirMovers) {
+TEST(Conformance, StatesStayConstantWithoutTheirMovers) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int tested = 0;
@@ -251,7 +251,7 @@ TEST(Conformance, DualsEqualCentralDifferences) {
     }
 }
 
-TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
+TEST(Conformance, InfluenceVanishesAtNullValue) {
   // All parameters with a neutral value at neutral, then a hair away: outputs may move by that hair only.
   for (const Effect* e : machines()) {
     auto null_value = e->default_parameters();

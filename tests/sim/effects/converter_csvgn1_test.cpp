@@ -45,7 +45,7 @@ struct Compensator {
   std::string refused;
 };
 
-TEST(ConverterCsvgn1, DeliversItsCapacitorLessItsReactor) {
+TEST(ConverterCsvgn1, OutputIsCapacitorMinusReactor) {
   const std::complex<double> v = std::polar(1.04, 0.3), power(-0.01, 0.25);  // 100 MVA, 60 Mvar of capacitor
   Compensator svc({}, v, std::conj(power / v));
   ASSERT_TRUE(svc.problems.empty());
@@ -57,7 +57,7 @@ TEST(ConverterCsvgn1, DeliversItsCapacitorLessItsReactor) {
   EXPECT_NEAR(std::abs(svc.power() - power * square), 0.0, 1e-14);
 }
 
-TEST(ConverterCsvgn1, ItsRegulatorFollowsTheDiagram) {
+TEST(ConverterCsvgn1, RegulatorFollowsTheDiagram) {
   Compensator svc({{"T1", 0.3}, {"T2", 0.5}, {"T4", 2.0}, {"K", 10.0}}, 1.0, {0.0, -0.3});
   svc.at(1.02);
   auto dx = svc.derivative();
@@ -70,7 +70,7 @@ TEST(ConverterCsvgn1, ItsRegulatorFollowsTheDiagram) {
     EXPECT_NEAR(d, 0.0, 1e-11);
 }
 
-TEST(ConverterCsvgn1, ItsLimitsAreThoseOfTheReactor) {
+TEST(ConverterCsvgn1, LimitsAreThoseOfTheReactor) {
   Compensator svc({{"RMIN", 20.0}}, 1.0, {0.0, -0.3});
   EXPECT_EQ(svc.c[static_cast<std::size_t>(svc.effect.states[2].low)], 0.2);
   EXPECT_EQ(svc.c[static_cast<std::size_t>(svc.effect.states[2].high)], 1.0);

@@ -82,7 +82,7 @@ struct Distributed {
   std::string refused;
 };
 
-TEST(ConverterDera1, StandsAndRidesThroughASag) {
+TEST(ConverterDera1, StaysAtOperatingPointAndRidesThroughASag) {
   Distributed der;
   ASSERT_TRUE(der.problems.empty());
   ASSERT_EQ(der.refused, "");
@@ -94,7 +94,7 @@ TEST(ConverterDera1, StandsAndRidesThroughASag) {
   EXPECT_EQ(der.state("least"), 0.49);
 }
 
-TEST(ConverterDera1, APartIsOffBetweenItsVoltagesAndAShareStaysOff) {
+TEST(ConverterDera1, LowVoltageTripsAPartAndAFractionReconnects) {
   const DeraChanges sags = {{"Kqv", 0.0}, {"freqFlag", 0.0}, {"Imax", 2.0}};
   Distributed brief(sags);
   brief.run(0.2, 0.465);  // below Vl1 for 0.14 s, as the voltmeter sees it
@@ -125,7 +125,7 @@ TEST(ConverterDera1, HighVoltageMirrorsLowVoltage) {
   EXPECT_NEAR(der.state("M"), 0.0, 1e-6);
 }
 
-TEST(ConverterDera1, BelowVl0ForTvl0NothingComesBack) {
+TEST(ConverterDera1, NothingReconnectsAfterTvl0BelowVl0) {
   Distributed brief({{"freqFlag", 0.0}}), lasting({{"freqFlag", 0.0}});
   brief.run(0.12, 0.2);
   EXPECT_LT(brief.state("M"), 0.1);
@@ -170,7 +170,7 @@ TEST(ConverterDera1, FrequencyTripsUnlessTheVoltageIsLow) {
   EXPECT_NEAR(low.state("M"), 1.0, 1e-6);
 }
 
-TEST(ConverterDera1, AtImaxTheFlagSaysWhichCurrentYields) {
+TEST(ConverterDera1, FlagSetsCurrentPriorityAtImax) {
   for (const bool p_first : {false, true}) {
     Distributed der({{"freqFlag", 0.0}, {"vtripFlag", 0.0}, {"Imax", 0.8}, {"pqFlag", p_first ? 1.0 : 0.0}});
     der.run(1.0, 0.8);  // 0.75 and 0.9375 pu are asked for
@@ -191,7 +191,7 @@ TEST(ConverterDera1, ActiveCurrentRisesByItsRate) {
   EXPECT_NEAR(der.state("Ip") - early, 0.25, 1e-6);
 }
 
-TEST(ConverterDera1, BatteriesDrawAndGeneratorsDoNot) {
+TEST(ConverterDera1, OnlyBatteriesDrawPower) {
   EXPECT_NE(Distributed({}, {-0.3, 0.0}).refused.find("genFlag"), std::string::npos);
   Distributed battery({{"genFlag", 0.0}, {"Pmin", -1.1}}, {-0.3, 0.0});
   EXPECT_EQ(battery.refused, "");
@@ -199,7 +199,7 @@ TEST(ConverterDera1, BatteriesDrawAndGeneratorsDoNot) {
   EXPECT_NEAR(battery.power().real(), -0.3, 1e-6);
 }
 
-TEST(ConverterDera1, RefusesWhatItCannotHold) {
+TEST(ConverterDera1, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(Distributed({{"Imax", 0.5}}).refused.find("Imax"), std::string::npos);
   EXPECT_NE(Distributed({{"Vl1", 1.02}}).refused.find("Vl1"), std::string::npos);
   EXPECT_NE(Distributed({{"ftripFlag", 1.0}, {"fh", 59.0}}).refused.find("fh"), std::string::npos);

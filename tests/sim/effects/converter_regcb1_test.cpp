@@ -15,7 +15,7 @@ struct Behind : BehindImpedance {
   std::complex<double> current(std::complex<double> v) { return BehindImpedance::current(v, v); }
 };
 
-TEST(ConverterRegcb1, RestsWhereItIsCommanded) {
+TEST(ConverterRegcb1, StartsAtItsCommands) {
   for (const double rate_flag : {0.0, 1.0}) {
     Behind b({{"rateFlag", rate_flag}, {"Re", 0.02}});
     ASSERT_TRUE(b.problems.empty());
@@ -25,7 +25,7 @@ TEST(ConverterRegcb1, RestsWhereItIsCommanded) {
   }
 }
 
-TEST(ConverterRegcb1, AVoltageThatFallsDrivesCurrentThroughTheReactance) {
+TEST(ConverterRegcb1, VoltageDropDrivesCurrentThroughTheReactance) {
   Behind b({});
   // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current, at once
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
@@ -36,7 +36,7 @@ TEST(ConverterRegcb1, AVoltageThatFallsDrivesCurrentThroughTheReactance) {
   expect_near(at_once.current(0.95), {0.6, 0.2}, 1e-13);
 }
 
-TEST(ConverterRegcb1, TheLeadingCurrentTakesItsPart) {
+TEST(ConverterRegcb1, PriorityCurrentIsLimitedLast) {
   Behind q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
   expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);

@@ -19,7 +19,7 @@ struct Locked : BehindImpedance {
   std::complex<double> current(std::complex<double> v) { return BehindImpedance::current(v, 1.0); }
 };
 
-TEST(ConverterRegcc1, RestsWhereItIsCommanded) {
+TEST(ConverterRegcc1, StartsAtItsCommands) {
   for (const double rate_flag : {0.0, 1.0})
     for (const double te : {0.0, 0.02}) {
       Locked b({{"rateFlag", rate_flag}, {"Re", 0.02}, {"Te", te}});
@@ -30,7 +30,7 @@ TEST(ConverterRegcc1, RestsWhereItIsCommanded) {
     }
 }
 
-TEST(ConverterRegcc1, TheLoopFollowsAnAngleThatJumps) {
+TEST(ConverterRegcc1, PllFollowsAnAngleStep) {
   Locked b({{"Kppll", 8.0}, {"Kipll", 600.0}});
   const double across = std::sin(0.1);
   auto dx = b.slopes(std::polar(1.0, 0.1));
@@ -44,7 +44,7 @@ TEST(ConverterRegcc1, TheLoopFollowsAnAngleThatJumps) {
   EXPECT_NEAR(dx[phi], 2.0, 1e-13);  // locked on a frequency that is 2 rad/s too high
   EXPECT_NEAR(dx[w], 0.0, 1e-11);
 }
-TEST(ConverterRegcc1, TheLoopHasLimitsAndStandsStillAtLowVoltage) {
+TEST(ConverterRegcc1, PllIsLimitedAndFrozenAtLowVoltage) {
   Locked b({{"Kppll", 100.0}, {"wmax", 3.0}, {"wmin", -4.0}});
   auto dx = b.slopes(std::polar(1.0, 0.1));  // 100 sin 0.1 = 9.98 rad/s asked
   EXPECT_EQ(dx[phi], 3.0);
@@ -60,7 +60,7 @@ TEST(ConverterRegcc1, TheLoopHasLimitsAndStandsStillAtLowVoltage) {
   EXPECT_NEAR(frozen.slopes(std::polar(0.301, 0.1))[w], 600.0 * 0.301 * std::sin(0.1), 1e-11);
 }
 
-TEST(ConverterRegcc1, AVoltageThatMovesDrivesCurrentThroughTheReactance) {
+TEST(ConverterRegcc1, VoltageChangeDrivesCurrentThroughTheReactance) {
   Locked b({});
   // 0.05 pu less at a held inner voltage: 0.05/0.25 pu more reactive current, at once
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
@@ -71,7 +71,7 @@ TEST(ConverterRegcc1, AVoltageThatMovesDrivesCurrentThroughTheReactance) {
   b.x[phi] = 0.02;
   expect_near(b.BehindImpedance::current(v, v), {0.6, 0.2}, 1e-13);
 }
-TEST(ConverterRegcc1, TheControlMovesTheInnerVoltage) {
+TEST(ConverterRegcc1, CurrentControlMovesTheInnerVoltage) {
   Locked b({{"Kip", 2.0}, {"Kii", 30.0}, {"Re", 0.02}, {"Te", 0.01}});
   b.x[Ip] = 0.7;  // 0.1 pu of active and 0.05 pu of reactive current more than flows
   b.x[Iq] = 0.25;
@@ -89,14 +89,14 @@ TEST(ConverterRegcc1, TheControlMovesTheInnerVoltage) {
               1e-14);
 }
 
-TEST(ConverterRegcc1, TheLeadingCurrentTakesItsPart) {
+TEST(ConverterRegcc1, PriorityCurrentIsLimitedLast) {
   Locked q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
   expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);
   expect_near(p_leads.current(0.7), {0.6, 0.8}, 1e-13);
   expect_near(q_leads.current(0.5), {0.025, 1.0}, 1e-13);
 }
-TEST(ConverterRegcc1, TheIntegralsStopWithinImax) {
+TEST(ConverterRegcc1, IntegralsAreLimitedByImax) {
   Locked b({{"Imax", 1.0}, {"Kip", 1.0}, {"Kii", 30.0}, {"Te", 0.02}});
   b.x[Iq] = 0.9;  // 0.7 pu more than flows: with the integral's 0.2 pu 0.9 pu, which leave sqrt(0.19) pu
   b.x[Sp] = 0.6;

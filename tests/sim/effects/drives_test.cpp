@@ -25,7 +25,7 @@ Signals<double> at(const char* name, const Values& p, double t) {
   return s;
 }
 
-TEST(Drives, StepsStandBetweenTheirInstants) {
+TEST(Drives, StepsLastBetweenTheirSwitchingTimes) {
   for (const auto& [t, value] :
        {std::pair{1.9999, 0.0}, {2.0, 0.03}, {2.9999, 0.03}, {3.0, 0.0}, {-1.0, 0.0}}) {
     EXPECT_EQ(at("VREFSTEP", {0.03, 2.0, 3.0}, t).dVref, value) << t;
@@ -33,7 +33,7 @@ TEST(Drives, StepsStandBetweenTheirInstants) {
   }
 }
 
-TEST(Drives, RampsAreStraightAndStay) {
+TEST(Drives, RampsAreLinearAndKeepTheirFinalValue) {
   for (const auto& [t, value] : {std::pair{1.9, 0.0}, {2.0, 0.0}, {3.0, 0.01}, {4.0, 0.02}, {9.0, 0.02}}) {
     EXPECT_DOUBLE_EQ(at("VREFRAMP", {0.02, 2.0, 2.0}, t).dVref, value) << t;
     EXPECT_DOUBLE_EQ(at("PREFRAMP", {0.02, 2.0, 2.0}, t).dPref, value) << t;
@@ -56,7 +56,7 @@ TEST(Drives, AgcMovesAddUp) {
     EXPECT_NEAR(at("AGCMOVES", p, t).dPref, value, 1e-15) << t;  // sums of six numbers
 }
 
-TEST(Drives, FastValvingClosesHoldsAndReopens) {
+TEST(Drives, FastValvingClosesWaitsAndReopens) {
   const Values p = {0.5, 1.0, 0.2, 0.3, 2.0};
   for (const auto& [t, value] :
        {std::pair{0.99, 0.8}, {1.1, 0.6}, {1.2, 0.4}, {1.5, 0.4}, {2.5, 0.6}, {3.5, 0.8}, {9.0, 0.8}})
@@ -70,7 +70,7 @@ TEST(Drives, ForcedOscillationIsASine) {
     EXPECT_NEAR(at("FORCEDOSC", p, t).Tm, value, 1e-14) << t;
 }
 
-TEST(Drives, EveryJumpAndKinkIsNamed) {
+TEST(Drives, EveryStepAndKinkIsListed) {
   const auto instants = [](const char* name, const Values& p) {
     return library::compiled().find(name)->instants(nullptr, p.data());
   };
@@ -82,7 +82,7 @@ TEST(Drives, EveryJumpAndKinkIsNamed) {
             (Values{1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 17.0, 19.0, 21.0, 23.0}));
 }
 
-TEST(Drives, RefuseWhatCannotBe) {
+TEST(Drives, RefuseImpossibleParameters) {
   const auto count = [](const char* name, const Values& p) {
     Problems problems;
     library::compiled().find(name)->check(nullptr, p.data(), "here", problems);
@@ -187,7 +187,7 @@ TEST(Drives, FastValvingActsAfterTheGovernor) {
 }
 
 /// A classical machine swings linearly for a small torque: speed = A s / (2 H s^2 + D s + w0 Ks).
-TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
+TEST(Drives, ForcedOscillationMatchesTheLinearModel) {
   grid::Grid grid = test::two_machine_grid(Conventions::andes());
   plant::Plant& plant = grid.plants[1];
   constexpr double H = 3.0, D = 20.0, A = 1e-4, f = 0.7, start = 1.0, x = 0.25;
@@ -222,7 +222,7 @@ TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
   EXPECT_GT(operating.Tm, 0.0);
 }
 
-TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
+TEST(Drives, HaveNoEffectBeforeTheirFirstSwitchingTime) {
   const std::vector<std::pair<const char*, std::pair<Values, Values>>> drives = {
       {"VREFSTEP", {{0.05, 2.0, 3.0}, {0.0, 2.0, 3.0}}},
       {"VREFRAMP", {{0.05, 2.0, 1.0}, {0.0, 2.0, 1.0}}},

@@ -19,7 +19,7 @@ Signals<double> at_rated(double reactive = 0.1) {
   return s;
 }
 
-TEST(Reecd1, WithoutItsOwnPartsItIsReecb1) {
+TEST(Reecd1, EqualsReecb1_WhenItsOwnPartsAreOff) {
   for (const Values& flags : {Values{{"QFLAG", 1.0}, {"VFLAG", 1.0}, {"Kqp", 0.2}},
                               {{"QFLAG", 1.0}, {"VFLAG", 0.0}},
                               {{"QFLAG", 0.0}, {"PQFLAG", 1.0}}}) {
@@ -45,7 +45,7 @@ TEST(Reecd1, WithoutItsOwnPartsItIsReecb1) {
   }
 }
 
-TEST(Reecd1, HoldsTheVoltageBehindItsImpedanceOrWithADroop) {
+TEST(Reecd1, RegulatesTheVoltageBehindItsImpedanceOrWithDroop) {
   const Values regulates = {{"QFLAG", 1.0}, {"VFLAG", 0.0}, {"Kvp", 0.0},
                             {"Kvi", 5.0},   {"Tr1", 0.1},   {"Kc", 0.2}};
   for (const double flag : {1.0, 0.0}) {
@@ -98,7 +98,7 @@ TEST(Reecd1, AfterADipItKeepsTheActiveCurrent) {
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);
 }
 
-TEST(Reecd1, BlocksOutsideItsVoltagesAndAWhileAfter) {
+TEST(Reecd1, BlocksOutsideItsVoltageRangeAndForADelayAfterwards) {
   ControlBench bench("REECD1", {{"Vblkl", 0.5}, {"Vblkh", 1.3}, {"Tblk", 0.3}, {"Trv", 0.0}, {"Kqv", 2.0}},
                      at_rated());
   ASSERT_EQ(bench.refused, "");

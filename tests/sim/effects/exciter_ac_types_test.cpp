@@ -27,7 +27,7 @@ TEST(ExciterAcTypes, Exac2ClosesItsInnerLoop) {
   }
 }
 
-TEST(ExciterAcTypes, Exac2EndsWhereItsLimiterBalancesTheField) {
+TEST(ExciterAcTypes, Exac2CeilingIsWhereItsLimiterBalancesTheField) {
   auto values = kExac2;
   values["VLR"] = 5.0;
   ControlBench bench("EXAC2", values);
@@ -57,7 +57,7 @@ TEST(ExciterAcTypes, Esac6aTransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterAcTypes, Esac6aFieldLimiterTakesWithinItsBounds) {
+TEST(ExciterAcTypes, Esac6aFieldLimiterActsWithinItsBounds) {
   auto values = kEsac6a;
   values["VFELIM"] = 8.0;
   values["KH"] = 10.0;
@@ -71,7 +71,7 @@ TEST(ExciterAcTypes, Esac6aFieldLimiterTakesWithinItsBounds) {
   EXPECT_NEAR(bench.out().Efd, (Vfe - 0.3 * 2.0) / 1.2, 1e-6);
 }
 
-TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseAtOnce) {
+TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseWithoutDelay) {
   auto values = kEsac6a;
   values["KH"] = 0.0;
   values["VRMAX"] = 20.0;

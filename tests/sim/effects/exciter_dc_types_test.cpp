@@ -10,7 +10,7 @@ const ControlBench::Changes kLinearDc = {{"TR", 0.03}, {"KA", 60.0}, {"TA", 0.08
                                          {"TC", 0.7},  {"KE", 0.9},  {"TE", 0.7},  {"KF", 0.05},
                                          {"TF", 0.9},  {"SE1", 0.0}, {"SE2", 0.0}};
 
-TEST(ExciterDcTypes, LeadLagStandsBeforeTheRegulator) {
+TEST(ExciterDcTypes, LeadLagPrecedesTheRegulator) {
   for (const char* name : {"IEEEX1", "ESDC1A", "ESDC2A"})
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
       ControlBench bench(name, kLinearDc);
@@ -29,7 +29,7 @@ TEST(ExciterDcTypes, LeadLagStandsBeforeTheRegulator) {
     }
 }
 
-TEST(ExciterDcTypes, WithoutItsLeadLagIeeex1IsIeeet1) {
+TEST(ExciterDcTypes, Ieeex1EqualsIeeet1_WithoutLeadLag) {
   const ControlBench::Changes same = {{"KA", 50.0}, {"TA", 0.1}, {"KF", 0.04}, {"E1", 3.0},
                                       {"SE1", 0.1}, {"E2", 4.0}, {"SE2", 0.3}};
   auto bypassed = same;
@@ -43,7 +43,7 @@ TEST(ExciterDcTypes, WithoutItsLeadLagIeeex1IsIeeet1) {
   }
 }
 
-TEST(ExciterDcTypes, OnlyTheTypesOf1992EndAtZero) {
+TEST(ExciterDcTypes, OnlyTypesOf1992LimitEfdAtZero) {
   for (const auto& [name, ends] :
        {std::pair{"IEEEX1", false}, {"ESDC1A", true}, {"EXDC2", false}, {"ESDC2A", true}}) {
     ControlBench bench(name, {{"VRMIN", -5.0}, {"TB", 0.0}});

@@ -46,7 +46,7 @@ TEST(ExciterEsst3a, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterEsst3a, CeilingIsVmmaxTimesTheSourceAndIsLeftAtOnce) {
+TEST(ExciterEsst3a, CeilingIsVmmaxTimesTheSourceAndReleasesWithoutDelay) {
   ControlBench bench("ESST3A", esst3a_with({{"VMMAX", 0.6}, {"VMMIN", -0.2}, {"TB", 0.0}, {"TC", 0.0}}));
   bench.in.dVref = 0.15;
   bench.run(10.0);

@@ -77,7 +77,7 @@ TEST(ExciterEsst4b, SourceIsLimitedByVbmax) {
   EXPECT_NEAR(bench.out().Efd, 0.8 * 4.0, 1e-14);
 }
 
-TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
+TEST(ExciterEsst4b, RegulatorsDoNotWindUpAndReleaseWithoutDelay) {
   ControlBench bench("ESST4B", esst4b_with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
   bench.in.dVref = 0.1;
   bench.run(30.0);

@@ -56,7 +56,7 @@ TEST(ExciterExdc2, ReleaseIsThatOfALimiterWithoutWindUp) {
   EXPECT_LE(bench.state("Vr"), falling(0.008));
 }
 
-TEST(ExciterExdc2, LimitTakesTheRegulatorAlongWhenItFallsWithV) {
+TEST(ExciterExdc2, FallingLimitPullsTheRegulatorDown) {
   ControlBench bench("EXDC2", kRegulator);
   const double rest = bench.state("Vr");
   bench.in.dVref = 0.2;
@@ -71,7 +71,7 @@ TEST(ExciterExdc2, LimitTakesTheRegulatorAlongWhenItFallsWithV) {
   EXPECT_GT(bench.state("Vr"), 4.0);
 }
 
-TEST(ExciterExdc2, ZerosAreFoundAsPsseFindsThem) {
+TEST(ExciterExdc2, ZeroLimitsAndKeAreComputedAsInPsse) {
   ControlBench limit("EXDC2", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});  // VRMAX = (0.5 + 1) 5
   limit.in.dVref = 5.0;
   limit.run(60.0);

@@ -62,14 +62,14 @@ TEST(ExciterExpic1, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterExpic1, ABridgeFollowsTheVoltageAndItsRectifier) {
+TEST(ExciterExpic1, BridgeFollowsVoltageAndRectifierLoading) {
   ControlBench bench("EXPIC1", {{"KC", 0.1}});
   bench.in.V = bench.in.Vr = 0.8;  // what the exciter regulates stays
   const double vr = 2.0 / (6.5 - 0.2 / std::sqrt(3.0));
   EXPECT_NEAR(bench.out().Efd, vr * (0.8 * 6.5 - 0.2 / std::sqrt(3.0)), 1e-12);
 }
 
-TEST(ExciterExpic1, NothingWindsUp) {
+TEST(ExciterExpic1, IntegralsDoNotWindUp) {
   ControlBench bench("EXPIC1", {{"VR1", 0.8}, {"KC", 0.0}});
   bench.in.dVref = 0.1;
   bench.run(20.0);

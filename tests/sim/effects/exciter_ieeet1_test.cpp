@@ -35,7 +35,7 @@ TEST(ExciterIeeet1, CeilingIsWhereSaturationBalancesVrmaxAndReleaseIsImmediate) 
   EXPECT_LT(bench.state("Vr"), 5.2);
 }
 
-TEST(ExciterIeeet1, ZerosAreFoundAsPsseFindsThem) {
+TEST(ExciterIeeet1, ZeroLimitsAndKeAreComputedAsInPsse) {
   // VRMAX = (0.5 + 1) 5
   ControlBench limit("IEEET1", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});
   limit.in.dVref = 5.0;

@@ -38,7 +38,7 @@ TEST(ExciterIeeet3, TransferFunctionIsTheDiagrams) {
     }
 }
 
-TEST(ExciterIeeet3, TheSourceFollowsVoltageAndCurrentAndEnds) {
+TEST(ExciterIeeet3, SourceFollowsVoltageAndCurrentAndIsLimited) {
   ControlBench bench("IEEET3", {{"KF", 0.0}});
   bench.in.dVref = -1.0;  // Vr goes to its lower limit
   bench.in.V = bench.in.Vr = 1.2;

@@ -36,7 +36,7 @@ TEST(ExciterSexs, EveryInputEntersWithItsSign) {
   }
 }
 
-TEST(ExciterSexs, CeilingHoldsWithoutWindUpAndReleasesAtOnce) {
+TEST(ExciterSexs, CeilingDoesNotWindUpAndReleasesWithoutDelay) {
   ControlBench bench("SEXS", {{"TAoverTB", 1.0}, {"TB", 0.0}, {"K", 100.0}, {"TE", 0.5}, {"EMAX", 4.0}});
   bench.in.Vc = 0.8;  // K * 0.2 = 20 pu asked for above the operating point
   bench.run(10.0);

@@ -51,7 +51,7 @@ TEST(ExciterSt5b, CeilingsMoveWithTheVoltage) {
   EXPECT_DOUBLE_EQ(bench.out().Efd, -0.6 * 4.0);
 }
 
-TEST(ExciterSt5b, NothingWindsUp) {
+TEST(ExciterSt5b, IntegralsDoNotWindUp) {
   ControlBench bench("ST5B", st5b_with({}));
   bench.in.dVref = 1.0;
   bench.in.V = 0.6;

@@ -13,7 +13,7 @@ C engine(double omega, double delay) {
          lead_over_lag(0.0, 0.05, omega) * std::exp(-delay * s);
 }
 
-TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
+TEST(GovernorDiesel, IsochronousGovernorIntegratesTheSpeed) {
   for (const double omega : {0.3, 1.0, 7.0, 30.0}) {
     ControlBench bench("DEGOV", kDiesel);
     ASSERT_TRUE(bench.problems.empty());
@@ -26,7 +26,7 @@ TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
   }
 }
 
-TEST(GovernorDiesel, WithoutDelayAndControlBoxItIsTheActuator) {
+TEST(GovernorDiesel, EqualsTheActuator_WithoutDelayAndControlBox) {
   auto values = kDiesel;
   values["TD"] = values["T1"] = values["T2"] = values["T3"] = 0.0;
   for (const double omega : {0.3, 7.0}) {
@@ -38,7 +38,7 @@ TEST(GovernorDiesel, WithoutDelayAndControlBoxItIsTheActuator) {
   }
 }
 
-TEST(GovernorDiesel, DelayPassesAStepLate) {
+TEST(GovernorDiesel, DelayShiftsAStep) {
   ControlBench bench("DEGOV", {{"TD", 1.0},
                                {"K", 1.0},
                                {"T1", 0.0},

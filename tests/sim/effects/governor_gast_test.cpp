@@ -18,7 +18,7 @@ TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
   }
 }
 
-TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
+TEST(GovernorGast, TemperatureLimitsThePowerAndReleases) {
   ControlBench bench("GAST", kGastValues);
   bench.in.speed = -0.02;  // droop asks for 1.2 pu
   bench.run(0.3);
@@ -31,7 +31,7 @@ TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-8);  // exp(-60/3) of 0.1
 }
 
-TEST(GovernorGast, FuelValveStopsAtItsEndsWithoutWindUp) {
+TEST(GovernorGast, FuelValveStopsAtItsLimitsWithoutWindUp) {
   ControlBench bench("GAST", kGastValues);
   bench.in.speed = 0.1;  // droop asks for -1.2 pu
   bench.run(10.0);
@@ -51,7 +51,7 @@ TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05 / 0.4, 1e-12);
 }
 
-TEST(GovernorGast, StandsAtItsTemperatureLimitWhateverThePowerFlowRounds) {
+TEST(GovernorGast, ToleratesRoundingAtTheTemperatureLimit) {
   auto at = ControlBench::rated();
   at.Tm = 0.9 + 1e-12;
   ControlBench bench("GAST", kGastValues, at);

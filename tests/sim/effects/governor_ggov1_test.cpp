@@ -64,7 +64,7 @@ TEST(GovernorGgov1, BaseOfTheTurbineRating) {
 }
 
 /// Load limiter: however low the speed, the measured exhaust settles where it is Ldref/Kturb + Wfnl.
-TEST(GovernorGgov1, LoadLimiterHoldsItsReferenceAndLetsGo) {
+TEST(GovernorGgov1, LoadLimiterRegulatesToItsReferenceAndReleases) {
   ControlBench bench = bench_with({{"Ldref", 0.9}, {"Dm", 0.0}, {"Rselect", 0.0}, {"Aset", 99.0}});
   bench.in.speed = -0.003;  // isochronous: the governor would open to Vmax
   bench.run(200.0);
@@ -91,7 +91,7 @@ TEST(GovernorGgov1, IntegralsDoNotWindUp) {
   EXPECT_NEAR(bench.state("integral"), 1.0 - 1.5 * 0.02 * 0.5, 1e-9);
 }
 
-TEST(GovernorGgov1, ValveKeepsItsSpeedsAndEnds) {
+TEST(GovernorGgov1, ValveRespectsRateAndPositionLimits) {
   ControlBench bench = bench_with({{"Ropen", 0.05}, {"Rclose", -0.2}, {"Ka", 0.0}});
   const double start = bench.state("valve");
   bench.in.speed = -0.02;

@@ -63,7 +63,7 @@ TEST(GovernorHyg3, TransferFunctionsAreTheDiagrams) {
   }
 }
 
-TEST(GovernorHyg3, TheCurveBeginsAtNothingAndEndsAtEverything) {
+TEST(GovernorHyg3, GateCurveSpansZeroToFullPower) {
   const auto gate = [](double pm, const Values& more) {
     Signals<double> at = ControlBench::rated();
     at.Tm = at.P = pm;
@@ -81,7 +81,7 @@ TEST(GovernorHyg3, TheCurveBeginsAtNothingAndEndsAtEverything) {
   EXPECT_NEAR(gate(0.7, none), 0.7, 1e-14);
 }
 
-TEST(GovernorHyg3, BandIsInHertzAndBacklashInMegawatts) {
+TEST(GovernorHyg3, DeadBandIsInHertzAndBacklashInMegawatts) {
   ControlBench bench(
       "HYG3", hyg3_with({{"DBH", 0.06}, {"DBL", -0.12}, {"DTURB", 0.0}, {"RELEC", 0.0}, {"db2", 2.0}}));
   const double before = bench.state("gate");
@@ -97,7 +97,7 @@ TEST(GovernorHyg3, BandIsInHertzAndBacklashInMegawatts) {
   EXPECT_NEAR(bench.state("position"), before + 0.002 / 0.04, 1e-5);
 }
 
-TEST(GovernorHyg3, GateKeepsItsVelocitiesAndLimits) {
+TEST(GovernorHyg3, GateRespectsVelocityAndPositionLimits) {
   for (const double flag : {1.0, 0.0}) {
     ControlBench bench(
         "HYG3",

@@ -33,7 +33,7 @@ TEST(GovernorHygov, PermanentDroop) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 1.2 * 0.1 + 0.4 * 0.005 * bench.state("gate"), 1e-8);
 }
 
-TEST(GovernorHygov, GateMovesNoFasterThanItsVelocityLimitAndStopsAtItsEnd) {
+TEST(GovernorHygov, GateRespectsVelocityAndPositionLimits) {
   ControlBench bench("HYGOV", kHygovValues);
   const double before = bench.state("desired");
   bench.in.speed = -0.2;

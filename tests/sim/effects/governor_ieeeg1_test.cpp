@@ -42,7 +42,7 @@ TEST(GovernorIeeeg1, DroopBeyondTheDeadBand) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 20.0 * 0.002, 1e-10);  // exp(-200/7) of 0.04 is 2e-14
 }
 
-TEST(GovernorIeeeg1, ValveKeepsItsSpeedsAndComesOffItsEndAtOnce) {
+TEST(GovernorIeeeg1, ValveRespectsRateLimitsAndLeavesItsEndWithoutDelay) {
   ControlBench bench("IEEEG1", kIeeeg1Values);
   bench.in.speed = -0.05;
   bench.run(0.5);

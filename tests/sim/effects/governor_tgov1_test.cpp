@@ -40,7 +40,7 @@ TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 0.001 / 0.05, 1e-12);  // exp(-30 / 0.8) is below
 }
 
-TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemAtOnce) {
+TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemWithoutDelay) {
   auto values = kTgov1Values;
   values["T2"] = values["T3"] = 0.0;  // no reheater: the valve is the power
   ControlBench bench("TGOV1", values);

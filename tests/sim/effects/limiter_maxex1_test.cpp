@@ -66,7 +66,7 @@ TEST(LimiterMaxex1, TimerResetsBelowPickupUnlessOperated) {
 }
 
 /// Of a plant: the exciter stands behind the limiter, which yet measures what it makes.
-TEST(LimiterMaxex1, MeasuresWhatTheExciterMakesNow) {
+TEST(LimiterMaxex1, MeasuresThePresentFieldVoltage) {
   plant::Plant plant;
   plant.bus = 0;
   plant.generation = {0.6, 0.15};

@@ -65,7 +65,7 @@ TEST(LimiterMaxex2, RefusesUnsupportedParameters) {
   EXPECT_EQ(ControlBench("MAXEX2", {{"M", 2.0}, {"EFD2", 1.0}, {"TIME2", 90.0}}).problems.list().size(), 3u);
 }
 
-TEST(LimiterMaxex2, LimitsTheFieldVoltageWhereMSaysSo) {
+TEST(LimiterMaxex2, LimitsTheFieldVoltage_WhenMSelectsIt) {
   ControlBench::Changes values = kMaxex2Values;
   values["M"] = 0.0;
   ControlBench bench("MAXEX2", values);

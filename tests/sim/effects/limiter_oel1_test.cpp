@@ -29,7 +29,7 @@ TEST(LimiterOel1, TimeIsInverseOrDefinite) {
   EXPECT_GE(oel1_operates_after({}, 2.79), 200.0);
 }
 
-TEST(LimiterOel1, RampsBackUntilWhatMayLastAndIsHeldThere) {
+TEST(LimiterOel1, RampsToThePermanentLimitAndIsClampedThere) {
   ControlBench bench("OEL1", values({}));
   bench.in.Ifd = 3.8;
   bench.run(11.0, 0.01);
@@ -50,7 +50,7 @@ TEST(LimiterOel1, RampsBackUntilWhatMayLastAndIsHeldThere) {
   EXPECT_NEAR(bench.out().Vlimiter, held - 1.0 / 50.0, 3e-4);
 }
 
-TEST(LimiterOel1, NegativeRunbackIsAStepThatStays) {
+TEST(LimiterOel1, NegativeRunbackIsALastingStep) {
   ControlBench bench("OEL1", values({{"Runback", -0.03}}));
   bench.in.Ifd = 3.8;
   bench.run(9.9, 0.01);
@@ -62,7 +62,7 @@ TEST(LimiterOel1, NegativeRunbackIsAStepThatStays) {
   EXPECT_NEAR(bench.out().Vlimiter, -0.03, 1e-8);
 }
 
-TEST(LimiterOel1, TimerStandsBetweenWhatMayLastAndPickup) {
+TEST(LimiterOel1, TimerPausesBetweenPermanentLimitAndPickup) {
   ControlBench bench("OEL1", values({}));
   bench.in.Ifd = 3.8;
   bench.run(6.0, 0.01);
@@ -74,7 +74,7 @@ TEST(LimiterOel1, TimerStandsBetweenWhatMayLastAndPickup) {
   EXPECT_LT(bench.state("timer"), 1e-8);
 }
 
-TEST(LimiterOel1, TakesTheFieldVoltageAndKeepsStillAsAnAlarm) {
+TEST(LimiterOel1, MeasuresTheFieldVoltageAndHasNoOutputAsAlarm) {
   ControlBench voltage("OEL1", values({{"Vfdflag", 1.0}}));
   voltage.in.Ifd = 3.8;
   voltage.run(20.0, 0.01);

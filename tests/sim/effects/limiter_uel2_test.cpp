@@ -49,7 +49,7 @@ TEST(LimiterUel2, VoltageMovesTheLinesByItsExponents) {
             << k1 << " " << k2;
 }
 
-TEST(LimiterUel2, LeftOfTheAxisIsAMirrorOrTheFirstLine) {
+TEST(LimiterUel2, NegativePowerUsesAMirrorOrTheFirstLine) {
   const Values slope = {{"Q0", -0.5}, {"Q1", -0.2}};  // 1 pu/pu from (0, -0.5) on
   const auto with = [&](double quadrant) {
     Values all = slope;
@@ -105,7 +105,7 @@ TEST(LimiterUel2, WindsUpToItsLimitAndReturnsFromThere) {
   EXPECT_EQ(bench.out().Vlimiter, 0.0);
 }
 
-TEST(LimiterUel2, AVoltageNearNothingDoesNotBreakIt) { EXPECT_TRUE(std::isfinite(added({}, 0.0, 0.0, 0.0))); }
+TEST(LimiterUel2, StaysFiniteNearZeroVoltage) { EXPECT_TRUE(std::isfinite(added({}, 0.0, 0.0, 0.0))); }
 
 TEST(LimiterUel2, RefusesUnsupportedParameters) {
   auto weak = ControlBench::rated();

@@ -56,7 +56,7 @@ struct Motor {
 Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 
 /// Standard values: Ra 0.013, Xa 0.067, Xm 3.8, R1 0.009, X1 0.17; second cage R2 0.02, X2 0.3.
-TEST(LoadCim5, DrawsWhatItsEquivalentCircuitDrawsAndAShuntTheRest) {
+TEST(LoadCim5, MatchesItsEquivalentCircuitWithAShunt) {
   for (const int circuit : {0, 1, 2}) {
     Motor m(circuit == 0 ? Changes{} : Changes{{"IT", circuit}, {"R2", 0.02}, {"X2", 0.3}});
     const double s = m.o.x[X::slip];
@@ -108,7 +108,7 @@ TEST(LoadCim5, LoadTorqueSlowsAMotorWithoutFlux) {
 }
 
 /// Nearly without load the rotor's second current is the saturation's alone: i = (psi_m + Se psi'')/Xm.
-TEST(LoadCim5, SaturationTakesMagnetisingCurrent) {
+TEST(LoadCim5, SaturationIncreasesMagnetisingCurrent) {
   Motor m({{"Ra", 0.0}, {"E1", 0.8}, {"S1", 0.06}, {"E2", 1.0}, {"S2", 0.6}}, {1e-7, 0.3});
   // sqrt(psi Se) is a straight line through (0.8, sqrt 0.048) and (1, sqrt 0.6).
   const auto saturation = [](double psi) {

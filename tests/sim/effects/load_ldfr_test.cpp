@@ -45,11 +45,11 @@ TEST(LoadLdfr, PowerAndCurrentPartsFollowPowersOfTheFrequency) {
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v * f * f + 0.1 / f), 1e-12);
 }
 
-TEST(LoadLdfr, IsNothingAtZeroVoltage) {
+TEST(LoadLdfr, VanishesAtZeroVoltage) {
   EXPECT_EQ(drawn_by(consumer("LDFR", {{"Pi", 0.3}}), 0.0), Complex());
 }
 
-TEST(LoadCim6, IsCim5WithTheSameTorque) {
+TEST(LoadCim6, EqualsCim5_WithTheSameTorque) {
   const std::vector<std::pair<const char*, double>> torque = {{"A", 0.4}, {"B", 0.1},  {"D", 0.2},
                                                               {"E", 1.5}, {"C0", 0.3}, {"Mbase", 100.0}};
   const Complex v = std::polar(0.8, 0.25);

@@ -88,7 +88,7 @@ Changes with(Changes changes, const Changes& more) {
   return changes;
 }
 
-TEST(Svsmo1, StandsAtItsSusceptanceAndDeliversWithTheSquareOfTheVoltage) {
+TEST(Svsmo1, StartsAtItsSusceptanceAndFollowsTheSquareOfTheVoltage) {
   Bench bench({});
   EXPECT_NEAR(bench.B(), kB0, 1e-15);
   bench.run(2.0);
@@ -103,7 +103,7 @@ double after_a_step(double error, double t) {
   const double T1 = 0.02, T2 = 0.05, K = 20.0, e1 = std::exp(-t / T1), e2 = std::exp(-t / T2);
   return K * error * (t - T2 + T2 * e2 - T1 * (1 - e2) + T1 * (e1 - e2) / (1 - T2 / T1));
 }
-TEST(Svsmo1, ItsIntegralAnswersAStepByHand) {
+TEST(Svsmo1, IntegralResponseToAStepByHand) {
   Bench bench(kIntegral);
   bench.far -= 0.01;
   double t = 0.0;
@@ -118,7 +118,7 @@ TEST(Svsmo1, ItsIntegralAnswersAStepByHand) {
   EXPECT_NEAR(bench.B() - before, grows * 1.0, 1e-4);
 }
 
-TEST(Svsmo1, ItsSlopeLetsTheVoltageFallWithItsCurrent) {
+TEST(Svsmo1, SlopeLowersTheVoltageWithCurrent) {
   Bench bench(with(kIntegral, {{"Xc1", 0.05}}));
   bench.both(0.98);
   bench.run(20.0);
@@ -126,7 +126,7 @@ TEST(Svsmo1, ItsSlopeLetsTheVoltageFallWithItsCurrent) {
   EXPECT_NEAR(bench.B(), (kV0 + 0.05 * kV0 * kB0 - 0.98) / (0.05 * 0.98), 1e-6);
 }
 
-TEST(Svsmo1, ItsGainActsThroughTheLeadLagWithinTheErrorsLimits) {
+TEST(Svsmo1, GainActsThroughTheLeadLagWithinErrorLimits) {
   Bench bench({{"Kiv", 0.0},
                {"Kpv", 10.0},
                {"Xc1", 0.0},
@@ -143,7 +143,7 @@ TEST(Svsmo1, ItsGainActsThroughTheLeadLagWithinTheErrorsLimits) {
 }
 
 const Changes kQuick = {{"Bshrt", 1.1}, {"Bmax", 0.95}, {"Bmin", -0.3}, {"Tshrt", 0.5}};
-TEST(Svsmo1, ItDeliversMoreThanItCanLastForAShortTime) {
+TEST(Svsmo1, AllowsShortTermOverload) {
   Bench bench(kQuick);
   bench.both(0.8);
   bench.run(0.4);
@@ -157,7 +157,7 @@ TEST(Svsmo1, ItDeliversMoreThanItCanLastForAShortTime) {
   EXPECT_NEAR(bench.B(), -0.3, 1e-4);
 }
 
-TEST(Svsmo1, ALowVoltageLowersItsLimitAndTheDelayHoldsItThere) {
+TEST(Svsmo1, UndervoltageLowersTheLimitForTheDelay) {
   Bench bench(with(kQuick, {{"UVT", 0.0}, {"UVtm1", 0.2}, {"PLLdelay", 0.1}, {"UVSBmax", 0.18}}));
   bench.both(0.5);
   bench.run(0.15);
@@ -171,7 +171,7 @@ TEST(Svsmo1, ALowVoltageLowersItsLimitAndTheDelayHoldsItThere) {
   EXPECT_GT(bench.B(), 0.9);
 }
 
-TEST(Svsmo1, ItTripsForGood) {
+TEST(Svsmo1, TripsPermanently) {
   for (const auto& [volts, delay, quick] : {std::tuple{0.3, 0.6, 0.3}, {1.6, 0.4, 0.3}, {1.9, 0.1, 0.05}}) {
     Bench bench({{"UV1", 0.0},
                  {"UVT", 0.48},
@@ -194,7 +194,7 @@ TEST(Svsmo1, ItTripsForGood) {
   }
 }
 
-TEST(Svsmo1, ItsDeadBandSleepsUntilTheErrorIsLargeAndAgainOnceItWasSmall) {
+TEST(Svsmo1, DeadBandHasHysteresisAndADelay) {
   Bench bench(with(kIntegral, {{"Vdbd1", 0.02}, {"Vdbd2", 0.005}, {"Tdbd", 0.3}}));
   bench.far = kV0 - 0.015;
   bench.run(1.0);
@@ -241,7 +241,7 @@ TEST(Svsmo1, ReportsNeglectedParameters) {
   EXPECT_THAT(says({{"UV2", 0.3}}), HasSubstr("below UV2 = 0.3 pu"));
 }
 
-TEST(Svsmo1, ValuesThatNoEquationTakesAreRefused) {
+TEST(Svsmo1, RefusesInvalidValues) {
   for (const auto& [parameter, value] : {std::pair{"T2", 0.0},
                                          {"Bmax", 4.0},
                                          {"Bmin", 3.1},

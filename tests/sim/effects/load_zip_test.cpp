@@ -36,7 +36,7 @@ Complex drawn_by_zip(const plant::Consumer& load, Complex v) {
   return -v * std::conj(Complex(s.Ir, s.Ii));
 }
 
-TEST(LoadZip, DrawsItsPolynomial) {
+TEST(LoadZip, FollowsItsPolynomial) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}, {"Qi", 0.2}, {"Qp", 0.1}});
   const double v = 0.9 / 0.98;
   const Complex s = drawn_by_zip(load, std::polar(0.9, 0.3));
@@ -49,7 +49,7 @@ double current_left(double v) {
   return 1.502 * 1.769 * std::pow(v, 0.769) * std::exp(-1.502 * std::pow(v, 1.769));
 }
 
-TEST(LoadZip, GivesWayBelowItsThresholdsAsPsseDoesAndIsNothingAtZero) {
+TEST(LoadZip, FollowsPsseBelowItsThresholdsDownToZero) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}});
   const auto p = [&](double v) { return drawn_by_zip(load, std::polar(v, 0.3)).real(); };
   const auto impedance = [](double v) { return 0.2 * v * v / (0.98 * 0.98); };
@@ -64,7 +64,7 @@ TEST(LoadZip, GivesWayBelowItsThresholdsAsPsseDoesAndIsNothingAtZero) {
   EXPECT_EQ(drawn_by_zip(load, 0.0), Complex());
 }
 
-TEST(LoadZip, BothFallToNothingWithTheVoltage) {
+TEST(LoadZip, CurrentStaysBoundedAndVanishesWithTheVoltage) {
   for (const char* part : {"Pi", "Pp"}) {
     const auto load = consumer({{part, 1.0}});
     double before = 1.0;
@@ -99,7 +99,7 @@ TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
   }
 }
 
-TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
+TEST(LoadZip, ReportsEveryErrorOfAChoice) {
   grid::Grid grid = test::configured_grid(kGrid, Conventions::psse());
   Problems problems;
   for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Kpf=1,Tf=0"})

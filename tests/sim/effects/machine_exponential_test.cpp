@@ -44,7 +44,7 @@ TEST(ExponentialSaturation, PassesThroughBothFactors) {
   EXPECT_EQ(exponential_saturation(0.0, saturation_exponent(0.0, 0.0), 1.3), 0.0);
 }
 
-TEST(ExponentialSaturation, WithoutItTheMachinesAreTheQuadraticOnes) {
+TEST(ExponentialSaturation, EqualsQuadraticMachines_WhenSwitchedOff) {
   // Tolerance: rounding; GENSAE finds its angle on another way than GENSAL.
   for (const auto& [exponential, quadratic] : {std::pair{"GENROE", "GENROU"}, {"GENSAE", "GENSAL"}}) {
     const ExponentialMachine a(exponential, 0.0, 0.0, 0.8, -0.3), b(quadratic, 0.0, 0.0, 0.8, -0.3);

@@ -56,7 +56,7 @@ TEST(MachineGenqec, AngleFollowsTheSaturatedQuadratureReactance) {
 }
 
 /// Without saturation and correction: GENROU, through a fault, to what two runs of IDA differ by.
-TEST(MachineGenqec, WithoutSaturationItIsGenrou) {
+TEST(MachineGenqec, EqualsGenrou_WithoutSaturation) {
   const Settings common = {{"S10", 0.0}, {"S12", 0.0}, {"Xdpp", 0.25}, {"Xl", 0.15}, {"Xqp", 0.5}};
   Settings mine = common;
   mine.insert(mine.end(), {{"Xqpp", 0.25}, {"Kw", 0.0}});

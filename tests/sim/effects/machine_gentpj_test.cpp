@@ -87,7 +87,7 @@ TEST(MachineGentpj, AngleFollowsTheSaturatedQuadratureReactance) {
 }
 
 /// Where neither saturates and Xl = X'' in GENROU's rotor circuits, the two are the same equations.
-TEST(MachineGentpj, WithoutSaturationItIsGenrouWithLeakageUpToTheSubtransient) {
+TEST(MachineGentpj, EqualsGenrouWithSubtransientLeakage_WithoutSaturation) {
   for (const auto& conventions : {Conventions::psse(), Conventions::andes(), Conventions{}}) {
     const Complex v = std::polar(1.02, 0.1), i(0.8, -0.3), dip = std::polar(0.6, 0.2);
     const Changes common = {{"S10", 0.0}, {"S12", 0.0},  {"Xdpp", 0.25},
@@ -189,7 +189,7 @@ TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
   expect_lanes_equal_the_reference(grid);
 }
 /// Without saturation, behind a transformer too, it is the GENROU of the test above.
-TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
+TEST(MachineGentpj, EqualsGenrouBehindATransformer_WithoutSaturation) {
   grid::Grid linear = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = linear.plants[1];
   plant.transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -230,7 +230,7 @@ TEST(MachineGentpj, SingularValuesAreRefused) {
   }
 }
 
-TEST(MachineGentpj, AMachineWithoutTransientCircuitInTheQuadratureAxis) {
+TEST(MachineGentpj, AcceptsAMissingQAxisTransientCircuit) {
   TypeJMachine m("GENTPJ", {{"Tqop", 0.0}, {"Xq", 1.1}, {"Xqp", 1.1}}, 1.0, {0.8, -0.2});
   Problems problems;
   m.effect.check(nullptr, m.p.data(), "test", problems);

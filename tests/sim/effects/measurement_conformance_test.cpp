@@ -74,7 +74,7 @@ double distance(const Phasors& a, const Phasors& b, std::size_t k, std::size_t l
   return std::max({std::abs(a.V[k] - b.V[l]), std::abs(a.I[k] - b.I[l]), std::fabs(a.df[k] - b.df[l])});
 }
 
-TEST(MeasurementConformance, VanishesAtNeutral) {
+TEST(MeasurementConformance, VanishesAtNullValue) {
   ASSERT_FALSE(instruments().empty());
   for (const Effect* e : instruments()) {
     ASSERT_NE(e->measure, nullptr) << e->name;
@@ -84,7 +84,7 @@ TEST(MeasurementConformance, VanishesAtNeutral) {
   }
 }
 
-TEST(MeasurementConformance, EachParameterWithANeutralValueActs) {
+TEST(MeasurementConformance, EachParameterWithANullValueActs) {
   for (const Effect* e : instruments()) {
     int acting = 0;
     for (std::size_t i = 0; i < e->parameters.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(MeasurementConformance, EachParameterWithANeutralValueActs) {
   }
 }
 
-TEST(MeasurementConformance, OneSeedOneAnswer) {
+TEST(MeasurementConformance, SameSeedGivesSameResult) {
   for (const Effect* e : instruments()) {
     const auto p = busy(*e);
     const Phasors first = measured(*e, p, swing(120.0), 7);
@@ -110,7 +110,7 @@ TEST(MeasurementConformance, OneSeedOneAnswer) {
   }
 }
 
-TEST(MeasurementConformance, TheRateDoesNotMatter) {
+TEST(MeasurementConformance, ResultDoesNotDependOnTheRate) {
   for (const Effect* e : instruments()) {
     if (is_random(*e)) continue;
     for (const auto& p : variants(*e)) {
@@ -124,7 +124,7 @@ TEST(MeasurementConformance, TheRateDoesNotMatter) {
   }
 }
 
-TEST(MeasurementConformance, ReachesNoFurtherThanItsMemory) {
+TEST(MeasurementConformance, RespectsItsStatedMemory) {
   for (const Effect* e : instruments()) {
     if (is_random(*e)) continue;
     for (const auto& p : variants(*e)) {

@@ -35,7 +35,7 @@ double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
 
 constexpr double kClassP = 0.0, kClassM = 1.0;
 
-TEST(PmuFilterP, ATriangleOfTwoCyclesIsASquaredSinc) {
+TEST(PmuFilterP, TwoCycleTriangleHasASquaredSincResponse) {
   // (sin(pi/12) / (pi/12))^2 = (0.2588190 / 0.2617994)^2
   EXPECT_NEAR(gain(960.0, 5.0, {kClassP, 1, 60, 0}).real(), 0.9773613, 1e-6);
   for (const double hz : {0.5, 2.0, 10.0, 30.0}) {
@@ -116,7 +116,7 @@ TEST(PmuFilterM, HalvesAtTwiceTheReferenceFrequency) {
   EXPECT_NEAR(gain(960.0, 1.0, {kClassM, 1, 60, 1}).real(), 1.0, 2e-3);
 }
 
-TEST(PmuFilterM, SaysWhereTheStandardHasNoWindow) {
+TEST(PmuFilterM, ReportsRatesWithoutAStandardWindow) {
   EXPECT_THROW(measured("PMUFILTER", {kClassM, 1, 25, 1}, turning(60.0, 0.0)), InputError);
   Phasors fifty = turning(50.0, 0.0);
   fifty.frequency = 50.0;
@@ -127,7 +127,7 @@ TEST(PmuFilterM, SaysWhereTheStandardHasNoWindow) {
   EXPECT_EQ(problems.list().size(), 1u);
 }
 
-TEST(PmuFilter, AMissingSampleLeavesAWindowOfThem) {
+TEST(PmuFilter, MissingSampleInvalidatesAWindow) {
   Phasors before = turning(240.0, 0.5);
   before.V[300] = std::numeric_limits<double>::quiet_NaN();
   const Phasors after = measured("PMUFILTER", {kClassP, 1, 60, 1}, before);
@@ -161,7 +161,7 @@ TEST(PmuFrequency, DifferenceAndAverageOfASine) {
   }
 }
 
-TEST(PmuFrequency, TheEndsUseWhatThereIs) {
+TEST(PmuFrequency, EndsUseTheAvailableSamples) {
   Phasors before = wavering(120.0, 0.0, 1.0);
   const Phasors after = measured("PMUFREQ", {0.5, 0.0}, before);
   for (const double df : after.df) EXPECT_NEAR(df, 0.05, 1e-12);  // a steady 3 Hz up to the last sample

@@ -8,7 +8,7 @@ using test::kPi;
 using test::measured;
 using test::swing;
 
-TEST(CurrentTransformer, ScalesAndTurnsTheCurrentAlone) {
+TEST(CurrentTransformer, ScalesAndRotatesTheCurrentOnly) {
   const Phasors before = swing(60.0), after = measured("CTERROR", {0.01, 0.02}, before);
   for (std::size_t k = 0; k < before.V.size(); ++k) {
     EXPECT_EQ(after.V[k], before.V[k]);
@@ -21,7 +21,7 @@ TEST(CurrentTransformer, ScalesAndTurnsTheCurrentAlone) {
   EXPECT_NEAR(std::imag(one.V[0] * std::conj(one.I[0])), -0.020198653360, 1e-12);
 }
 
-TEST(VoltageTransformer, ScalesAndTurnsTheVoltageAlone) {
+TEST(VoltageTransformer, ScalesAndRotatesTheVoltageOnly) {
   const Phasors before = swing(60.0), after = measured("PTERROR", {-0.02, 0.01}, before);
   for (std::size_t k = 0; k < before.V.size(); ++k) {
     EXPECT_EQ(after.I[k], before.I[k]);
@@ -31,7 +31,7 @@ TEST(VoltageTransformer, ScalesAndTurnsTheVoltageAlone) {
   }
 }
 
-TEST(Skew, OfASineIsAPhase) {
+TEST(Skew, ShiftsThePhaseOfASine) {
   const double rate = 60.0, slip = 2 * kPi * 1.0;
   Phasors before{rate, 60.0, {}, {}, {}};
   for (int k = 0; k < 300; ++k) {
@@ -50,7 +50,7 @@ TEST(Skew, OfASineIsAPhase) {
   }
 }
 
-TEST(Skew, OfAJumpSmearsOneSample) {
+TEST(Skew, OfAStepInterpolatesOneSample) {
   Phasors before{60.0, 60.0, {}, {}, {}};
   for (int k = 0; k < 40; ++k) {
     before.V.emplace_back(1.0);
@@ -67,7 +67,7 @@ TEST(Skew, OfAJumpSmearsOneSample) {
   }
 }
 
-TEST(Skew, OutsideTheRecordTheCurrentStandsStill) {
+TEST(Skew, ExtrapolatesAConstantCurrent) {
   const Phasors before = swing(60.0), after = measured("SKEW", {0.5}, before);
   for (std::size_t k = 0; k <= 30; ++k) EXPECT_EQ(after.I[k], before.I[0]) << k;
   const Phasors early = measured("SKEW", {-100.0}, before);  // longer than the record

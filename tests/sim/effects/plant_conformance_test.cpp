@@ -126,7 +126,7 @@ double busy_time(const plant::Plant& plant) {
   return instants.empty() ? 1.0 : instants.front() + 0.5;
 }
 
-TEST(PlantConformance, StandsStillAtItsOperatingPoint) {
+TEST(PlantConformance, StaysAtItsOperatingPoint) {
   std::mt19937_64 random(11);
   for (const Effect* e : guests()) {
     plant::Plant plant = host(*e);
@@ -230,7 +230,7 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
 }
 
 /// Effects that can be switched off by their own parameters change nothing then.
-TEST(PlantConformance, VanishesAtNeutral) {
+TEST(PlantConformance, VanishesAtNullValue) {
   std::mt19937_64 random(14);
   for (const Effect* e : guests()) {
     if (e->slot == Slot::exciter || e->slot == Slot::governor || e->slot == Slot::electrical_control)
@@ -283,7 +283,7 @@ std::vector<T> load_outputs(const plant::Consumer& load, const plant::OperatingO
   return out;
 }
 
-TEST(LoadConformance, StandsStillAndLanesEqualDouble) {
+TEST(LoadConformance, StaysAtItsOperatingPointAndLanesEqualDouble) {
   std::mt19937_64 random(15);
   std::uniform_real_distribution<double> u(-0.02, 0.02);
   for (const Effect* e : loads()) {

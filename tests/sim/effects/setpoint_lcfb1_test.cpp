@@ -36,7 +36,7 @@ TEST(SetpointLcfb1, EveryLimitActs) {
   EXPECT_NEAR(bench.out().dGref, 0.003, 1e-12);
 }
 
-TEST(SetpointLcfb1, FlagsChooseWhatItSees) {
+TEST(SetpointLcfb1, FlagsSelectItsInputs) {
   const auto after = [](double by_power, double by_speed) {
     ControlBench bench("LCFB1", {{"PBF", by_power},
                                  {"FBF", by_speed},

@@ -57,7 +57,7 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
 }
 
 /// Input codes 2 and 6 measure s/(1 + s Tf) of the terminal's angle and of its magnitude.
-TEST(StabiliserIeeest, FrequencyAndSlopeOfTheVoltageBehindTheirLag) {
+TEST(StabiliserIeeest, FrequencyAndVoltageDerivativeAreLagged) {
   const double w0 = 2 * 3.14159265358979323846 * 60, Tf = 0.03;
   for (const double code : {2.0, 6.0}) {
     auto all = with({{"A1", 0.06}, {"Tf", Tf}, {"ICS", code}});

@@ -119,7 +119,7 @@ TEST(StabiliserPss2, RampOfPowerIsTrackedBySecondOrder) {
   EXPECT_LT(after_a_ramp(0.5), 0.1 * after_a_ramp(0.0));
 }
 
-TEST(StabiliserPss2, LimitsOfInputsAndOutputHoldAndRelease) {
+TEST(StabiliserPss2, InputAndOutputLimitsActAndRelease) {
   auto v = third(common({{"VS1MAX", 0.01}, {"VS1MIN", -0.02}, {"VSTMAX", 0.06}, {"VSTMIN", -0.05}}));
   ControlBench bench("PSS2B", v), at_limit("PSS2B", v);
   bench.in.speed = 0.5;
@@ -149,7 +149,7 @@ TEST(StabiliserPss2, RefusesUnsupportedParameters) {
   EXPECT_NE(ControlBench("PSS2B", {{"VS2MAX", 0.7}}).refused.find("0.8000 pu"), std::string::npos);
 }
 
-TEST(StabiliserPss2, Pss2cHasAFourthLeadLagBehindTheSame) {
+TEST(StabiliserPss2, Pss2cAddsAFourthLeadLag) {
   for (const double omega : {0.3, 5.0}) {
     Values v = third(common({{"VSTMAX", 1e3}, {"VSTMIN", -1e3}}));
     ControlBench before("PSS2B", v);

@@ -28,7 +28,7 @@ TEST(StabiliserSt2cut, TransferFunctionsAreTheDiagrams) {
   }
 }
 
-TEST(StabiliserSt2cut, WithoutT3TheWashoutIsALagThatPassesWhatStays) {
+TEST(StabiliserSt2cut, WithoutT3TheWashoutIsALag) {
   ControlBench::Changes changes = kSt2cut;
   for (auto& [name, value] : changes)
     if (name == std::string("T3")) value = 0.0;

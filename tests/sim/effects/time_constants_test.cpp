@@ -32,7 +32,7 @@ void disturb(ControlBench& bench) {
   bench.in.speed += 1e-3;
 }
 
-TEST(ZeroTimeConstant, StandsStillOrIsRefusedInOneSentence) {
+TEST(ZeroTimeConstant, IsSteadyOrRefusedInOneSentence) {
   int zeros = 0, run = 0, refused = 0;
   for (const Effect& e : library::compiled_effects()) {
     if (!is_control(e.slot) || is_of_converter(e.slot)) continue;
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(test.param.effect) + "_" + test.param.time + "_" + test.param.off.begin()->first;
     });
 
-TEST(ZeroTimeConstant, OfTheRegulatorPassesInEXST1) {
+TEST(ZeroTimeConstant, OfTheRegulatorIsABypassInEXST1) {
   ControlBench none("EXST1", {{"TA", 0.0}, {"KF", 0.0}}), fast("EXST1", {{"TA", 1e-3}, {"KF", 0.0}});
   ASSERT_TRUE(none.problems.empty());
   EXPECT_LT(none.largest_derivative(), 1e-9);
@@ -182,7 +182,7 @@ grid::Grid switched_off_grid(const char* seconds) {
   problems.raise();
   return grid;
 }
-TEST(SwitchedOffBlocks, GiveOneRunInBothIntegrators) {
+TEST(SwitchedOffBlocks, GiveEqualRunsInBothIntegrators) {
   const grid::Grid zero = switched_off_grid("0"), one = switched_off_grid("1");
   network::Event event;
   event.faults = {{zero.network.bus_index(8), 1.0, 1.08, {}}};

@@ -129,7 +129,7 @@ TEST(TransformerStepup, RecordsTheGridsSide) {
   EXPECT_NEAR(run.at(0, 2)[0], power.imag(), 1e-9);
 }
 
-TEST(TransformerStepup, NeutralValuesChangeNothing) {
+TEST(TransformerStepup, NullValuesChangeNothing) {
   grid::Grid with = grid::make_grid(network(true), models(3), "neutral", Conventions::psse());
   const reference::ReferenceRun without = reference(with, {});
   with.plants[1].transformer = {library::compiled().find("STEPUP"), {0.0, 0.0, 1.0}};
@@ -137,7 +137,7 @@ TEST(TransformerStepup, NeutralValuesChangeNothing) {
   EXPECT_LE(test::largest_difference(reference(with, {}), without), 1e-8);
 }
 
-TEST(TransformerStepup, RefusesWhatIsNoTransformer) {
+TEST(TransformerStepup, RefusesInvalidTransformers) {
   const double wrong[] = {-0.01, -0.1, 0.0};
   Problems problems;
   library::compiled().find("STEPUP")->check(nullptr, wrong, "here", problems);

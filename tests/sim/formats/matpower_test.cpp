@@ -84,7 +84,7 @@ TEST(Matpower, TheSameCaseAsARawGivesTheSamePowerFlow) {
     EXPECT_LT(std::abs(a.voltage[i] - b.voltage[i]), 1e-13) << i;  // rounding
 }
 
-TEST(Matpower, EveryFaultIsReportedAtOnceWithItsLine) {
+TEST(Matpower, ReportsAllErrorsWithTheirLines) {
   const std::string text =
       "function mpc = bad\n"
       "mpc.version = '2';\n"
@@ -165,7 +165,7 @@ TEST(Matpower, OtherVersionsAreRefused) {
   EXPECT_THAT(sentences_of([&] { parse_matpower(t, "one.m", 60.0); }), HasSubstr("not 2 at one.m:3"));
 }
 
-TEST(Network, IsReadByExtensionAndTheFrequencyMustAgree) {
+TEST(Network, IsReadByExtensionAndChecksTheFrequency) {
   const ScratchFile m("four.m", kCase), raw("case.raw", RawCase().text());
   EXPECT_THAT(sentences_of([&] { read_network(m.path); }), HasSubstr("--frequency-hz"));
   EXPECT_THAT(sentences_of([&] { read_network(m.path, 0.0); }), HasSubstr("0 Hz"));

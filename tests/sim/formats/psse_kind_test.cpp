@@ -24,7 +24,7 @@ std::vector<std::string> sentences(const std::string& raw, const std::string& dy
   return all;
 }
 
-TEST(PsseKind, FilesInEachOthersPlaceAreOneSentence) {
+TEST(PsseKind, ReportsExchangedFilesInOneSentence) {
   const std::string raw = RawCase().text();
   EXPECT_THAT(sentences(raw, kDyr), ElementsAre());
   EXPECT_THAT(sentences(kDyr, raw), ElementsAre(HasSubstr("exchange --raw and --dyr")));
@@ -38,7 +38,7 @@ TEST(PsseKind, FilesInEachOthersPlaceAreOneSentence) {
 }
 
 /// A network of version 33 whose header says something else.
-TEST(PsseKind, AWrongVersionIsOneSentenceWithTheRightOne) {
+TEST(PsseKind, ReportsAWrongVersionWithTheRightOne) {
   RawCase c;
   for (int k = 0; k < 30; ++k)
     c.branches += "101,102,'" + std::to_string(10 + k) + "',0.01,0.12,0,250,250,250,0,0,0,0,1,1,0,1,1\n";
@@ -65,7 +65,7 @@ TEST(PsseKind, AWrongVersionIsOneSentenceWithTheRightOne) {
 
 /// A decimal is the double nearest to it, whatever extended precision makes of it, and comes back as short as
 /// it was.
-TEST(PsseKind, NumbersAreTheNearestDoublesAndComeBackAsShort) {
+TEST(PsseKind, NumbersAreNearestDoublesAndAreWrittenAsShort) {
   std::mt19937_64 random(7);
   int differ = 0;
   for (int k = 0; k < 20000; ++k) {

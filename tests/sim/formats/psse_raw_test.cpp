@@ -144,7 +144,7 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
   EXPECT_EQ(n.switched[1].present, 0.0);
 }
 
-TEST(PsseRaw, StepsOfSwitchedShuntsAreReactorsAndCapacitorsInTheirOrder) {
+TEST(PsseRaw, StepsOfSwitchedShuntsKeepTheOrderOfReactorsAndCapacitors) {
   RawCase c;
   c.other["switched shunt"] =
       "103,1,0,1,1.03,0.97,101,100,'',20.0,1,-30,2,10,0,99,3,5\n"
@@ -176,7 +176,7 @@ struct Device {
   const char *section, *record, *bus;
 };
 class PsseRawDevices : public ::testing::TestWithParam<Device> {};
-TEST_P(PsseRawDevices, DrawWhatTheFilesVoltagesSay) {
+TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
   // The three-bus case solved with a load at bus 103; then the device's record stands for the load.
   RawCase c;
   network::Network solved = c.read();
@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         Device{"gne", "'GNE 1','MODEL',1,103,11,0,1\n1,1,1\n1,2,3,4,5,6,7,8,9,10\n11\n'A'\n", "GNE device"},
         Device{"induction machine", "103,'1',1,1,1,1,1,1,1,5,5\n", "induction machine"}));
 
-TEST(PsseRaw, DevicesOutOfServiceAreNone) {
+TEST(PsseRaw, IgnoresDevicesOutOfService) {
   RawCase c;
   c.other["two-terminal dc line"] = "'DC 1',0,8.2,100.0,500.0\n101,2,8,20\n103,2,8,20\n";
   c.other["FACTS device"] = "'F',103,0,0\n";
@@ -233,7 +233,7 @@ TEST(PsseRaw, DevicesOutOfServiceAreNone) {
   EXPECT_EQ(c.read().loads.size(), 1u);
 }
 
-TEST(PsseRaw, SectionsWithoutEffectOnTheEquationsArePassedOver) {
+TEST(PsseRaw, SkipsSectionsWithoutEffectOnTheEquations) {
   RawCase c;
   c.other["area"] = "1,101,0.0,10.0,'AREA, ONE'\n";
   c.other["impedance correction"] = "1,-30.0,1.1,0.0,1.0,30.0,1.1\n";
@@ -244,7 +244,7 @@ TEST(PsseRaw, SectionsWithoutEffectOnTheEquationsArePassedOver) {
   EXPECT_EQ(c.read().branches.size(), 2u);
 }
 
-TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
+TEST(PsseRaw, ReportsAllErrorsWithTheirLines) {
   RawCase c;
   c.buses +=
       "103,'TWICE',138.0,1\n105,'NAN',138.0,1,1,1,1,nan,0\n106,'TYPE',138.0,7\n107,'V',138,1,1,1,1,0.0\n";
@@ -281,7 +281,7 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   expect("101,102,103,'1'", "with 4 lines");
 }
 
-TEST(PsseRaw, CutAnywhereTheFileIsReportedAsTruncated) {
+TEST(PsseRaw, ReportsTruncation_WhereverTheFileEnds) {
   std::ifstream in(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);

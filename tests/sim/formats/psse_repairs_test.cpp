@@ -46,7 +46,7 @@ void store_voltages(RawCase& c, const network::Network& solved) {
 }
 const char* const kParallel = "103,101,'1',0.01,0.12,0.0\n";
 
-TEST(RepeatedBranch, StaysUnderANewIdWhenTheVoltagesShowIt) {
+TEST(RepeatedBranch, IsKeptUnderANewId_WhenTheVoltagesShowIt) {
   RawCase both;
   both.branches += kParallel;
   RawCase distinct = both;
@@ -63,7 +63,7 @@ TEST(RepeatedBranch, StaysUnderANewIdWhenTheVoltagesShowIt) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
 
-TEST(RepeatedBranch, IsLeftOutWhenTheVoltagesShowIt) {
+TEST(RepeatedBranch, IsOmitted_WhenTheVoltagesShowIt) {
   RawCase c;
   store_voltages(c, RawCase{}.read());
   c.branches += kParallel;
@@ -75,7 +75,7 @@ TEST(RepeatedBranch, IsLeftOutWhenTheVoltagesShowIt) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
 
-TEST(RepeatedBranch, IsDecidedForEachPairAlone) {
+TEST(RepeatedBranch, IsDecidedForEachPairSeparately) {
   RawCase c;
   c.branches += kParallel;
   RawCase distinct = c;
@@ -202,7 +202,7 @@ TEST(TitleLines, AMissingOneIsNamed) {
   }
 }
 
-TEST(Comments, AtTheEndOfALineAndOnTheirOwnAreNotRead) {
+TEST(Comments, AreIgnoredAtLineEndsAndOnTheirOwnLines) {
   RawCase c;
   c.loads = "# loads of the summer peak\n103,'1',1,1,1,250.0,30.0 ! summer\n";
   c.branches = "! lines\n101,103,'1',0.01,0.12 # 40 km\n102,103,'1',0.01,0.12, # 40 km, old\n// no more\n";

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                "1.04,0,0\n0.97,0,30\n1.01,0,-30\n"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(PsseThreeWindingsStatus, TellsWhichWindingIsOut) {
+TEST(PsseThreeWindingsStatus, SelectsTheWindingOutOfService) {
   const auto in = [](int status) {
     std::array<bool, 3> on{};
     const network::Network n = with("101,102,103,'T',1,1,1,0.001,-0.002,2,''," + std::to_string(status) +

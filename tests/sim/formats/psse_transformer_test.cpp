@@ -89,7 +89,7 @@ TEST(PsseTransformerFaults, AreReportedWithLine) {
   for (const int offset : {0, 2, 5, 6, 8, 9}) EXPECT_THAT(all, HasSubstr(at(offset)));
 }
 
-TEST(PsseTransformerFaults, AnIncompleteRecordDoesNotSwallowTheNextSection) {
+TEST(PsseTransformerFaults, IncompleteRecordDoesNotConsumeTheNextSection) {
   const RawCase c = with_transformer("101,102,0,'1',1,1,1\n0,0.1,100\n");
   const auto problems = problems_of([&] { c.read(); });
   ASSERT_EQ(problems.size(), 1u);

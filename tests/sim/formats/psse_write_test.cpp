@@ -89,7 +89,7 @@ TEST(PsseWrite, RandomNumbersReadBackToTheLastBit) {
     for (unsigned seed = 1; seed <= 5; ++seed) expect_round_trip(random_network(base, seed));
 }
 
-TEST(PsseWrite, FromVersionToVersionNothingChanges) {
+TEST(PsseWrite, VersionsConvertWithoutLoss) {
   const network::Network n = random_network(100.0, 9);
   network::Network again = n;
   for (const int version : {33, 34, 35, 33, 32, 35, 34})
@@ -104,7 +104,7 @@ TEST(PsseWrite, OtherVersionsAreRefused) {
                 HasSubstr("version " + std::to_string(version)));
 }
 
-TEST(PsseWrite, RefusesWhatARawCannotHold) {
+TEST(PsseWrite, RefusesContentThatARawCannotHold) {
   network::Network n = read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   n.branches[0].tap = 0.9;
   n.branches.back().b = 0.1;
@@ -115,7 +115,7 @@ TEST(PsseWrite, RefusesWhatARawCannotHold) {
   EXPECT_FALSE(std::filesystem::exists(file.path));
 }
 
-TEST(PsseWrite, AnImpossiblePathLeavesNothingBehind) {
+TEST(PsseWrite, ImpossiblePathLeavesNoFile) {
   const network::Network n = read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   EXPECT_THAT(sentences_of([&] { write_raw(n, "/nowhere/at/all/out.raw"); }), HasSubstr("No such file"));
   // A folder stands where the file should go: the rename fails and the temporary file is removed.

@@ -33,7 +33,7 @@ TEST(Attach, PutsEffectsIntoTheirSlots) {
   EXPECT_EQ(grid.plants[0].controls.size(), 1u);
 }
 
-TEST(Attach, SaysWhatIsWrong) {
+TEST(Attach, ReportsErrors) {
   Grid grid = test::two_machine_grid(Conventions::psse());
   (void)said(grid, "3:SEXS");
   const std::vector<std::pair<const char*, const char*>> cases = {
@@ -56,7 +56,7 @@ TEST(Attach, SaysWhatIsWrong) {
   EXPECT_EQ(grid.plants[1].controls.size(), 1u);
 }
 
-TEST(Attach, AControlMeasuresWhereTheNetworkHasSomething) {
+TEST(Attach, RemoteMeasurementsMustExistInTheNetwork) {
   std::string without = far_control::plants({});
   without.erase(without.find("104 'REPCA1'"));
   Grid grid = far_control::load_from(far_control::behind_a_branch(), without);

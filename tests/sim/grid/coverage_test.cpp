@@ -58,7 +58,7 @@ TEST(Coverage, AWrappedModelIsCoveredWithCodesBeforeItsConstants) {
   EXPECT_EQ(coverage.covered, 2) << of(coverage, "HYG3U1").fault;
 }
 
-TEST(Coverage, AFileThatIsNotThereIsRefused) { EXPECT_ANY_THROW(take_coverage({"/nowhere/none.dyr"})); }
+TEST(Coverage, RefusesMissingFiles) { EXPECT_ANY_THROW(take_coverage({"/nowhere/none.dyr"})); }
 
 }  // namespace
 }  // namespace swingbank::sim::grid

@@ -53,7 +53,7 @@ TEST(Grid, JoinsGeneratorsAndModels) {
   EXPECT_EQ(grid.plants[1].generator, 1);
 }
 
-TEST(Grid, SeveralMachinesAtABusCarryTheirIds) {
+TEST(Grid, SeveralMachinesAtABusKeepTheirIds) {
   formats::RawCase raw;
   raw.generators +=
       "102,'B',50.0,0,100,-100,1.02,0,50,0.002,0.4,0,0,1,1\n"
@@ -66,7 +66,7 @@ TEST(Grid, SeveralMachinesAtABusCarryTheirIds) {
   EXPECT_EQ(grid.plants[2].mva, 50.0);
 }
 
-TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
+TEST(Grid, ReportsAllErrorsWithTheDyrLine) {
   formats::RawCase raw;
   raw.generators += "102,'B',50.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,1\n";
   const std::string all =
@@ -84,7 +84,7 @@ TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
   EXPECT_THAT(all, HasSubstr("--net-generators"));
 }
 
-TEST(Grid, FaultsOfRawAndDyrAreReportedTogether) {
+TEST(Grid, ReportsErrorsOfRawAndDyrTogether) {
   formats::RawCase raw;
   raw.loads = "999,'1',1,1,1,250.0,30.0\n";
   const std::string all = complaints(raw, "101 'GENCLS'\n");
@@ -205,7 +205,7 @@ TEST(OperatingPoint, HasTheReferencesStatesAndFieldVoltage) {
   EXPECT_NEAR(std::abs(o.x[5]), 0.39848465513678144, tolerance);  // psi2q: the sign is a convention
 }
 
-TEST(OperatingPoint, OfAnInfiniteBusStandsStill) {
+TEST(OperatingPoint, OfAnInfiniteBusIsSteady) {
   const Grid grid = load({}, plain_dyr());
   const plant::Operating o =
       plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions);
@@ -272,7 +272,7 @@ TEST(Grid, ModelsThatAreNotAvailableAreAllNamedAndCanBeIgnoredOrMapped) {
   EXPECT_THAT(formats::sentences_of([&] { load_with(options); }), HasSubstr("GENCLS with 14 parameters"));
 }
 
-TEST(Grid, AMatpowerCaseTakesItsFrequencyFromTheCaller) {
+TEST(Grid, MatpowerCaseUsesTheCallersFrequency) {
   const formats::ScratchFile m(
       "two.m",
       "mpc.version = '2';\nmpc.baseMVA = 100;\n"

@@ -27,7 +27,7 @@ plant::TerminalRecord terminal() {
   return r;
 }
 
-TEST(Measure, ThereAndBackIsTheSame) {
+TEST(Measure, RoundTripKeepsTheRecord) {
   const plant::TerminalRecord before = terminal();
   const plant::TerminalRecord after =
       plant::terminal_of(plant::phasors_of(before, 50.0, 60.0, "test"), before.theta.front());
@@ -73,7 +73,7 @@ TEST(Measure, WithoutVoltageThereIsNoCurrent) {
   }
 }
 
-TEST(Measure, ReadsAChainAndSaysWhatIsWrong) {
+TEST(Measure, ReadsAChainAndReportsErrors) {
   EXPECT_EQ(block("skew:skew=0.01").effect->name, "SKEW");
   EXPECT_EQ(plant::memory(std::vector<plant::Block>{block("SKEW:skew=-0.01"), block("CTERROR:gain=0.1"),
                                                     block("SKEW:skew=0.02")}),
@@ -91,7 +91,7 @@ TEST(Measure, ReadsAChainAndSaysWhatIsWrong) {
   }
 }
 
-TEST(Measure, ARunIsMeasuredPlantByPlant) {
+TEST(Measure, MeasuresEachPlantOfARun) {
   Grid grid = test::two_machine_grid(Conventions::psse());
   grid.plants[1].measurements.push_back(block("PTERROR:gain=0.1"));
   reference::ReferenceOptions options;

@@ -61,7 +61,7 @@ TEST(StaticVar, TakesTheSusceptanceOfItsSwitchedShunt) {
   EXPECT_EQ(grid.loads[0].regulated, grid.loads[0].bus);
 }
 
-TEST(StaticVar, MayStandAtNothing) {
+TEST(StaticVar, MayStartAtZero) {
   const Grid grid = load_from(with_shunt("0.0"), kPlants + record("103"));
   ASSERT_EQ(grid.loads.size(), 1u);
   EXPECT_EQ(grid.loads[0].consumption, Complex());
@@ -82,7 +82,7 @@ double last_voltage(const Grid& grid, int bus) {
   return run.bus_v.back();
 }
 // Its slope is nothing, so that its integral brings the voltage it regulates back, and that one alone.
-TEST(StaticVar, HoldsItsOwnBusOrAnother) {
+TEST(StaticVar, RegulatesItsOwnBusOrAnother) {
   const Grid own = load_from(with_shunt(), kPlants + record("103"));
   EXPECT_NEAR(last_voltage(own, 103), std::abs(own.flow.voltage[2]), 2e-5);
   const Grid far = load_from(with_shunt(), kPlants + record("102"));
@@ -118,7 +118,7 @@ TEST(StaticVar, ReadsBackToTheLastBit) {
   }
 }
 
-TEST(StaticVar, EveryFaultIsReported) {
+TEST(StaticVar, ReportsEveryError) {
   const std::string all = formats::sentences_of(
       [] { load_from(with_shunt(), kPlants + record("103") + record("103") + record("999")); });
   EXPECT_THAT(all, HasSubstr("a second model, SVSMO1T2 at bus 103"));

@@ -25,13 +25,13 @@ bool says(const Grid& grid, const std::string& what) {
       grid.network.remarks, [&](const network::Remark& r) { return r.what.find(what) != std::string::npos; });
 }
 
-TEST(SwitchedShunts, StayWithARemarkUnlessAsked) {
+TEST(SwitchedShunts, StayWithARemarkUnlessRequested) {
   const Grid grid = with_bank(1.045, 1.06, false);
   EXPECT_LT(std::abs(grid.flow.voltage[kBus]), 1.045);
   EXPECT_TRUE(says(grid, "stay at BINIT"));
 }
 
-TEST(SwitchedShunts, BecomePartOfTheNetworkWhereTheyWereStepped) {
+TEST(SwitchedShunts, StepsAreKeptInTheNetwork) {
   const Grid grid = with_bank(1.045, 1.06, true);
   EXPECT_TRUE(says(grid, "were stepped"));
   EXPECT_FALSE(says(grid, "stay at BINIT"));
@@ -46,7 +46,7 @@ TEST(SwitchedShunts, BecomePartOfTheNetworkWhereTheyWereStepped) {
     EXPECT_NEAR(std::abs(again.voltage[i] - grid.flow.voltage[i]), 0.0, 1e-11);
 }
 
-TEST(SwitchedShunts, ABandOutOfReachIsSaid) {
+TEST(SwitchedShunts, ReportsAnUnreachableBand) {
   EXPECT_TRUE(says(with_bank(1.3, 1.4, true), "no step that brings"));
 }
 

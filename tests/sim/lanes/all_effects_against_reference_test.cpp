@@ -235,7 +235,7 @@ const std::set<std::string_view> kLater = {
 
 /// Three grids with events that were beyond the limit before decision 04 was amended on 2026-11-23, drawn
 /// from the effects of that day.
-TEST(AllEffectsAgainstReferenceFull, EventsOnceMissed) {
+TEST(AllEffectsAgainstReferenceFull, EventsBeyondTheFormerLimit) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const std::set<int> missed = {37, 45, 85};
   Draws draws(20261123, kLater);
@@ -279,8 +279,8 @@ Tally run_references(int wanted, std::uint64_t seed) {
   return tally;
 }
 
-TEST(AllEffectsAgainstReferenceFull, TheReferenceAgainstItself) { run_references(20, 20213); }
-TEST(AllEffectsAgainstReferenceNight, TheReferenceAgainstItself) { run_references(200, 20213); }
+TEST(AllEffectsAgainstReferenceFull, ReferenceAgainstItself) { run_references(20, 20213); }
+TEST(AllEffectsAgainstReferenceNight, ReferenceAgainstItself) { run_references(200, 20213); }
 
 }  // namespace
 }  // namespace swingbank::sim::lanes

@@ -83,7 +83,7 @@ TEST_P(Converters, LanesFollowTheReference) {
 }
 /// From bolted to 0.02 pu: whichever of its voltages a converter follows, and where one ends, the run goes
 /// on.
-TEST_P(Converters, NoFaultEndsARun) {
+TEST_P(Converters, RideThroughEveryFault) {
   const grid::Grid grid = grid_with(GetParam());
   std::vector<network::Event> all;
   for (const double x : {0.0, 0.0005, 0.001, 0.002, 0.004, 0.007, 0.01, 0.014, 0.02}) {

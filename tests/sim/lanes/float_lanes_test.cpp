@@ -81,7 +81,7 @@ TEST(FloatLanes, AgreeWithDoublesOnRandomFaults) {
   EXPECT_GT(agree(with_controls(), faults_on(with_controls(), 20)), 10);
 }
 
-TEST(FloatLanes, AgreeWithDoublesOnWhatElseHappens) {
+TEST(FloatLanes, AgreeWithDoublesOnOtherEvents) {
   grid::Grid grid = with_controls();
   const Effect &step = *library::compiled().find("VREFSTEP"), &ramp = *library::compiled().find("PREFRAMP");
   grid.plants[2].controls.insert(grid.plants[2].controls.begin(), {&step, step.default_parameters()});
@@ -95,7 +95,7 @@ TEST(FloatLanes, AgreeWithDoublesOnWhatElseHappens) {
   EXPECT_EQ(agree(grid, jobs), 4);
 }
 
-TEST(FloatLanes, AgreeWithDoublesWhereLanesShareANetwork) {
+TEST(FloatLanes, AgreeWithDoublesOnASharedNetwork) {
   const grid::Grid grid = synthetic(41);
   EXPECT_GT(agree(grid, faults_on(grid, 16)), 8);
 }
@@ -112,7 +112,7 @@ TEST(FloatLanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   }
 }
 
-TEST(FloatLanes, RefuseAllThatTheyCannotRun) {
+TEST(FloatLanes, RefuseUnsupportedRuns) {
   grid::Grid grid = round_rotors();
   const auto block = [](const Effect& e) { return plant::Block{&e, e.default_parameters()}; };
   grid.plants[3].machine = block(*library::compiled().find("GENTPJ"));
@@ -134,7 +134,7 @@ TEST(FloatLanes, RefuseAllThatTheyCannotRun) {
   }
 }
 
-TEST(FloatLanes, StandInTheNameOfWhatMadeTheData) {
+TEST(FloatLanes, AreNamedInTheVariant) {
   BatchOptions options;
   options.lanes = 16;
   EXPECT_THAT(Batch(round_rotors(), options).variant(), HasSubstr("lanes=16 float"));

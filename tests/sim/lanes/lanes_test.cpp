@@ -102,7 +102,7 @@ TEST(Lanes, TheSampleAtASwitchingIsTheValueJustBefore) {
   for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta is held while V = 0";
 }
 
-TEST(Lanes, ALostRunSaysSoAndKeepsItsLastSample) {
+TEST(Lanes, LostRunIsReportedAndKeepsItsLastSample) {
   auto jobs = random_jobs(1, 4);
   jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 1.5, {}};  // 1 s at the heart of the grid
   const auto t = run(jobs, {}).at(0);
@@ -112,7 +112,7 @@ TEST(Lanes, ALostRunSaysSoAndKeepsItsLastSample) {
   for (double v : t.packed()) ASSERT_TRUE(std::isfinite(v));
 }
 
-TEST(Lanes, TheSpreadIsThatSinceTheStart) {
+TEST(Lanes, AngleSpreadIsMeasuredFromTheStart) {
   auto jobs = random_jobs(1, 4);
   jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 0.501, {}};  // 1 ms: hardly a swing
   BatchOptions options;

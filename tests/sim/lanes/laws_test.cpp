@@ -31,7 +31,7 @@ Trajectory lanes_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6)
   return run;
 }
 
-TEST(LawInLanes, SexsAsALawEqualsTheCompiledOne) {
+TEST(LawInLanes, SexsAsUserDefinedModelEqualsTheCompiledOne) {
   const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},  // runs into the ceiling
                                                  {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not
                                                  {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
@@ -76,7 +76,7 @@ TEST(LawInLanes, ANonlinearLawRunsInEveryKernel) {
   EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // it does something
 }
 
-TEST(LawInLanes, APlantWithAnExampleStandsStillAndRunsThroughAFault) {
+TEST(LawInLanes, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/laws")) {

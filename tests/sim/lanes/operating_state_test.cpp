@@ -94,7 +94,7 @@ void expect_its_own(const grid::Grid& grid, const BatchOptions& options, double 
   }
 }
 
-TEST(OperatingStates, MixInOneBatch) {
+TEST(OperatingStates, DifferWithinOneBatch) {
   for (const int lanes : {1, 4, 8}) {
     BatchOptions options;
     options.lanes = lanes;
@@ -102,10 +102,10 @@ TEST(OperatingStates, MixInOneBatch) {
   }
 }
 
-TEST(OperatingStates, MixWithLoadsOfTheirOwn) { expect_its_own(with_load_models(), {}, 1e-12); }
+TEST(OperatingStates, DifferWithTheirOwnLoads) { expect_its_own(with_load_models(), {}, 1e-12); }
 
 /// Many sources share the grid's own matrix, which is another's at another operating point: rounding differs.
-TEST(OperatingStates, MixWithManySources) {
+TEST(OperatingStates, DifferWithManySources) {
   static const grid::Grid grid = synthetic(41);
   const Mixed mixed(grid);
   BatchOptions one;
@@ -117,7 +117,7 @@ TEST(OperatingStates, MixWithManySources) {
   }
 }
 
-TEST(OperatingStates, StandStillUntilTheFault) {
+TEST(OperatingStates, StaySteadyUntilTheFault) {
   const Mixed mixed(new_england());
   for (const auto& [id, t] : run(new_england(), mixed.jobs, {}))
     for (int p = 0; p < 10; ++p)

@@ -68,7 +68,7 @@ TEST(LowRank, UpdatesAnEventByLowRankProducts) {
   EXPECT_EQ(rank(matrix({.faults = {{4, {}}}}, kMost)), -1);
 }
 
-TEST(LowRank, OtherImpedancesAreOneProductEach) {
+TEST(LowRank, EachImpedanceChangeIsOneProduct) {
   for (const network::Topology& topology :
        {network::Topology{}, network::Topology{.faults = {{5, {}}}}, network::Topology{.tripped = {1}}}) {
     LowRank products;
@@ -85,7 +85,7 @@ TEST(LowRank, OtherImpedancesAreOneProductEach) {
   }
 }
 
-TEST(SwitchedNetwork, ChangesWhatReducingAnewDoes) {
+TEST(SwitchedNetwork, MatchesANewReduction) {
   grid::Grid shifted = grid();  // no symmetric matrix
   shifted.network.branches[2].shift = 0.3;
   const std::vector<double> r(kMachines, 0.002), x(kMachines, 0.25);
@@ -122,7 +122,7 @@ std::vector<P8> voltages(double phase) {
   return e;
 }
 
-TEST(BusFactors, AreNotMadeWherePivotsWouldHaveToBeChosen) {
+TEST(BusFactors, RefuseMatricesThatNeedPivoting) {
   BusFactors::Sparse crossed(2, 2);
   crossed.insert(0, 1) = crossed.insert(1, 0) = 1.0;
   EXPECT_FALSE(BusFactors().factor(crossed));
@@ -227,7 +227,7 @@ std::map<std::uint64_t, Trajectory> run_all(const std::vector<Job>& list, BatchO
   return run_jobs(grid(), list, options);
 }
 
-TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {
+TEST(LanesOfManySources, EqualRunsWithAMatrixEach) {
   BatchOptions one, eight;
   one.lanes = 1;  // shares with nobody
   eight.lanes = 8;

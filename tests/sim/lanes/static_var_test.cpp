@@ -80,7 +80,7 @@ TEST(StaticVarLanes, FollowTheReference) {
   }
 }
 
-TEST(StaticVarLanes, AnotherRegulatedBusIsRefused) {
+TEST(StaticVarLanes, RefuseRemoteRegulation) {
   grid::Grid grid = with_compensator({}, 0.1);
   grid.loads[0].regulated = kShuntBus;
   EXPECT_NO_THROW(Batch(grid, {}));

@@ -226,7 +226,7 @@ TEST(Ties, UnitBehindATieRunsLikeOneAtTheBus) {
   EXPECT_LT(apart(in_lanes(a, fault(a, "104:1:1.1")), same), 1e-4);
 }
 
-TEST(CutOffBus, LosesItsLoadWithANote) {
+TEST(CutOffBus, LosesItsLoadWithARemark) {
   grid::Grid grid = grid_of(case_with(line("103,104", 0.0, 0.05), ""));
   const network::Event event = trip(grid, "103:104:1:1");
   const auto run = in_reference(grid, event);

@@ -106,7 +106,7 @@ TEST(LawOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
   EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
 }
 
-TEST(LawOperatingPoint, ALimitInTheWayIsNamedWithItsValue) {
+TEST(LawOperatingPoint, NamesTheViolatedLimitAndItsValue) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   grid.plants[1].controls = {{&sexs_law(), {0.1, 10.0, 100.0, 0.1, -4.0, 0.9}}};
   try {

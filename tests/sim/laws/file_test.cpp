@@ -60,7 +60,7 @@ TEST(LawExpression, ComputesAsWritten) {
     EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // a few roundings
 }
 
-TEST(LawExpression, EveryFaultIsNamedWithItsPlace) {
+TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
   const auto message = [](const std::string& text) {
     try {
       (void)make_law(text, "x.toml");
@@ -97,7 +97,7 @@ TEST(LawExpression, EveryFaultIsNamedWithItsPlace) {
 }
 
 /// A full law for the refusals: every fault at once.
-TEST(LawFile, AllFaultsAreToldAtOnce) {
+TEST(LawFile, ReportsAllErrorsAtOnce) {
   const std::string text = std::string("name = \"a b\"\n") + kHead + R"law(
 output = "Efd"
 action = "replace"
@@ -141,7 +141,7 @@ TEST(LawFile, UnreadableFilesAreRefused) {
   EXPECT_THROW(make_law(std::string(200000, '#'), "x"), InputError);
 }
 
-TEST(LawFile, TheSameTextIsTheSameEffectAndANameIsTakenOnce) {
+TEST(LawFile, EqualTextsShareAnEffectAndNamesAreUnique) {
   library::EffectLibrary library;
   std::string text = one_value("speed");
   const Effect& first = load_law(text, "a.toml", library);
@@ -152,7 +152,7 @@ TEST(LawFile, TheSameTextIsTheSameEffectAndANameIsTakenOnce) {
   EXPECT_THROW(load_law(text, "c.toml", library), InputError);
 }
 
-TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
+TEST(LawFile, EqualTextsInTwoLibrariesAreOneEffect) {
   library::EffectLibrary one, other, changed;
   const Effect& law = load_law(one_value("speed"), "a.toml", one);
   EXPECT_TRUE(same_effect(law, load_law(one_value("speed"), "b.toml", other)));
@@ -161,7 +161,7 @@ TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
   EXPECT_TRUE(same_effect(*one.find("SEXS"), *other.find("SEXS")));
 }
 
-TEST(LawFile, AValuesSourceIsWhatTheParameterSaysOrTheFile) {
+TEST(LawFile, SourceOfAValueIsTheParametersOrTheFile) {
   const Effect law = make_law(law_of("Vs", "add", R"law(value = "a * b * 0"
 [parameters]
 a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
@@ -172,7 +172,7 @@ b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law")
   EXPECT_EQ(as_text(law.parameters[1].default_from), "plant.toml");
 }
 
-TEST(LawFile, InstantsAreThoseOfTheParameters) {
+TEST(LawFile, SwitchingTimesComeFromParameters) {
   const Effect law = make_law(law_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
 instants = ["start", "start + 2"]
 [parameters]

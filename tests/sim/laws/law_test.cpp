@@ -173,7 +173,7 @@ TEST(LawFile, DualsEqualCentralDifferences) {
 }
 
 /// An integrator with nothing to limit rests at its limit, and leaves it without delay.
-TEST(LawFile, AStateMayRestAtItsLimit) {
+TEST(LawFile, AllowsAnOperatingPointAtALimit) {
   library::EffectLibrary library;
   test::ControlBench bench(
       load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/limiter_field_current.toml", library));
@@ -188,7 +188,7 @@ TEST(LawFile, AStateMayRestAtItsLimit) {
   EXPECT_EQ(bench.out().Vlimiter, -0.5);
 }
 
-TEST(LawFile, TheExamplesAreSound) {
+TEST(LawFile, ExamplesPassTheChecks) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/laws")) {

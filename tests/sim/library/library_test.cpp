@@ -32,7 +32,7 @@ K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, mea
 }
 double standard(const EffectLibrary& library) { return library.find("MINE")->default_parameters().at(0); }
 
-TEST(EffectLibrary, AVariantNamesAnEffectOfItsSlotThatIsNone) {
+TEST(EffectLibrary, VariantsReferToANonVariantOfTheirSlot) {
   int variants = 0;
   for (const Effect& effect : compiled_effects())
     if (const Effect* other = variant_of(effect)) {
@@ -55,7 +55,7 @@ TEST(EffectLibrary, HoldsTheCompiledEffects) {
   EXPECT_THAT(library.names(Slot::machine), Not(HasSubstr("SEXS")));
 }
 
-TEST(EffectLibrary, TwoWithLawsOfOneNameDoNotSeeEachOther) {
+TEST(EffectLibrary, LibrariesWithEqualNamesAreIndependent) {
   EffectLibrary one, other;
   laws::load_law(law(2.0), "law.toml", one);
   laws::load_law(law(3.0), "law.toml", other);
@@ -66,7 +66,7 @@ TEST(EffectLibrary, TwoWithLawsOfOneNameDoNotSeeEachOther) {
   EXPECT_THAT(one.names(Slot::stabiliser), EndsWith(", MINE"));
 }
 
-TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
+TEST(EffectLibrary, CopySharesOnlyEarlierEffects) {
   EffectLibrary copy;
   const Effect* shared = nullptr;
   {
@@ -82,7 +82,7 @@ TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
   EXPECT_EQ(copy.find("LATER"), nullptr);
 }
 
-TEST(EffectLibrary, ATakenNameIsRefused) {
+TEST(EffectLibrary, RefusesDuplicateNames) {
   EffectLibrary library;
   library.add(laws::make_law(law(2.0), "law.toml"));
   try {
@@ -98,7 +98,7 @@ TEST(EffectLibrary, ATakenNameIsRefused) {
   EXPECT_EQ(library.all().size(), compiled_effects().size() + 1);
 }
 
-TEST(EffectLibrary, ThreadsThatReadLawsOfOneNameGetEachTheirOwn) {
+TEST(EffectLibrary, ThreadsReadingEqualNamesGetTheirOwnEffects) {
   constexpr int kThreads = 4, kRounds = 50;
   std::vector<int> own(kThreads);
   {

@@ -92,7 +92,7 @@ TEST_F(Reduction, EqualsTheFullSolution) {
   }
 }
 
-TEST_F(Reduction, AtThePowerFlowGivesTheGeneratorsCurrents) {
+TEST_F(Reduction, GivesTheGeneratorCurrentsOfThePowerFlow) {
   const auto reduced = reduce(network, flow, {}, kept);
   Eigen::VectorXcd v(static_cast<Eigen::Index>(kept.size()));
   for (std::size_t k = 0; k < kept.size(); ++k)
@@ -130,7 +130,7 @@ TEST_F(Reduction, AFaultImpedanceConvergesLinearlyToTheBoltedFault) {
   EXPECT_LT(gap.back(), 1e-4);
 }
 
-TEST_F(Reduction, PartsLeftWithoutGeneratorAreGrounded) {
+TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
   // Buses 7 and 8 hang on 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
   const std::vector<std::pair<int, int>> lines = {{6, 7}, {5, 8}, {8, 9}};
   Topology t;
@@ -147,13 +147,13 @@ TEST_F(Reduction, PartsLeftWithoutGeneratorAreGrounded) {
               HasSubstr("with what is tripped no generator is left"));
 }
 
-TEST_F(Reduction, APartWithAGeneratorRunsOnAlone) {
+TEST_F(Reduction, IslandWithAGeneratorContinues) {
   const Topology t{{}, {network.branch_index(2, 30, "1")}};  // generator 30 loses its only branch
   const auto reduced = reduce(network, flow, t, kept);
   EXPECT_LT(reduced.y.row(0).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST_F(Reduction, AnIsolatedBusDoesNotDisturb) {
+TEST_F(Reduction, IsolatedBusHasNoInfluence) {
   const auto before = reduce(network, flow, {}, kept).y;
   network.buses.push_back({99, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   flow.voltage.push_back(0.0);

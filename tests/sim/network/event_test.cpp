@@ -58,7 +58,7 @@ TEST_F(Segments, ALastingTripHasNoEndAndTouchingFaultsAreOne) {
   EXPECT_EQ(s[2].start, 1.2);
 }
 
-TEST_F(Segments, EveryFaultOfAnEventIsReported) {
+TEST_F(Segments, ReportsEveryErrorOfAnEvent) {
   network.branches[1].in_service = false;
   network.buses.push_back({200, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();

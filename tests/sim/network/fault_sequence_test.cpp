@@ -37,7 +37,7 @@ Complex phase_domain_current(FaultType type, Complex z0, Complex z1, Complex z2,
   return (shape.inverse() * i)[1];
 }
 
-TEST(FaultSequence, TheSequenceEquivalentDrawsThePositiveSequenceCurrentOfThePhases) {
+TEST(FaultSequence, EquivalentDrawsThePhasesPositiveSequenceCurrent) {
   const Complex z0(0.03, 0.4), z1(0.01, 0.2), z2(0.02, 0.25), zf(0.05, 0.01);
   for (const FaultType type :
        {FaultType::line_to_ground, FaultType::two_phase, FaultType::two_phase_to_ground}) {

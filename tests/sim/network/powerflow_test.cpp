@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Committed, PowerFlowNetworks,
                                            Solved{"ieee39_dataset_genrou", 1e-6, 1e-5},
                                            Solved{"ieee14_genrou", 1e-7, 5e-7}));
 
-TEST(PowerFlow, TheReferenceSolutionIsLessBalancedThanOurs) {
+TEST(PowerFlow, MismatchIsBelowThatOfTheReferenceSolution) {
   for (const auto& [name, least, most] :
        {std::tuple{"ieee39_genrou", 2.0e-5, 3.0e-5}, {"ieee14_genrou", 3e-7, 5e-7}}) {
     const Network n = committed(name);
@@ -70,7 +70,8 @@ TEST(PowerFlow, TheReferenceSolutionIsLessBalancedThanOurs) {
   }
 }
 
-TEST(PowerFlow, Figures) {  // from the reference JSON, so that file and reader cannot err together
+TEST(PowerFlow,
+     MatchesReferenceValues) {  // from the reference JSON, so that file and reader cannot err together
   const Network n = committed("ieee39_genrou");
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[static_cast<std::size_t>(n.bus_index(1))]), 1.0393836154040808, 1e-6);
@@ -103,7 +104,7 @@ TEST(PowerFlow, EachLoadPartMatchesItsClosedForm) {
   EXPECT_NEAR(solve_power_flow(two_buses({}, {0, 0.8}, {})).voltage[1].real(), 1.0 - 0.08, rounding);
 }
 
-TEST(PowerFlow, APoorStartIsMendedByAFlatOne) {
+TEST(PowerFlow, RestartsFlatAfterAPoorStart) {
   Network n = committed("ieee39_genrou");
   const PowerFlow good = solve_power_flow(n);
   for (std::size_t i = 0; i < n.buses.size(); ++i)
@@ -132,7 +133,7 @@ TEST(PowerFlow, MachinesAtOneBusShareByRating) {
   EXPECT_NEAR(two.generation[g - 1].real(), 0.75 * one.generation[1].real(), 1e-11);
 }
 
-TEST(PowerFlow, MachinesAtOneBusShareAsInTheFileWhereTheSolutionIsTheFiles) {
+TEST(PowerFlow, MachinesAtOneBusKeepTheFilesShares_WhenTheSolutionMatches) {
   Network n = committed("ieee39_genrou");
   const double q = solve_power_flow(n).generation[0].imag();
   Generator second = n.generators[0], idle = second;
@@ -171,7 +172,7 @@ TEST(PowerFlow, IslandsAreNamed) {
   EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(n); }), HasSubstr("bus 8 is islanded"));
 }
 
-TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
+TEST(PowerFlow, OmitsIsolatedBuses) {
   Network n = committed("ieee14_genrou");
   n.buses.push_back({99, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   const PowerFlow flow = solve_power_flow(n);
@@ -179,7 +180,7 @@ TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
   EXPECT_LE(flow.mismatch, 1e-12);
 }
 
-TEST(PowerFlow, ASlackBusIsNeeded) {
+TEST(PowerFlow, RequiresASlackBus) {
   Network none = committed("ieee14_genrou"), two = none, idle = none;
   none.buses[0].type = BusType::generator;
   EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(none); }), HasSubstr("no slack bus"));

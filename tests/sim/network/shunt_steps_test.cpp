@@ -34,7 +34,7 @@ PowerFlow stepped(const Network& n) {
   return solve_power_flow(n, options);
 }
 
-TEST(ShuntSteps, StandStillUnlessAsked) {
+TEST(ShuntSteps, StayFixedUnlessRequested) {
   Network n = two_lines();
   n.switched = {bank(0.99, 1.01)};
   const PowerFlow flow = solve_power_flow(n);
@@ -62,7 +62,7 @@ TEST(ShuntSteps, TakeTheFirstStepInTheBand) {
   }
 }
 
-TEST(ShuntSteps, HoldARemoteBusAndSwitchReactorsIn) {
+TEST(ShuntSteps, RegulateARemoteBusAndSwitchReactorsIn) {
   Network n = two_lines();
   n.shunts = {{2, "1", {0.0, 1.0}}};  // high voltage at bus 3
   SwitchedShunt s = bank(0.9, 1.05);
@@ -78,7 +78,7 @@ TEST(ShuntSteps, HoldARemoteBusAndSwitchReactorsIn) {
   EXPECT_LE(std::abs(flow.voltage[1]), 1.05);
 }
 
-TEST(ShuntSteps, EndAtTheLastStepAndSayIt) {
+TEST(ShuntSteps, StopAtTheLastStepAndReportIt) {
   Network n = two_lines();
   n.switched = {bank(1.2, 1.3)};
   const PowerFlow flow = stepped(n);
@@ -87,7 +87,7 @@ TEST(ShuntSteps, EndAtTheLastStepAndSayIt) {
   EXPECT_FALSE(flow.stepped[0].in_band);
 }
 
-TEST(ShuntSteps, ABandNarrowerThanAStepEndsTheSearch) {
+TEST(ShuntSteps, StopWhenTheBandIsNarrowerThanAStep) {
   Network n = two_lines();
   n.switched = {bank(0.9701, 0.9702)};
   const PowerFlow flow = stepped(n);

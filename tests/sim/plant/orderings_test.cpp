@@ -17,7 +17,7 @@ Block drawn(const Effect& effect, std::mt19937& random) {
   return block;
 }
 
-TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
+TEST(Orderings, MatchTheChecksOfEveryMachine) {
   std::mt19937 random(7);
   int machines = 0, sound = 0;
   for (const Effect& effect : library::compiled_effects()) {
@@ -36,7 +36,7 @@ TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
   EXPECT_GT(sound, 100);  // both answers were seen
 }
 
-TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
+TEST(Orderings, NameBothParametersAndIgnoreZeros) {
   const Effect& round = *library::compiled().find("GENROU");
   Block block{&round, round.default_parameters()};
   const auto set = [&](const char* name, double value) {

@@ -21,7 +21,7 @@ Block tgov1() {
   return {effect, effect->default_parameters()};
 }
 
-TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
+TEST(Usual, NamesValuesOutsideTheirRange) {
   Block block = tgov1();
   EXPECT_TRUE(unusual(block).empty());
   block.p[static_cast<std::size_t>(block.effect->parameter_index("VMIN"))] = -1.5;
@@ -31,12 +31,12 @@ TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
   EXPECT_TRUE(unusual(block).empty()) << "none";
 }
 
-TEST(Usual, StandardValuesOfEveryEffectAreUsual) {
+TEST(Usual, DefaultsOfEveryEffectAreWithinTheirRange) {
   for (const Effect& e : library::compiled_effects())
     EXPECT_THAT(unusual({&e, e.default_parameters()}), ElementsAre()) << e.name;
 }
 
-TEST(Usual, ASearchMayMoveBeyondAValueThatIsOutsideTheRange) {
+TEST(Usual, SearchRangeIncludesAValueOutsideTheUsualRange) {
   Parameter p{};
   p.low = 0.05;
   p.high = 5.0;
@@ -75,7 +75,7 @@ bool is_unread(const std::string& name) {
 
 /// What a range no longer refuses, the check of the effect must: a time that runs backwards, and a code that
 /// is none.
-TEST(Usual, ChecksRefuseNegativeTimesAndCodesThatAreNone) {
+TEST(Usual, RefusesNegativeTimesAndUnknownCodes) {
   for (const Effect& e : library::compiled_effects())
     for (std::size_t i = 0; i < e.parameters.size(); ++i) {
       const Parameter& record = e.parameters[i];

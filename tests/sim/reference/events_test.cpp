@@ -36,7 +36,7 @@ Trajectory compared(const grid::Grid& grid, const network::Event& event,
   return kept;
 }
 
-TEST(Events, ATrippedMachineDeliversNothingAndTheOthersSlowDown) {
+TEST(Events, TrippedMachineDeliversNoPowerAndTheOthersSlowDown) {
   const grid::Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
   const auto lost = std::ranges::find(grid.plants, "30", &plant::Plant::name);
   ASSERT_NE(lost, grid.plants.end());
@@ -71,7 +71,7 @@ double frequency_slope(const grid::Grid& grid, const Trajectory& run, int lost, 
 
 /// All the other machines together are one with M = sum 2 H S, short of the power P that the lost one gave:
 /// dw/dt = -P/M from the first instant on.
-TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
+TEST(Events, InitialFrequencyDeclineFollowsTheAggregateSwingEquation) {
   for (const char* name : {"30", "34", "37"}) {
     grid::Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
     network::Event event;
@@ -102,7 +102,7 @@ TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
 }
 
 /// A plant of two units is one plant whose units are split: losing 40 % of it is losing the second unit.
-TEST(Events, APartialTripIsTheTripOfThatUnit) {
+TEST(Events, PartialTripEqualsTheTripOfThatUnit) {
   const std::filesystem::path folder = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   const auto models = formats::read_dyr(folder / "ieee39_genrou.dyr");
   const network::Network whole = formats::read_raw(folder / "ieee39_genrou.raw");
@@ -159,7 +159,7 @@ TEST(Events, PartsOfAGeneratorAddUp) {
   }
 }
 
-TEST(Events, ALoadStepTakesThePowerItNamesAtTheVoltageBefore) {
+TEST(Events, LoadStepDrawsItsPowerAtThePreStepVoltage) {
   const grid::Grid grid = test::two_machine_grid(Conventions::psse());
   network::Event event;
   event.load_steps = {{1, {0.05, 0.02}, 1.0, 2.0}};

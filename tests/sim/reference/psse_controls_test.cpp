@@ -266,7 +266,7 @@ std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double
 // Inferred, not documented: with a droop of 0.0565 pu of the throttle, fitted to the first curve, the
 // differences fall from 5.1 and 3.3 % of the swing to 0.04 % in both (the delay is this test's, exact). DEGOV
 // has no such parameter; which model or setting of PowerWorld made the curves is not known.
-TEST(PsseRecords, DegovsCurvesHoldADroop) {
+TEST(PsseRecords, DegovCurvesContainADroop) {
   for (const auto& [name, delay, without] :
        {std::tuple{"nodelay", 0.0, 0.04}, std::tuple{"delay", 1.0, 0.03}}) {
     const auto folder = folder_of("DEGOV");

@@ -42,7 +42,7 @@ TEST(PsseRecords, Hygov) {
 }
 
 // HYGOV has no column for the dead-band: writing it away in silence would change the plant.
-TEST(PsseGovernor, DeadBandIsNotLostInADyr) {
+TEST(PsseGovernor, DeadBandIsKeptInADyr) {
   const auto configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   grid::Grid grid =
       grid::load_grid(configs / "ieee39_genrou.raw", configs / "ieee39_genrou.dyr", Conventions::psse());

@@ -72,13 +72,13 @@ TEST(PsseRecords, DampedClassicalMachine) {
 }
 
 // Torque instead of power is off by 0.0005 degrees: little, because speed divides both sides alike.
-TEST(PsseRecords, ClassicalMachineTellsTorqueFromPower) {
+TEST(PsseRecords, ClassicalMachineDistinguishesTorqueFromPower) {
   EXPECT_GT(largest_error(kTest01, Conventions::andes()), 0.0004);
 }
 
 // Integrated exactly, the same equations are off by 0.064 degrees, and that is PSS/E's step: its error falls
 // to a quarter with half the step.
-TEST(PsseRecords, ClassicalMachinesRemainderIsPssesStep) {
+TEST(PsseRecords, ClassicalMachineErrorIsDueToPssesStep) {
   const Case c = case_of(kTest01, Conventions::psse());
   ReferenceOptions options;
   options.t_end = kEnd;

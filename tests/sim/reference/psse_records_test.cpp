@@ -51,7 +51,7 @@ TEST(PsseRecords, UnsaturatedGenrou) {
 }
 // The conventions are what makes the difference: with mechanical torque instead of power the same equations
 // are off by 0.045-0.048 degrees.
-TEST(PsseRecords, OtherConventionsAreTold) {
+TEST(PsseRecords, DetectsOtherConventions) {
   EXPECT_GT(largest_angle_error("ThreeBus_GENROU.dyr", "TEST_GENROU.csv", Conventions::andes()), 0.03);
 }
 

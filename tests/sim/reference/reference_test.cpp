@@ -38,7 +38,7 @@ double drift(const Trajectory& run) {
   return worst;
 }
 
-TEST(Reference, StaysPutWithoutAFault) {
+TEST(Reference, IsSteadyWithoutAFault) {
   for (const char* name : {"ieee39_genrou", "ieee39_gencls", "ieee14_genrou"}) {
     const grid::Grid grid = configured_grid(name, Conventions::psse());
     const ReferenceRun run = run_reference(grid, {}, {});
@@ -123,7 +123,7 @@ TEST(Reference, BoltedFaultIsTheLimitOfFaultsThroughAnImpedance) {
                           // infinite impedance
 }
 
-TEST(Reference, ThetaIsHeldWhileTheTerminalIsBolted) {
+TEST(Reference, ThetaIsKeptDuringABoltedTerminalFault) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
   options.t_end = 1.0;
@@ -141,7 +141,7 @@ TEST(Reference, ThetaIsHeldWhileTheTerminalIsBolted) {
   EXPECT_EQ(run.bus_theta[run.samples + 30], run.at(1, 1)[30]);
 }
 
-TEST(Reference, ASwitchingInstantHasTwoLimits) {
+TEST(Reference, SwitchingTimeHasTwoLimits) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
   options.t_end = 1.0;
@@ -176,7 +176,7 @@ TEST(Reference, AnEventAtTheStartLeavesTheOperatingPointAsFirstSample) {
   EXPECT_EQ(run_reference(grid, event, options).at(1, 0)[0], 0.0);
 }
 
-TEST(Reference, AReclosedLineEndsWhereItBegan) {
+TEST(Reference, ReclosingRestoresTheOperatingPoint) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
   options.t_end = 60.0;  // the damped swing dies out
@@ -192,7 +192,7 @@ TEST(Reference, AReclosedLineEndsWhereItBegan) {
       << "an open line moves the operating point";
 }
 
-TEST(Reference, AnInfiniteBusStaysPut) {
+TEST(Reference, InfiniteBusKeepsItsVoltage) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   const ReferenceRun run = run_reference(grid, fault(grid, 2, 0.5, 0.6), {});
   for (int k = 0; k < run.samples; ++k) {

@@ -27,7 +27,7 @@ TEST(Downsample, TakesChannelsWindowAndEveryNthSample) {
   EXPECT_DOUBLE_EQ(s.rate, 2.5);
 }
 
-TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
+TEST(Downsample, RelativeFormIsIndependentOfTheAmplitude) {
   mpi::store::DatasetHeader header;
   header.rate = 1.0;
   header.samples = 4;
@@ -53,7 +53,7 @@ TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
   EXPECT_NEAR(both[13], 3.0f * r, 1e-6);
 }
 
-TEST(Downsample, NamesEveryProblemAtOnce) {
+TEST(Downsample, ReportsAllProblemsAtOnce) {
   mpi::store::DatasetHeader header;
   header.rate = 10.0;
   header.samples = 20;
@@ -126,7 +126,7 @@ mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
   return mpi::store::open_dataset(dataset.path);
 }
 
-TEST(ShardStream, RefusesWhatIsNotAsItWasJournalledUnlessTrusted) {
+TEST(ShardStream, RefusesDataThatContradictTheJournalUnlessTrusted) {
   test::Folder folder("altered");
   const mpi::store::Dataset altered =
       with_shard_1_changed(test::make_dataset(folder.path), [](mpi::store::ShardData& d) {
@@ -158,7 +158,7 @@ TEST(ShardStream, RefusesOtherShapesTrustedOrNot) {
     }
 }
 
-TEST(ShardStream, TrustChangesNothingThatIsRead) {
+TEST(ShardStream, TrustDoesNotChangeTheData) {
   test::Folder folder("trust");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   const ShardStream checked(dataset, test::whole_record()),
@@ -188,7 +188,7 @@ TEST(EpochOrder, DependsOnSeedAndEpochOnly) {
   EXPECT_GT(displacement / 40000.0 / 40000.0, 0.25);
 }
 
-TEST(BatchReader, StartsInTheMiddleAsIfItHadReadTheBeginning) {
+TEST(BatchReader, StartsInTheMiddleWithTheSameBatches) {
   test::Folder folder("middle");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
@@ -346,7 +346,7 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
     for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
 }
 
-TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
+TEST(Split, PartialDataAreTheFirstRowsOfBothDatasets) {
   const TwoDatasets two("share");
   const ShardStream& stream = two.stream;
   const RowSplit whole = leave_one_out(stream.labels(), {33, 0.1, 1});
@@ -359,7 +359,7 @@ TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
   EXPECT_THROW(keep_share(half, stream.labels(), 1e-6), InputError);
 }
 
-TEST(Features, SeeTheTrainingRowsOnly) {
+TEST(Features, AreFittedToTrainingRowsOnly) {
   test::Folder folder("fit"), spoilt("spoilt");
   test::Plan plan;
   const mpi::store::Dataset dataset = test::make_dataset(folder.path, plan);
@@ -394,7 +394,7 @@ TEST(Features, GiveZeroMeanAndUnitVariance) {
   }
 }
 
-TEST(Pca, ReconstructsWhatItSaysItDoes) {
+TEST(Pca, ReconstructionErrorMatchesItsReport) {
   test::Folder folder("pca");
   const ShardStream stream(test::make_dataset(folder.path), test::whole_record());
   const auto rows = test::all_rows(400);
@@ -431,7 +431,7 @@ TEST(Pca, ReconstructsWhatItSaysItDoes) {
   EXPECT_LT(last, 1e-9);  // 20 components of 20 samples keep all
 }
 
-TEST(Pca, RefusesPartsOfASecond) {
+TEST(Pca, RefusesFractionsOfASecond) {
   test::Folder folder("second");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   auto recipe = test::whole_record();

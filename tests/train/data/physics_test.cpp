@@ -24,7 +24,7 @@ std::vector<float> record(double rate, std::size_t samples) {
   return r;
 }
 
-TEST(Physics, IsWhatTheMachinesEquationsAreWrittenIn) {
+TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
   constexpr double rate = 120, X = 0.3;
   constexpr std::size_t samples = 720;
   const Physics physics(kNames, {rate, 0.5, 6.0, 1.0, X});
@@ -58,14 +58,14 @@ TEST(Physics, IsWhatTheMachinesEquationsAreWrittenIn) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(levels[i], steady[i], 1e-6) << i;
 }
 
-TEST(Physics, CoarsensBehindTheEventAndEndsInsideTheWindow) {
+TEST(Physics, CoarsensAfterTheEventAndEndsInsideTheWindow) {
   const Physics physics(kNames, {120, 0.5, 10.0, 1.0, 0.3});
   // 0.5 to 2 s sample by sample, to 6 s in thirtieths, to 10 s in fifteenths
   EXPECT_EQ(physics.cells(), 180u + 120u + 60u);
   EXPECT_EQ(physics.samples(), 1200u);
 }
 
-TEST(Physics, ShowsWhatThereIs) {
+TEST(Physics, UsesTheAvailableChannels) {
   EXPECT_EQ(Physics({"P", "Q", "V"}, {60, 0, 2, 1, 0.3}).channels(), 6u);
   EXPECT_EQ(Physics({"P", "Q", "V", "frequency"}, {60, 0, 2, 1, 0.3}).channels(), 6u);
   EXPECT_EQ(Physics({"P", "Q", "V", "Ifd"}, {60, 0, 2, 1, 0.3}).levels(), 6u);
@@ -77,7 +77,7 @@ TEST(Physics, ShowsWhatThereIs) {
   }
 }
 
-TEST(Whitening, MakesUncorrelatedNumbersOfOneSizeAndComesBackFromAFile) {
+TEST(Whitening, DecorrelatesAndNormalisesAndIsRestoredFromAFile) {
   test::Folder folder("white");
   test::Plan plan;
   plan.electrical = true;
@@ -136,7 +136,7 @@ struct NoisyWorld {
   }
 };
 
-TEST(Whitening, ShrinksWhatNoiseBuriesAndTellsTheLevel) {
+TEST(Whitening, ShrinksNoisyComponentsAndIncludesTheLevel) {
   const NoisyWorld w;
   const Features f = Features::fit(w.stream, test::all_rows(w.dataset.rows), 5);
   EXPECT_EQ(f.sizes().noisy, 1u);

@@ -43,7 +43,7 @@ TEST(Networks, GiveOneOutputPerParameterStartedAtTheMean) {
   }
 }
 
-TEST(Networks, OutputOfTheThesissIsNeverNegative) {
+TEST(Networks, OutputOfTheThesisNetworksIsNonNegative) {
   for (const char* name : {"cnn", "gru", "lstm"}) {
     auto s = shape(3, 40, 2);
     s.output_bias = {-5.0f, 5.0f};
@@ -72,7 +72,7 @@ TEST(NetworksFull, MlpLearnsASquare) {
   EXPECT_LT(last, 0.01 * first);  // a linear map leaves all but the mean
 }
 
-TEST(Networks, HaveTheThesisCounts) {
+TEST(Networks, ParameterCountsMatchTheThesis) {
   // kernel 112, lengths 450 -> 112 -> 56
   const std::int64_t conv = 6 * 112 * 256 + 256 + 256 * 112 * 512 + 512;
   const std::int64_t dense = 56 * 512 * 1024 + 1024 + 1024 * 256 + 256 + 256 * 14 + 14;

@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Shape{7, 14, 2, 3, 2}, Shape{9, 1, 4, 4, 3}, Shape{1, 1, 2, 2, 1}, Shape{1, 6, 2, 2, 1},
                     Shape{2, 2, 1, 1, 1}));
 
-TEST(SpectralConv, LeavesOutTheGradientNobodyAskedFor) {
+TEST(SpectralConv, OmitsUnusedGradients) {
   const SpectralPlan plan(12, 3);
   const Tensor x = at::randn({12, 2, 3}), w = at::randn({3, 3, 4}).requires_grad_(true);
   spectral_conv(x, w, plan).sum().backward();

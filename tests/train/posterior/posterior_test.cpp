@@ -79,7 +79,7 @@ struct World {
   }
 };
 
-TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
+TEST(CoverageFull, OfCalibratedPosteriorsIsNominal) {
   const World w(4000, 1.0, 0.8, 3);
   const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_50), 0.5, 0.025);
@@ -93,7 +93,7 @@ TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
   EXPECT_LT(c.tarp.largest_distance(), 0.03);
 }
 
-TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
+TEST(CoverageFull, OfOverconfidentPosteriorsIsNominalAfterRecalibration) {
   const World known(4000, 1.6, 0.8, 4), other(4000, 1.6, 0.8, 5);
   const std::vector<Recalibration> none(2);
   const Coverage proud = coverage(other.posteriors, none, other.places, 1);
@@ -114,7 +114,7 @@ TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
   EXPECT_GT(honest.tarp.by_chance(), 1e-4);
 }
 
-TEST(CoverageFull, TarpSeesCorrelationsThatTheMarginsDoNot) {
+TEST(CoverageFull, TarpDetectsCorrelationsMissedByMarginals) {
   World w(4000, 1.0, 0.95, 6);
   std::ranges::fill(w.posteriors.factor, 0.0);
   const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
@@ -130,7 +130,7 @@ class Shown final : public networks::Network {
   std::vector<at::Tensor> parameters() override { return {at::zeros({2})}; }
 };
 
-TEST(HeadFull, LearnsASpreadThatGrowsWithTheInputAndACorrelation) {
+TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
   auto generator = at::globalContext().defaultGenerator(at::kCPU);
   generator.set_current_seed(1);
   Shown shown;

@@ -117,7 +117,7 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
   }
 }
 
-TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
+TEST(Training, KillLosesAtMostTheCurrentEpoch) {
   const World world("killed", 150);
   const Prepared p(world);
   const json run = {{"test", 1}};
@@ -178,7 +178,7 @@ TEST(Training, RefusesADamagedOrForeignCheckpoint) {
   EXPECT_THROW((void)train(run, 2), InputError);
 }
 
-TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
+TEST(Training, LearnsFromTrueLabelsOnly) {
   const World world("learn", 800);
   RunRequest r = request(world, "cnn", 4);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -203,7 +203,7 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   EXPECT_LT(shuffled["ratio"], 1.25);
 }
 
-TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
+TEST(Training, NoiseIsNamedInRunResultAndFeatures) {
   const World world("noisy");
   const data::ShardStream noisy(world.dataset, test::whole_record(World::plan(300, 16)),
                                 {.noise = {0.001, 1}});
@@ -219,7 +219,7 @@ TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
   EXPECT_EQ(result["test_rows"], 15);
 }
 
-TEST(Training, AShareOfTheRowsTrainsAndTheSameOnesAreJudged) {
+TEST(Training, FractionOfTheRowsTrainsAndTheTestRowsStayTheSame) {
   const World world("share", 400);
   RunRequest r = request(world, "cnn", 1);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -290,7 +290,7 @@ TEST(TrainingFull, RecurrentNetworksLearn) {
   }
 }
 
-TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
+TEST(Training, LeftOutGeneratorDoesNotAffectTheWeights) {
   // The same run on two data sets that differ in the left-out generator's records only.
   const World world("trace");
   test::Folder folder("moved");
@@ -323,7 +323,7 @@ TEST(Training, RefusesAResultOfOtherData) {
   EXPECT_THROW((void)run(world.stream, r), InputError);
 }
 
-TEST(Training, SaysWhereItDiverged) {
+TEST(Training, ReportsWhereItDiverged) {
   const World world("diverge");
   RunRequest r = request(world, "cnn", 3);
   r.experiment.presets["quick"].training["cnn"].learning_rate = 1e30;

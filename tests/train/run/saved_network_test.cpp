@@ -79,7 +79,7 @@ json saved_result_of(const RunRequest& r) {
   return json::parse(in);
 }
 
-TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
+TEST(SavedNetwork, EqualsTheTrainedNetwork) {
   for (const auto& [network, pca] :
        {std::pair{"cnn", std::size_t{0}}, {"cnn", std::size_t{5}}, {"gru", std::size_t{0}}}) {
     const SavedWorld world(std::string("saved-") + network + std::to_string(pca), data::InputForm::both);
@@ -110,7 +110,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
   }
 }
 
-TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
+TEST(SavedNetwork, EqualsTheTrainedNetworkOnPhysicalChannels) {
   const SavedWorld world("saved-physics", data::InputForm::physics);
   RunRequest r = world.request("mlp", 6);
   auto& recipe = r.experiment.presets["quick"].training["mlp"];
@@ -152,7 +152,7 @@ struct NoisyRuns {
   }
 };
 
-TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
+TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
   NoisyRuns w("saved-levels");
   ASSERT_EQ(run(w.stream(0.0), w.request), RunOutcome::done);
   const auto file = w.request.out / "V-mlp-quick-seed1-gen33.network";
@@ -211,7 +211,7 @@ TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   EXPECT_EQ(a["validation_mse"], b["validation_mse"]);
 }
 
-TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
+TEST(SavedNetwork, ErrorIsThatOfTheGeneratorLeftOut) {
   const SavedWorld world("spread");
   const RunRequest r = world.request("cnn");
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -238,7 +238,7 @@ TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
   EXPECT_GT(h.spread, 0.01);
 }
 
-TEST(SavedNetwork, RefusesWhatIsNone) {
+TEST(SavedNetwork, RefusesOtherFiles) {
   const SavedWorld world("none");
   RunRequest r = world.request("cnn");
   const auto refusal = [](const std::filesystem::path& path) {
@@ -274,7 +274,7 @@ TEST(SavedNetwork, RefusesWhatIsNone) {
 
 /// Flips one bit of every byte up to the end of the header, and of one in a thousand behind it, each in its
 /// place.
-TEST(SavedNetworkFull, FlippedBytesAreFound) {
+TEST(SavedNetworkFull, DetectsFlippedBytes) {
   const SavedWorld world("flipped");
   RunRequest r = world.request("gru");
   r.save_network = true;
@@ -301,7 +301,7 @@ TEST(SavedNetworkFull, FlippedBytesAreFound) {
   RecordProperty("flipped", flipped);
 }
 
-TEST(TargetScale, ABoxBelowZeroIsLiftedToZero) {
+TEST(TargetScale, ShiftsANegativeRangeToZero) {
   const std::vector<double> values = {-4, 1, -2, 2, -3, 3};
   const std::vector<std::uint64_t> rows = {0, 1, 2};
   const std::vector<double> low = {-5, 0.5};

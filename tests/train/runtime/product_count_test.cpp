@@ -39,7 +39,7 @@ TEST(ProductCount, CountsEveryKindOnce) {
   EXPECT_EQ(counted([&] { (void)at::bmm(large, large); }), 2 * 2.0 * 64 * 64 * 64);
 }
 
-TEST(ProductCount, AStepOfTheGruIsWhatItsLayersSay) {
+TEST(ProductCount, StepOfTheGruMatchesItsLayers) {
   constexpr double batch = 8, channels = 3, samples = 20, outputs = 2, units = 512;
   const double input = 2 * samples * batch * channels * 3 * units, output = 2 * batch * units * outputs;
   const double hidden = 2 * samples * batch * units * 3 * units;
@@ -49,7 +49,7 @@ TEST(ProductCount, AStepOfTheGruIsWhatItsLayersSay) {
   EXPECT_EQ(of_a_step("gru", {3, 20, 2, {1.0f, 1.0f}}, 8), expected);
 }
 
-TEST(ProductCount, TwiceTheRowsAreTwiceTheProductsOfTheCnnsLayers) {
+TEST(ProductCount, ProductsOfTheCnnGrowLinearlyWithTheRows) {
   const networks::NetworkShape shape{2, 48, 3, {1.0f, 1.0f, 1.0f}};
   const double small = of_a_step("cnn", shape, 8), middle = of_a_step("cnn", shape, 16),
                large = of_a_step("cnn", shape, 24);
