@@ -31,7 +31,7 @@ TEST(StrictConfig, ReadsGivenValues) {
   EXPECT_NO_THROW(c.raise());
 }
 
-/// "a.a.a" of so many parts.
+/// Returns a dotted key "a.a.a" with the given number of parts.
 std::string dotted(int parts) {
   std::string key = "a";
   for (int k = 1; k < parts; ++k) key += ".a";

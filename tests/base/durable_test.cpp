@@ -1,4 +1,4 @@
-// Files appear whole or not at all, and what stands under their temporary name is never written through.
+// Files appear completely or not at all, and a file or link at their temporary name is never written through.
 #include "base/durable.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ std::string refusal(F action) {
 constexpr SealedKind kKind{"a test's file", "SWTEST01", "make it again"};
 const std::vector<float> kNumbers(5000, 1.5F);
 
-/// Every way of writing a file.
+/// All functions that write a file.
 struct Writer {
   const char* name;
   void (*write)(const fs::path&);
@@ -105,7 +105,7 @@ TEST_P(Durable, LeavesNoTemporaryFileWhenTargetIsAFolder) {
 INSTANTIATE_TEST_SUITE_P(Writers, Durable, ::testing::ValuesIn(kWriters),
                          [](const auto& which) { return which.param.name; });
 
-/// While it lives, no file of this process grows beyond so many bytes.
+/// Limits the size of every file of this process, in bytes, for its lifetime.
 class SmallFiles {
  public:
   explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

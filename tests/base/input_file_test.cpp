@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A working folder without files and examples beside it, gone after the test.
+/// An empty working folder and a folder of examples beside it; both are removed after the test.
 class InputFile : public ::testing::Test {
  protected:
   InputFile() : before_(fs::current_path()) {
@@ -64,7 +64,7 @@ TEST_F(InputFile, ReportsUnreadableFileAsExisting) {
   std::ofstream("empty.toml").flush();
   EXPECT_THAT(sentence("empty.toml"), HasSubstr("(it is empty)"));
   EXPECT_THAT(sentence("."), HasSubstr("(it is a folder)"));
-  // A local file of an example's name is what was named, however bad it is.
+  // A local file takes precedence over the example of the same name, even if it is invalid.
   fs::create_directories("plants");
   std::ofstream("plants/one.toml").flush();
   EXPECT_THAT(sentence("plants/one.toml"), AllOf(HasSubstr("(it is empty)"), Not(HasSubstr("example"))));

@@ -1,4 +1,4 @@
-// No output replaces an input, whatever it is called.
+// No output replaces an input, under any spelling of its path.
 #include "base/inputs_kept.hpp"
 
 #include <gmock/gmock.h>

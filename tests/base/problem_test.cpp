@@ -17,7 +17,7 @@ TEST(Shown, EscapesControlCharacters) {
   EXPECT_EQ(shown("\xc2\x9b"
                   "2J"sv),
             "\\xc2\\x9b2J");
-  EXPECT_EQ(shown("V\0P"sv), "V\\x00P");                     // not cut off there
+  EXPECT_EQ(shown("V\0P"sv), "V\\x00P");                     // not truncated at the null character
   EXPECT_EQ(shown("m\xfcller \xe4"sv), "m\\xfcller \\xe4");  // no UTF-8
 }
 

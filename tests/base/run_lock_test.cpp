@@ -17,12 +17,12 @@
 #include "tests/mpi/store/sample_shard.hpp"
 
 namespace {
-int answer = 0;        // error that the next locks meet; 0: none
-int answers_left = 0;  // how many of them
+int answer = 0;        // error number that the next locks return; 0: none
+int answers_left = 0;  // number of locks that return it
 std::function<void()> before_next;
 }  // namespace
 
-/// Stands before libc's: a file system that does not lock is not at hand everywhere.
+/// Replaces libc's function, because a file system without locks is not available on every machine.
 extern "C" int flock(int fd, int operation) noexcept {
   if (answers_left > 0) {
     --answers_left;

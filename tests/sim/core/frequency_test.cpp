@@ -18,10 +18,10 @@ std::vector<double> frequency_of(const std::vector<double>& theta) {
 }
 
 TEST(TerminalFrequency, SteadyRampGivesItsSlope) {
-  const double deviation = 0.01;  // pu: theta grows by 2 pi 60 0.01 rad/s, several turns in all
+  const double deviation = 0.01;  // pu: theta grows by 2 pi 60 0.01 rad/s and wraps several times
   std::vector<double> theta;
   for (int k = 0; k < 600; ++k) theta.push_back(2 * std::numbers::pi * kF0 * deviation * k / kRate);
-  // After 5 s the slower filter has settled to exp(-50); rounding of the angles remains.
+  // After 5 s the slower filter has settled to exp(-50); only rounding of the angles remains.
   EXPECT_NEAR(frequency_of(theta).back(), deviation, 1e-10);
 }
 
@@ -51,7 +51,7 @@ TEST(TerminalFrequency, RampFollowsTheAnalyticResponse) {
 
 TEST(TerminalFrequency, IntegralReturnsTheAngle) {
   std::vector<double> theta;
-  for (int k = 0; k < 1800; ++k)  // leaps and swings
+  for (int k = 0; k < 1800; ++k)  // steps and oscillation
     theta.push_back(0.3 + (k > 240 ? -0.4 : 0.0) + 0.8 * std::sin(0.02 * k) + (k == 900 ? 1.0 : 0.0));
   const auto f = frequency_of(theta);
   std::vector<double> back(theta.size());

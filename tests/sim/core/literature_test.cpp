@@ -1,4 +1,4 @@
-// Sources of parameters' values: what is said once for an effect, and what a record says itself.
+// Sources of parameter values: stated once for an effect, or by a single parameter.
 #include <gtest/gtest.h>
 
 #include "sim/core/effect.hpp"

@@ -1,5 +1,5 @@
-// Controls of converters by hand: limits of the currents, what rides through a dip and after it, dead-bands,
-// freezing, the shaft's torsion.
+// Converter controls against hand calculations: current limits, behaviour during and after a voltage dip,
+// dead-bands, freezing, torsion of the shaft.
 #include <cmath>
 #include <numbers>
 
@@ -29,7 +29,7 @@ TEST(Reecb1, QPriorityLimitsTheActiveCurrent) {
   bench.run(1.0);
   const double Iq = 2.0 * (1.0 - 0.5 - 0.05);
   EXPECT_NEAR(bench.out().Efd, Iq, 1e-9);
-  EXPECT_NEAR(bench.out().Tm, std::sqrt(1.0 - Iq * Iq), 1e-9);  // 0.8/0.5 was asked for
+  EXPECT_NEAR(bench.out().Tm, std::sqrt(1.0 - Iq * Iq), 1e-9);  // demand: 0.8/0.5
 }
 TEST(Reecb1, PPriorityLimitsTheReactiveCurrent) {
   ControlBench bench("REECB1", {{"Imax", 1.0}, {"Kqv", 2.0}, {"PQFLAG", 1.0}}, at_rated());
@@ -117,7 +117,7 @@ TEST(Repca1, RegulatesOutsideItsDeadBandAndFreezes) {
   EXPECT_NEAR(bench.state("integral"), 0.1, 1e-12);
   bench.in.V = 0.97;
   bench.run(0.5);
-  bench.in.V = 1.0;  // what is measured comes back within the filter's 0.02 s
+  bench.in.V = 1.0;  // the measurement recovers with the filter's 0.02 s
   EXPECT_NEAR(bench.state("integral"), 0.1 + 5.0 * 0.02 * 0.5, 3e-3);
   bench.in.V = 0.6;
   const double before = bench.state("integral");
@@ -140,7 +140,7 @@ TEST(Wtdta1, TorsionalModeOscillatesAtFreq1) {
   const double rest = bench.state("twist");
   bench.state("twist") += 1e-3;
   bench.run(0.25, 1e-4);  // half a period
-  // constant powers are torques that fall with speed: the amplitude changes by some per cent
+  // at constant power the torque falls with speed: the amplitude changes by some per cent
   EXPECT_NEAR(bench.state("twist"), rest - 1e-3, 1e-4);
 }
 TEST(Wttqa1, SpeedReferenceFollowsItsCurve) {

@@ -1,4 +1,4 @@
-// CSVGN1 by hand: what it delivers, its regulator's answer to a step, the reactor's range, what is refused.
+// CSVGN1 against hand calculations: output, step response of the regulator, range of the reactor, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,11 +61,11 @@ TEST(ConverterCsvgn1, RegulatorFollowsTheDiagram) {
   Compensator svc({{"T1", 0.3}, {"T2", 0.5}, {"T4", 2.0}, {"K", 10.0}}, 1.0, {0.0, -0.3});
   svc.at(1.02);
   auto dx = svc.derivative();
-  // The leads pass the step on at once: K (T1/T3)(T2/T4) 0.02 is asked for.
+  // The leads pass the step without delay: the demand is K (T1/T3)(T2/T4) 0.02.
   const double asked = 10.0 * 0.3 / 0.154833 * 0.25 * 0.02;
   EXPECT_NEAR(dx[2], asked / 0.005167, 1e-9);
   EXPECT_NEAR(dx[0], 0.02 / 0.154833, 1e-12);
-  svc.s.dVref = 0.02;  // the reference moved as far
+  svc.s.dVref = 0.02;  // the same change of the reference
   for (const double d : {svc.derivative()[0], svc.derivative()[1], svc.derivative()[2]})
     EXPECT_NEAR(d, 0.0, 1e-11);
 }

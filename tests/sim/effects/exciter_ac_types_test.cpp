@@ -80,7 +80,7 @@ TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseWithoutDelay) {
   bench.in.V = 0.5;
   bench.run(30.0);
   EXPECT_NEAR(bench.out().Efd, (0.5 * 20.0 - 0.3 * 2.0) / 1.2, 1e-6);
-  EXPECT_NEAR(bench.state("second"), 75.0, 1e-4);  // where its output's limit stands, not 300
+  EXPECT_NEAR(bench.state("second"), 75.0, 1e-4);  // at the limit of its output, not at 300
   bench.in.dVref = -1.0;
   bench.in.V = 1.0;
   bench.run(0.5);

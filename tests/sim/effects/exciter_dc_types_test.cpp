@@ -1,5 +1,4 @@
-// IEEEX1, ESDC1A, ESDC2A, IEEET2: transfer functions against their diagrams, what tells them from one
-// another.
+// IEEEX1, ESDC1A, ESDC2A, IEEET2: transfer functions against their diagrams, and their differences.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -65,7 +64,7 @@ TEST(ExciterDcTypes, TerminalFedLimitsFollowTheVoltage) {
   bench.in.dVref = 1.0;
   bench.in.V = 0.6;
   bench.run(30.0);
-  EXPECT_NEAR(bench.out().Efd, 3.0, 0.05);  // V VRMAX/KE; Vr passes its limit by 1/(500 TA) of what asks
+  EXPECT_NEAR(bench.out().Efd, 3.0, 0.05);  // V VRMAX/KE; Vr exceeds its limit by 1/(500 TA) of the demand
 }
 
 TEST(ExciterDcTypes, Ieeet2FeedsTheRegulatorBackThroughTwoLags) {

@@ -70,7 +70,7 @@ TEST(ExciterEsst1a, TheRegulatorDoesNotWindUp) {
 TEST(ExciterEsst1a, FieldLimiterActsAboveItsReference) {
   auto values = kEsst1a;
   values["KLR"] = 2.0;
-  values["ILR"] = 1.5;  // the machine stands at 2 pu
+  values["ILR"] = 1.5;  // field current at the operating point: 2 pu
   ControlBench bench("ESST1A", values);
   EXPECT_DOUBLE_EQ(bench.state("Va"), 2.0 + 2.0 * 0.5);
   EXPECT_DOUBLE_EQ(bench.out().Efd, 2.0);

@@ -1,4 +1,4 @@
-// IEEET1: transfer function against the diagram, ceiling by saturation, release, what zeros mean.
+// IEEET1: transfer function against the diagram, ceiling by saturation, release, meaning of zeros.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -49,7 +49,7 @@ TEST(ExciterIeeet1, ZeroLimitsAndKeAreComputedAsInPsse) {
   EXPECT_DOUBLE_EQ(self.state("Vr"), 0.6);
   EXPECT_DOUBLE_EQ(self.out().Efd, 2.0);
   EXPECT_LT(self.largest_derivative(), 1e-11);
-  // KE <= 0 is left out of VRMAX: 0.5 times 5
+  // KE <= 0 does not enter VRMAX: 0.5 times 5
   ControlBench both("IEEET1", {{"KE", 0.0}, {"VRMAX", 0.0}});
   EXPECT_DOUBLE_EQ(both.state("Vr"), 0.25);
 }

@@ -1,4 +1,4 @@
-// FVFAULT beside FASTVALVE, which does the same at a given time.
+// FVFAULT against FASTVALVE, which acts at a given time.
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -30,7 +30,7 @@ TEST(FastValvingOnFault, EqualsFastValvingAtTheFaultTime) {
              never = run_with("FASTVALVE", {0.0, 1.15, 0.2, 0.5, 3.0}, kNearFault);
   const double apart = most_apart(at_time, never);
   EXPECT_GT(apart, 0.05);
-  // the detector takes its hundredth of a second: 0.012 s of 0.2 s of closing
+  // the detection delay of about 0.01 s: 0.012 s of 0.2 s of closing
   EXPECT_LT(most_apart(on_fault, at_time), 0.12 * apart);
 }
 TEST(FastValvingOnFault, IgnoresRemoteFaults) {

@@ -63,8 +63,7 @@ TEST(GovernorDiesel, DroopIsOfThrottleOrPower) {
     if (code == 0.0)
       EXPECT_NEAR(bench.state("throttle"), 0.8 + 0.002 / 0.04, 1e-6);
     else
-      // The power has taken up what the droop allows, but for what was integrated while its transducer
-      // lagged.
+      // The power has reached the droop's value, except for the integral over the lag of its transducer.
       EXPECT_NEAR(bench.state("throttle"), 0.8 + 8.0 * 0.002 * 0.1, 1e-6);
   }
 }

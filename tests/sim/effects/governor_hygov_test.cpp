@@ -44,7 +44,7 @@ TEST(GovernorHygov, GateRespectsVelocityAndPositionLimits) {
   EXPECT_EQ(bench.state("desired"), 1.0);
   bench.in.speed = 0.2;
   bench.run(0.5);
-  EXPECT_LT(bench.state("desired"), 1.0 - 0.2 * 0.4);  // no time lost in winding back
+  EXPECT_LT(bench.state("desired"), 1.0 - 0.2 * 0.4);  // no delay by wind-up
 }
 
 TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
@@ -55,7 +55,7 @@ TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
   bench.in.speed = 0.0005;
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   bench.in.speed = 0.0016;
-  EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05, 1e-12);  // the filter sees what is beyond the edge
+  EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05, 1e-12);  // the filter's input is the part beyond the edge
 }
 
 TEST(GovernorHygov, RefusesParametersThatCannotBeIntegrated) {

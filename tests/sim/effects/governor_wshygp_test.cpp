@@ -29,7 +29,7 @@ TEST(GovernorWshygp, TransferFunctionIsTheDiagrams) {
     const Values v = wshygp_with(more);
     // psse()'s machine has 100 MVA
     const double base = v.contains("TRATE") ? 100.0 / 80.0 : 1.0;
-    if (base > 1.0 && v.at("TT") > 0.0) continue;  // beyond the curve's last point, where it goes on straight
+    if (base > 1.0 && v.at("TT") > 0.0) continue;  // beyond the curve's last point, extrapolated linearly
     for (const double omega : {0.02, 0.3, 4.0}) {
       ControlBench bench("WSHYGP", v);
       ASSERT_TRUE(bench.problems.empty());
@@ -95,7 +95,7 @@ TEST(GovernorWshygp, BacklashDelaysReversalOfThePower) {
   bench.in.dPref = 0.049;
   bench.run(0.5);
   EXPECT_LT(bench.state("gate"), there + 0.01);
-  EXPECT_NEAR(bench.state("position"), there, 1e-6);  // the play is not through
+  EXPECT_NEAR(bench.state("position"), there, 1e-6);  // still within the backlash
 }
 
 TEST(GovernorWshygp, RefusesUnmodelledOptions) {

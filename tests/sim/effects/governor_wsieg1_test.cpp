@@ -41,12 +41,12 @@ TEST(GovernorWsieg1, BacklashDelaysReversalOfTheGate) {
   ControlBench bench("WSIEG1", {{"db2", 0.01}, {"T1", 0.0}, {"PMAX", 2.0}});
   bench.in.dPref = 0.05;
   bench.run(30.0, 5e-3);
-  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the governor sees the gate and brings it there
+  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the governor measures the gate and regulates it
   EXPECT_NEAR(bench.state("valve"), 0.86, 1e-6);
   bench.in.dPref = 0.04;
   bench.run(0.05);
   EXPECT_LT(bench.state("valve"), 0.86);
-  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the play is not through
+  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // still within the backlash
   bench.run(30.0, 5e-3);
   EXPECT_NEAR(bench.state("gate"), 0.84, 1e-6);
   EXPECT_NEAR(bench.state("valve"), 0.83, 1e-6);

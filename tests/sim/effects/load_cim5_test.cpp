@@ -32,7 +32,7 @@ struct Motor {
   double& at(const char* name) {
     return load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))];
   }
-  /// Current that the bus sees leave it, at voltage v.
+  /// Current drawn from the bus at voltage v.
   [[nodiscard]] Complex drawn(Complex v) const {
     const auto s = evaluated(v);
     return {-s.Ir, -s.Ii};
@@ -67,19 +67,19 @@ TEST(LoadCim5, MatchesItsEquivalentCircuitWithAShunt) {
     if (circuit == 2) cages = 0.17 * j + parallel(0.009 / s, 0.02 / s + 0.3 * j);
     const Complex i = kV0 / (0.013 + 0.067 * j + parallel(3.8 * j, cages));
     const Complex power = kV0 * std::conj(i);
-    EXPECT_NEAR(power.real(), 0.8, 1e-10) << circuit;  // Newton's method stops at rounding
+    EXPECT_NEAR(power.real(), 0.8, 1e-10) << circuit;  // Newton's method converges to rounding
     const Complex whole = m.drawn(kV0);
     EXPECT_NEAR(std::abs(kV0 * std::conj(whole) - Complex(0.8, 0.3)), 0.0, 1e-10) << circuit;
-    // The shunt's part scales with the square of the voltage: what is left is the motor's.
+    // The shunt's power scales with the square of the voltage: the remainder is the motor's.
     const double b = (0.3 - power.imag()) / std::norm(kV0);
     EXPECT_NEAR(std::abs(whole + j * b * kV0 - i), 0.0, 1e-9) << circuit;
-    // Air-gap power is the torque; it stands against the load torque.
+    // The air-gap power is the torque and equals the load torque.
     const double torque = power.real() - 0.013 * std::norm(i);
     EXPECT_NEAR(m.o.c[load_cim5::Model::T0] * std::pow(1 - s, 2), torque, 1e-10) << circuit;
   }
 }
 
-/// Stator shorted: the rotor's flux turns with the slip and decays with T' = T'o X'/X.
+/// Shorted stator: the rotor flux rotates with the slip and decays with T' = T'o X'/X.
 TEST(LoadCim5, ShortCircuitTimeConstant) {
   Motor m({{"Ra", 0.0}});
   const double open = (0.17 + 3.8) / (kW0 * 0.009), transient = 0.067 + 0.17 * 3.8 / (0.17 + 3.8);
@@ -103,11 +103,11 @@ TEST(LoadCim5, LoadTorqueSlowsAMotorWithoutFlux) {
     m.o.x[X::slip] = 0.4;
     EXPECT_NEAR(m.derivative(0.0)[X::slip], T0 * polynomial(0.6) / (2 * 0.8), 1e-12);
     m.o.x[X::slip] = 1.0;
-    EXPECT_LE(m.derivative(0.0)[X::slip], 0.0);  // at rest it stays
+    EXPECT_LE(m.derivative(0.0)[X::slip], 0.0);  // does not restart from standstill
   }
 }
 
-/// Nearly without load the rotor's second current is the saturation's alone: i = (psi_m + Se psi'')/Xm.
+/// Near no load the magnetising current includes saturation: i = (psi_m + Se psi'')/Xm.
 TEST(LoadCim5, SaturationIncreasesMagnetisingCurrent) {
   Motor m({{"Ra", 0.0}, {"E1", 0.8}, {"S1", 0.06}, {"E2", 1.0}, {"S2", 0.6}}, {1e-7, 0.3});
   // sqrt(psi Se) is a straight line through (0.8, sqrt 0.048) and (1, sqrt 0.6).
@@ -170,7 +170,7 @@ Trajectory compared(const grid::Grid& grid, const network::Event& event) {
             [&](const lanes::Job&, const Trajectory& run) {
               kept = run;
               EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, event, exact)),
-                        1e-4);  // the limit asked for
+                        1e-4);  // required limit
             });
   return kept;
 }

@@ -1,4 +1,4 @@
-// GENQEC: its field by hand, equality with GENROU where both are the same machine, rest, what is refused.
+// GENQEC: hand-calculated field, equality with GENROU for the same machine, steady state, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ plant::Block block_with(const char* name, const Settings& changes) {
     block.p[static_cast<std::size_t>(effect->parameter_index(parameter))] = value;
   return block;
 }
-/// Field voltage and states at rest with the current `i` at the voltage `v`.
+/// Steady-state field voltage and states for the current `i` at the voltage `v`.
 std::pair<double, std::vector<double>> at_rest(const plant::Block& block, Complex v, Complex i) {
   const Effect& effect = *block.effect;
   const auto& ops = effect.get<double>();
@@ -55,7 +55,7 @@ TEST(MachineGenqec, AngleFollowsTheSaturatedQuadratureReactance) {
   EXPECT_NEAR(x[0], std::atan2(xqs * 0.9, 1.0 + 0.01 * 0.9), 1e-14);
 }
 
-/// Without saturation and correction: GENROU, through a fault, to what two runs of IDA differ by.
+/// Without saturation and correction it equals GENROU through a fault, to the accuracy of two IDA runs.
 TEST(MachineGenqec, EqualsGenrou_WithoutSaturation) {
   const Settings common = {{"S10", 0.0}, {"S12", 0.0}, {"Xdpp", 0.25}, {"Xl", 0.15}, {"Xqp", 0.5}};
   Settings mine = common;

@@ -1,5 +1,5 @@
-// GENTPJ: steady states by hand, the current against a search by halving, equality with GENROU where both
-// are the same machine, response of a plant in both integrators.
+// GENTPJ: hand-calculated steady states, current against a bisection, equality with GENROU for the same
+// machine, response of a plant in both integrators.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +86,7 @@ TEST(MachineGentpj, AngleFollowsTheSaturatedQuadratureReactance) {
   EXPECT_NEAR(m.s.Tm, 0.9 + 0.01 * 0.9 * 0.9, 1e-14);  // losses of the stator
 }
 
-/// Where neither saturates and Xl = X'' in GENROU's rotor circuits, the two are the same equations.
+/// Without saturation and with Xl = X'' in GENROU's rotor circuits, both have the same equations.
 TEST(MachineGentpj, EqualsGenrouWithSubtransientLeakage_WithoutSaturation) {
   for (const auto& conventions : {Conventions::psse(), Conventions::andes(), Conventions{}}) {
     const Complex v = std::polar(1.02, 0.1), i(0.8, -0.3), dip = std::polar(0.6, 0.2);
@@ -112,7 +112,7 @@ TEST(MachineGentpj, EqualsGenrouWithSubtransientLeakage_WithoutSaturation) {
   }
 }
 
-/// Se by halving an interval: the current must be the one whose own flux gives the Se it was found with.
+/// Bisection for Se: the flux of the resulting current must give the same Se.
 TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
   for (const double kis : {0.0, 0.05, 0.15})
     for (const double depth : {1.0, 0.8, 0.3, 0.0})
@@ -166,14 +166,14 @@ void expect_lanes_equal_the_reference(const grid::Grid& grid) {
       [&](const lanes::Job& job, const Trajectory& run) {
         ++done;
         EXPECT_EQ(run.outcome, Outcome::stable) << job.id;
-        // the bound asked for
+        // required bound
         EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, job.event, exact)), 1e-4)
             << job.id;
       });
   EXPECT_EQ(done, events.size());
 }
 
-/// Every second machine of IEEE 39 a GENTPJ.
+/// IEEE 39 with GENTPJ as every second machine.
 grid::Grid every_second() {
   grid::Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const Effect& gentpj = *library::compiled().find("GENTPJ");
@@ -188,7 +188,7 @@ TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
     grid.plants[i].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   expect_lanes_equal_the_reference(grid);
 }
-/// Without saturation, behind a transformer too, it is the GENROU of the test above.
+/// Without saturation it equals the GENROU of the test above, also behind a transformer.
 TEST(MachineGentpj, EqualsGenrouBehindATransformer_WithoutSaturation) {
   grid::Grid linear = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = linear.plants[1];

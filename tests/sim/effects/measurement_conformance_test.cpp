@@ -1,4 +1,4 @@
-// Runs over every registered measurement, with no edit when one is added.
+// Runs over every registered measurement, including later ones.
 #include <cstring>
 
 #include "sim/library/library.hpp"
@@ -24,8 +24,8 @@ std::vector<double> null_value(const Effect& e) {
   return p;
 }
 
-/// Parameters at which the instrument does something: away from neutral by a fiftieth of the way to the
-/// highest value.
+/// Parameters at which the instrument has an effect: a fiftieth of the range away from the null value towards
+/// the highest value.
 std::vector<double> busy(const Effect& e) {
   auto p = null_value(e);
   for (std::size_t i = 0; i < p.size(); ++i)
@@ -34,7 +34,7 @@ std::vector<double> busy(const Effect& e) {
   return p;
 }
 
-/// busy() with every choice ("code") at its lowest and its highest, as far as check() lets it.
+/// busy() with every choice ("code") at its lowest and highest value that check() accepts.
 std::vector<std::vector<double>> variants(const Effect& e) {
   std::vector<std::vector<double>> list{busy(e)}, allowed;
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
@@ -136,7 +136,7 @@ TEST(MeasurementConformance, RespectsItsStatedMemory) {
       moved.df[at] += 0.001;
       const Phasors a = measured(*e, p, swing(rate)), b = measured(*e, p, moved);
       const double reach = e->memory ? e->memory(p.data()) : 0.0;
-      const double samples = reach * rate + (reach > 0 ? 3.0 : 0.0);  // an interpolation sees two more
+      const double samples = reach * rate + (reach > 0 ? 3.0 : 0.0);  // interpolation uses two more
       for (std::size_t k = 0; k < a.V.size(); ++k) {
         if (std::fabs(static_cast<double>(k) - static_cast<double>(at)) <= samples) continue;
         ASSERT_LT(distance(a, b, k, k), 1e-14) << e->name << " sample " << k << ", moved at " << at;

@@ -1,4 +1,4 @@
-// Windows of class P and M and the frequency they give, against what their formulas say by hand.
+// Windows of class P and M and the resulting frequency, against hand-calculated formulas.
 #include "tests/sim/effects/measurement_bench.hpp"
 
 namespace swingbank::sim::effects {
@@ -7,7 +7,7 @@ namespace {
 using test::kPi;
 using test::measured;
 
-/// A phasor that turns at `hz` against the synchronous frame.
+/// Phasor that rotates at `hz` relative to the synchronous frame.
 Phasors turning(double rate, double hz, double seconds = 3.0) {
   Phasors p{rate, 60.0, {}, {}, {}};
   for (int k = 0; k <= static_cast<int>(seconds * rate); ++k) {
@@ -24,7 +24,7 @@ std::complex<double> gain(double rate, double hz, const std::vector<double>& p) 
   const std::size_t k = before.V.size() / 2;
   EXPECT_LT(std::abs(after.V[k] / before.V[k] - after.I[k] / before.I[k]), 1e-13);  // V and I alike
   const std::complex<double> ratio = after.V[k] / before.V[k];
-  // rounding; where next to nothing comes through, its angle is rounding alone
+  // rounding; near zero gain the angle is rounding only
   if (std::abs(ratio) > 0.05) {
     EXPECT_NEAR(after.df[k], hz / 60.0, 1e-12);
   }
@@ -69,7 +69,7 @@ TEST(PmuFilterP, AStepTakesTwoCycles) {
     before.df.push_back(0.0);
   }
   const Phasors after = measured("PMUFILTER", {kClassP, 1, 60, 1}, before);
-  const auto moved = [&](double seconds) {  // share of the step that is seen, by time since its middle
+  const auto moved = [&](double seconds) {  // measured fraction of the step, by time since its middle
     const double k = at + 0.5 + seconds * rate;
     const auto low = static_cast<std::size_t>(std::floor(k));
     const double u = k - std::floor(k);
@@ -90,7 +90,7 @@ TEST(PmuFilterM, IsTheStandardsWindow) {
     double reports, Ffr;
     int order;
   };
-  // Taps of the standard at 960 samples per second, and what they make of an offset.
+  // Taps of the standard at 960 samples per second, and their gain at a frequency offset.
   for (const Row row : {Row{60, 8.19, 164}, Row{30, 5.02, 306}, Row{120, 16.25, 70}, Row{10, 1.78, 968}})
     for (const double share : {0.1, 0.5, 1.0, 2.0, 2.5}) {
       const double hz = share * row.Ffr;
@@ -135,7 +135,7 @@ TEST(PmuFilter, MissingSampleInvalidatesAWindow) {
   EXPECT_FALSE(std::isnan(std::abs(after.V[308])) || std::isnan(after.df[308]));
 }
 
-/// Angle A sin(W t): everything about its frequency is known.
+/// Angle A sin(W t), whose frequency is known in closed form.
 Phasors wavering(double rate, double A, double W) {
   Phasors p{rate, 60.0, {}, {}, {}};
   for (int k = 0; k <= static_cast<int>(5 * rate); ++k) {

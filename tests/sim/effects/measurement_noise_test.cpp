@@ -1,4 +1,4 @@
-// Noise, gaps and steps: what statistics and rounding say by hand.
+// Noise, gaps and quantisation against hand-calculated statistics and rounding.
 #include <algorithm>
 
 #include "tests/sim/effects/measurement_bench.hpp"
@@ -100,7 +100,7 @@ TEST(Gaps, ShorterThanASampleAreOneSample) {
   for (std::size_t k = 1; k < 6000; ++k) runs += std::isnan(a.df[k]) && std::isnan(a.df[k - 1]);
   const auto gone = std::ranges::count_if(a.df, [](double v) { return std::isnan(v); });
   EXPECT_NEAR(static_cast<double>(gone), 100.0, 40.0);  // Poisson, 4 sqrt(100)
-  EXPECT_LE(runs, 8);                                   // one gap after another by chance: 100 / 60
+  EXPECT_LE(runs, 8);                                   // adjacent gaps by chance: 100 / 60
 }
 
 TEST(Quantise, RoundsToTheNearestStep) {

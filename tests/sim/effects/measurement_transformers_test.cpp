@@ -1,4 +1,4 @@
-// Current and voltage transformers, and the skew between the channels, by hand.
+// Current and voltage transformers, and the skew between channels, against hand calculations.
 #include "tests/sim/effects/measurement_bench.hpp"
 
 namespace swingbank::sim::effects {
@@ -27,7 +27,7 @@ TEST(VoltageTransformer, ScalesAndRotatesTheVoltageOnly) {
     EXPECT_EQ(after.I[k], before.I[k]);
     EXPECT_NEAR(std::abs(after.V[k]) / std::abs(before.V[k]), 0.98, 1e-14);
     EXPECT_NEAR(std::arg(after.V[k] * std::conj(before.V[k])), 0.01, 1e-14);
-    EXPECT_EQ(after.df[k], before.df[k]);  // a constant turn has no frequency
+    EXPECT_EQ(after.df[k], before.df[k]);  // a constant phase shift does not change the frequency
   }
 }
 
@@ -63,7 +63,7 @@ TEST(Skew, OfAStepInterpolatesOneSample) {
     const double left = 1.0 + 0.001 * 10, right = 3.0 - 0.002 * 11;
     const double expected =
         at <= 10 ? 1.0 + 0.001 * at : (at >= 11 ? 3.0 - 0.002 * at : left + (at - 10) * (right - left));
-    EXPECT_NEAR(after.I[k].real(), expected, 1e-13) << k;  // straight pieces are met exactly
+    EXPECT_NEAR(after.I[k].real(), expected, 1e-13) << k;  // exact for linear segments
   }
 }
 

@@ -1,4 +1,4 @@
-// ST2CUT: transfer functions of both inputs against its diagram, limits and the cut-off by voltage.
+// ST2CUT: transfer functions of both inputs against its diagram, limits and cut-off by voltage.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

@@ -1,4 +1,4 @@
-// Law files as texts: expressions, and what is refused.
+// Files of user-defined models: expressions and refusals.
 #include "sim/library/library.hpp"
 #include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/laws/support.hpp"
@@ -9,7 +9,7 @@ namespace {
 using test::kHead;
 using test::law_of;
 
-/// A law with one expression, added to Vs.
+/// User-defined model with one expression, added to Vs.
 std::string one_value(const std::string& expression) {
   return fmt::format("name = \"ONE\"\n{}output = \"Vs\"\naction = \"add\"\nvalue = \"{}\"\n", kHead,
                      expression);
@@ -57,7 +57,7 @@ TEST(LawExpression, ComputesAsWritten) {
                                                              {"V*V - V^2", 0},
                                                              {"  1\\n + \\t 2 ", 3}};
   for (const auto& [expression, expected] : cases)
-    EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // a few roundings
+    EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // rounding
 }
 
 TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
@@ -96,7 +96,7 @@ TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
   EXPECT_NE(message(one_value(deep)).find("nested too deeply"), std::string::npos);
 }
 
-/// A full law for the refusals: every fault at once.
+/// Complete user-defined model that contains every error.
 TEST(LawFile, ReportsAllErrorsAtOnce) {
   const std::string text = std::string("name = \"a b\"\n") + kHead + R"law(
 output = "Efd"

@@ -1,4 +1,4 @@
-// Libraries are values: what is added to one, no other sees.
+// Libraries are values: an effect added to one is absent from all others.
 #include "sim/library/library.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A law called MINE with one parameter and `factor` in its equation and description.
+/// User-defined model MINE with one parameter and `factor` in its equation and description.
 std::string law(double factor) {
   return fmt::format(R"law(name = "MINE"
 title = "{0} times the speed"
@@ -77,7 +77,7 @@ TEST(EffectLibrary, CopySharesOnlyEarlierEffects) {
     later.replace(later.find("MINE"), 4, "LATER");
     laws::load_law(later, "later.toml", first);
   }
-  EXPECT_EQ(copy.find("MINE"), shared);  // it lives although the library that read it does not
+  EXPECT_EQ(copy.find("MINE"), shared);  // outlives the library that read it
   EXPECT_EQ(shared->default_parameters(), std::vector<double>{2.0});
   EXPECT_EQ(copy.find("LATER"), nullptr);
 }

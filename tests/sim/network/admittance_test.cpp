@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Gauss elimination with row pivoting, nothing shared with the code under test.
+/// Gaussian elimination with row pivoting; shares nothing with the code under test.
 std::vector<Complex> solve(std::vector<std::vector<Complex>> a, std::vector<Complex> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -45,8 +45,8 @@ class Reduction : public ::testing::Test {
   PowerFlow flow = solve_power_flow(network);
   std::vector<int> kept;
 
-  /// Currents at the kept buses when they have voltages `v`, from the full matrix: every other bus carries no
-  /// injection, bolted buses have V = 0.
+  /// Currents at the kept buses for voltages `v`, from the full matrix: all other buses have no injection,
+  /// and bolted buses have V = 0.
   [[nodiscard]] Eigen::VectorXcd by_hand(const Topology& topology, const Eigen::VectorXcd& v) const {
     const auto y = dynamic_admittance(network, flow, topology);
     const auto n = network.buses.size();
@@ -113,7 +113,7 @@ TEST_F(Reduction, ABoltedGeneratorBusIsGrounded) {
   auto v = some_voltages();
   v[3] = 0.0;
   Eigen::VectorXcd expected = by_hand(t, v);
-  expected[3] = 0.0;  // what flows into the fault is not asked for
+  expected[3] = 0.0;  // the current into the fault is not compared
   EXPECT_LT((reduced.y * v - expected).cwiseAbs().maxCoeff(), kRounding);
 }
 
@@ -125,13 +125,13 @@ TEST_F(Reduction, AFaultImpedanceConvergesLinearlyToTheBoltedFault) {
   for (const double x : reactances)
     gap.push_back((reduce(network, flow, {{{bus, {0.0, x}}}, {}}, kept).y - solid).cwiseAbs().maxCoeff());
   for (std::size_t k = 1; k < gap.size(); ++k)
-    // The next order is x times the admittance seen from the faulted bus, about 110 pu.
+    // The next order is x times the driving-point admittance of the faulted bus, about 110 pu.
     EXPECT_NEAR(gap[k - 1] / gap[k], 10.0, 10.0 * 150.0 * reactances[k - 1]);
   EXPECT_LT(gap.back(), 1e-4);
 }
 
 TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
-  // Buses 7 and 8 hang on 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
+  // Buses 7 and 8 are connected by 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
   const std::vector<std::pair<int, int>> lines = {{6, 7}, {5, 8}, {8, 9}};
   Topology t;
   for (const auto& [a, b] : lines) t.open.push_back(network.branch_index(a, b, "1"));

@@ -1,4 +1,4 @@
-// Reactive limits, remote regulation, the file's own voltages.
+// Reactive limits, remote regulation, and the voltages of the file.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST(Regulation, BusAtItsLimitReleasesTheVoltage) {
 }
 
 TEST(Regulation, BusReturnsFromItsLimitWithTheVoltage) {
-  // Bus 3 drives bus 2 to its lower limit at first; once bus 3 is held back by its own, bus 2 holds again.
+  // Bus 3 first drives bus 2 to its lower limit; once bus 3 reaches its own limit, bus 2 regulates again.
   const Network n = four_buses("2,'1',40,0,90,0,1.0,0,100,0,0.3\n", "3,'1',30,0,20,-90,1.2,0,50,0,0.3\n");
   PowerFlowOptions off;
   off.reactive_limits = false;
@@ -57,13 +57,13 @@ TEST(Regulation, SeveralGeneratorsShareTheRegulationOfABus) {
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[3]), 1.0, 1e-12);
   EXPECT_NEAR(flow.generation[1].imag(), 3.0 * flow.generation[2].imag(), 1e-11);
-  // One of them at its limit: the other holds the bus alone.
+  // One of them is at its limit: the other regulates the bus alone.
   const Network tight = four_buses("2,'1',40,0,5,-90,1.0,4,100,0,0.3,0,0,1,1,75\n",
                                    "3,'1',30,0,90,-90,1.0,4,50,0,0.3,0,0,1,1,25\n");
   const PowerFlow one = solve_power_flow(tight);
   EXPECT_NEAR(std::abs(one.voltage[3]), 1.0, 1e-12);
   EXPECT_NEAR(one.generation[1].imag(), 0.05, 1e-12);
-  // A bus that holds itself leads those that hold it from afar.
+  // Local regulation of a bus takes precedence over remote regulation.
   const Network joined = four_buses(kSecond, "3,'1',30,0,90,-90,1.03,2,50,0,0.3,0,0,1,1,50\n");
   const PowerFlow both = solve_power_flow(joined);
   EXPECT_NEAR(std::abs(both.voltage[1]), 1.03, 1e-12);
@@ -92,7 +92,7 @@ TEST(Regulation, FileVoltagesAreKeptWithTheirMismatchAsLoads) {
   for (const Complex& left : imbalance_of_file(n)) EXPECT_NEAR(std::abs(left), 0.0, 1e-12);
 }
 
-/// A file has five digits of its voltages: across a tie of 1e-6 pu they would make 10 pu.
+/// A file has five digits of each voltage; across a tie of 1e-6 pu their rounding would cause 10 pu of power.
 TEST(Regulation, FileVoltagesAreKeptAcrossATie) {
   Network n = four_buses(kSecond, kThird);
   const PowerFlow solved = solve_power_flow(n);

@@ -1,4 +1,4 @@
-// Switched shunts that step in the power flow: into the band, at a remote bus, to their end, back and forth.
+// Switched shunts that step in the power flow: into the band, at a remote bus, to the last step, oscillating.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST(ShuntSteps, TakeTheFirstStepInTheBand) {
   const double b = flow.stepped[0].susceptance;
   EXPECT_TRUE(flow.stepped[0].in_band);
   EXPECT_GE(std::abs(flow.voltage[1]), 0.96);
-  // One step less would not do, and the solution is that of the fixed shunt.
+  // One step less would not suffice, and the solution equals that with a fixed shunt.
   for (const double fixed : {b - 0.1, b}) {
     Network with = two_lines();
     with.shunts = {{1, "1", {0.0, fixed}}};
@@ -93,7 +93,7 @@ TEST(ShuntSteps, StopWhenTheBandIsNarrowerThanAStep) {
   const PowerFlow flow = stepped(n);
   ASSERT_EQ(flow.stepped.size(), 1u);
   EXPECT_FALSE(flow.stepped[0].in_band);
-  EXPECT_NEAR(std::abs(flow.voltage[1]), 0.97, 0.025);  // the step beside the band
+  EXPECT_NEAR(std::abs(flow.voltage[1]), 0.97, 0.025);  // the step next to the band
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ ParameterId id_of(int block, const char* effect_name, const char* parameter) {
   return {block, effect(effect_name).parameter_index(parameter)};
 }
 
-/// GENROU behind a STEPUP, with TGOV1 and SEXS, seen through a CTERROR.
+/// GENROU behind a STEPUP, with TGOV1 and SEXS, measured through a CTERROR.
 Plant full_plant() {
   Plant plant;
   plant.name = "30";
@@ -121,7 +121,7 @@ TEST(ParameterId, RefusalOfAnUnknownNameListsTheKnownNames) {
   ASSERT_THAT(problems.list(), SizeIs(2));
   EXPECT_EQ(problems.list()[0].sentence(),
             "parameter 'TGOV1.R' at --fix (it cannot be fixed): use one of GENROU.H, SEXS.K");
-  EXPECT_EQ(problems.list()[1].what, "parameter 'K'");  // taken by the text before it
+  EXPECT_EQ(problems.list()[1].what, "parameter 'K'");  // already used by the preceding text
 }
 TEST(ParameterId, LeadsToItsValueAndRecord) {
   Plant plant = full_plant();

@@ -53,17 +53,17 @@ TEST(Usual, SearchRangeIncludesAValueOutsideTheUsualRange) {
   EXPECT_EQ(range(-1.5), std::pair(-3.5, 1.0));
 }
 
-/// Leads: a negative one is a zero in the right half-plane, which the equations take.
+/// Lead time constants: a negative one is a zero in the right half-plane, which the equations allow.
 bool is_lead(const std::string& name) {
   constexpr std::array leads = {"TC",        "TC1",       "TJ",        "TK",        "TU1",       "TU3",
                                 "IEEEST.T1", "IEEEST.T3", "IEEEST.T5", "ST2CUT.T5", "ST2CUT.T7", "ST2CUT.T9"};
   const std::string own = name.substr(name.find('.') + 1);
   const bool of_pss2 = name.starts_with("PSS2") && std::ranges::count(kPss2Leads, own) > 0;
-  const bool of_tgov3 = name.starts_with("TGOV3");  // whose TC is no lead
+  const bool of_tgov3 = name.starts_with("TGOV3");  // its TC is no lead
   return of_pss2 ||
          (!of_tgov3 && (std::ranges::count(leads, own) > 0 || std::ranges::count(leads, name) > 0));
 }
-/// What files have and no equation reads here.
+/// Parameters of the files that no equation uses.
 bool is_unread(const std::string& name) {
   constexpr std::array unread = {"Switch", "IB",   "REMBUS1", "REMBUS2", "RemoteBus", "FromBus",
                                  "ToBus",  "BUSR", "BUSR2",   "Circuit", "Accel",     "Tcomp"};
@@ -73,8 +73,7 @@ bool is_unread(const std::string& name) {
          name == "PMUFILTER.reports";
 }
 
-/// What a range no longer refuses, the check of the effect must: a time that runs backwards, and a code that
-/// is none.
+/// Ranges only warn. The effect's own check must refuse negative times and unknown codes.
 TEST(Usual, RefusesNegativeTimesAndUnknownCodes) {
   for (const Effect& e : library::compiled_effects())
     for (std::size_t i = 0; i < e.parameters.size(); ++i) {

@@ -180,7 +180,7 @@ TEST(PsseRecords, GastWithEsac1a) {
 
 // PowerWorld's curves, not PSS/E's, so with exact integration. An undamped swing that the governor makes
 // grow: ours grows faster, by 9.4 % of it at 5 s (with the delay 2.2 %: its polynomials are exact only to
-// s TD = 3j and meet 6.5j). 5.1 % are a droop that the curves hold (DegovsCurvesHoldADroop), the rest is
+// s TD = 3j and meet 6.5j). 5.1 % are a droop that the curves hold (DegovCurvesContainADroop), the rest is
 // PSS/E's classical machine, (Pm - D w - Pe)/(1 + w).
 TEST(PsseRecords, DegovWithAndWithoutDelay) {
   constexpr double kRate = 240.0, kDegovEnd = 5.0;
