@@ -1,4 +1,4 @@
-// PSLF .dyd: records as PSLF and people write them, in the form of a .dyr, and back.
+// PSLF .dyd: records as written by PSLF and by hand, converted to the form of a .dyr and back.
 #include "sim/formats/dyd.hpp"
 
 #include <gmock/gmock.h>
@@ -129,7 +129,7 @@ TEST(Dyd, RecordsAreChosenByEitherName) {
       testing::ThrowsMessage<InputError>(HasSubstr("no model SEXS to ignore or map at h.dyd")));
 }
 
-/// Every model goes out and comes back to the same values.
+/// Every model is written and read back with the same values.
 TEST(Dyd, RoundTripKeepsAllValues) {
   const std::string dyr =
       "7 'GENROU' 1 6.5 0.079 0.53 0.072 4 0 1.24 1.22 0.23 0.36 0.17 0.14 0.173 0.447 /\n"

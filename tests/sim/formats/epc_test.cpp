@@ -1,4 +1,4 @@
-// PSLF .epc: the same grid as a .raw says, what the format has of its own, and faults with their lines.
+// PSLF .epc: the same grid as from a .raw, features of the format, and errors with their lines.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -60,7 +60,7 @@ struct EpcCase {
   std::string others = "area data  [1]\n 1 \"area\" 0 0.0 1.0 0.0 0.0\n", end = "end\n";
 
   static std::string section(const char* name, const std::string& records) {
-    int count = 0;  // records are not continued by their last line
+    int count = 0;  // the last line of a record has no continuation mark
     std::istringstream in(records);
     for (std::string l; std::getline(in, l);)
       if (!l.ends_with('/')) ++count;
@@ -317,7 +317,7 @@ TEST(EpcRepairs, RepeatedLineIsKeptAndDanglingLoadLeftOutOnRequest) {
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[2].x, 0.24);
   EXPECT_THAT(places(n, "left out, as asked"), ElementsAre(HasSubstr("load record at bus 177")));
-  options.repeated = Repeated::voltages;  // the voltages are those of one line
+  options.repeated = Repeated::voltages;  // the voltages agree with one line
   EXPECT_FALSE(parse_epc(c.text(), "case.epc", options).branches[2].in_service);
 }
 

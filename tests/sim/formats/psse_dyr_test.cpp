@@ -135,7 +135,7 @@ TEST(PsseDyr, RecordsOfEquipmentKeepItsName) {
   EXPECT_EQ(r[1].equipment, "V1");
 }
 
-/// A text may be meant: the reader keeps it, and whoever takes the record as numbers tells it.
+/// Some models have text parameters: the reader keeps them, and models with numbers only report them.
 TEST(PsseDyr, TextsAmongTheParametersAreKept) {
   const auto r = parse_dyr("7 'MODEL' 1 2 'A1' '3' 4 /\n", "t.dyr");
   ASSERT_EQ(r.size(), 1U);

@@ -1,5 +1,5 @@
-// Files as they are found: old versions, missing headers, byte-order marks, sections named twice, branches
-// without impedance, correction tables, remote regulation, islands; and a .rawx.
+// Files as found in practice: old versions, missing headers, byte-order marks, repeated sections, branches
+// without impedance, correction tables, remote regulation, islands; and .rawx files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST(FoundFiles, ByteOrderMarkIsSkippedWithARemark) {
 
 TEST(FoundFiles, ReadsASectionThatIsRepeated) {
   std::string text = RawCase{}.text();
-  // The section of transformers is the sixth to end; after it areas stand twice.
+  // The section of transformers is the sixth; the section of areas behind it begins twice.
   std::size_t at = 0;
   for (int i = 0; i < 6; ++i) at = text.find("0 / END OF DATA\n", at) + 16;
   text.insert(at, "1,0,0,10,'A'\n0 / END OF TRANSFORMER DATA, BEGIN AREA DATA\n");
@@ -118,7 +118,7 @@ TEST(FoundFiles, CorrectionTablesApplyAtThePresentTap) {
   };
   const std::string ratios = "3,0.9,1.2,1.0,1.0,1.1,1.3\n", angles = "3,-30.0,1.4,0.0,1.0,30.0,1.4\n";
   EXPECT_NEAR(with("1.05,0,0", ratios).branches[2].x, 0.115, 1e-12);
-  EXPECT_NEAR(with("0.85,0,0", ratios).branches[2].x, 0.12, 1e-12);  // beyond the table its end holds
+  EXPECT_NEAR(with("0.85,0,0", ratios).branches[2].x, 0.12, 1e-12);  // the table is clamped at its end
   EXPECT_NEAR(with("1.05,0,15.0", angles).branches[2].r, 0.024, 1e-12);
   EXPECT_THAT(places(with("1.05,0,0", ratios), "corrected"),
               ::testing::ElementsAre(HasSubstr("101-102 circuit T by 1.15")));
@@ -157,7 +157,7 @@ TEST(FoundFiles, IslandsGetASlackBusOrAreSwitchedOff) {
 TEST(FoundFiles, GeneratorAtALoadBusDelivers_WhenTheVoltagesShowIt) {
   RawCase c;
   c.generators += "103,'9',100,20,1,-1,1.0,102,100,0,0.3\n";
-  const network::Network off = c.read();  // the voltages of RawCase are those of a load of 250 MW alone
+  const network::Network off = c.read();  // the voltages of RawCase agree with a load of 250 MW only
   EXPECT_FALSE(off.generators[2].in_service);
   EXPECT_EQ(off.generators[2].regulated, -1);
   EXPECT_THAT(places(off, "out of service, as in PSS/E"), ::testing::SizeIs(1));
@@ -194,7 +194,7 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   EXPECT_EQ(own.generators[1].vset, 1.02);  // the file's voltage
   EXPECT_THAT(places(own, "a bus that is not there"), ::testing::SizeIs(1));
   c.generators.replace(c.generators.find("199"), 3, "105");
-  c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // it lies alone, so it is out of service
+  c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // isolated, hence out of service
   const network::Network alone = c.read();
   EXPECT_EQ(alone.generators[1].regulated, -1);
   EXPECT_THAT(places(alone, "a bus out of service"), ::testing::SizeIs(1));

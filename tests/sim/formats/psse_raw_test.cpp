@@ -133,7 +133,7 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
       "103,1,0,1,1.1,0.9,0,100,'',-25.0,5,-5\n102,1,0,0,1.1,0.9,0,100,'',40.0,5,8\n"
       "101,1,0,1,1.1,0.9,0,100,'',0.0,5,8\n";
   const network::Network n = c.read();
-  ASSERT_EQ(n.shunts.size(), 2u);  // one is out of service, one has nothing switched in
+  ASSERT_EQ(n.shunts.size(), 2u);  // one is out of service, one has no step switched in
   EXPECT_EQ(n.shunts[0].bus, 2);
   EXPECT_EQ(n.shunts[0].admittance, Complex(0.0, -0.25));
   EXPECT_EQ(n.shunts[1].bus, 0);
@@ -157,7 +157,7 @@ TEST(PsseRaw, StepsOfSwitchedShuntsKeepTheOrderOfReactorsAndCapacitors) {
   EXPECT_EQ(s.least, 0.97);
   EXPECT_EQ(s.most, 1.03);
   EXPECT_EQ(s.steps, (std::vector<double>{-0.3, 0.0, 0.1, 0.2, 0.25, 0.3, 0.35}));
-  ASSERT_EQ(n.remarks.size(), 1u);  // of the one that does not step
+  ASSERT_EQ(n.remarks.size(), 1u);  // about the shunt that does not step
   EXPECT_NE(n.remarks[0].what.find("do not step"), std::string::npos);
 }
 
@@ -177,7 +177,7 @@ struct Device {
 };
 class PsseRawDevices : public ::testing::TestWithParam<Device> {};
 TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
-  // The three-bus case solved with a load at bus 103; then the device's record stands for the load.
+  // The three-bus case solved with a load at bus 103; the device's record then replaces the load.
   RawCase c;
   network::Network solved = c.read();
   const network::PowerFlow flow = network::solve_power_flow(solved);
@@ -205,7 +205,7 @@ TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
   ASSERT_FALSE(n.remarks.empty());
   EXPECT_THAT(n.remarks[0].what, HasSubstr("equipment without a model"));
   EXPECT_THAT(n.remarks[0].places.back(), HasSubstr("at bus 103"));
-  // With voltages that are no solution nobody knows what it draws.
+  // Without a solved case its power is unknown.
   RawCase flat;
   flat.other[GetParam().bus] = GetParam().record;
   flat.loads = "102,'1',1,1,1,10.0,0\n";
@@ -288,8 +288,8 @@ TEST(PsseRaw, ReportsTruncation_WhereverTheFileEnds) {
   ASSERT_GT(lines.size(), 60u);
   ASSERT_EQ(lines.back(), "Q");
   std::string text;
-  // Programs leave out sections at the end. Where nothing but sections after the transformers is missing the
-  // file is whole, with a remark.
+  // Programs omit sections at the end. A file that lacks only sections after the transformers is complete and
+  // gets a remark.
   std::size_t k = 0;
   for (; lines[k] != "0 / end of transformer data"; ++k) {
     text += lines[k] + "\n";

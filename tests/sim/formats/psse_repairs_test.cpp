@@ -1,5 +1,5 @@
-// What is wrong in a .raw and is repaired on request or as PSS/E does: equipment that appears twice or at a
-// missing bus, references to what is not there, a missing title line, comments, dc lines off their schedule.
+// Errors of a .raw that are repaired on request or as PSS/E does: equipment that appears twice or at a
+// missing bus, dangling references, a missing title line, comments, dc lines that differ from their schedule.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ network::Network read(const RawCase& c, const RawOptions& options) {
   return parse_raw(c.text(), "case.raw", options);
 }
 
-/// Puts the voltages of the power flow of `solved` into the case.
+/// Writes the voltages of the power flow of `solved` into the case.
 void store_voltages(RawCase& c, const network::Network& solved) {
   const network::PowerFlow flow = network::solve_power_flow(solved);
   c.buses.clear();
@@ -221,13 +221,13 @@ TEST(DcLine, FarFromItsScheduleIsNamed) {
   const auto line = [](const std::string& mode, const std::string& set) {
     return "'DC1'," + mode + ",8.0," + set + ",200.0\n102,1,20.0\n103,1,20.0\n";
   };
-  // RawCase's voltages leave bus 103 balanced: the line draws next to nothing there.
+  // RawCase's voltages balance bus 103: the power of the line is almost zero there.
   c.other["two-terminal dc line"] = line("1", "100.0");
   const network::Network n = read(c, file);
   EXPECT_THAT(
       places(n, "far from what it is scheduled"),
       ::testing::Contains(AllOf(HasSubstr("dc line 'DC1' at bus 103"), HasSubstr("-98.00 MW scheduled"))));
-  // 500 A at 200 kV are the same 100 MW; below 0 the power is the inverter's.
+  // 500 A at 200 kV are the same 100 MW; a negative value is the inverter's power.
   c.other["two-terminal dc line"] = line("2", "500.0");
   EXPECT_THAT(places(read(c, file), "far from what it is scheduled"),
               ::testing::Contains(HasSubstr("-98.00 MW scheduled")));

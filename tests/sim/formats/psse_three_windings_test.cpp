@@ -1,4 +1,4 @@
-// Three windings against what they mean: the star of the measured impedances behind each winding's ratio.
+// Three-winding transformers against their definition: the star of the measured impedances behind the ratios.
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
@@ -58,7 +58,7 @@ TEST_P(PsseThreeWindings, GiveTheSameAdmittance) {
   ASSERT_EQ(n.buses.size(), 4u);
   EXPECT_EQ(n.buses[3].number, 104);
   EXPECT_DOUBLE_EQ(n.buses[3].vm, 0.98);
-  // Roundings of admittances of order 20.
+  // Rounding of admittances of order 20.
   EXPECT_LT((seen(n) - expected()).cwiseAbs().maxCoeff(), 1e-12);
   for (const int version : {32, 33, 34, 35})
     expect_same(n, parse_raw(raw_text(n, version, "out.raw"), "out.raw"));

@@ -1,4 +1,4 @@
-// One network in every version of the format; what versions 34 and 35 add, and what of it is refused.
+// One network in every version of the format; additions of versions 34 and 35, and refusals.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Two machines, two loads, lines, transformers of two and three windings, shunts; the columns that moved
-/// hold values that no neighbouring column could hold.
+/// Two machines, two loads, lines, transformers of two and three windings, shunts. Columns that differ
+/// between versions have values that are invalid for their neighbours.
 std::string text(int version, const std::string& load_extra = "", const std::string& substation = "") {
   const bool v34 = version >= 34, v35 = version >= 35;
   const std::string rates = v34 ? "211,212,213,214,215,216,217,218,219,220,221,222" : "211,212,213";
@@ -45,7 +45,7 @@ std::string text(int version, const std::string& load_extra = "", const std::str
   const std::string rating = v34 ? "'LINE, NORTH 1'," + rates : rates;
   t += "12,-13,'1',0.01,0.08,0.03," + rating + ",0.001,0.002,0.003,0.004,1,1,12.5,1,1.0\n";
   t += "12,13,'2',0.02,0.16,0.06," + rating + ",0,0,0,0,0,2,25.0,1,1.0\n";
-  if (!v34) t += "13,15,'@1',0,0.0004,0,0,0,0,0,0,0,0,1\n";  // before, a switch stood among the lines
+  if (!v34) t += "13,15,'@1',0,0.0004,0,0,0,0,0,0,0,0,1\n";  // earlier versions list a switch among the lines
   t += begin("BRANCH", v34 ? "SYSTEM SWITCHING DEVICE" : "TRANSFORMER");
   if (v34)
     t += labels("I,J,'CKT',X,RATE1,STAT,NSTAT,MET,STYPE,'NAME'") + "13,15,'@1',0.0004," + rates +
@@ -87,7 +87,7 @@ TEST_P(PsseVersions, HoldTheSameNetwork) {
   EXPECT_EQ(n.branches[0].shunt_to, Complex(0.003, 0.004));
   EXPECT_FALSE(n.branches[1].in_service);
   EXPECT_EQ(n.branches[2].x, 0.0004);      // the switch
-  EXPECT_FALSE(n.branches[2].in_service);  // to an isolated bus
+  EXPECT_FALSE(n.branches[2].in_service);  // connects an isolated bus
   ASSERT_EQ(n.generators.size(), 2u);
   EXPECT_EQ(n.generators[0].mva, 150.0);
   EXPECT_EQ(n.generators[0].zr, 0.002);

@@ -23,12 +23,12 @@ TEST(Attach, PutsEffectsIntoTheirSlots) {
   EXPECT_TRUE(said(grid, "3:STEPUP:X=0.05").empty());
   EXPECT_TRUE(said(grid, "all:FASTVALVE:drop=0.2").empty());
   const auto& controls = grid.plants[1].controls;
-  ASSERT_EQ(controls.size(), 3u);  // in order of Slot, added ones last within theirs
+  ASSERT_EQ(controls.size(), 3u);  // in order of Slot, added ones last within their slot
   EXPECT_EQ(controls[0].effect->name, "FORCEDOSC");
   EXPECT_EQ(controls[1].effect->name, "FASTVALVE");
   EXPECT_EQ(controls[2].effect->name, "SEXS");
   EXPECT_EQ(controls[0].p[0], 0.01);
-  EXPECT_EQ(controls[0].p[3], 1.0);  // start: standard
+  EXPECT_EQ(controls[0].p[3], 1.0);  // start: default
   EXPECT_EQ(grid.plants[1].transformer.p, (std::vector<double>{0.0, 0.05, 1.0}));
   EXPECT_EQ(grid.plants[0].controls.size(), 1u);
 }

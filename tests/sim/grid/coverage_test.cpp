@@ -1,5 +1,4 @@
-// How much of a .dyr is covered: models that are not there, records that are refused, lines that are no
-// record.
+// Coverage of a .dyr: unknown models, refused records, and lines that are no record.
 #include "sim/grid/coverage.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What a plant's control measures elsewhere: the voltage of a remote bus, the flow of a branch.
+// Remote measurements of a plant's control: the voltage of a bus, the flow of a branch.
 #include "sim/grid/far.hpp"
 
 #include <gmock/gmock.h>
@@ -89,7 +89,7 @@ TEST(FarControl, OpenBranchHasZeroFlow) {
   EXPECT_NEAR(two.plants.at(1).far.value().P, 0.4, 1e-9);
   network::Event event;
   event.trips.push_back({two.network.branch_index(102, 103, "1"), 1.0, {}});
-  // The control asks for the power that its branch carried until the plant is at its limit.
+  // The control restores the branch flow until the plant is at its limit.
   reference::ReferenceOptions options;
   options.t_end = 20.0;
   options.rate = 30.0;

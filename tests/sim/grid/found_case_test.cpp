@@ -1,4 +1,4 @@
-// Cases that are not whole: what is done to them, by which option, and that it is said.
+// Incomplete cases: repairs, the options that request them, and the remarks.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ TEST(FoundCase, GeneratorsWithoutAMachineBecomeNegativeLoadsOnRequest) {
 TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
   formats::RawCase raw;
   raw.generators += "102,'2',10,0,100,-100,1.02,0,100,0,0.3,0,0,1,0\n";
-  // That of the generator out of service may even be unknown; the other two are named.
+  // The model of the generator out of service may be unknown; the other two are named.
   const Grid grid =
       make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
   EXPECT_THAT(places(grid, "has not are left out"),
@@ -78,7 +78,7 @@ TEST(FoundCase, BusesAtTheirLimitAreNamed) {
 }
 
 TEST(FoundCase, ReportsViolatedLimitsTogetherOrMovesThem) {
-  // Valves of 0.5 pu where the machines deliver 1.5 and 1.0 pu.
+  // Valve limits of 0.5 pu, but machines that deliver 1.5 and 1.0 pu.
   const std::string dyr =
       kBoth + "101 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n102 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n";
   Grid grid = make({}, dyr);

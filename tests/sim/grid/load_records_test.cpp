@@ -1,4 +1,4 @@
-// Load models in a .dyr: which load they belong to, round trip, faults; user-written models that are ours.
+// Load models in a .dyr: assignment to loads, round trip, errors; known user-written models.
 #include <gmock/gmock.h>
 
 #include "sim/grid/load_choice.hpp"
@@ -122,7 +122,7 @@ std::string powers(const std::string& ending, const std::string& id, double a1) 
   return "'IEEL" + ending + "' " + id + " " + std::to_string(a1) +
          " 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
 }
-/// a1 of each load's model; -1 where it has none.
+/// a1 of each load's model; -1 without a model.
 std::vector<double> first_states(const Grid& grid) {
   std::vector<double> list(grid.network.loads.size(), -1.0);
   for (const plant::Consumer& c : grid.loads)
@@ -140,7 +140,7 @@ TEST(LoadRecords, ReachTheLoadsOfAnAreaZoneOwnerOrAll) {
   EXPECT_EQ(of("2 " + powers("ZN", "1", 0.25)), (Firsts{0.25, -1}));
   EXPECT_EQ(of("4 " + powers("OW", "*", 0.25)), (Firsts{0.25, -1}));
   EXPECT_EQ(of("0 " + powers("AL", "*", 0.25)), (Firsts{0.25, 0.25}));
-  // the more particular counts, in whatever order they come
+  // the more specific record applies, in any order
   const std::string all = "0 " + powers("AL", "*", 0.25), area = "3 " + powers("AR", "*", 0.5),
                     owner = "5 " + powers("OW", "*", 0.75), own = "103 " + powers("BL", "2", 1.0);
   EXPECT_EQ(of(all + area), (Firsts{0.25, 0.5}));
@@ -192,7 +192,7 @@ TEST(LoadRecords, FrequencyDependentLoadKeepsTheCompositionOfTheRaw) {
   EXPECT_EQ(block.effect->name, "LDFR");
   EXPECT_EQ(parameter_of(block, "s"), 0.25);
   const double v = std::abs(grid.flow.voltage[2]), p = 1.5 + 0.6 * v + 0.4 * v * v;
-  const double q = -0.2 * v + 0.1 * v * v;  // YQ counts as susceptance
+  const double q = -0.2 * v + 0.1 * v * v;  // YQ is a susceptance
   EXPECT_NEAR(parameter_of(block, "Pp"), 1.5 / p, 1e-15);
   EXPECT_NEAR(parameter_of(block, "Pi"), 0.6 * v / p, 1e-15);
   EXPECT_EQ(parameter_of(block, "Qp"), 0.0);

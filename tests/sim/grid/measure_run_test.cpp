@@ -20,7 +20,7 @@ plant::TerminalRecord terminal() {
   plant::TerminalRecord r;
   for (int k = 0; k < 200; ++k) {
     r.V.push_back(1.0 + 0.001 * k);
-    r.theta.push_back(9.0 + 0.05 * k);  // more than a turn away, and through several
+    r.theta.push_back(9.0 + 0.05 * k);  // beyond 2 pi at the start, then through several turns
     r.P.push_back(0.7 - 0.002 * k);
     r.Q.push_back(0.1 + 0.001 * k);
   }
@@ -109,7 +109,7 @@ TEST(Measure, MeasuresEachPlantOfARun) {
     EXPECT_NEAR(after.at(1, 1)[k], 1.2 * 1.1 * before.at(1, 1)[k], 1e-13);
     EXPECT_NEAR(after.at(1, 4)[k], 1.1 * before.at(1, 4)[k], 1e-13);
     EXPECT_NEAR(after.at(1, 2)[k], before.at(1, 2)[k], 1e-13);
-    EXPECT_EQ(after.at(1, 3)[k], before.at(1, 3)[k]);  // the rotor angle passes no instrument
+    EXPECT_EQ(after.at(1, 3)[k], before.at(1, 3)[k]);  // the rotor angle is not measured by an instrument
     EXPECT_NEAR(frequency[0][k], 60.0, 1e-3);          // the infinite bus: a source behind a small impedance
   }
   EXPECT_GT(*std::ranges::max_element(frequency[1]), 60.01);  // the machine is accelerated by the fault

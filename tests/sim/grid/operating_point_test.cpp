@@ -47,7 +47,7 @@ TEST(AnotherOperatingPoint, PlantsFollowThePowerFlow) {
   }
 }
 
-/// What a load model takes from the .raw depends on the voltage, so it is taken anew; what was given stays.
+/// A load model's values from the .raw depend on the voltage and are computed again; given values are kept.
 TEST(AnotherOperatingPoint, LoadsWithAModelFollowToo) {
   formats::RawCase raw;
   raw.loads = "103,'1',1,1,1,150.0,30.0,50.0,-5.0,0,0,1,1,0\n103,'2',1,1,1,50.0,10.0,0,0,0,0,1,1,0\n";

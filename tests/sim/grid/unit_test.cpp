@@ -1,4 +1,4 @@
-// One unit of a case: read alone, whatever is wrong with the rest; written as .dyr records again; inventory.
+// One unit of a case: read independently of errors elsewhere; written back as .dyr records; inventory.
 #include "sim/grid/unit.hpp"
 
 #include <gmock/gmock.h>
@@ -77,7 +77,7 @@ TEST_F(UnitTest, RecordsAreDroppedAndReplaced) {
   c.models.map = {{"X6", "sexs"}};
   const Unit six = read_unit(c);
   ASSERT_EQ(six.plant.controls.size(), 1u);
-  EXPECT_THAT(six.plant.controls[0].p, Contains(-5.0));  // as many parameters: its values
+  EXPECT_THAT(six.plant.controls[0].p, Contains(-5.0));  // equal number of parameters: values are taken over
   EXPECT_THAT(six.defaults, ElementsAre());
   EXPECT_THAT(six.notes, Contains(HasSubstr("no record of OTHER")));
   c.models.map = {{"X6", "IEEET1"}};
@@ -108,7 +108,7 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
     ASSERT_NE(block.effect, nullptr);
     double r = 0, x = 0, n = 0;
     block.effect->get<double>().transformer.impedance(block.p.data(), r, x, n);
-    // The same branch by its admittance matrix: what the machine's side must have for a voltage and current.
+    // The same branch by its admittance matrix: quantities at the machine's side for a voltage and current.
     const network::Network net = formats::read_raw(c.raw);
     const network::Branch& b = net.branches[static_cast<std::size_t>(net.branch_index(102, 103, "1"))];
     const Complex y = 1.0 / Complex(b.r, b.x), tap = std::polar(b.tap, b.shift);
@@ -127,7 +127,7 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
   }
 }
 
-/// A unit at 102 of 250 MVA behind what `transformers` holds, with bus 104 on the way where it is named.
+/// Unit of 250 MVA at bus 102 behind the given `transformers`, with bus 104 in between if they name it.
 formats::RawCase behind(const std::string& transformers, const std::string& buses = "") {
   formats::RawCase raw;
   raw.buses += buses;
@@ -192,7 +192,7 @@ TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdIsUnloa
   write(loaded.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
   EXPECT_THAT(complaints(c), HasSubstr("winding at bus 104 of 102-103-104"));
   EXPECT_THAT(complaints(c), HasSubstr("--point"));
-  c.measured_at = 105;  // the number that the star point has inside
+  c.measured_at = 105;  // the internal number of the star point
   EXPECT_THAT(complaints(c), HasSubstr("no transformers lead from bus 102 to bus 105"));
 }
 

@@ -1,5 +1,5 @@
-// Sixteen lanes in float (decision 46) against eight in double: whatever switches, jumps or is out; the same
-// bits in any company; and what they refuse. all_effects_against_reference_test.cpp compares them with the
+// Sixteen lanes in float (decision 46) against eight in double: switching, steps and outages; bits that do
+// not depend on the other lanes; refusals. all_effects_against_reference_test.cpp compares them with the
 // reference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kFloatLimit = 1e-4;  ///< of max(1 pu, the swing): what is asked of all lanes
+constexpr double kFloatLimit = 1e-4;  ///< relative to max(1 pu, the swing): required of all lanes
 
 grid::Grid round_rotors() { return test::configured_grid("ieee39_dataset_genrou", Conventions::psse()); }
 
@@ -61,7 +61,7 @@ std::map<std::uint64_t, Trajectory> run_lanes(const grid::Grid& grid, const std:
   return run_jobs(grid, jobs, options);
 }
 
-/// Of the events that both find stable; returns how many.
+/// Compares the events that both find stable; returns their number.
 int agree(const grid::Grid& grid, const std::vector<Job>& jobs) {
   const auto doubles = run_lanes(grid, jobs, 8), floats = run_lanes(grid, jobs, 16);
   int compared = 0;
