@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The lines of Python in docs/formats.md read a shard.
+# The Python lines of docs/formats.md read a shard.
 source "$(dirname "$0")/common.bash"
 "$generate" "$configs/ieee14_genrou_bus3.toml" --draws 30 --progress none --out "$work/data" >/dev/null 2>&1
 # shellcheck disable=SC2016 # backquotes of Markdown

@@ -22,7 +22,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-/// The thesis's IEEE 14 config with one thing changed, beside copies of its network.
+/// The thesis's IEEE 14 config with one change, beside copies of its network.
 struct Changed : test::Folder {
   Changed() {
     fs::create_directory(path / "datasets");
@@ -57,7 +57,7 @@ TEST(DatasetConfigFile, EveryConfigOfTheProjectLoads) {
   EXPECT_GE(count, 3);
 }
 
-/// What is done to a case is part of the hash only where it is asked for, and reaches the grid.
+/// Repairs of a case enter the hash only if they are requested, and they are applied to the grid.
 TEST(DatasetConfigFile, RepairsIncompleteCasesOnRequest) {
   const Changed files;
   const std::string head = "convention = ";

@@ -20,7 +20,7 @@ struct MadeCase {
     o.draws = draws;
     DatasetConfig c =
         read_dataset_config(std::string(SWINGBANK_SOURCE) + "/configs/datasets/" + name + ".toml", o);
-    c.record.t_end = 3.0;  // enough to see the fault, quick
+    c.record.t_end = 3.0;  // covers the fault; short for speed
     return load_study(c);
   }
   MadeCase(const std::string& name, std::uint64_t draws)
@@ -59,8 +59,9 @@ TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
   Sampler sampler(c.study, c.bank);
   sim::lanes::BatchOptions options = batch_options(c.study.config);
   options.lanes = 1;
-  sim::lanes::Batch alone(c.study.grid,
-                          options);  // every plant, every channel, one lane: another way to the same values
+  sim::lanes::Batch alone(
+      c.study.grid,
+      options);  // every plant and channel, one lane: an independent way to the same values
   const std::size_t q = channel_index(c, "Q");
   for (std::size_t row = 0; row < d.rows; row += 5) {
     const Draw draw = sampler.draw(d.sample_id[row]);
@@ -100,7 +101,7 @@ TEST(ShardMaking, UnstableDrawsAreListedWithoutARow) {
   ASSERT_EQ(d.draw_outcome.size(), 60u);
   const auto stable = static_cast<std::size_t>(std::ranges::count(d.draw_outcome, 0));
   EXPECT_EQ(d.rows, stable);
-  EXPECT_LT(stable, 60u);  // at three seconds some of sixty have lost synchronism
+  EXPECT_LT(stable, 60u);  // within three seconds some of sixty lose synchronism
   for (std::size_t row = 0; row < d.rows; ++row) EXPECT_EQ(d.draw_outcome[d.sample_id[row]], 0);
   for (const float v : d.records) ASSERT_TRUE(std::isfinite(v));
 }
@@ -126,8 +127,8 @@ TEST(ShardMaking, AngleIsInvalidOnlyDuringATerminalFault) {
   for (std::size_t k = 0; k < d.samples; ++k) {
     const bool shorted = k > 240 && k <= 252;
     EXPECT_EQ(d.angle_valid[k], shorted ? 0 : 1) << k;
-    EXPECT_EQ(std::abs(d.records[v * d.samples + k]) < 1e-11F, shorted) << k;  // the kernel gives 1e-12
-    EXPECT_EQ(d.angle_valid[d.samples + k], 1) << k;                           // bus 31 keeps some voltage
+    EXPECT_EQ(std::abs(d.records[v * d.samples + k]) < 1e-11F, shorted) << k;  // the kernel returns 1e-12
+    EXPECT_EQ(d.angle_valid[d.samples + k], 1) << k;                           // bus 31 has a nonzero voltage
     EXPECT_LT(std::abs(d.records[f * d.samples + k]), 0.5F);
   }
   EXPECT_EQ(d.records[f * d.samples], 0.0F);

@@ -1,5 +1,5 @@
-// Leases grow with what a shard costs and shrink towards the end; what comes back undone is given again. The
-// journal's keeper flushes once for all lines that wait, and says why a line could not be written.
+// Leases grow until they last the requested time and shrink towards the end; unfinished items are leased
+// again. The journal's keeper flushes once for all pending lines and reports why a line could not be written.
 #include "mpi/ranks/detail/leases.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(Leases, LastTheRequestedTimeOnceTheCostIsKnown) {
   EXPECT_EQ(leases.give(1, false, now), Shards{0});
   leases.take_back(1, {0}, 0.5);
   EXPECT_EQ(leases.give(1, false, now).size(), 20u);
-  EXPECT_EQ(leases.give(0, true, now).size(), 1u);  // the master's own group hands in each
+  EXPECT_EQ(leases.give(0, true, now).size(), 1u);  // the master's own group returns each shard singly
 }
 
 TEST(Leases, ShrinkTowardsACommonEnd) {

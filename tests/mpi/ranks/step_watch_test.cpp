@@ -1,4 +1,4 @@
-// A step that takes too long is told once, with the system's last error; one that ends in time is not.
+// A step that takes too long is reported once, with the last system error; one that ends in time is not.
 #include "mpi/ranks/detail/step_watch.hpp"
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@ TEST(StepWatch, ReportsAStepThatHangs) {
   testing::internal::CaptureStderr();
   {
     const StepWatch watch(3, "create", "shards/0.h5", milliseconds(20));
-    EXPECT_EQ(::open("/", O_WRONLY), -1);  // of the step
+    EXPECT_EQ(::open("/", O_WRONLY), -1);  // last system error of the step
     std::this_thread::sleep_for(milliseconds(400));
     EXPECT_EQ(::open("", O_RDONLY), -1);
   }

@@ -59,7 +59,7 @@ struct TwoShards : Folder {
     Journal journal(path / "journal.jsonl");
     const JournalLine finished[] = {line_of(path, 1, sample_shard(5, 5, 1)),
                                     line_of(path, 0, sample_shard(5, 0, 0))};
-    journal.append(finished);  // order of finishing is not order of number
+    journal.append(finished);  // shards finish in another order than their numbers
   }
 };
 
@@ -107,7 +107,7 @@ void edit_line(const std::filesystem::path& folder, const std::function<void(Jou
   write_text(folder / "journal.jsonl", text);
 }
 
-/// The journal as if shard 0 had been written as it is now, but for its hash.
+/// The journal with a line that matches the present shard 0 except for its hash.
 void journal_as_it_is(const std::filesystem::path& folder) {
   edit_line(folder, [&](JournalLine& l) {
     l.bytes = std::filesystem::file_size(folder / l.file);
@@ -229,7 +229,7 @@ TEST(DatasetFolder, NamesFoldersWithoutADataset) {
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
 }
 
-/// Flips one bit of every `step`-th byte of every file of a dataset, one after the other; each must be found.
+/// Flips one bit of every `step`-th byte of every file of a dataset, one at a time; each must be detected.
 void flip_every(std::size_t step) {
   const TwoShards folder;
   int flipped = 0;
@@ -237,8 +237,7 @@ void flip_every(std::size_t step) {
        {"dataset.json", "journal.jsonl", "shards/shard-000000.h5", "shards/shard-000001.h5"}) {
     const std::string whole = read_text(folder.path / name);
     for (std::size_t i = 0; i < whole.size(); i += step) {
-      if (whole[i] == '\n' && i + 1 == whole.size())
-        continue;  // a last line without its line feed is left out
+      if (whole[i] == '\n' && i + 1 == whole.size()) continue;  // a last line without line feed is ignored
       std::string changed = whole;
       changed[i] = static_cast<char>(changed[i] ^ (1 << i % 8));
       std::ofstream(folder.path / name, std::ios::binary) << changed;
@@ -270,7 +269,7 @@ TEST(JournalFile, DropsAHalfWrittenLastLine) {
   EXPECT_EQ(lines[2].shard, 2u);
 }
 
-/// The journal's text with shard 1 once more, with another number of rows.
+/// The journal with a second line for shard 1 that has another number of rows.
 std::string contradiction(const std::filesystem::path& file) {
   JournalLine other = parse_journal_line(read_text(file));  // of shard 1, which ended first
   other.rows += 1;
@@ -288,7 +287,7 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   EXPECT_THAT(sentence, HasSubstr("damaged journal line at " + file.string() + ":1"));
   EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":6 (it is not what " +
                                   file.string() + ":2 says"));
-  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // the same line twice is no contradiction
+  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // a repeated line is no contradiction
 
   Problems damaged;
   EXPECT_EQ(read_journals(folder.path, &damaged).size(), 1u);

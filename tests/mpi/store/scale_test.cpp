@@ -1,5 +1,4 @@
-// What keeps a dataset of millions of shards usable: int16 records, folders, manifest, virtual dataset,
-// merge.
+// Support for datasets of millions of shards: int16 records, folders, manifest, virtual dataset, merge.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -33,7 +32,7 @@ std::string sentence_from(const std::function<void()>& work) {
   return "nothing thrown";
 }
 
-/// `shards` shards of five rows; those in `made` are there.
+/// A dataset of `shards` shards of five rows; only those in `made` exist.
 void make_part(const fs::path& folder, std::uint64_t shards, const std::vector<std::uint64_t>& made,
                const std::string& config = "0123456789abcdef", bool int16 = false) {
   const ShardAttributes a = sample_shard().attributes;
@@ -217,7 +216,7 @@ TEST(VirtualDataset, HoldsAllRowsInOrder) {
     const Folder folder;
     make_part(folder.path / "a", 3, {2, 0, 1}, "0123456789abcdef", int16);
     index_dataset(folder.path / "a");
-    fs::rename(folder.path / "a", folder.path / "b");  // it moves with its folder
+    fs::rename(folder.path / "a", folder.path / "b");  // the dataset may be moved with its folder
     const h5::File f = h5::File::open(folder.path / "b" / kVirtualFile);
     ShardData all = sample_shard(15);
     if (int16) {
@@ -274,7 +273,7 @@ TEST(Merge, RefusesPartsOfDifferentDatasets) {
               }),
               HasSubstr("changed shard at " + (folder.path / "b/shards/shard-000003.h5").string()));
   const Dataset d = open_dataset(folder.path / "out", true);
-  EXPECT_EQ(d.shards.size(), 3U);  // the others are there
+  EXPECT_EQ(d.shards.size(), 3U);  // the others exist
   EXPECT_FALSE(fs::exists(folder.path / "out/shards/shard-000003.h5"));
 }
 

@@ -99,7 +99,8 @@ TEST(Shard, EmptyShardIsReadable) {
 TEST(Shard, EqualContentMakesEqualBytes) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's times count seconds
+  std::this_thread::sleep_for(
+      std::chrono::milliseconds(1100));  // HDF5's time stamps have a resolution of 1 s
   write_shard(folder.path / "b.h5", sample_shard());
   EXPECT_EQ(read_text(folder.path / "a.h5"), read_text(folder.path / "b.h5"));
 }
@@ -178,7 +179,7 @@ TEST(Shard, DistinguishesDamagedFiles) {
   write_shard(file, test::sample_shard());
   const std::string whole = read_text(file);
   int told = 0;
-  for (std::size_t k = 0; k < 40; ++k) {  // over all of it: most bytes are descriptions
+  for (std::size_t k = 0; k < 40; ++k) {  // over the whole file: most bytes are metadata
     std::string bytes = whole;
     bytes[k * whole.size() / 40] ^= '\x7f';
     std::ofstream(file, std::ios::binary) << bytes;

@@ -221,8 +221,8 @@ TEST(OperatingPoint, AnImpossiblePointNamesThePlant) {
   EXPECT_THAT(text, HasSubstr("generator 102"));
 }
 
-/// Published PSS/E cases beside the checkout or in the folder SWINGBANK_REFERENCE. Their licence forbids a
-/// copy here, so these tests exist only if the files do.
+/// Published PSS/E cases beside the checkout or in the folder SWINGBANK_REFERENCE. They must not be
+/// committed here, so these tests exist only if the files do.
 std::filesystem::path reference() {
   const char* folder = std::getenv("SWINGBANK_REFERENCE");
   return std::filesystem::path(folder ? folder : std::string(SWINGBANK_SOURCE) + "/../shared/reference") /

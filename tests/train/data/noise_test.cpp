@@ -1,4 +1,4 @@
-// Noise of records: what it depends on, and how large it is.
+// Noise of records: its dependencies and its standard deviation.
 #include "train/data/noise.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ mpi::store::DatasetHeader header(std::vector<std::string> channels) {
   h.config = "record.frequency = [0.1, 0.02]\n";
   return h;
 }
-/// What is added to a record of constant value.
+/// Noise added to a record of constant value.
 std::vector<double> added(const std::vector<std::string>& channels, const NoiseRecipe& recipe,
                           std::uint64_t row, float value = 0) {
   std::vector<float> record(channels.size() * kSamples, value);
@@ -48,7 +48,7 @@ TEST(Noise, DependsOnSeedRowAndQuantityOnly) {
 }
 
 TEST(Noise, HasTheScaleOfEachQuantity) {
-  constexpr double kLevel = 0.005, kLoose = 0.04;  // 4000 samples tell a deviation to 1.1 %
+  constexpr double kLevel = 0.005, kLoose = 0.04;  // 4000 samples determine a standard deviation to 1.1 %
   const auto noise = added({"P", "Q", "V", "theta", "Ifd", "speed"}, {kLevel, 1}, 0, 2.0f);
   for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(deviation(channel(noise, c)) / kLevel, 1, kLoose);
   EXPECT_NEAR(deviation(channel(noise, 4)) / kLevel, 2, 2 * kLoose);
@@ -129,7 +129,7 @@ TEST(Noise, TrainingNoiseFollowsItsLevelAndDiffersBetweenDraws) {
     double product = 0;
     for (std::size_t k = 0; k < kSamples; ++k) product += drawn[k] * drawn[kSamples + k];
     EXPECT_LT(std::abs(product) / kSamples / (0.05 * level * level),
-              0.08);  // channels have nothing in common
+              0.08);  // channels are uncorrelated
   }
   EXPECT_GT(noisy, 10);
 }

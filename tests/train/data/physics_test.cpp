@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string> kNames = {"speed", "P", "Q", "V", "Ifd", "frequency"};
 
-/// Steady until 1 s, then simple functions of the time behind it.
+/// Steady until 1 s, then simple functions of the time after it.
 std::vector<float> record(double rate, std::size_t samples) {
   std::vector<float> r(kNames.size() * samples);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -32,15 +32,16 @@ TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
   std::vector<float> out(physics.channels() * physics.cells() + physics.levels());
   const auto in = record(rate, samples);
   physics.apply(in.data(), samples, out.data());
-  // the cell that begins at 2.0 s is one of 1/30 s; the one before it a single sample
+  // the bin that begins at 2.0 s has 1/30 s; the one before it a single sample
   const std::size_t at = 180;
   const auto value = [&](std::size_t channel, std::size_t cell) {
     return out[channel * physics.cells() + cell];
   };
-  const double t = 1.0 + 1.5 / rate;  // middle of the four samples, behind the event
+  const double t = 1.0 + 1.5 / rate;  // middle of the four samples, after the event
   const double P = 0.8 + 0.3 * t, V = 1.0 - 0.1 * t, Q = 0.2;
   const double E = std::hypot(V + X * Q / V, X * P / V), E0 = std::hypot(1.06, 0.24);
-  constexpr double kCurved = 2e-5;  // a mean over four samples against the value in their middle
+  constexpr double kCurved =
+      2e-5;  // difference between the mean of four samples and the value in their middle
   EXPECT_NEAR(value(0, at), P / V - 0.8, kCurved);
   EXPECT_NEAR(value(1, at), Q / V - 0.2, kCurved);
   EXPECT_NEAR(value(2, at), V - 1.0, kCurved);
@@ -102,7 +103,7 @@ TEST(Whitening, DecorrelatesAndNormalisesAndIsRestoredFromAFile) {
       for (std::size_t k = 0; k <= i; ++k) product[i * kept + k] += x(r, i) * x(r, k) / 2000;
     }
   for (std::size_t i = 0; i < kept; ++i) {
-    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // directions of 1e-9 of the variance in single precision
+    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // components with 1e-9 of the variance, in single precision
     for (std::size_t k = 0; k <= i; ++k)
       EXPECT_NEAR(product[i * kept + k], i == k ? 1.0 : 0.0, 0.05) << i << ", " << k;
   }
@@ -110,7 +111,7 @@ TEST(Whitening, DecorrelatesAndNormalisesAndIsRestoredFromAFile) {
   EXPECT_EQ(out, again);
 }
 
-/// Physical series of a made-up data set whose rows draw their noise.
+/// Physical series of a synthetic dataset whose rows draw their noise.
 struct NoisyWorld {
   test::Folder folder{"white-noise"};
   mpi::store::Dataset dataset = made(folder.path);
@@ -150,7 +151,7 @@ TEST(Whitening, ShrinksNoisyComponentsAndIncludesTheLevel) {
   std::size_t shrunk = 0;
   for (std::size_t i = 0; i < kept; ++i) {
     EXPECT_NEAR(mean_square(clean, i), 1.0, 0.1) << i;
-    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, behind Wiener's factor
+    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, after the Wiener factor
     shrunk += mean_square(noisy, i) < 0.5;
   }
   EXPECT_GT(shrunk, 0u);

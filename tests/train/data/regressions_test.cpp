@@ -10,7 +10,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Where the coefficient of `of` stands that belongs to the pair `a` < `b`; the first of two.
+/// Index of the first of two coefficients of `of` for the pair `a` < `b`.
 std::size_t place_of(std::size_t signals, std::size_t of, std::size_t a, std::size_t b) {
   std::size_t at = 0;
   for (std::size_t y = 0; y < signals; ++y)
@@ -119,7 +119,7 @@ TEST(Split, AcrossDatasetsTrainsOnOneAndJudgesTheOther) {
   labels.parameters = 1;
   labels.judged = 20;
   for (std::size_t i = 0; i < labels.rows; ++i) {
-    labels.values.push_back(static_cast<double>(i / 2));  // two rows a point
+    labels.values.push_back(static_cast<double>(i / 2));  // two rows per databank point
     labels.sample_id.push_back(i);
     labels.generator.push_back(30);
   }

@@ -1,4 +1,4 @@
-// Checkpoints: every byte that has changed is found.
+// Checkpoints: every changed byte is detected.
 #include "train/loop/detail/checkpoint.hpp"
 
 #include <gtest/gtest.h>

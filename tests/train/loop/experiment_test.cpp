@@ -1,4 +1,4 @@
-// What an experiment says of rows that only train, and of the runs of a preset.
+// Training rows of an experiment, and the runs of a preset.
 #include "train/loop/experiment.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 namespace swingbank::train::loop {
 namespace {
 
-/// An experiment with further lines at its top, in its preset and behind it.
+/// An experiment with additional lines at its top, in its preset and after it.
 Experiment experiment(const std::string& top, const std::string& in_preset, const std::string& behind) {
   const std::filesystem::path folder = testing::TempDir();
   for (const char* name : {"data.toml", "more.toml"}) std::ofstream(folder / name) << "\n";

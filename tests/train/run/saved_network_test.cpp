@@ -1,4 +1,4 @@
-// A saved network gives the very output that the trained one gave.
+// A saved network returns the output of the trained one.
 #include "train/run/saved_network.hpp"
 
 #include <fstream>
@@ -60,7 +60,7 @@ struct SavedWorld {
   }
 };
 
-/// Row of the dataset as an estimate wants it: channels speed, P.
+/// Row of the dataset as input of an estimate: channels speed, P.
 std::vector<float> record_of(const SavedWorld& world, std::uint64_t row, std::size_t samples) {
   const mpi::store::ShardInfo& shard = world.dataset.shards[row / world.plan.rows_per_shard];
   mpi::store::RowBlock block;
@@ -90,7 +90,7 @@ TEST(SavedNetwork, EqualsTheTrainedNetwork) {
     EXPECT_EQ(info.channels, (std::vector<std::string>{"speed", "P"}));
     EXPECT_EQ(info.left_out, 33);
     EXPECT_EQ(info.rate, 16.0);
-    EXPECT_FALSE(info.fault_start);  // made-up data do not say
+    EXPECT_FALSE(info.fault_start);  // absent in synthetic data
     // The result's errors on the test rows are those of the saved network, row by row.
     const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
     std::vector<double> square(3, 0.0);
@@ -133,7 +133,7 @@ TEST(SavedNetwork, EqualsTheTrainedNetworkOnPhysicalChannels) {
   EXPECT_NEAR(square, result["per_parameter"][0]["mse"].get<double>(), 1e-3 * square);
 }
 
-/// The world's data, whose rows draw a level of noise when they train.
+/// Data of the world, whose training rows draw a noise level.
 struct NoisyRuns {
   SavedWorld world;
   RunRequest request;
@@ -168,11 +168,11 @@ TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
   const json& believed = with["posterior"];
   EXPECT_EQ(believed["set_aside"].size(), 2u);
   EXPECT_EQ(believed["test"]["rows"], 30);
-  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is held
+  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is constant
   EXPECT_GT(believed["test"]["coverage_90"].get<double>(), 0.5);
   EXPECT_LT(believed["test"]["coverage_50"].get<double>(), believed["test"]["coverage_90"].get<double>());
 
-  // what was saved believes what was judged
+  // the saved network has the posterior that was tested
   const SavedNetwork saved = SavedNetwork::load(file);
   EXPECT_TRUE(saved.info().told_noise);
   const data::ShardStream stream = w.stream(0.0);
@@ -195,7 +195,7 @@ TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
 TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   NoisyRuns whole("levels-whole"), broken("levels-broken");
   ASSERT_EQ(run(whole.stream(0.001), whole.request), RunOutcome::done);
-  // ended by a signal in the network's epochs, and again in those of the posterior
+  // stopped by a signal in the epochs of the network, and again in those of the posterior
   const data::ShardStream stream = broken.stream(0.001);
   std::size_t asked = 0;
   for (const std::size_t stop : {std::size_t{9}, std::size_t{13}}) {
@@ -272,8 +272,7 @@ TEST(SavedNetwork, RefusesOtherFiles) {
   EXPECT_TRUE(has(refusal(file), "network file cannot be used"));
 }
 
-/// Flips one bit of every byte up to the end of the header, and of one in a thousand behind it, each in its
-/// place.
+/// Flips one bit of every byte of the header, and of every thousandth byte after it, one at a time.
 TEST(SavedNetworkFull, DetectsFlippedBytes) {
   const SavedWorld world("flipped");
   RunRequest r = world.request("gru");
@@ -307,7 +306,7 @@ TEST(TargetScale, ShiftsANegativeRangeToZero) {
   const std::vector<double> low = {-5, 0.5};
   const data::TargetScale scale = data::TargetScale::fit(values, 2, rows, low);
   EXPECT_EQ(scale.origin, (std::vector<double>{-5, 0}));
-  EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // a ReLU can say it
+  EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // representable by a ReLU
   EXPECT_NEAR(scale.raw(scale.scaled(-3.7, 0), 0), -3.7, 1e-15);  // rounding
   EXPECT_EQ(scale.scaled(2.0, 1), 2.0 / scale.unit[1]);
 }

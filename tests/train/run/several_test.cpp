@@ -1,4 +1,4 @@
-// Test rows of one plant taken together.
+// Combined test rows of one plant.
 #include "train/run/detail/several.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The choice of BLAS kernels. What no test here can do, a processor that the library does not know, is done
-// by blas_kernels_full.sh with the whole program.
+// Choice of BLAS kernels. A processor unknown to the library is tested by blas_kernels_full.sh with the whole
+// program.
 #include <gmock/gmock.h>
 
 #include "base/problem.hpp"
