@@ -61,7 +61,7 @@ struct Bench {
         }
       cost.largest = std::max(cost.largest, most);
       cost.square = std::max(cost.square, square);
-    } catch (const InputError&) {  // it cannot stand there
+    } catch (const InputError&) {  // infeasible operating point
     }
   }
 };
@@ -120,7 +120,7 @@ void tell_objective(const plant::PlantModel& model, const event::WhitenedEvents&
       const double value = objective_seconds(tested, events, false),
                    both = objective_seconds(tested, events, true);
       fmt::print("{:22} {:12.2f} {:12.2f} {:8.2f}\n", h.name, 1e3 * value, 1e3 * both, both / value);
-    } catch (const InputError&) {  // it cannot stand there
+    } catch (const InputError&) {  // infeasible operating point
     }
 }
 

@@ -129,7 +129,7 @@ TEST_F(Ranks, AllRanksReportTheFailureOfOne) {
   }
 }
 
-TEST_F(Ranks, FolderThatIsAFileLeavesNothing) {
+TEST_F(Ranks, LeavesNothing_WhenTheFolderIsAFile) {
   if (rank == 0) write_text(folder / "file", "x");
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_THROW(write_shard(folder / "file" / "a.h5", test::sample_shard(1, static_cast<std::uint64_t>(rank)),

@@ -80,7 +80,7 @@ TEST(ConverterRegcc1, CurrentControlMovesTheInnerVoltage) {
   EXPECT_NEAR(dx[Sq], 30.0 * 0.05, 1e-12);
   EXPECT_NEAR(dx[Ed], (0.02 * 2.0 * 0.1 + 0.25 * 2.0 * 0.05) / 0.01, 1e-10);
   EXPECT_NEAR(dx[Eq], (0.25 * 2.0 * 0.1 - 0.02 * 2.0 * 0.05) / 0.01, 1e-10);
-  // Te 0: I = Kip (Ip - I) + integral, so I = (Kip Ip + integral)/(1 + Kip), whatever the voltage.
+  // Te 0: I = Kip (Ip - I) + integral, so I = (Kip Ip + integral)/(1 + Kip), for any voltage.
   Locked at_once({{"Kip", 2.0}, {"Te", 0.0}});
   at_once.x[Ip] = 0.75;
   at_once.x[Iq] = 0.26;

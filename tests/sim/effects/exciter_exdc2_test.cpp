@@ -75,7 +75,7 @@ TEST(ExciterExdc2, ZeroLimitsAndKeAreComputedAsInPsse) {
   ControlBench limit("EXDC2", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});  // VRMAX = (0.5 + 1) 5
   limit.in.dVref = 5.0;
   limit.run(60.0);
-  const double efd = limit.out().Efd;  // where 7.5 = Efd + B (Efd - A)^2: at E2
+  const double efd = limit.out().Efd;  // solution of 7.5 = Efd + B (Efd - A)^2: E2
   EXPECT_NEAR(efd, 5.0, 1e-12);
   ControlBench self("EXDC2", {{"KE", 0.0}, {"VRMAX", 6.0}});
   EXPECT_DOUBLE_EQ(self.state("Vr"), 0.6);

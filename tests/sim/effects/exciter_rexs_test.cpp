@@ -158,7 +158,7 @@ TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(ExciterRexs, LimitsFollowTheVoltageAsFlimfSays) {
+TEST(ExciterRexs, LimitsFollowTheVoltageInProportionToFlimf) {
   for (const double follow : {0.0, 0.5, 1.0}) {
     ControlBench bench(
         "REXS", rexs_with({{"VRMAX", 5.0}, {"KH", 0.0}, {"KII", 0.0}, {"KIP", 1.0}, {"FLIMF", follow}}));

@@ -41,7 +41,7 @@ TEST(GovernorGast, FuelValveStopsAtItsLimitsWithoutWindUp) {
   EXPECT_NEAR(bench.state("fuel"), 0.8 - 0.85 * std::exp(-1.0), 1e-9);  // T1 from the limit, without delay
 }
 
-TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorGast, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kGastValues;
   values["db"] = 0.0006;
   ControlBench bench("GAST", values);

@@ -25,7 +25,7 @@ TEST(GovernorGgov1, SmallSignalsFollowTheTransferFunction) {
       ControlBench bench = bench_with({{"Rselect", code}, {"Flag", flag}});
       ASSERT_EQ(bench.refused, "");
       EXPECT_LT(bench.largest_derivative(), 1e-12);
-      const double valve = (0.8 + 0.2) / 1.5 + 0.2;  // Dm at rated speed takes 0.2 pu
+      const double valve = (0.8 + 0.2) / 1.5 + 0.2;  // Dm reduces the power by 0.2 pu at rated speed
       for (const double omega : {0.05, 0.5, 5.0}) {
         const Complex s(0.0, omega), actuator = 1.0 / (1.0 + s * 0.4);
         Complex stroke = -pid(s);

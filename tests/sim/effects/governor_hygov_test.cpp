@@ -47,7 +47,7 @@ TEST(GovernorHygov, GateRespectsVelocityAndPositionLimits) {
   EXPECT_LT(bench.state("desired"), 1.0 - 0.2 * 0.4);  // no delay by wind-up
 }
 
-TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorHygov, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kHygovValues;
   values["db"] = 0.0006;
   values["Dturb"] = 0.0;

@@ -29,7 +29,7 @@ TEST(GovernorTgov1, DroopAndTurbineDamping) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 0.005 / 0.05 + 0.5 * 0.005, 1e-12);  // exp(-30 / 0.8) is below
 }
 
-TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorTgov1, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kTgov1Values;
   values["db"] = 0.0006;
   ControlBench bench("TGOV1", values);

@@ -1,5 +1,5 @@
-// CIM5 against the motor's equivalent circuits, short-circuit time constant, torque laws, stalling, and in
-// both integrators.
+// CIM5 against the motor's equivalent circuits, short-circuit time constant, load torque, stalling, and both
+// integrators.
 #include "sim/effects/load_cim5.hpp"
 
 #include <gmock/gmock.h>

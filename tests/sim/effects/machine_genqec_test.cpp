@@ -36,8 +36,8 @@ double scaled_quadratic(double s10, double s12, double u) {  // sqrt(u Se) is a 
   return root > 0 ? root * root / u : 0.0;
 }
 
-/// Over-excited by the current -jI at V = 1 all flux lies in the d axis: the air gap holds 1 + Xl I, and the
-/// field needs (1 + Se) times that beside (Xd - Xl) I, over 1 - Kw I.
+/// Over-excited by the current -jI at V = 1 all flux lies in the d axis: the air-gap flux is 1 + Xl I, and
+/// the field needs (1 + Se) times this flux plus (Xd - Xl) I, divided by 1 - Kw I.
 TEST(MachineGenqec, FieldByHand) {
   EXPECT_NEAR(at_rest(block_with("GENQEC", {}), 1.0, 0.0).first, 1.1, 1e-14);
   const double k = 1.0 + scaled_quadratic(0.1, 0.4, 1.12);

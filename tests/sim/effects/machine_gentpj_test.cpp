@@ -66,7 +66,7 @@ double quadratic(double s10, double s12, double u) {  // sqrt(u Se) is a straigh
 }
 
 /// At no load psi'' = E'q = V = 1 and the field needs 1 + S1.0. Over-excited by the current -jI at V = 1 all
-/// flux lies in the d axis: the air gap holds 1 + Xl I, so u = 1 + (Xl + Kis) I, and the field needs
+/// flux lies in the d axis: the air-gap flux is 1 + Xl I, so u = 1 + (Xl + Kis) I, and the field needs
 /// (1 + Se) times the flux behind the saturated reactances: (1 + Se)(1 + Xl I) + (Xd - Xl) I.
 TEST(MachineGentpj, FieldByHand) {
   EXPECT_NEAR(TypeJMachine("GENTPJ", {}, 1.0, 0.0).s.Efd, 1.1, 1e-14);  // tolerances: rounding

@@ -80,12 +80,12 @@ TEST(PmuFilterP, AStepTakesTwoCycles) {
   EXPECT_NEAR(moved(-cycle - slack), 0.0, 1e-14);
   EXPECT_NEAR(moved(cycle + slack), 1.0, 1e-14);
   EXPECT_NEAR(moved(0.0), 0.5, 1e-12);
-  // 1/2 + u - u^2/2 of the triangle, u in cycles; a jump is a ramp of one sample: u^2 / 24 of 1/16 = 2e-4
+  // 1/2 + u - u^2/2 of the triangle, u in cycles; a step is a ramp of one sample: u^2 / 24 of 1/16 = 2e-4
   EXPECT_NEAR(moved(0.5 * cycle), 0.875, 4e-4);
   EXPECT_NEAR(moved(-0.5 * cycle), 0.125, 4e-4);
 }
 
-TEST(PmuFilterM, IsTheStandardsWindow) {
+TEST(PmuFilterM, EqualsTheStandardsWindow) {
   struct Row {
     double reports, Ffr;
     int order;
@@ -102,7 +102,7 @@ TEST(PmuFilterM, IsTheStandardsWindow) {
         of += tap * std::cos(2 * kPi * hz * k / 960.0);
       }
       // The last taps count half in an integral. They are largest with 120 reports, 0.08 x 0.12 of a sum of
-      // 15; both of them, in the average and in what it is divided by: 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
+      // 15; both taps, in the average and in its divisor: 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
       EXPECT_NEAR(gain(960.0, hz, {kClassM, 1, row.reports, 1}).real(), of / sum, 1.5e-3)
           << row.reports << " reports, " << hz << " Hz";
     }

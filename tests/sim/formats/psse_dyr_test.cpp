@@ -68,7 +68,7 @@ TEST(PsseDyr, AllowsCommentLinesWithinRecords) {
   EXPECT_THAT(r[1].values, ElementsAre(8.0, 0.03));
 }
 
-TEST(PsseDyr, TextInAModelThatIsNotUsedIsOnlyNoted) {
+TEST(PsseDyr, TextInAnUnusedModelIsOnlyNoted) {
   const auto r =
       read("101 'XYZ' 1 2.0 'text' 3.0 /\n102 'USRMDL' 1 'MyGov' 1 1 0 /\n0 'USRMSC' 'MYREL' 512 0 /\n");
   ASSERT_EQ(r.size(), 3u);

@@ -113,7 +113,7 @@ TEST(FarControl, ReportsUnknownBusesAndBranches) {
   EXPECT_FALSE(grid.plants.at(1).far.has_value());
 }
 
-TEST(FarControl, IsMeasuredAnewAtAnotherOperatingPoint) {
+TEST(FarControl, IsRecomputedAtAnotherOperatingPoint) {
   const Grid grid = load_from(behind_a_branch(), plants({}));
   network::Network less = grid.network;
   less.generators.at(1).p *= 0.5;

@@ -261,7 +261,7 @@ TEST(LoadRecords, KnownUserWrittenModelsAreReadAsEffects) {
       HasSubstr("GENTPJU1 with 22 parameters"));
 }
 
-/// 'GENTPJU1' is GENTPJ1, 'GENROUU1' GENROU: the rule holds for every model, mapped ones too.
+/// 'GENTPJU1' is GENTPJ1, 'GENROUU1' GENROU: the rule applies to every model, including mapped ones.
 TEST(LoadRecords, NamesOfUserWrittenModelsFollowOneRule) {
   const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
                     values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n";

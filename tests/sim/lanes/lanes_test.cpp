@@ -73,7 +73,7 @@ TEST(Lanes, EveryWidthGivesTheSameRecord) {
   EXPECT_GT(compared, 10);
 }
 
-TEST(Lanes, WithoutAnEventNothingMoves) {
+TEST(Lanes, StaysSteadyWithoutAnEvent) {
   std::vector<Job> jobs(1);
   const auto t = run(jobs, {}).at(0);
   EXPECT_EQ(t.outcome, Outcome::stable);

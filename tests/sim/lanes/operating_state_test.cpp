@@ -94,7 +94,7 @@ void expect_its_own(const grid::Grid& grid, const BatchOptions& options, double 
   }
 }
 
-TEST(OperatingStates, DifferWithinOneBatch) {
+TEST(OperatingStates, MixedBatchEqualsSeparateBatches) {
   for (const int lanes : {1, 4, 8}) {
     BatchOptions options;
     options.lanes = lanes;
@@ -102,11 +102,13 @@ TEST(OperatingStates, DifferWithinOneBatch) {
   }
 }
 
-TEST(OperatingStates, DifferWithTheirOwnLoads) { expect_its_own(with_load_models(), {}, 1e-12); }
+TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithLoadModels) {
+  expect_its_own(with_load_models(), {}, 1e-12);
+}
 
 /// With many sources the lanes share the matrix of their grid, which differs between operating points:
 /// rounding differs.
-TEST(OperatingStates, DifferWithManySources) {
+TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithManySources) {
   static const grid::Grid grid = synthetic(41);
   const Mixed mixed(grid);
   BatchOptions one;

@@ -101,7 +101,7 @@ TEST(LawOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
                      "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"log(x)\"")),
       "the derivative of x is no number there");
   EXPECT_EQ(refusal(law_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
-  // evaluated before the first switching time, whatever the value later
+  // evaluated before the first switching time, independent of the later value
   EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
 }
 

@@ -79,7 +79,7 @@ TEST(LawFile, ThreeWaysOfWritingAnExciterAgree) {
   EXPECT_LE(test::largest_difference(compiled, reference_run(tf)), 1e-6);
 }
 
-TEST(LawFile, ALimitedStateDoesNotWindUp) {
+TEST(LawFile, LimitedStatesDoNotWindUp) {
   test::ControlBench bench(sexs_law(),
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");

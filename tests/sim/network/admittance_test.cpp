@@ -160,7 +160,7 @@ TEST_F(Reduction, IsolatedBusHasNoInfluence) {
   EXPECT_LT((reduce(network, flow, {}, kept).y - before).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(BusAdmittance, OfATapPhaseShiftAndLineShunts) {
+TEST(BusAdmittance, IncludesTapPhaseShiftAndLineShunts) {
   formats::RawCase c;
   c.branches = "101,103,'1',0.01,0.1,0.2,1,1,1,0.001,0.002,0.003,0.004\n102,103,'1',0,0.12\n";
   c.transformers = "101,102,0,'1',1,1,1,0.005,-0.006,2,'',1\n0.02,0.2\n1.1,0,30\n1.0,0\n";

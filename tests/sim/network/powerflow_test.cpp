@@ -33,7 +33,7 @@ double imbalance(const Network& n, const std::vector<Complex>& voltage,
 struct Solved {
   const char* name;
   double voltage,
-      power;  ///< tolerances: mismatch of the file's reference solution, hence its distance from ours
+      power;  ///< tolerances: mismatch of the file's reference solution
 };
 class PowerFlowNetworks : public ::testing::TestWithParam<Solved> {};
 TEST_P(PowerFlowNetworks, ReproducesTheReferenceSolution) {

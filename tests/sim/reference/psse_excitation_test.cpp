@@ -126,7 +126,7 @@ TEST(PsseRecords, Exst1WithGensalAndHygov) {
         ours.push_back(row);
       },
       kInnerSteps);
-  ours.erase(ours.begin() + 201);  // the record has the switching instant once, before the trip
+  ours.erase(ours.begin() + 201);  // the record has the switching time once, before the trip
   expect_agreement(record, ours, {"V1", "V2", "V3", "V4", "speed", "Efd"}, std::vector(6, kExcitationLimit));
 }
 

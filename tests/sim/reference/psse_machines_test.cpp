@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Record{"psse/GENROU", "ThreeBusMulti.raw", "ThreeBus_GENROU_NO_SAT.dyr", "TEST_GENROU_NO_SAT.csv"},
         Record{kMore + "GENROU_HIGH_SAT", "ThreeBusMulti.raw", "ThreeBus_GENROU_HIGH_SAT.dyr",
                "TEST_GENROU_HIGH_SAT.csv"},
-        // Their .dyr says D = 0.05; with it they miss by 0.0022 degrees.
+        // The .dyr has D = 0.05, which gives an error of 0.0022 degrees.
         Record{kMore + "GENROE", "ThreeBusMulti.raw", "ThreeBus_GENROE.dyr", "TEST_GENROE.csv", 0.0},
         Record{kMore + "GENROE", "ThreeBusMulti.raw", "ThreeBus_GENROE_HIGH_SAT.dyr",
                "TEST_GENROE_HIGH_SAT.csv", 0.0},

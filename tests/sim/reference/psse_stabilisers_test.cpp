@@ -14,7 +14,7 @@ namespace swingbank::sim::reference::psse_stabilisers {
 namespace {
 
 constexpr double kStep = 0.005, kChange = 1.0, kEnd = 20.0;  // [s]
-constexpr double kFrequency = 60.0;  ///< [Hz]; STAB1's .raw says 50, with which its record disagrees by 22 %
+constexpr double kFrequency = 60.0;  ///< [Hz]; STAB1's .raw has 50, which disagrees with its record by 22 %
 constexpr double kShare = 2e-3;      ///< relative to a channel's swing
 constexpr double kP = 0.9, kQ = 0.29993, kXd = 2.2;  ///< of the unit in both cases [pu]
 

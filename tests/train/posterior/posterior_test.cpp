@@ -122,7 +122,7 @@ TEST(CoverageFull, TarpDetectsCorrelationsMissedByMarginals) {
   EXPECT_LT(c.tarp.by_chance(), 1e-6);
 }
 
-/// Network whose only information about a row is one number, which is also both outputs.
+/// Network with one input number per row, which is both its features and its two outputs.
 class Shown final : public networks::Network {
  public:
   at::Tensor forward(const at::Tensor& x, bool) override { return x.reshape({-1, 1}).expand({-1, 2}); }
