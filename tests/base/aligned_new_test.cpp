@@ -1,4 +1,4 @@
-// Where memory begins.
+// Alignment of allocated memory.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 namespace swingbank {
 namespace {
 
-// sanitizers, which clang is used for here, have their own allocators
+// builds with clang use sanitizers, which have their own allocators
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-TEST(Memory, BeginsAtACacheLine) {
+TEST(Memory, IsAlignedToCacheLines) {
   constexpr std::uintptr_t kLine = 64;
   std::vector<std::vector<double>> kept;
   for (std::size_t n = 1; n < 200; ++n) {

@@ -19,7 +19,7 @@ std::string sentence_of(Config& c) {
   return "nothing thrown";
 }
 
-TEST(StrictConfig, ReadsWhatIsThere) {
+TEST(StrictConfig, ReadsGivenValues) {
   Config c("a = 1\nb = 2\ns = 'x'\n[t]\nlist = [1, 2.5]\nbox = [0.5, 1]\nwords = ['u', 'v']\n", "c.toml");
   EXPECT_EQ(c.require<std::int64_t>("a"), 1);
   EXPECT_EQ(c.require<double>("b"), 2.0);  // an integer is a number
@@ -31,7 +31,7 @@ TEST(StrictConfig, ReadsWhatIsThere) {
   EXPECT_NO_THROW(c.raise());
 }
 
-/// "a.a.a" of so many parts.
+/// Returns a dotted key "a.a.a" with the given number of parts.
 std::string dotted(int parts) {
   std::string key = "a";
   for (int k = 1; k < parts; ++k) key += ".a";
@@ -53,7 +53,7 @@ TEST(StrictConfig, RefusesKeysOfVeryManyParts) {
     }
 }
 
-TEST(StrictConfig, ReadsDotsThatBelongToNoKey) {
+TEST(StrictConfig, ReadsDotsOutsideOfKeys) {
   const std::string dots(100, '.');
   Config c("[" + dotted(32) + "]\nb = '" + dots + "' # " + dots + "\nc = \"\"\"\"" + dots + "\n\\\"" + dots +
                "\"\"\"\"\nd = [0.5, 1.5" + ", 2.5, 3.5\n]\n",
@@ -63,7 +63,7 @@ TEST(StrictConfig, ReadsDotsThatBelongToNoKey) {
   EXPECT_EQ(c.require<std::vector<double>>(dotted(32) + ".d").size(), 4U);
 }
 
-TEST(StrictConfig, AllProblemsAtOnceWithLines) {
+TEST(StrictConfig, ReportsAllProblemsWithTheirLines) {
   Config c("a = 'one'\nb = 7\nzzz = 1\n[t]\nunheard = 2\nbox = [3, 1]\nmode = 'blue'\n", "c.toml");
   c.require<std::int64_t>("a");
   c.require<double>("b", {0.0, 5.0, "s"});
@@ -95,7 +95,7 @@ TEST(StrictConfig, NotANumberIsRefused) {
   EXPECT_THAT(sentence_of(c), HasSubstr("c.toml:2:5 (it must be a finite number)"));
 }
 
-TEST(StrictConfig, NumbersAreToldAsShortAsTheyWereWritten) {
+TEST(StrictConfig, ReportsNumbersAsWritten) {
   Config c("a = 0.006\nb = 500.0\nc = 7\n", "c.toml");
   for (const char* key : {"a", "b", "c"}) c.require<double>(key, {1.0, 5.0, "s"});
   const std::string s = sentence_of(c);
@@ -104,7 +104,7 @@ TEST(StrictConfig, NumbersAreToldAsShortAsTheyWereWritten) {
   EXPECT_THAT(s, HasSubstr("c = 7 at"));
 }
 
-TEST(StrictConfig, SyntaxErrorHasItsLine) {
+TEST(StrictConfig, SyntaxErrorNamesItsLine) {
   try {
     Config c("a = 1\nb = \n", "c.toml");
     FAIL() << "nothing thrown";

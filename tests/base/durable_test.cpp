@@ -1,4 +1,4 @@
-// Files appear whole or not at all, and what stands under their temporary name is never written through.
+// Files appear completely or not at all, and a file or link at their temporary name is never written through.
 #include "base/durable.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ std::string refusal(F action) {
 constexpr SealedKind kKind{"a test's file", "SWTEST01", "make it again"};
 const std::vector<float> kNumbers(5000, 1.5F);
 
-/// Every way of writing a file.
+/// All functions that write a file.
 struct Writer {
   const char* name;
   void (*write)(const fs::path&);
@@ -68,7 +68,7 @@ class DurableFile : public ::testing::Test {
 };
 class Durable : public DurableFile, public ::testing::WithParamInterface<Writer> {};
 
-TEST_P(Durable, ALinkAtTheTemporaryNameIsNotFollowed) {
+TEST_P(Durable, DoesNotFollowALinkAtTheTemporaryName) {
   const fs::path precious = folder.path / "precious";
   write_text(precious, "text");
   fs::create_symlink("precious", temporary_name(file));
@@ -79,7 +79,7 @@ TEST_P(Durable, ALinkAtTheTemporaryNameIsNotFollowed) {
   EXPECT_FALSE(fs::exists(fs::symlink_status(temporary_name(file))));
 }
 
-TEST_P(Durable, AnotherNameOfTheTemporaryFileIsNotWrittenThrough) {
+TEST_P(Durable, KeepsFilesHardLinkedToTheTemporaryName) {
   const fs::path precious = folder.path / "precious";
   write_text(precious, "text");
   fs::create_hard_link(precious, temporary_name(file));
@@ -105,7 +105,7 @@ TEST_P(Durable, LeavesNoTemporaryFileWhenTargetIsAFolder) {
 INSTANTIATE_TEST_SUITE_P(Writers, Durable, ::testing::ValuesIn(kWriters),
                          [](const auto& which) { return which.param.name; });
 
-/// While it lives, no file of this process grows beyond so many bytes.
+/// Limits the size of every file of this process, in bytes, for its lifetime.
 class SmallFiles {
  public:
   explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -125,7 +125,7 @@ class SmallFiles {
   void (*handler_)(int);
 };
 
-TEST_F(DurableFile, AWriteThatFailsHalfWayLeavesWhatWasThere) {
+TEST_F(DurableFile, KeepsTheOldFileWhenAWriteFails) {
   write_text(file, "before");
   for (const Writer& w : {kWriters[0], kWriters[1], kWriters[2]}) {
     const SmallFiles limit(4096);
@@ -135,7 +135,7 @@ TEST_F(DurableFile, AWriteThatFailsHalfWayLeavesWhatWasThere) {
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_F(DurableFile, AFileIsGoneUnlessPublished) {
+TEST_F(DurableFile, RemovesAnUnpublishedFile) {
   {
     NewFile f(file);
     f.write("half", 4);
@@ -144,7 +144,7 @@ TEST_F(DurableFile, AFileIsGoneUnlessPublished) {
   EXPECT_EQ(entries(), 0);
 }
 
-TEST_F(DurableFile, TheHashTakenWhileTheDiskIsFlushedIsThatOfTheFile) {
+TEST_F(DurableFile, HashTakenDuringTheFlushMatchesTheFile) {
   reserve(file, 3 << 20);
   {
     std::ofstream out(temporary_name(file), std::ios::binary);
@@ -156,7 +156,7 @@ TEST_F(DurableFile, TheHashTakenWhileTheDiskIsFlushedIsThatOfTheFile) {
   EXPECT_THAT(refusal([&] { publish_hashed(folder.path / "none"); }), HasSubstr("No such file"));
 }
 
-TEST_F(DurableFile, FoldersAreMadeWhereTheyCanBe) {
+TEST_F(DurableFile, CreatesMissingFolders) {
   write_file(folder.path / "deep" / "a.txt", "one");
   EXPECT_EQ(read_text(folder.path / "deep" / "a.txt"), "one");
   EXPECT_THAT(refusal([&] { write_file(folder.path / "deep" / "a.txt" / "c", "x"); }),

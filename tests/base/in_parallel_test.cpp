@@ -1,5 +1,5 @@
-// Pieces of work on several threads: all are made, what is done after them happens one at a time, and a
-// failure reaches the caller.
+// Pieces of work on several threads: all are done, their continuations run one at a time, and a failure
+// reaches the caller.
 #include "base/in_parallel.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ constexpr int kThreads = 4;
 
 TEST(InParallel, RunsContinuationsOneAtATime) {
   std::vector<double> made(kPieces);
-  std::vector<int> counts;  // of whoever holds the turn: no lock
+  std::vector<int> counts;  // written only by the thread whose turn it is: needs no lock
   std::multiset<std::size_t> pieces;
   in_parallel(
       kPieces, [&](std::size_t k) { made[k] = static_cast<double>(k); },
@@ -34,7 +34,7 @@ TEST(InParallel, RunsContinuationsOneAtATime) {
   EXPECT_EQ(std::set(pieces.begin(), pieces.end()).size(), kPieces);
 }
 
-TEST(InParallel, AFailureReachesTheCallerOnceAllHaveEnded) {
+TEST(InParallel, RethrowsAFailureAfterAllPiecesEnd) {
   std::size_t finished = 0;
   const auto work = [](std::size_t k) {
     if (k % 5 == 0) throw std::runtime_error("broken");

@@ -14,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A working folder without files and examples beside it, gone after the test.
+/// An empty working folder and a folder of examples beside it; both are removed after the test.
 class InputFile : public ::testing::Test {
  protected:
   InputFile() : before_(fs::current_path()) {
@@ -38,7 +38,7 @@ class InputFile : public ::testing::Test {
   fs::path before_, root_;
 };
 
-TEST_F(InputFile, MissingSaysWhereItWasLookedFor) {
+TEST_F(InputFile, MissingFileReportsTheFoldersSearched) {
   EXPECT_EQ(sentence("mine.toml"),
             "no plant file at mine.toml (there is no such file; it was looked for in " +
                 (root() / "here").string() + "): give another");
@@ -46,7 +46,7 @@ TEST_F(InputFile, MissingSaysWhereItWasLookedFor) {
             "no plant file at /nowhere/mine.toml (there is no such file): give another");
 }
 
-TEST_F(InputFile, MissingNamesTheExampleOfThatPath) {
+TEST_F(InputFile, MissingFileNamesTheExampleOfThatPath) {
   const std::string example = (root() / "share/configs/plants/one.toml").string();
   for (const char* named : {"configs/plants/one.toml", "plants/one.toml"})
     EXPECT_THAT(sentence(named),
@@ -54,7 +54,7 @@ TEST_F(InputFile, MissingNamesTheExampleOfThatPath) {
   EXPECT_THAT(sentence("configs/plants/two.toml"), Not(HasSubstr("example")));
 }
 
-TEST_F(InputFile, PatternThatTheShellCouldNotReplace) {
+TEST_F(InputFile, ReportsAPatternWithoutMatchingFiles) {
   EXPECT_THAT(sentence("configs/plants/o*.toml"),
               AllOf(HasSubstr("none that matches"), HasSubstr((root() / "share/configs/plants").string())));
   EXPECT_THAT(sentence("o*.toml"), AllOf(HasSubstr("none that matches"), HasSubstr("give another")));
@@ -64,7 +64,7 @@ TEST_F(InputFile, ReportsUnreadableFileAsExisting) {
   std::ofstream("empty.toml").flush();
   EXPECT_THAT(sentence("empty.toml"), HasSubstr("(it is empty)"));
   EXPECT_THAT(sentence("."), HasSubstr("(it is a folder)"));
-  // A local file of an example's name is what was named, however bad it is.
+  // A local file takes precedence over the example of the same name, even if it is invalid.
   fs::create_directories("plants");
   std::ofstream("plants/one.toml").flush();
   EXPECT_THAT(sentence("plants/one.toml"), AllOf(HasSubstr("(it is empty)"), Not(HasSubstr("example"))));

@@ -1,4 +1,4 @@
-// No output replaces an input, whatever it is called.
+// No output replaces an input, under any spelling of its path.
 #include "base/inputs_kept.hpp"
 
 #include <gmock/gmock.h>
@@ -72,7 +72,7 @@ TEST_F(InputsKept, RefusesTwoOutputsOfOneName) {
               HasSubstr("is named twice at --pdf (it is also written for --out)"));
 }
 
-TEST_F(InputsKept, NoFileOfTheWholeProgramIsWrittenOverAnInput) {
+TEST_F(InputsKept, NeverOverwritesAnInput) {
   read("own/model.toml");
   EXPECT_THROW(write_text("own/model.toml", "another"), InputError);
   reserve("own/model.toml", 0);
@@ -124,7 +124,7 @@ TEST_F(OutputFolderTest, RefusesAnInputThatIsAStaleResult) {
   EXPECT_EQ(read_text("out/playback-a.csv"), "a");
 }
 
-TEST_F(OutputFolderTest, IsHeldByOneCommandAndLeavesNoTrace) {
+TEST_F(OutputFolderTest, IsLockedByOneCommandAndLeavesNoLockFile) {
   {
     const OutputFolder first("new/out", "calibrate", {"model.toml"});
     try {

@@ -17,7 +17,7 @@ void expect_refused(const std::string& text) {
   EXPECT_THROW((void)json::parse(text).get<T>(), json::type_error) << text;
 }
 
-TEST(Json, AWholeNumberIsOneThatWasWrittenAsSuchAndFits) {
+TEST(Json, AcceptsIntegersThatFitTheType) {
   EXPECT_EQ(json::parse("18446744073709551615").get<std::uint64_t>(), UINT64_MAX);
   EXPECT_EQ(json::parse("-128").get<std::int8_t>(), -128);
   for (const char* text : {"1.3e95", "-1", "1.5", "2.0", "18446744073709551616", "true", "\"1\"", "null"})
@@ -27,14 +27,14 @@ TEST(Json, AWholeNumberIsOneThatWasWrittenAsSuchAndFits) {
   expect_refused<std::int8_t>("-129");
 }
 
-TEST(Json, SoAreThoseWithinListsAndObjects) {
+TEST(Json, ChecksIntegersInListsAndObjects) {
   EXPECT_EQ(json::parse("[1, 2]").get<std::vector<int>>(), (std::vector<int>{1, 2}));
   expect_refused<std::vector<int>>("[1, 2.5]");
   expect_refused<std::map<std::string, std::uint64_t>>(R"({"stable": -1})");
   EXPECT_THROW((void)json::parse(R"({"seed": 0.5})").value("seed", 1), json::type_error);
 }
 
-TEST(Json, ARefusalSaysWhatWasExpectedAndWhatWasFound) {
+TEST(Json, ErrorNamesExpectedAndFoundType) {
   try {
     (void)json::parse("-7").get<std::uint8_t>();
     FAIL() << "it was read";
@@ -44,7 +44,7 @@ TEST(Json, ARefusalSaysWhatWasExpectedAndWhatWasFound) {
   }
 }
 
-TEST(Json, OtherNumbersAndTextsAreReadAsTheyWere) {
+TEST(Json, ReadsOtherNumbersAndTextsUnchanged) {
   EXPECT_EQ(json::parse("5").get<double>(), 5.0);
   EXPECT_TRUE(json::parse("true").get<bool>());
   EXPECT_EQ(json(std::uint8_t{7}).dump() + json(-3).dump() + json(true).dump(), "7-3true");

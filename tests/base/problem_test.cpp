@@ -5,7 +5,7 @@
 namespace swingbank {
 namespace {
 
-TEST(Shown, TextOfEveryLanguageStays) {
+TEST(Shown, KeepsTextOfAnyLanguage) {
   for (const std::string text :
        {"Umspannwerk M\u00fcnchen", "\u0437\u0430\u043f\u0438\u0441\u044c", "\U0001f50c", ""})
     EXPECT_EQ(shown(text), text);
@@ -17,17 +17,17 @@ TEST(Shown, EscapesControlCharacters) {
   EXPECT_EQ(shown("\xc2\x9b"
                   "2J"sv),
             "\\xc2\\x9b2J");
-  EXPECT_EQ(shown("V\0P"sv), "V\\x00P");                     // not cut off there
+  EXPECT_EQ(shown("V\0P"sv), "V\\x00P");                     // not truncated at the null character
   EXPECT_EQ(shown("m\xfcller \xe4"sv), "m\\xfcller \\xe4");  // no UTF-8
 }
 
-TEST(Shown, ALongTextIsCut) {
+TEST(Shown, TruncatesLongText) {
   const std::string text = shown(std::string(10'000'000, 'x'));
   EXPECT_LT(text.size(), 1100u);
   EXPECT_THAT(text, ::testing::EndsWith("(9999000 bytes more)"));
 }
 
-TEST(Shown, ASentenceHoldsNoControls) {
+TEST(Shown, SentencesContainNoControlCharacters) {
   const InputError e({"no column", "\x1b]0;title", "it has\x07", "mend it"});
   EXPECT_STREQ(e.what(), "no column at \\x1b]0;title (it has\\x07): mend it");
 }

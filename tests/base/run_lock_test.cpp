@@ -17,12 +17,12 @@
 #include "tests/mpi/store/sample_shard.hpp"
 
 namespace {
-int answer = 0;        // error that the next locks meet; 0: none
-int answers_left = 0;  // how many of them
+int answer = 0;        // error number that the next locks return; 0: none
+int answers_left = 0;  // number of locks that return it
 std::function<void()> before_next;
 }  // namespace
 
-/// Stands before libc's: a file system that does not lock is not at hand everywhere.
+/// Replaces libc's function, because a file system without locks is not available on every machine.
 extern "C" int flock(int fd, int operation) noexcept {
   if (answers_left > 0) {
     --answers_left;
@@ -58,7 +58,7 @@ struct RunLockFile : ::testing::Test {
   std::filesystem::path file = folder.path / ".lock";
 };
 
-TEST_F(RunLockFile, SecondIsRefusedAndToldWhoHoldsIt) {
+TEST_F(RunLockFile, RefusalNamesTheHolder) {
   ::setenv("SLURM_JOB_ID", "4711", 1);
   const auto first = lock();
   ::unsetenv("SLURM_JOB_ID");
@@ -67,13 +67,13 @@ TEST_F(RunLockFile, SecondIsRefusedAndToldWhoHoldsIt) {
                     HasSubstr(", Slurm job 4711 holds it): wait for it")));
 }
 
-TEST_F(RunLockFile, FallsWithItsHolderAndTheFileStays) {
+TEST_F(RunLockFile, IsReleasedWithItsHolderAndTheFileRemains) {
   lock().reset();
   EXPECT_TRUE(std::filesystem::exists(file));
   EXPECT_EQ(refusal(), "taken");
 }
 
-TEST_F(RunLockFile, FileSystemWithoutLocksIsNeitherFreeNorInUse) {
+TEST_F(RunLockFile, ReportsFileSystemsWithoutLocks) {
   for (const int error : {ENOSYS, ENOLCK, EOPNOTSUPP}) {
     answer = error;
     answers_left = 1;
@@ -83,21 +83,21 @@ TEST_F(RunLockFile, FileSystemWithoutLocksIsNeitherFreeNorInUse) {
   }
 }
 
-TEST_F(RunLockFile, InterruptedCallIsMadeAgain) {
+TEST_F(RunLockFile, RepeatsInterruptedCalls) {
   answer = EINTR;
   answers_left = 3;
   EXPECT_EQ(refusal(), "taken");
   EXPECT_EQ(answers_left, 0);
 }
 
-TEST_F(RunLockFile, FileWithdrawnBetweenOpeningAndLockingIsNotEnough) {
+TEST_F(RunLockFile, ReopensAFileRemovedBeforeLocking) {
   before_next = [&] { std::filesystem::remove(file); };
   const auto first = lock();
   EXPECT_TRUE(std::filesystem::exists(file));
   EXPECT_THAT(refusal(), HasSubstr("in use"));
 }
 
-TEST_F(RunLockFile, WithdrawsOnlyWhatItMade) {
+TEST_F(RunLockFile, RemovesOnlyItsOwnFile) {
   write_text(file, "");
   lock()->withdraw();
   EXPECT_TRUE(std::filesystem::exists(file));
@@ -106,7 +106,7 @@ TEST_F(RunLockFile, WithdrawsOnlyWhatItMade) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST_F(RunLockFile, ForeignTextInTheFileIsToldWithoutItsControlCharacters) {
+TEST_F(RunLockFile, ReportsForeignTextWithoutControlCharacters) {
   write_text(file, "\x1b[31mred\nsecond line");
   const int held = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
@@ -114,7 +114,7 @@ TEST_F(RunLockFile, ForeignTextInTheFileIsToldWithoutItsControlCharacters) {
   ::close(held);
 }
 
-TEST_F(RunLockFile, LinkIsNotFollowed) {
+TEST_F(RunLockFile, DoesNotFollowLinks) {
   const auto precious = folder.path / "precious";
   write_text(precious, "text");
   std::filesystem::create_symlink("precious", file);

@@ -1,5 +1,4 @@
-// Sealed files: what is read back, and that every byte that has changed is found before anybody takes the
-// content.
+// Sealed files: content survives a round trip, and every changed byte is detected before the content is used.
 #include "base/sealed_file.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +14,7 @@ using ::testing::HasSubstr;
 
 constexpr SealedKind kTestKind{"sealed test file", "swingbank-test-1\n", "make it again"};
 
-/// Reads the file and returns what is wrong with it, or the arrays as text.
+/// Reads the file. Returns its error message, or its arrays as text.
 std::string outcome(const std::filesystem::path& file) {
   std::vector<std::vector<float>> arrays;
   bool taken = false;
@@ -40,7 +39,7 @@ std::string outcome(const std::filesystem::path& file) {
   return text;
 }
 
-TEST(SealedFile, EveryFlippedOrMissingByteIsFound) {
+TEST(SealedFile, DetectsEveryFlippedOrMissingByte) {
   const auto folder = std::filesystem::temp_directory_path() / ("sealed-" + std::to_string(::getpid()));
   make_folder(folder);
   const auto file = folder / "f.sealed";

@@ -7,7 +7,7 @@
 namespace swingbank {
 namespace {
 
-TEST(SealedText, EveryChangedByteIsFound) {
+TEST(SealedText, DetectsEveryChangedByte) {
   for (const int indent : {-1, 1}) {
     const nlohmann::json object = {{"rows", 12}, {"hash", "0123"}, {"list", {1, 2}}};
     const std::string text = sealed_text(object.dump(indent));

@@ -1,6 +1,6 @@
-// What OpenBLAS's kernels make of training: products as its layers need them and whole steps, by processor
-// time of one thread. The library takes its kernels when a program starts, so each measurement is a process
-// of its own, alternating. Usage: bench_blas [rounds 5] [kernels PRESCOTT HASWELL SKYLAKEX ...]; "-" is the
+// Influence of OpenBLAS's kernels on training: matrix products of its layers and whole steps, in processor
+// time of one thread. The library selects its kernels at program start, so each measurement is a separate
+// process, alternating. Usage: bench_blas [rounds 5] [kernels PRESCOTT HASWELL SKYLAKEX ...]; "-" is the
 // library's choice.
 #include <ATen/ATen.h>
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ namespace {
 using namespace swingbank;
 constexpr const char* kMeasure = "--measure";
 
-/// Best of several goes after one to warm up. [s]
+/// Shortest time of several runs after a warm-up [s].
 double seconds(int goes, const std::function<void()>& work) {
   work();
   double best = 1e99;
@@ -76,7 +76,7 @@ std::vector<Row> measure() {
   return rows;
 }
 
-/// The same program with other kernels: what it measured.
+/// Results of the same program with other kernels.
 std::vector<Row> measured_with(const std::string& kernels) {
   const auto self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string setting = kernels == "-" ? "-u OPENBLAS_CORETYPE" : "OPENBLAS_CORETYPE=" + kernels;

@@ -19,7 +19,7 @@ namespace nn = torch::nn;
 using torch::Tensor;
 constexpr std::int64_t kChannels = 6, kSamples = 450, kOutputs = 14, kKernel = kSamples / 4;
 
-/// The same layers and sizes out of torch's own parts.
+/// The same layers and sizes, made of torch modules.
 struct Direct : nn::Module {
   nn::Conv1d first{nullptr}, second{nullptr};
   nn::Linear hidden{nullptr}, last{nullptr}, output{nullptr};
@@ -41,8 +41,8 @@ struct Direct : nn::Module {
   }
 };
 
-/// Wall clock, and processor time of all threads: on a shared machine the second is the fairer one for one
-/// thread.
+/// Wall-clock time, and processor time of all threads, which is the better measure of one thread on a shared
+/// machine.
 struct Cost {
   double wall = 0.0, processor = 0.0;  // [s]
 };

@@ -1,6 +1,6 @@
-// Worst error of the lanes against the reference integrator over the events of bench_kernel that it finds
-// stable, without controls and with, in double and in float: of max(1 pu, the channel's swing), samples
-// within 2 ms of a switching left out.
+// Largest error of the SIMD kernel against the reference integrator over the stable events of bench_kernel,
+// without and with controls, in double and in float. Errors are relative to max(1 pu, the channel's swing);
+// samples within 2 ms of a switching time are excluded.
 //   bench_error RAW DYR [events]
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Time and result of infer, reduce and identify on a plant's records: which input the records ask for, and
-// what each block alone makes of it. Usage: bench_identify PLANT.toml RECORD... [draws= kept= steps=]
+// Time and result of infer, reduce and identify on a plant's records: the input that the records require, and
+// the result of each block alone. Usage: bench_identify PLANT.toml RECORD... [draws= kept= steps=]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
   fmt::print("reduced: {:.3f} s\n", seconds() - start);
   round(reduction);
   fmt::print("after {:.2f} s\n", seconds() - begin);
-  // linear anew about the leader of the field, the torque as the model has it
+  // linearised again about the field's leading hypothesis, with the torque of the model
   for (int again = 0; again < 2; ++again) {
     const auto lead = std::ranges::find(rows, event::InputKind::field, &Row::input);
     sim::plant::Plant leader = lead->trial.plant;

@@ -1,6 +1,6 @@
-// Events per core-second of the lanes kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s): lanes, the scalar
-// build of the same kernel and the reference integrator, alternating in one run; beside them what the core
-// can do at most. Built with SWINGBANK_COUNT_FLOPS: operations per event instead.
+// Events per core-second of the SIMD kernel on IEEE 39 (all GENROU, 15 s, 120 samples/s): SIMD batch, scalar
+// build of the same kernel and reference integrator, alternating in one run, and the peak rate of the core.
+// Built with SWINGBANK_COUNT_FLOPS it counts operations per event instead.
 //   bench_kernel RAW DYR [events] [rounds] [words of the rows wanted]
 #include <algorithm>
 #include <cstdio>
@@ -32,7 +32,7 @@ struct Case {
   double operations = 0;  ///< per event
 };
 
-/// Adds one round's rate. The reference integrator, some hundred times slower, makes fewer events.
+/// Adds one round's rate. The reference integrator, some hundred times slower, runs fewer events.
 void round(Case& c, const grid::Grid& grid, const std::vector<lanes::Job>& list) {
   c.stable = c.events = 0;
   const double start = cpu_seconds();

@@ -1,5 +1,5 @@
 #pragma once
-// What the kernel's benchmarks run: events and grids.
+// Events and grids of the kernel's benchmarks.
 #include <random>
 
 #include "sim/lanes/batch.hpp"
@@ -27,7 +27,7 @@ inline std::vector<lanes::Job> jobs(const grid::Grid& grid, int count) {
   return list;
 }
 
-/// The same grid with an exciter, a governor and a stabiliser at standard values on every machine.
+/// The same grid with an exciter, a governor and a stabiliser at their defaults on every machine.
 inline grid::Grid controlled(grid::Grid grid) {
   for (plant::Plant& plant : grid.plants)
     for (const char* name : {"TGOV1", "IEEEST", "SEXS"}) {

@@ -1,6 +1,6 @@
-// How busy a master keeps its workers. The workers are simulated on a clock of their own; each answer is the
-// real master's, with the time that it took, and what a report costs on its way through MPI, packed and
-// unpacked. Beside it a master that leases one shard at a time and flushes the disk in each answer.
+// Utilisation of the workers by a master. The workers are simulated with a separate clock; each answer is
+// that of the real master with its measured time, plus the cost to pack, send and unpack a report. For
+// comparison: a master that leases one shard at a time and flushes the disk in each answer.
 //   bench_master [seconds of a shard, default 0.33] [milliseconds of a flush, default 20]
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ store::JournalLine line_of(std::uint64_t shard) {
           {{"stable", 980}, {"unstable", 10}, {"refused", 10}}};
 }
 
-/// Of a report with so many shards, from pack to unpack [s].
+/// Time of a report with the given number of shards, from pack to unpack [s].
 double message_cost(std::size_t shards) {
   ranks::Report report;
   for (std::size_t i = 0; i < shards; ++i) report.finished.push_back(line_of(i));
@@ -53,8 +53,8 @@ double message_cost(std::size_t shards) {
 using Answer = std::function<std::pair<ranks::Shards, double>(ranks::Report&, int rank)>;
 
 struct Outcome {
-  double busy = 0.0;        ///< share of the workers' time
-  double per_answer = 0.0;  ///< of the master's time [s]
+  double busy = 0.0;        ///< busy fraction of the workers' time
+  double per_answer = 0.0;  ///< master's time [s]
 };
 
 Outcome simulate(int workers, double shard_seconds, const Answer& answer) {
@@ -64,7 +64,8 @@ Outcome simulate(int workers, double shard_seconds, const Answer& answer) {
     bool operator>(const Asking& other) const { return at > other.at; }
   };
   std::mt19937_64 random(1);
-  std::gamma_distribution<double> cost(16.0, shard_seconds / 16.0);  // it spreads by a quarter
+  std::gamma_distribution<double> cost(16.0,
+                                       shard_seconds / 16.0);  // relative standard deviation of a quarter
   std::priority_queue<Asking, std::vector<Asking>, std::greater<>> queue;
   std::vector<ranks::Report> reports(static_cast<std::size_t>(workers) + 1);
   for (int r = 1; r <= workers; ++r) queue.push({0.0, r});

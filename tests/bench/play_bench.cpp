@@ -1,7 +1,7 @@
-// bench_play MODEL DRAWS RECORD...: what playing a record into a plant costs, for every effect that could be
-// added to it at its standard values and at draws about them. Columns: steps per sample, processor time, and
-// the largest and the mean square error against steps of 1e-9, in standard deviations of the noise. Then what
-// one objective of a fit to all records costs, without and with its gradient.
+// bench_play MODEL DRAWS RECORD...: cost of the play-in of a record, for every effect that can be added to
+// the plant, at its defaults and at draws about them. Columns: steps per sample, processor time, and the
+// largest and the mean square error against steps of 1e-9, in standard deviations of the noise. Then the cost
+// of one objective of a fit to all records, without and with its gradient.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -61,7 +61,7 @@ struct Bench {
         }
       cost.largest = std::max(cost.largest, most);
       cost.square = std::max(cost.square, square);
-    } catch (const InputError&) {  // it cannot stand there
+    } catch (const InputError&) {  // infeasible operating point
     }
   }
 };
@@ -82,7 +82,7 @@ void tell(const Bench& bench) {
   fmt::print("{} runs in {:.3f} s, with slopes in {:.3f} s\n", all.runs, all.seconds, all.slope_seconds);
 }
 
-/// Processor time of the whitened residuals of all events [s], of the fastest of several calls.
+/// Processor time of the whitened residuals of all events [s], minimum of several calls.
 double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
                          bool gradient) {
   constexpr int kCalls = 10;
@@ -120,7 +120,7 @@ void tell_objective(const plant::PlantModel& model, const event::WhitenedEvents&
       const double value = objective_seconds(tested, events, false),
                    both = objective_seconds(tested, events, true);
       fmt::print("{:22} {:12.2f} {:12.2f} {:8.2f}\n", h.name, 1e3 * value, 1e3 * both, both / value);
-    } catch (const InputError&) {  // it cannot stand there
+    } catch (const InputError&) {  // infeasible operating point
     }
 }
 

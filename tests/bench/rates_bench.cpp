@@ -1,6 +1,6 @@
-// What `swingbank night-plan` reckons with, of one preset: samples per processor second of every network at
-// the sizes that it has there, with the BLAS kernels that a run takes, and rows per processor second of what
-// is not trained. Usage: bench_rates DATASET EXPERIMENT PRESET [rounds 5] [rows 200]. One thread.
+// Rates for `swingbank night-plan` of one preset: samples per processor second of every network at its sizes
+// in the preset, with the BLAS kernels of a run, and rows per processor second of untrained methods. Usage:
+// bench_rates DATASET EXPERIMENT PRESET [rounds 5] [rows 200]. One thread.
 #include <ATen/ATen.h>
 #include <fmt/format.h>
 
@@ -40,10 +40,10 @@ std::vector<std::uint64_t> first_rows(const mpi::store::Dataset& dataset, std::s
   return rows;
 }
 
-/// A training step on random numbers of the network's sizes, after one to warm up.
+/// Training step on random numbers of the network's sizes, after a warm-up step.
 void print_network(const mpi::store::Dataset& dataset, const train::loop::Experiment& experiment,
                    const std::string& preset, const std::string& name, int rounds) {
-  constexpr std::size_t kFitted = 2000;  // rows that features are fitted on; only their sizes count here
+  constexpr std::size_t kFitted = 2000;  // rows for the fit of features; only their sizes matter here
   const auto& input = experiment.input(preset, name);
   const auto& recipe = experiment.training(preset, name);
   const train::data::ShardStream stream(dataset, input.recipe);

@@ -1,5 +1,4 @@
-// Cost of an event against the number of generators, on synthetic grids. Cost grows no worse than
-// quadratically.
+// Cost of an event against the number of generators, on synthetic grids. Expected growth: at most quadratic.
 //   bench_scaling [events] [rounds]
 #include <algorithm>
 #include <cmath>
@@ -20,7 +19,7 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Seconds of processor time per event of 15 s, and how many ended stable.
+/// Processor time per event of 15 s [s], and number of stable events.
 double seconds_per_event(const grid::Grid& grid, int events, int& stable) {
   lanes::BatchOptions options;
   options.plants = {0};

@@ -1,5 +1,5 @@
-// Processor time and memory against the size of the grid (tiled_grid.hpp): making the grid, the reference
-// integrator, and lanes, each in a process of its own.
+// Processor time and memory against the size of the grid (tiled_grid.hpp): construction of the grid,
+// reference integrator and SIMD kernel, each in a separate process.
 //   bench_size NETWORK.raw NETWORK.dyr [SECONDS]
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -21,7 +21,7 @@ struct Cost {
   double seconds = 0.0, megabytes = 0.0;
 };
 
-/// Of `work` in a process of its own; ends the program if it fails.
+/// Cost of `work` in a separate process; ends the program if it fails.
 template <class Work>
 Cost cost(const Work& work) {
   std::fflush(nullptr);

@@ -1,8 +1,7 @@
-// Speed of the storage: shards as they are written, beside plain writes of the same bytes, alternating in one
-// run.
+// Speed of the storage: shards against plain writes of the same bytes, alternating in one run.
 //   bench_storage FOLDER MEGABYTES ROUNDS
-// Prints medians and, for each kind of shard, the ratio of the median times: 1 would be as fast as a plain
-// write. "As generate": by the function of the ranks, with the hashes of rows and file.
+// Prints medians and, for each kind of shard, the ratio of the median times; 1 is as fast as a plain write.
+// "As generate": by the function of the ranks, with the hashes of rows and file.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -81,7 +80,7 @@ store::ShardData rows_of(double megabytes, bool int16) {
   return d;
 }
 
-/// What a program without any promise but that of the disk would do: write, flush.
+/// Plain write and flush, without further guarantees.
 void write_plainly(const fs::path& file, const std::vector<char>& bytes) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   for (std::size_t at = 0; fd >= 0 && at < bytes.size();) {
@@ -120,7 +119,7 @@ void measure(const fs::path& folder, double megabytes, int rounds, bool int16) {
              median(of_plain) / median(of_shard), median(of_plain) / median(of_all));
 }
 
-/// Opening a dataset of so many shards, none of which is there: nothing but names is read.
+/// Time to open a dataset of the given number of shards; the shards do not exist, only names are read.
 void measure_opening(const fs::path& folder, std::uint64_t shards) {
   fs::remove_all(folder);
   fs::create_directories(folder);

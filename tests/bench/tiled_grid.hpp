@@ -48,8 +48,8 @@ inline network::Branch tie(int from, int to, const std::string& circuit) {
 }
 }  // namespace tiled_detail
 
-/// raw: of the 39-bus network. Loads are up to 3 % less than there, and power flows between the
-/// copies. Each keeps its swing bus, so that no machine has to balance all of them.
+/// raw: the 39-bus network. Loads are up to 3 % smaller than there, and power flows between the copies. Each
+/// copy keeps its swing bus, so that no single machine balances all copies.
 inline network::Network tiled_network(const std::filesystem::path& raw, int tiles) {
   const network::Network one = tiled_detail::cut_lines(formats::read_raw(raw));
   const auto buses = static_cast<int>(one.buses.size());
@@ -99,7 +99,7 @@ inline network::Network tiled_network(const std::filesystem::path& raw, int tile
   return net;
 }
 
-/// Records of all copies from those of one; `controls`: TGOV1, IEEEST and SEXS at standard values on every
+/// Records of all copies from those of one; `controls`: TGOV1, IEEEST and SEXS at their defaults on every
 /// machine.
 inline std::vector<formats::DyrRecord> tiled_dynamics(const std::filesystem::path& dyr, int tiles,
                                                       bool controls) {

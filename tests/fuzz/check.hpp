@@ -1,6 +1,6 @@
 #pragma once
-// What must hold after bytes were read without an error: everything computed from them is finite, or refused
-// with a sentence.
+// Properties after an input was read without error: all computed values are finite, or refused with a
+// sentence.
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace swingbank::fuzz {
 
-/// Stops the fuzzer here with a stack trace.
+/// Stops the fuzzer with a stack trace.
 [[noreturn]] inline void fail(const char* what) {
   std::fprintf(stderr, "violated: %s\n", what);
   std::abort();
@@ -25,7 +25,7 @@ inline void require(bool holds, const char* what) {
   if (!holds) fail(what);
 }
 
-/// Runs `action`; an InputError must carry at least one sentence, every part of it filled.
+/// Runs `action`. An InputError must contain at least one sentence with all parts filled.
 template <class Action>
 bool accepted(const Action& action) {
   try {
@@ -42,7 +42,7 @@ bool accepted(const Action& action) {
 
 inline bool finite(Complex z) { return std::isfinite(z.real()) && std::isfinite(z.imag()); }
 
-/// The power flow of a network is finite or refused. Larger networks take too long here.
+/// Checks that the power flow of a network is finite or refused. Skips larger networks, which take too long.
 inline void check_power_flow(const sim::network::Network& network) {
   if (network.buses.size() > 60) return;
   sim::network::PowerFlow flow;
@@ -51,7 +51,7 @@ inline void check_power_flow(const sim::network::Network& network) {
   for (const Complex& s : flow.generation) require(finite(s), "generation is finite");
 }
 
-/// What can be written reads back as it was.
+/// Checks that a written network is read back unchanged.
 inline void check_round_trip(const sim::network::Network& network) {
   for (const int version : {33, 35}) {
     std::string once;
@@ -63,8 +63,8 @@ inline void check_round_trip(const sim::network::Network& network) {
   }
 }
 
-/// Reads a network with equipment that appears twice refused, and left out; `read` takes the options. True
-/// with `lenient` filled if it is read in the latter way; `whole`: in the former, which then fills `strict`.
+/// Reads a network by `read` twice: repeated equipment is refused, then omitted. Returns true and fills
+/// `lenient` if the second way succeeds; `whole` is true and `strict` filled if the first succeeds.
 template <class Read>
 bool read_both_ways(const Read& read, sim::formats::RawOptions options, sim::network::Network& strict,
                     sim::network::Network& lenient, bool& whole) {

@@ -1,5 +1,5 @@
-// A dataset's header and journal: the first line as dataset.json, the others as the journal, each with a true
-// sum -> what stands there, and what is wrong with the shards that it names.
+// A dataset's header and journal: first line as dataset.json, the others as journal, each with a valid
+// checksum -> contents and errors of the named shards.
 #include "mpi/store/dataset.hpp"
 
 #include "base/sealed_text.hpp"
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (bool first = true; !rest.empty(); first = false) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    // Some texts are no object: they stand as they are, for a damaged file.
+    // A text that is no object is used unchanged, as a damaged file.
     const bool object = line.size() > 2 && line.front() == '{' && line.back() == '}';
     (first ? header : journal) += object ? sealed_text(line) : std::string(line) + "\n";
   }

@@ -1,4 +1,4 @@
-// PSLF .dyd: bytes -> records in the form of a .dyr -> lines of a .dyd, which are records again.
+// PSLF .dyd: bytes -> records in the form of a .dyr -> lines of a .dyd -> records again.
 #include "sim/formats/dyd.hpp"
 
 #include "tests/fuzz/check.hpp"

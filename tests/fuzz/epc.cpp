@@ -1,4 +1,4 @@
-// PSLF .epc: bytes -> network -> power flow; with equipment that appears twice refused, and left out.
+// PSLF .epc: bytes -> network -> power flow; repeated equipment refused, then omitted.
 #include "sim/formats/pslf_epc.hpp"
 #include "tests/fuzz/check.hpp"
 

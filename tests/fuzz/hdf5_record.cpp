@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace swingbank;
   fuzz::quiet();
-  ::setenv("SWINGBANK_READER_SECONDS", "2", 1);  // a damaged file can keep its reader busy for ever
+  ::setenv("SWINGBANK_READER_SECONDS", "2", 1);  // a damaged file may cause an endless loop in its reader
   const auto file = fuzz::in_a_file({reinterpret_cast<const char*>(data), size}, "r.h5");
   validate::record::Record record;
   if (!fuzz::accepted([&] { record = validate::record::read_hdf5_record(file, {100, 60, 138}, {}); }))

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes as files of a folder of their own, for readers that want a path.
+// Bytes as files in a separate folder, for readers that need a path.
 #include <unistd.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Law files: bytes -> effect -> a round-rotor machine with it at its operating point.
+// User-defined models: bytes -> effect -> round-rotor machine with this effect at its operating point.
 #include "sim/laws/law.hpp"
 
 #include "sim/grid/grid.hpp"

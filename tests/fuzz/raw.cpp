@@ -1,5 +1,5 @@
-// PSS/E .raw and .rawx: bytes -> network -> power flow, and back to bytes; with equipment that appears twice
-// refused, and left out.
+// PSS/E .raw and .rawx: bytes -> network -> power flow, and back to bytes; repeated equipment refused, then
+// omitted.
 #include "tests/fuzz/check.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bool whole = false;
   const char* const name = text.starts_with("{") ? "case.rawx" : "case.raw";
   const auto read = [&](const sim::formats::RawOptions& o) { return sim::formats::parse_raw(text, name, o); };
-  // What a header leaves out is given, as by the options: the layout of version 23 has no REV and no BASFRQ.
+  // Missing values of the header are given by options: the layout of version 23 has no REV and no BASFRQ.
   if (!fuzz::read_both_ways(read, sim::formats::RawOptions(60.0, 23), strict, lenient, whole)) return 0;
   if (whole) fuzz::require(as_text(strict) == as_text(lenient), "nothing is left out of what is whole");
   fuzz::check_power_flow(lenient);

@@ -3,7 +3,7 @@
 #   bash tests/fuzz/run.bash SECONDS [TARGET...]
 #     SECONDS   time of each target
 #     TARGET    default every tests/fuzz/*.cpp
-# What a target finds is kept in build/fuzz/found/TARGET; new corpus entries of this machine in build/fuzz/corpus.
+# Findings are kept in build/fuzz/found/TARGET; new corpus entries of this machine in build/fuzz/corpus.
 # Exit codes: 0 nothing found, 1 a crash, a hang, a leak or a violated property.
 set -euo pipefail
 
@@ -26,7 +26,7 @@ for target in "${targets[@]}"; do
   fi
 done
 
-# Runs a command of the build; what stopped it also stands among what was found.
+# Runs a command of the build and records its errors among the findings.
 built() {
   "$@" >"$build.log" 2>&1 && return
   mkdir -p "$build/found/build"
@@ -53,7 +53,7 @@ run_target() {
     {
       echo "fuzz $1: found something, see $found"
       grep -m 3 -E 'violated|runtime error|ERROR' "$found/log.txt" || tail -n 5 "$found/log.txt"
-      # a machine that is thrown away takes the input with it
+      # keeps the input if the machine is discarded
       find "$found" -type f ! -name log.txt -size -3k -printf '%f, in base64: ' -exec base64 -w 0 {} \; -printf '\n'
     } | tee "$found/summary.txt" >&2
     return 1

@@ -1,5 +1,4 @@
-// Shards: bytes as a file whose sum is in the journal, as a writer gone astray would leave it -> rows that
-// fit together.
+// Shards: bytes as a file whose checksum is in the journal, as after a defective writer -> consistent rows.
 #include "mpi/store/shard_apart.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/in_a_file.hpp"
@@ -7,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace swingbank;
   fuzz::quiet();
-  ::setenv("SWINGBANK_READER_SECONDS", "2", 1);  // a damaged file can keep its reader busy for ever
+  ::setenv("SWINGBANK_READER_SECONDS", "2", 1);  // a damaged file may cause an endless loop in its reader
   const auto file = fuzz::in_a_file({reinterpret_cast<const char*>(data), size}, "s.h5");
   mpi::store::ShardData shard;
   if (!fuzz::accepted([&] { shard = mpi::store::read_shard_apart(file); })) return 0;

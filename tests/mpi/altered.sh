@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# A shard that is not what was journalled is found by whoever reads it: verify, a run that continues, a training.
+# Every reader detects a shard that differs from its journal entry: verify, a resumed run, a training.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 100 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/data" >/dev/null 2>&1
 whole=$(hash_of "$work/data")
-# alter FOLDER SHARD: a copy of the data with that shard spoilt at its length
+# alter FOLDER SHARD: copies the data and damages that shard without changing its length
 alter() {
   cp -r "$work/data" "$1"
   "$python3" - "$1/shards/shard-00000$2.h5" <<PYTHON
@@ -26,7 +26,7 @@ expect 0 "dataset $whole" "${make[@]}" --trust --out "$bad"
 expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
 expect 0 "every shard is as it was written" "$verify" --processes 2 "$bad"
 
-# A journal that counts otherwise.
+# A journal with other counts.
 for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"rows":/&1000000000000000/'; do
   rm -rf "$bad"
   cp -r "$work/data" "$bad"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Every refusal is a sentence, a non-zero exit, and no half-written file.
+# Every refusal gives a sentence and a non-zero exit code, and leaves no half-written file.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 40 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/data" >/dev/null 2>&1
 whole=$(hash_of "$work/data")
 
-# Two at once on one folder: the second is refused, after it has waited; the rest goes on meanwhile.
+# Two runs in one folder: the second waits and is then refused. Other checks run meanwhile.
 two_at_once() {
   exec 9<>"$work/data/.lock"
   flock 9
@@ -25,7 +25,7 @@ expect 1 "it holds files but no dataset" "${make[@]}" --out "$work/full"
 expect 1 "cannot create the folder" "${make[@]}" --out /proc/nowhere
 [ "$(hash_of "$work/data")" = "$whole" ] || fail "a refused run changed the data"
 
-# Config problems come all at once, with lines.
+# All config problems are reported at once, with lines.
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^seed = 1/sead = 1/' -e 's/^D = .*/D = [3.0, 0.0]/' -e 's/^t_end = .*/t_end = "15"/' -e 's/^generators = .*/generators = [3]/' "$configs/ieee14_genrou_bus3.toml" >"$work/bad.toml"
 expect 1 "unknown key sead at $work/bad.toml:" "$generate" "$work/bad.toml" --out "$work/x"
 if ! grep -q "low end lies above" "$work/output" || ! grep -q "must be a number" "$work/output"; then fail "not all problems at once"; fi
@@ -34,17 +34,17 @@ sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^generators =
 expect 1 "generator 4 of vary.generators" "$generate" "$work/bad.toml" --out "$work/x"
 grep -q "bus 77 of fault.except" "$work/output" || fail "not all problems at once"
 
-# A disk that takes no more: the limit on a file's size stands for it.
+# A full disk, emulated by a limit on the file size.
 (trap '' XFSZ; ulimit -f 200; expect 1 "bytes for the file at" "${make[@]}" --out "$work/limit")
 [ -z "$(find "$work/limit/shards" -type f)" ] || fail "a half-written shard stayed"
 expect 0 "$whole" "${make[@]}" --out "$work/limit"
 
-# A file system that cannot set space aside (95: EOPNOTSUPP): nothing is written in its place, and the data are whole.
+# A file system without preallocation (95: EOPNOTSUPP): nothing else is written instead, and the data are complete.
 expect 0 "$whole" env LD_PRELOAD="$SWINGBANK_BIN/failing_call.so" FAILING_CALL=fallocate FAILING_ERROR=95 FAILING_AT=1 \
   FAILING_UNDER="$work/unreserved" FAILING_LOG="$work/failing" "${make[@]}" --out "$work/unreserved"
 grep -q "^failed fallocate" "$work/failing" || fail "no space was asked for: $(cat "$work/failing")"
 
-# Damaged shards are found and made anew.
+# Damaged shards are detected and made again.
 truncate -s 1000 "$work/data/shards/shard-000001.h5"
 expect 1 "truncated or changed shard" "$verify" "$work/data"
 expect 1 "--repair" "${make[@]}" --out "$work/data"
@@ -53,7 +53,7 @@ printf '\x01' | dd of="$work/data/shards/shard-000000.h5" bs=1 seek=100000 conv=
 expect 1 "changed shard at $work/data/shards/shard-000000.h5" "$verify" "$work/data"
 expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
 
-# The databank says how far it came.
+# The databank reports its progress.
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^distance = .*/distance = 1.5/' -e 's/^scale = .*/scale = "scaled"/' "$configs/ieee39_genrou.toml" >"$work/far.toml"
 expect 1 "of 3000 points" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
 expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.toml" --points 100 --out "$work/bank.csv"

@@ -1,19 +1,19 @@
-# To be sourced after common.bash or lib.bash: a campaign of many items that may be broken off, gone on with, and divided
-# among several shells.
-#   SWINGBANK_RESULTS=FILE    keeps a line "ITEM OUTCOME WORDS..." of each that is done; those are not done again
+# Sourced after common.bash or lib.bash: a campaign of many items that can be interrupted, resumed and divided among
+# several shells.
+#   SWINGBANK_RESULTS=FILE    file with a line "ITEM OUTCOME WORDS..." for each finished item; these are not repeated
 #   SWINGBANK_FROM, SWINGBANK_STRIDE    this shell's items: FROM, FROM + STRIDE, ...
-#   SWINGBANK_GO_ON=1         an item that goes wrong is told and kept, and does not end the campaign
-# The figures at the end are those of all lines of the file.
-# shellcheck disable=SC2154,SC2034 # what common.bash or lib.bash sets; what campaigns read
+#   SWINGBANK_GO_ON=1         a failed item is reported and recorded, and does not end the campaign
+# The totals at the end count all lines of the file.
+# shellcheck disable=SC2154,SC2034 # set by common.bash or lib.bash; read by campaigns
 results=${SWINGBANK_RESULTS:-$work/results}
 touch "$results"
 from=${SWINGBANK_FROM:-0} stride=${SWINGBANK_STRIDE:-1}
 
 is_done() { grep -q "^$1 " "$results"; }
-# keep ITEM OUTCOME WORDS...: one write, so that shells beside this one may append too
+# keep ITEM OUTCOME WORDS...: records an item in one write, so that parallel shells may append too
 keep() { echo "$*" >>"$results"; }
 
-# wrong WORDS: of the item at hand; what $work/log holds is shown
+# wrong WORDS: reports a failure of the current item and shows $work/log
 went_wrong=''
 wrong() {
   went_wrong=$*
@@ -22,7 +22,7 @@ wrong() {
   [ -n "${SWINGBANK_GO_ON:-}" ] || exit 1
 }
 
-# tell_campaign N: tells how many of N items are done (others may be with shells beside this one); fails if one went wrong
+# tell_campaign N: reports how many of N items are done (parallel shells may do the others); fails if one failed
 tell_campaign() {
   local made wrongs
   made=$(wc -l <"$results")

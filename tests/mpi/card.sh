@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A dataset's card is enough to make it again, after everything it was made from is gone; the list of attempts tells what
-# became of each run.
+# A dataset's card suffices to make the dataset again without its original inputs; the list of attempts gives the
+# outcome of each run.
 source "$(dirname "$0")/common.bash"
 mkdir -p "$work/configs/sets" "$work/configs/nets"
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -31,7 +31,7 @@ expect 0 "dataset $first" "$generate" --again "$work/second/card.json" --progres
 [ "$(hash_of "$work/third")" = "$first" ] || fail "another hash on two ranks"
 ls /tmp/swingbank-card-* >/dev/null 2>&1 && fail "unpacked files are left"
 
-# What of it can be read by others.
+# Readability by other programs.
 "$python3" - "$work/kept" <<'PYTHON'
 import json, os, sys
 import h5py
@@ -53,7 +53,7 @@ for name in shards:
 assert at == len(whole["sample_id"]) and list(whole.attrs["channel_names"]) == ["P", "speed"]
 PYTHON
 
-# A card that was changed, and one of another processor, are refused.
+# A changed card and one of another processor are refused.
 sed 's/"seed": 5/"seed": 6/' "$work/card.json" >"$work/changed.json"
 expect 1 "no card, or a damaged one at $work/changed.json" "$generate" --again "$work/changed.json" --out "$work/x"
 expect 1 "two configs at --again" "$generate" "$configs/ieee39_gencls.toml" --again "$work/card.json" --out "$work/x"

@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
+<<<<<<< HEAD
 # Kills spread evenly over a run, from its first millisecond to its end: of one process, of mpirun, of one rank, of a rank
 # that was stopped before, of one part of three. One more run ends each with the same hash and the same bytes.
 #   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
+=======
+# Kills spread evenly over a run, from its first millisecond to its end: of one process, mpirun, one rank, a stopped rank,
+# or one part of three. After each, one more run completes with the same hash and bytes.
+#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/faults.md has figures)
+>>>>>>> 4a9caa8b656077bca57e84fb52af7a5d9cb9f4e8
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"
 kills=${SWINGBANK_KILLS:-60}
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 600 --draws-per-shard 20 --progress none)
-# lasts OUT [LAUNCHER...]: of a whole run [ms]
+# lasts OUT [LAUNCHER...]: prints the duration of a complete run [ms]
 lasts() {
   local start out=$1
   start=$(date +%s%N)
@@ -41,8 +47,8 @@ for ((i = from; i < kills; i += stride)); do
       ;;
     *) kill -9 $pid 2>/dev/null || true ;;
   esac
-  # Ranks of a killed mpirun end by themselves, a stopped one does not. OpenMPI's launcher may hang when a rank dies
-  # in MPI_Init (known of 4.1): after ten seconds it is ended, as jobs/run_saving.bash does.
+  # Ranks of a killed mpirun end by themselves, a stopped one does not. OpenMPI's launcher may hang if a rank dies in
+  # MPI_Init (known in 4.1): it is killed after ten seconds, as in jobs/run_saving.bash.
   for ((wait = 0; wait < 100; ++wait)); do
     pgrep -f -- "--out $out" >/dev/null || break # ranks have process groups of their own
     [ "$kind" = stopped ] && pkill -9 -f -- "--out $out" || true

@@ -1,5 +1,5 @@
 # Sourced by the scripts of this folder.
-# shellcheck disable=SC2034 # used there
+# shellcheck disable=SC2034 # used by them
 set -euo pipefail
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 : "${SWINGBANK_BIN:?folder of the binaries}" "${SWINGBANK_SOURCE:?folder of the sources}"
@@ -8,10 +8,10 @@ trap 'rm -rf "$work"' EXIT
 configs=$SWINGBANK_SOURCE/configs/datasets
 generate=$SWINGBANK_BIN/swingbank-generate
 verify=$SWINGBANK_BIN/swingbank-verify
-python3=/usr/bin/python3 # Debian's own: python3-h5py is installed for this one
+python3=/usr/bin/python3 # Debian's Python, which has python3-h5py
 ranks() { local n=$1; shift; mpirun --oversubscribe -np "$n" "$@"; }
 fail() { echo "FAILED: $*" >&2; exit 1; }
-# The dataset's hash, after every shard has been read and compared.
+# Prints the dataset's hash after reading and checking every shard.
 hash_of() { "$verify" "$1" | sed -n 's/.*dataset \([0-9a-f]\{16\}\)$/\1/p'; }
 # expect <exit code> <text in the output> <command...>
 expect() {
@@ -21,7 +21,7 @@ expect() {
   [ "$got" = "$code" ] || { cat "$work/output" >&2; fail "exit code $got instead of $code: $*"; }
   grep -qF -- "$text" "$work/output" || { cat "$work/output" >&2; fail "no '$text' in the output of: $*"; }
 }
-# How many shards are in the journal of a folder.
+# Prints the number of shards in the journal of a folder.
 lines() { if [ -e "$1/journal.jsonl" ]; then wc -l <"$1/journal.jsonl"; else echo 0; fi; }
 wait_for_lines() { # folder count
   for _ in $(seq 3000); do

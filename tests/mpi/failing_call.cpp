@@ -1,14 +1,12 @@
-// To be preloaded: one call of one process fails with an error that is given. Calls are counted from 1 in
-// each process, file calls (below one folder) and allocations by operator new apart.
-// - FAILING_ERROR: memory (std::bad_alloc), or errno's number for a file call; kill: the process dies by
-// SIGKILL in
-//   place of the call; trace: nothing fails, and each file call adds a line "trace CALL PATH" to the log;
-//   absent: only count
+// Library for LD_PRELOAD: one call of one process fails with a given error. Calls are counted from 1 in each
+// process, file calls (below one folder) and allocations by operator new separately.
+// - FAILING_ERROR: memory (std::bad_alloc), or an errno for a file call; kill: SIGKILL instead of the call;
+//   trace: nothing fails, and each file call adds a line "trace CALL PATH" to the log; absent: only counts
 // - FAILING_AT: the call that fails
 // - FAILING_CALL: only file calls of this name count; absent: all
-// - FAILING_RANK: the rank that is meant (OpenMPI's OMPI_COMM_WORLD_RANK; without a launcher all are 0)
+// - FAILING_RANK: the rank of the failure (OpenMPI's OMPI_COMM_WORLD_RANK; 0 without a launcher)
 // - FAILING_UNDER: absolute path of the folder
-// - FAILING_LOG: gets a line "failed CALL PATH" once it has happened, and "count FILES ALLOCATIONS" at exit
+// - FAILING_LOG: file for a line "failed CALL PATH" after the failure, and "count FILES ALLOCATIONS" at exit
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -43,7 +41,7 @@ struct Order {
   const char* under = std::getenv("FAILING_UNDER");
   const char* log = std::getenv("FAILING_LOG");
   const char* call = std::getenv("FAILING_CALL");
-  int error = 0;  ///< 0: none; otherwise errno's number or one of those below
+  int error = 0;  ///< 0: none; otherwise an errno or one of the values below
   long at = 0;
   bool meant = false;
   Order() {
@@ -59,7 +57,7 @@ const Order& order() {
   return o;
 }
 
-/// By system calls: what is interposed must not be used here.
+/// Uses system calls, because interposed functions must not be called here.
 void note(const char* line, int length) {
   const int fd =
       static_cast<int>(syscall(SYS_openat, AT_FDCWD, order().log, O_WRONLY | O_CREAT | O_APPEND, 0644));
@@ -76,7 +74,7 @@ struct Count {
   }
 } count;
 
-/// Whether this call on `path` is the one that fails; errno is set then.
+/// Returns whether this call on `path` fails, and sets errno if so.
 bool fails(const char* call, const char* path) {
   const Order& o = order();
   if (!o.meant || o.under == nullptr || path == nullptr) return false;
@@ -138,8 +136,8 @@ void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
 void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
 
-// NOLINTBEGIN: the system's own names
-#pragma GCC diagnostic ignored "-Wshadow"  // flock is a structure too
+// NOLINTBEGIN: names of the system
+#pragma GCC diagnostic ignored "-Wshadow"  // flock is also a structure
 #define INTERPOSE(type, name, arguments, values, key, failed) \
   extern "C" type name arguments {                            \
     static const auto real = next<type(*) arguments>(#name);  \
@@ -176,7 +174,7 @@ INTERPOSE(int, flock, (int fd, int what), (fd, what), fd, -1)
 INTERPOSE(int, rename, (const char* from, const char* to), (from, to), from, -1)
 INTERPOSE(int, unlink, (const char* path), (path), path, -1)
 INTERPOSE(int, mkdir, (const char* path, mode_t mode), (path, mode), path, -1)
-// The descriptor is closed all the same, as Linux does.
+// The descriptor is closed nevertheless, as in Linux.
 extern "C" int close(int fd) {
   static const auto real = next<int (*)(int)>("close");
   const bool failed = fails("close", fd);

@@ -1,11 +1,10 @@
-# To be sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must
-# end in time: whole with the same data, or with exit code 1 and the reason that was injected; the next run mends it.
-# shellcheck disable=SC2154,SC2034,SC2016 # what common.bash sets; what those who source this read
+# Sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must end
+# in time: complete with the same data, or with exit code 1 and the injected reason; the next run repairs the data.
+# shellcheck disable=SC2154,SC2034,SC2016 # set by common.bash; read by the sourcing scripts
 preload=$SWINGBANK_BIN/failing_call.so
-limit=60 # [s] of a run that takes about one; the machine may be busy
+limit=60 # [s]; a run takes about 1 s, but the machine may be busy
 
-# The calls that a run makes on a rank below its folder, and its allocations.
-# counts RANK FOLDER COMMAND...
+# counts RANK FOLDER COMMAND...: prints the number of file calls of a run on a rank below its folder, and of allocations
 counts() {
   local rank=$1 folder=$2
   shift 2
@@ -15,7 +14,7 @@ counts() {
   sed -n 's/^count //p' "$work/failing" | sort -n | tail -1
 }
 
-# with_preload COMMAND...: mpirun itself is left alone
+# with_preload COMMAND...: preloads the library into the ranks, not into mpirun
 with_preload() {
   if [ "$1" = mpirun ]; then
     "${@:1:4}" -x LD_PRELOAD="$preload" "${@:5}"
@@ -27,7 +26,7 @@ with_preload() {
 declare -A reasons=([5]='Input/output error' [28]='No space left on device' [2]='No such file or directory'
   [4]='Interrupted system call' [122]='Disk quota exceeded' [memory]='bad_alloc|[Mm]emory')
 
-# one_failure ERROR AT RANK FOLDER COMMAND...: sets `ended` to whole, told, missed or wrong, and `what` happened.
+# one_failure ERROR AT RANK FOLDER COMMAND...: sets `ended` to whole, told, missed or wrong, and `what` to a description.
 one_failure() {
   local error=$1 at=$2 rank=$3 folder=$4 code=0
   shift 4
@@ -35,7 +34,7 @@ one_failure() {
   FAILING_ERROR=$error FAILING_AT=$at FAILING_RANK=$rank FAILING_UNDER=$folder FAILING_LOG=$work/failing \
     timeout -k 5 "$limit" bash -c 'source "$0"; with_preload "$@"' "$SWINGBANK_SOURCE/tests/mpi/failing_calls.bash" "$@" \
     >"$work/log" 2>&1 || code=$?
-  what=$( (sed -n 's/^failed //p' "$work/failing" 2>/dev/null || true) | head -1) # no file: it was ended before its first line
+  what=$( (sed -n 's/^failed //p' "$work/failing" 2>/dev/null || true) | head -1) # no file: ended before its first line
   if [ -z "$what" ]; then
     ended=missed
     if ((code == 124 || code == 137)); then
@@ -61,13 +60,13 @@ one_failure() {
   esac
 }
 
-# strike ITEM ERROR RANK FOLDER CALLS BEFORE COMMAND...: one_failure in the call that is this item's share of those after
-# BEFORE. A run makes a few calls more or less each time: where it ended before its call, an earlier one is taken.
-# `begin_item` makes the folder ready; `check_item` compares what is there afterwards.
+# strike ITEM ERROR RANK FOLDER CALLS BEFORE COMMAND...: one_failure in this item's call among those after BEFORE. The
+# number of calls varies slightly between runs: if a run ends before the call, an earlier one is used. `begin_item`
+# prepares the folder; `check_item` compares the result.
 strike() {
   local item=$1 error=$2 rank=$3 folder=$4 of=$5 before=$6 at tries
   shift 6
-  # golden ratio: every stretch of the run gets its share, however many items there are
+  # golden ratio: the items are spread evenly over the run, for any number of items
   at=$((1 + of * (item * 618033 % 1000000) / 1000000))
   went_wrong=''
   for ((tries = 0; tries < 20; ++tries)); do
@@ -83,7 +82,7 @@ strike() {
   keep "$item" "$outcome" "$error" "$what"
 }
 
-# tell_failures N: figures of each error
+# tell_failures N: prints the totals of each error
 tell_failures() {
   local error
   for error in "${!reasons[@]}"; do

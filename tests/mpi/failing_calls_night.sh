@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One call fails on one rank of generate, at any place from the first to the last: input and output, space, quota, names,
+# One call fails on one rank of generate, anywhere from the first to the last: input/output, space, quota, names,
 # interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default; campaign.bash)
 # shellcheck disable=SC2154 # failing_calls.bash sets it
 source "$(dirname "$0")/common.bash"
@@ -13,10 +13,10 @@ two=(mpirun --oversubscribe -np 2 "${make[@]}")
 whole=$(hash_of "$work/run")
 [ -n "$whole" ] || fail "no hash"
 cp -r "$work/run" "$work/whole"
-# half of a run that was killed: its journal has two of five shards
+# half of a killed run: its journal has two of five shards
 head -2 "$work/whole/journal.jsonl" >"$work/two_lines"
 
-# begin KIND: the folder as this kind of run finds it; sets `command`
+# begin KIND: prepares the folder for this kind of run; sets `command`
 begin() {
   rm -rf "$work/run"
   case $1 in

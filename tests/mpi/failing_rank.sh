@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# What only one rank meets ends all of them, with that rank's reason. Without that the others wait for ever: the
-# limit of a minute stands for it.
+# A failure of one rank ends all ranks with its reason. Otherwise the others would wait forever, which the limit of a
+# minute detects.
 source "$(dirname "$0")/common.bash"
 config=$configs/ieee14_genrou_bus3.toml
 on_two() { timeout -k 5 60 mpirun --oversubscribe -np 1 "$@"; }
 
-# An exception that nobody agreed upon.
+# An exception outside of the collective error handling.
 expect 1 "failure at rank 2 of 3 (only here)" \
   timeout -k 5 60 mpirun --oversubscribe -np 3 "$SWINGBANK_BIN/test_mpi_ranks" --gtest_filter='FailingRank.*' --gtest_brief=1
 
@@ -21,5 +21,5 @@ expect 1 "bytes for the file at" \
   on_two "$generate" "${options[@]}" --dedicated-master : -np 1 bash -c 'trap "" XFSZ; ulimit -f 200; exec "$@"' bash "$generate" "${options[@]}" --dedicated-master
 expect 0 "400 draws" "$generate" "${options[@]}"
 
-# An option that only one rank was given.
+# An option given to one rank only.
 expect 1 "--nonsense" on_two "$generate" "${options[@]}" : -np 1 "$generate" "${options[@]}" --nonsense

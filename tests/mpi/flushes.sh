@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Data are on the disk before a name promises them: each shard is flushed after its last write and before it gets its
-# name, its folder after that, and each line of the journal before the next shard. failing_call.cpp records the calls.
+# Data are on the disk before their name exists: each shard is flushed after its last write and before its renaming, then
+# its folder, and each line of the journal before the next shard. failing_call.cpp records the calls.
 source "$(dirname "$0")/common.bash"
-trace() { # NAME COMMAND...: the file calls of the command below $work/NAME, in $work/NAME.trace
+trace() { # NAME COMMAND...: records the command's file calls below $work/NAME in $work/NAME.trace
   local name=$1
   shift
   FAILING_ERROR=trace FAILING_UNDER=$work/$name FAILING_LOG=$work/$name.trace LD_PRELOAD=$SWINGBANK_BIN/failing_call.so \
@@ -38,7 +38,7 @@ trace whole "$generate" "$configs/ieee14_genrou_bus3.toml" --draws 200 --draws-p
 check "$work/whole.trace" || fail "generate"
 trace merged "$SWINGBANK_BIN/swingbank-merge" "$work/whole"
 check "$work/merged.trace" || fail "merge"
-# The check sees what is missing.
+# The check detects missing flushes.
 grep -v 'fsync .*\.part$' "$work/whole.trace" >"$work/no_shard.trace"
 check "$work/no_shard.trace" >"$work/said" && fail "a shard that is not flushed goes unseen"
 grep -q 'before it is flushed' "$work/said" || fail "said of a shard: $(cat "$work/said")"

@@ -1,5 +1,9 @@
 #!/usr/bin/env bash
+<<<<<<< HEAD
 # The lines of Python in docs/reference/formats.md read a shard.
+=======
+# The Python lines of docs/formats.md read a shard.
+>>>>>>> 4a9caa8b656077bca57e84fb52af7a5d9cb9f4e8
 source "$(dirname "$0")/common.bash"
 "$generate" "$configs/ieee14_genrou_bus3.toml" --draws 30 --progress none --out "$work/data" >/dev/null 2>&1
 # shellcheck disable=SC2016 # backquotes of Markdown

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A dataset is the same to the last byte whoever makes it: 1, 2, 3 and 5 ranks, shards written by 1 and 3 ranks.
+# A dataset has the same bytes for 1, 2, 3 and 5 ranks, and for shards written by 1 and 3 ranks.
 source "$(dirname "$0")/common.bash"
 shard=16
 make() { # ranks folder options
@@ -21,10 +21,10 @@ for d in two three five group led uneven; do
   [ "$(hash_of "$work/$d")" = "$first" ] || fail "$d has another hash"
   diff -r "$work/one/shards" "$work/$d/shards" || fail "$d has other bytes"
 done
-# Another seed is another dataset.
+# Another seed gives another dataset.
 make 1 seed --seed 2
 [ "$(hash_of "$work/seed")" != "$first" ] || fail "the seed changes nothing"
-# Which draws share a shard changes no record: here one shard holds all.
+# Records do not depend on the division into shards: here one shard contains all.
 shard=120
 make 1 single
 "$python3" - "$work" <<'PYTHON'
@@ -37,7 +37,7 @@ PYTHON
 # Effects attached and varied: the same for any number of ranks, and when resumed.
 with_exciter=("$configs/ieee39_genrou_sexs.toml" --draws 60 --draws-per-shard 10 --progress none)
 "$generate" "${with_exciter[@]}" --out "$work/exciter" >"$work/log" 2>&1 || { cat "$work/log"; fail "an exciter attached"; }
-mkdir -p "$work/resumed/shards" # as if it had been stopped half way
+mkdir -p "$work/resumed/shards" # as after a stop half way
 head -3 "$work/exciter/journal.jsonl" >"$work/resumed/journal.jsonl"
 cp "$work/exciter/dataset.json" "$work/resumed"
 cp "$work"/exciter/shards/shard-00000[0-2].h5 "$work/resumed/shards"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A rank that hangs does not hold the others for ever.
+# A rank that hangs does not block the others forever.
 source "$(dirname "$0")/common.bash"
 options=("$configs/ieee14_genrou_bus3.toml" --draws 5000 --draws-per-shard 20 --progress none)
 timeout 60 mpirun --oversubscribe -np 2 "$generate" "${options[@]}" --lease-timeout 2 --out "$work/hung" >"$work/log" 2>&1 &

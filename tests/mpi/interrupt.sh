@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Killed or stopped in the middle, a run continues to the same hash.
+# A run that is killed or stopped in the middle is resumed and ends with the same hash.
 source "$(dirname "$0")/common.bash"
 options=("$configs/ieee14_genrou_bus3.toml" --draws 1000 --draws-per-shard 20 --progress none)
 "$generate" "${options[@]}" --out "$work/whole" >/dev/null 2>&1
@@ -26,7 +26,7 @@ kill -9 "$(pgrep -P $pid -f "$work/rank" | tail -1)"
 wait $pid && fail "mpirun cannot succeed without a rank"
 expect 0 "dataset $whole" ranks 2 "$generate" "${options[@]}" --out "$work/rank"
 
-# A signal: soft exit with 2, and "submit again" continues.
+# A signal: exit code 2, and "submit again" resumes.
 "$generate" "${options[@]}" --out "$work/soft" >/dev/null 2>&1 &
 pid=$!
 wait_for_lines "$work/soft" 2

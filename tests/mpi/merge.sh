@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Parts made in folders of their own, as on machines without a common disk, are merged into the dataset; a merge that is
-# killed goes on.
+# Parts in separate folders, as from machines without a common disk, are merged into the dataset; a killed merge is
+# resumed.
 source "$(dirname "$0")/common.bash"
 merge=$SWINGBANK_BIN/swingbank-merge
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 600 --draws-per-shard 20 --progress none)
@@ -10,7 +10,7 @@ for k in 1 2 3; do "${make[@]}" --part $k/3 --out "$work/part$k" >/dev/null 2>&1
 code=0
 "$merge" "$work/part1" "$work/part2" --out "$work/out" --progress none >"$work/log" 2>&1 || code=$?
 [ $code = 2 ] || { cat "$work/log"; fail "exit code $code while a part is missing"; }
-# killed in place of giving the fourth shard its name (failing_call.cpp)
+# killed instead of renaming the fourth shard (failing_call.cpp)
 code=0
 FAILING_ERROR=kill FAILING_CALL=rename FAILING_AT=4 FAILING_UNDER=$work/killed/shards FAILING_LOG=$work/failing \
   LD_PRELOAD=$SWINGBANK_BIN/failing_call.so "$merge" "$work"/part? --out "$work/killed" --progress none >"$work/log" 2>&1 || code=$?
@@ -21,8 +21,8 @@ for out in out killed; do
   diff -r "$work/whole/shards" "$work/$out/shards" || fail "other bytes in $out"
   [ "$(hash_of "$work/$out")" = "$whole" ] || fail "another hash in $out"
 done
-expect 0 "dataset $whole" "${make[@]}" --out "$work/out" # nothing is left to do
-# A finished dataset is known by its manifest: trusting, no shard is looked at.
+expect 0 "dataset $whole" "${make[@]}" --out "$work/out" # nothing remains to be done
+# A finished dataset is recognised by its manifest: with trust, no shard is read.
 cp -r "$work/whole" "$work/trusted"
 rm "$work/trusted/shards/shard-000003.h5"
 expect 0 "dataset $whole" "${make[@]}" --trust --out "$work/trusted"

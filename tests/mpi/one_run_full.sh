@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Never two runs in one dataset, and a start that was refused or killed stops no good one.
+# A dataset never has two runs at once, and a refused or killed start does not block a valid one.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 1000 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/whole" >/dev/null 2>&1
 whole=$(hash_of "$work/whole")
 
-# Locked before anything is looked at or made: another holds the folder, and nothing appears in it.
+# The lock comes before any read or write: if another run has the folder, nothing appears in it.
 mkdir "$work/held"
 (
   exec 9>"$work/held/.lock"
@@ -19,19 +19,19 @@ mkdir "$work/held"
 [ "$(ls -A "$work/held")" = .lock ] || fail "a refused run wrote $(ls -A "$work/held")"
 expect 0 "dataset $whole" "${make[@]}" --out "$work/held"
 
-# A run beside a repair, which replaces the journal. What the two leave is whole after one more run.
+# A run concurrent with a repair, which replaces the journal. One more run completes the result.
 cp -r "$work/whole" "$work/repaired"
 for shard in "$work"/repaired/shards/*; do printf '\x01' | dd of="$shard" bs=1 seek=100000 conv=notrunc status=none; done
 "${make[@]}" --repair --out "$work/repaired" >"$work/first" 2>&1 &
 first=$!
 second=0
 "${make[@]}" --repair --out "$work/repaired" >"$work/second" 2>&1 || second=$?
-wait $first || second=1$second # the other one may have been first
+wait $first || second=1$second # either may be first
 [ "$second" = 0 ] || grep -q "holds it" "$work/first" "$work/second" || { cat "$work/first" "$work/second"; fail "beside a repair: $second"; }
 [ "$(hash_of "$work/repaired")" = "$whole" ] || fail "beside a repair: another hash"
 [ "$(lines "$work/repaired")" = 50 ] || fail "beside a repair: $(lines "$work/repaired") lines for 50 shards"
 
-# Many starts at once, two seeds: one config gets the folder, and the others are told why not.
+# Many concurrent starts with two seeds: one config gets the folder, and the others report the reason.
 starts=()
 for i in 1 2 3 4 5 6; do
   "${make[@]}" --seed $((i % 2 + 1)) --out "$work/many" >"$work/start$i" 2>&1 &
@@ -48,7 +48,7 @@ done
 [ $done -ge 1 ] && [ $done -le 3 ] || fail "$done of six starts succeeded, three of each seed"
 [ -n "$(hash_of "$work/many")" ] || fail "the data of many starts"
 
-# Killed before dataset.json stands: what such a run leaves is taken for what it is.
+# Killed before dataset.json exists: the leftovers are recognised as such.
 mkdir -p "$work/early/shards"
 echo '{"format": "swingb' >"$work/early/.dataset.json.part"
 touch "$work/early/.lock"
@@ -63,7 +63,7 @@ for ((i = 0; i < 12; ++i)); do # killed at any moment of its start
 done
 expect 0 "dataset $whole" "${make[@]}" --out "$work/killed"
 
-# Leftovers are what generate itself writes, also where a link leads elsewhere.
+# Leftovers are files that generate itself writes, also behind a link to another place.
 mv "$work/early/shards" "$work/elsewhere"
 ln -s ../elsewhere "$work/early/shards"
 touch "$work/elsewhere/thesis.part" "$work/elsewhere/.shard-000000.h5.part"
@@ -71,7 +71,7 @@ expect 0 "dataset $whole" "${make[@]}" --out "$work/early"
 [ -e "$work/elsewhere/thesis.part" ] || fail "a file of somebody else was removed"
 [ ! -e "$work/elsewhere/.shard-000000.h5.part" ] || fail "a leftover stayed"
 
-# Refused: nothing of it stays that a good one stumbles over.
+# A refused run leaves nothing that blocks a valid one.
 sed "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" "$configs/ieee14_genrou_bus3.toml" >"$work/"$'b\xff.toml'
 expect 1 "a name that is no UTF-8" "$generate" "$work/"$'b\xff.toml' --progress none --out "$work/refused"
 [ ! -e "$work/refused" ] || fail "a refused start left $(ls -A "$work/refused")"

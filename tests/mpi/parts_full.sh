@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A dataset made in parts, without a launcher, at the same time, with one part killed and made again, is the dataset.
+# A dataset made in concurrent parts without a launcher, with one part killed and resumed, equals that of one run.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 1200 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/whole" >/dev/null 2>&1
@@ -24,9 +24,9 @@ code=0
 expect 0 "dataset $whole" "${make[@]}" --part 2/3 --out "$work/parts"
 diff -r "$work/whole/shards" "$work/parts/shards" || fail "other bytes in parts"
 [ "$(hash_of "$work/parts")" = "$whole" ] || fail "another hash in parts"
-expect 0 "dataset $whole" "${make[@]}" --out "$work/parts" # nothing is left to do
+expect 0 "dataset $whole" "${make[@]}" --out "$work/parts" # nothing remains to be done
 
-# Cut otherwise, or twice the same part, or together with a whole run: refused.
+# Another division, the same part twice, or a simultaneous whole run: refused.
 expect 1 "-of-3.jsonl, which cuts the dataset otherwise" "${make[@]}" --part 2/4 --out "$work/parts"
 expect 1 "it is no part k/n" "${make[@]}" --part 4/3 --out "$work/x"
 expect 1 "it is no part k/n" "${make[@]}" --part 2 --out "$work/x"
@@ -46,14 +46,14 @@ expect 1 "it holds files but no dataset" "${make[@]}" --part 1/2 --out "$work/fo
   expect 0 "dataset $whole" "${make[@]}" --part 1/3 --out "$work/parts"
 )
 
-# A databank is taken only for its own points.
+# A databank is accepted only for its own points.
 expect 1 "a databank of another config at $work/bank.h5" "${make[@]}" --seed 2 --databank "$work/bank.h5" --out "$work/y"
 "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 10 --out "$work/few.h5" >/dev/null
 expect 1 "too few points at $work/few.h5 (it has 10" "${make[@]}" --databank "$work/few.h5" --out "$work/z"
 "$python3" -c "import h5py, sys; h5py.File(sys.argv[1], 'r+')['parameters'][0, 4] += 0.125" "$work/bank.h5"
 expect 1 "changed databank at $work/bank.h5" "${make[@]}" --databank "$work/bank.h5" --out "$work/z"
 
-# Damaged and doubled journal lines: refused, and mended by --repair.
+# Damaged and repeated journal lines: refused, and repaired by --repair.
 { echo garbage; head -1 "$work/whole/journal.jsonl"; sed -n '2s/"rows":/&1/p' "$work/whole/journal.jsonl"; } >"$work/more"
 cat "$work/more" >>"$work/whole/journal.jsonl"
 expect 1 "damaged journal line at $work/whole/journal.jsonl:61" "${make[@]}" --out "$work/whole"
@@ -63,7 +63,7 @@ expect 0 "dataset $whole" "${make[@]}" --repair --out "$work/whole"
 [ "$(lines "$work/whole")" = 60 ] || fail "$(lines "$work/whole") lines after a repair"
 diff -r "$work/whole/shards" "$work/parts/shards" || fail "other bytes after a repair"
 
-# A finished dataset that cannot be written to is complete, an unfinished one says what it lacks.
+# A finished read-only dataset is complete; an unfinished one reports the missing parts.
 chmod -R a+rX "$work"
 chmod a-w "$work/whole" "$work/whole/shards" "$work/whole/journal.jsonl" "$work/whole/.lock"
 as_reader=()

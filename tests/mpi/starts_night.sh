@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Starts at the same time in one folder, of two seeds and of --repair, on the disk and in memory: one writer, and every
-# other start is told the true reason.
+# Concurrent starts in one folder, with two seeds and --repair, on disk and in memory: one writer, and every other start
+# reports the true reason.
 #   SWINGBANK_ROUNDS=25 SWINGBANK_DISKS="/mnt/a /mnt/b" bash tests/mpi/starts_night.sh      (5 rounds of eight starts on each
 # disk by default; other file systems as they are mounted)
 source "$(dirname "$0")/common.bash"
@@ -10,7 +10,7 @@ for seed in 1 2; do
   "${make[@]}" --seed $seed --out "$work/seed$seed" >/dev/null 2>&1
   hashes[seed]=$(hash_of "$work/seed$seed")
 done
-# one_round FOLDER: eight starts at once
+# one_round FOLDER: eight concurrent starts
 one_round() {
   local i seed pids=() options
   rm -rf "$1"

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# While one rank draws the databank the others sleep, and all hear a signal; in a group that writes a shard together every
-# rank flushes what it wrote.
-# shellcheck disable=SC2154 # what common.bash sets
+# While one rank draws the databank the others sleep, and all react to a signal; in a group that writes a shard together
+# every rank flushes its own data.
+# shellcheck disable=SC2154 # set by common.bash
 source "$(dirname "$0")/common.bash"
 config=$configs/ieee39_genrou.toml
-# 500,000 points at their distance take minutes, and are within what the law of their draws allows.
+# 500,000 points at their distance take minutes and pass the forecast of the draws.
 options=("$config" --draws 50000000 --faults-per-point 100 --progress none)
-ticks() { awk '{print $14 + $15}' "/proc/$1/stat"; } # of processor time, a hundredth of a second each
-# ends_softly PID: a signal ends the drawing, long before its points are there
+ticks() { awk '{print $14 + $15}' "/proc/$1/stat"; } # processor time in units of 0.01 s
+# ends_softly PID: a signal ends the drawing long before it is complete
 ends_softly() {
   local code=0 start=$SECONDS
   kill -USR1 "$1"
@@ -25,7 +25,7 @@ ends_softly $!
 mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/data" >"$work/drawing" 2>&1 &
 launcher=$!
 busiest=0
-for _ in $(seq 600); do # until the one that draws has worked for two seconds
+for _ in $(seq 600); do # until the drawing rank has used two seconds
   sleep 0.1
   total=0 busiest=0
   for pid in $(pgrep -P $launcher); do
@@ -39,7 +39,7 @@ done
 ((total - busiest < busiest / 3)) || fail "two ranks that wait took $((total - busiest)) hundredths of a second beside $busiest of the one that draws"
 ends_softly $launcher
 
-# The disk refuses to flush on one rank of the group: that rank has asked it to.
+# A flush fails on one rank of the group, so that rank does flush.
 small=("$configs/ieee14_genrou_bus3.toml" --draws 60 --draws-per-shard 20 --writer-ranks 3 --progress none)
 for rank in 0 1 2; do
   expect 1 "Input/output error" env FAILING_CALL=fsync FAILING_ERROR=5 FAILING_AT=1 FAILING_RANK=$rank \

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Scalars, effects and lanes under the address and undefined-behaviour sanitizers, built once for each width that vectors
-# have in a processor: two doubles (x86-64-v2), four (v3, AVX2) and eight (v4, AVX-512). Each build runs the kernels of 1, 4
-# and 8 lanes and that of slopes.
+# Scalars, effects and SIMD kernels under the address and undefined-behaviour sanitizers, built once for each vector
+# width: two doubles (x86-64-v2), four (v3, AVX2) and eight (v4, AVX-512). Each build runs the kernels of 1, 4 and 8 lanes
+# and that of sensitivities.
 #   bash tests/sim/sanitized.bash [LEVEL...]
 #     LEVEL   default all that this processor has
 # Exit codes: 0 nothing found, 1 something found or not built.
@@ -28,7 +28,7 @@ for level in "${levels[@]}"; do
   fi
   for test in "${tests[@]}"; do
     echo "$level $test"
-    # the one test left out compares kernels, to a limit that holds for GCC's code
+    # the excluded test compares kernels with a limit that is valid for GCC's code
     "$build/bin/$test" --gtest_brief=1 '--gtest_filter=-*Full.*:*Night.*:LawInLanes.ANonlinearLawRunsInEveryKernel' || status=1
   done
 done

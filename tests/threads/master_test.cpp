@@ -1,5 +1,4 @@
-// The master while its watcher looks and its journal's thread writes: every shard is leased once and
-// journalled once.
+// The master with concurrent watcher and journal threads: every shard is leased once and journalled once.
 #include "mpi/ranks/detail/master.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ store::JournalLine line(std::uint64_t shard) {
   return {shard, "shards/a.h5", 1, 1, 1, "0000000000000000", "0000000000000000", {}};
 }
 
-TEST(Master, LeasesEveryShardOnceWhileItsWatcherLooks) {
+TEST(Master, LeasesEveryShardOnceUnderAWatcher) {
   std::multiset<std::uint64_t> written, leased;
   JournalKeeper keeper([&](std::span<const store::JournalLine> lines) {
     for (const auto& l : lines) written.insert(l.shard);
@@ -41,7 +40,7 @@ TEST(Master, LeasesEveryShardOnceWhileItsWatcherLooks) {
     idle = leases[rank].empty() ? idle + 1 : 0;
     std::this_thread::sleep_for(milliseconds(4));
   }
-  // the watcher looks twice a second
+  // the watcher wakes twice a second
   while (std::chrono::steady_clock::now() - begin < milliseconds(1200)) std::this_thread::yield();
   keeper.finish();
   EXPECT_TRUE(master.all_made());

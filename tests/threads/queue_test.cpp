@@ -1,4 +1,4 @@
-// The queue of items with one process, whose own hand is a thread: what it made reaches the caller whole.
+// The queue of items in one process with one worker thread: complete results reach the caller.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -14,11 +14,11 @@
 namespace swingbank::mpi::ranks {
 namespace {
 
-TEST(ItemQueue, ResultsReachTheCallerWhole) {
+TEST(ItemQueue, ReturnsCompleteResults) {
   SharedItems shared;
   shared.items.resize(50);
   std::iota(shared.items.begin(), shared.items.end(), 0);
-  std::map<std::size_t, std::string> results;  // of the caller alone: no lock
+  std::map<std::size_t, std::string> results;  // used by the caller only: needs no lock
   shared.work = [](std::size_t item) { return std::string(2000, static_cast<char>('a' + item % 26)); };
   shared.done = [&](std::size_t item, const std::string& result) { results[item] = result; };
   EXPECT_TRUE(share_items(Ranks{}, shared));

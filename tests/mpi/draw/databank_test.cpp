@@ -32,7 +32,7 @@ double closest_pair(const Databank& b) {
   return std::sqrt(least);
 }
 
-/// The definition itself: every admissible candidate in order, against every point so far.
+/// The serial definition: every admissible candidate in order, compared with all points so far.
 std::vector<double> brute_force(const DatasetConfig& c, std::uint64_t points) {
   std::vector<double> values, full = c.effect().default_parameters(), x(c.box.size());
   const std::size_t n = x.size();
@@ -58,7 +58,7 @@ TEST(DatabankDraw, EqualsTheSerialDefinition) {
   EXPECT_EQ(draw(c, 3000).values, brute_force(c, 3000));
 }
 
-TEST(DatabankDraw, EveryPairKeepsItsDistance) {
+TEST(DatabankDraw, EveryPairKeepsTheMinimumDistance) {
   EXPECT_GE(closest_pair(draw(test::genrou_box(), 4000)), 0.7);
 }
 
@@ -95,16 +95,16 @@ TEST(DatabankDraw, SeedChangesThePoints) {
   EXPECT_NE(draw(c, 10).values, a.values);
 }
 
-TEST(DatabankDraw, WithoutDistanceNothingIsTooClose) {
+TEST(DatabankDraw, AcceptsEveryPointWithoutDistance) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 0.0;
   EXPECT_EQ(draw(c, 5000).too_close, 0u);
 }
 
-TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
+TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.scaled = true;
-  c.databank.distance = 1.5;  // of a unit cube's diagonal of 3.6: a few hundred points at most
+  c.databank.distance = 1.5;  // the unit cube's diagonal is 3.6: a few hundred points at most
   try {
     draw(c, 2000);
     FAIL() << "nothing thrown";
@@ -114,20 +114,19 @@ TEST(DatabankDraw, UnreachableCountSaysHowFarItCame) {
   }
 }
 
-// Most draws are too close here (19 of 20 admissible ones), so that the forecast decides after the first
-// batch.
-TEST(DatabankDraw, AReachableCountIsNotGivenUp) {
+// Most draws are too close (19 of 20 admissible ones), so that the forecast applies after the first batch.
+TEST(DatabankDraw, DoesNotAbort_WhenTheCountIsReachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 2.0;
   c.databank.candidates_per_point = 1000;
   const Databank whole = draw(c, 250);
   EXPECT_GT(whole.too_close, 10 * whole.points());
   const auto admissible = static_cast<double>(whole.points() + whole.too_close);
-  c.databank.candidates_per_point = (1.2 * admissible - 1000) / 250;  // a fifth more than it takes
+  c.databank.candidates_per_point = (1.2 * admissible - 1000) / 250;  // 20 % more than needed
   EXPECT_EQ(draw(c, 250).values, whole.values);
 }
 
-// 60,000 points as the thesis has them: every pair, and seconds at most.
+// 60,000 points as in the thesis: checks every pair and that drawing takes seconds only.
 TEST(DatabankDrawFull, SixtyThousandPoints) {
   const Databank b = draw(test::genrou_box(), 60000);
   ASSERT_EQ(b.points(), 60000u);

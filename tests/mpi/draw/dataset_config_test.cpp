@@ -22,7 +22,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-/// The thesis's IEEE 14 config with one thing changed, beside copies of its network.
+/// The thesis's IEEE 14 config with one change, beside copies of its network.
 struct Changed : test::Folder {
   Changed() {
     fs::create_directory(path / "datasets");
@@ -57,8 +57,8 @@ TEST(DatasetConfigFile, EveryConfigOfTheProjectLoads) {
   EXPECT_GE(count, 3);
 }
 
-/// What is done to a case is part of the hash only where it is asked for, and reaches the grid.
-TEST(DatasetConfigFile, ACaseThatIsNotWholeIsMendedAsAsked) {
+/// Repairs of a case enter the hash only if they are requested, and they are applied to the grid.
+TEST(DatasetConfigFile, RepairsIncompleteCasesOnRequest) {
   const Changed files;
   const std::string head = "convention = ";
   EXPECT_EQ(files.read().canonical().find("net_generators"), std::string::npos);
@@ -80,7 +80,7 @@ TEST(DatasetConfigFile, ACaseThatIsNotWholeIsMendedAsAsked) {
 }
 
 /// A parallel branch of the same id: refused, or kept on request, which is part of the hash.
-TEST(DatasetConfigFile, ARepeatedBranchIsKeptAsAsked) {
+TEST(DatasetConfigFile, KeepsRepeatedBranchesOnRequest) {
   const Changed files;
   const std::string raw = (files.path / "networks/ieee14_dataset_genrou.raw").string();
   const std::string line = "1, 2, '1', 0.01938, 0.05917, 0.0528, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1\n";
@@ -92,7 +92,7 @@ TEST(DatasetConfigFile, ARepeatedBranchIsKeptAsAsked) {
   EXPECT_EQ(load_study(kept).grid.plants.size(), 5U);
 }
 
-TEST(DatasetConfigFile, ValuesArriveWhereTheyBelong) {
+TEST(DatasetConfigFile, ReadsAllValues) {
   const Changed folder;
   const Study s = load_study(folder.read());
   const DatasetConfig& c = s.config;
@@ -123,7 +123,7 @@ TEST(DatasetConfigFile, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(folder.refusal("seed = 1", "sede = 1"), HasSubstr("unknown key sede at"));
 }
 
-TEST(DatasetConfigFile, TheCommandLineKeepsTheSameLimits) {
+TEST(DatasetConfigFile, CommandLineHasTheSameLimits) {
   const Changed folder;
   Overrides o;
   o.draws = o.seed = ~std::uint64_t{0};
@@ -163,7 +163,7 @@ TEST(DatasetConfigFile, ShardsAreSizedInBytes) {
   EXPECT_THROW(folder.read("", "", {.draws_per_shard = 5, .shard_megabytes = 6.0}), InputError);
 }
 
-TEST(DatasetConfigFile, OnlyAskedChannelsAndRates) {
+TEST(DatasetConfigFile, AcceptsListedChannelsAndRatesOnly) {
   const Changed folder;
   const DatasetConfig whole = folder.read();
   const std::string last = whole.record.channels.back(), first = whole.record.channels.front();
@@ -175,7 +175,7 @@ TEST(DatasetConfigFile, OnlyAskedChannelsAndRates) {
   EXPECT_THROW(folder.read("", "", {.rate = 0.0}), InputError);
 }
 
-TEST(DatasetConfigFile, HashChangesWithEverythingBytesDependOn) {
+TEST(DatasetConfigFile, HashCoversAllInputsOfTheBytes) {
   const Changed folder;
   const std::string base = config_hash(folder.read(), "k");
   EXPECT_EQ(base.size(), 16u);

@@ -26,11 +26,11 @@ DatasetConfig config(const std::string& name = "ieee39_genrou_points", std::uint
   Overrides o;
   o.draws = draws;
   DatasetConfig c = read_dataset_config(kPointConfigs / (name + ".toml"), o);
-  c.record.t_end = 3.0;  // enough to see the fault, quick
+  c.record.t_end = 3.0;  // covers the fault; short for speed
   return c;
 }
 
-/// What a grid looks like, as numbers.
+/// Characteristic numbers of a grid.
 std::vector<double> figures(const sim::grid::Grid& grid) {
   std::vector<double> all;
   for (const auto& v : grid.flow.voltage) all.insert(all.end(), {v.real(), v.imag()});
@@ -51,7 +51,7 @@ TEST(OperatingPoint, IsAFunctionOfSeedAndBlock) {
   forward.at(0);
   forward.at(4);
   EXPECT_EQ(figures(*forward.at(5).grid), figures(*alone.at(5).grid));
-  EXPECT_EQ(forward.at(5).grid, forward.at(5).grid);  // kept
+  EXPECT_EQ(forward.at(5).grid, forward.at(5).grid);  // cached
   EXPECT_NE(figures(*forward.at(6).grid), figures(*alone.at(5).grid));
   DatasetConfig other = config();
   other.seed = 2;
@@ -59,7 +59,7 @@ TEST(OperatingPoint, IsAFunctionOfSeedAndBlock) {
   EXPECT_NE(figures(*OperatingPoints(second).at(5).grid), figures(*alone.at(5).grid));
 }
 
-/// At every bus what the generators give is what loads and branches take.
+/// At every bus the generation equals the power of loads and branches.
 TEST(OperatingPoint, PowerIsBalancedAtEveryBus) {
   const Study study = load_study(config());
   OperatingPoints points(study);
@@ -75,7 +75,7 @@ TEST(OperatingPoint, PowerIsBalancedAtEveryBus) {
   }
 }
 
-TEST(OperatingPoint, RangesAreTheConfigs) {
+TEST(OperatingPoint, StaysWithinTheConfiguredRanges) {
   const Study study = load_study(config());
   const OperatingPointConfig& c = *study.config.operating_point;
   OperatingPoints points(study);
@@ -94,7 +94,8 @@ TEST(OperatingPoint, RangesAreTheConfigs) {
       const double loading = std::abs(plant.generation) * grid.network.base_mva / plant.mva;
       EXPECT_GE(loading, c.loading_low / c.oversized_high - 1e-12);
       EXPECT_LE(loading, c.loading_high + 1e-12);
-      // Below the range only the oversized come: three quarters of them, with loading uniform over 2 to 10.
+      // Only oversized machines are below the range: three quarters of them, with loading uniform over 2
+      // to 10.
       oversized += loading < c.loading_low ? 1.0 : 0.0;
       if (grid.network.buses[bus].type == sim::network::BusType::slack) continue;
       const double times = plant.generation.real() / own.generation.real();
@@ -103,8 +104,7 @@ TEST(OperatingPoint, RangesAreTheConfigs) {
       ratio += times / (9.0 * kBlocks);
     }
   }
-  // Uniform over 0.5 to 1.1: mean 0.8, standard error of 300 blocks 0.01; what is drawn again moves it a
-  // little.
+  // Uniform over 0.5 to 1.1: mean 0.8, standard error of 300 blocks 0.01; redraws shift it slightly.
   EXPECT_NEAR(load, 0.8, 0.05);
   EXPECT_NEAR(ratio, 0.8 * 0.95, 0.05);
   EXPECT_LT(v_low, -0.029);
@@ -138,7 +138,7 @@ TEST(OperatingPoint, RedrawsAndCountsInfeasiblePoints) {
   }
 }
 
-TEST(OperatingPoint, LinesOutLeaveTheGridWhole) {
+TEST(OperatingPoint, LineOutagesKeepTheGridConnected) {
   DatasetConfig c = config();
   c.operating_point->lines_out_high = 2;
   const Study study = load_study(c);
@@ -172,8 +172,8 @@ std::size_t channel(const Case& c, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-/// Power on the row's base is the power flow's, whatever the base; and the whole record is that of a grid
-/// which stands at this operating point by itself.
+/// Power on the row's base equals that of the power flow for any base, and the record equals that of a
+/// separate grid at this operating point.
 void expect_rows_are_their_grids(const DatasetConfig& config) {
   Case c(config);
   const store::ShardData d = c.make(0, config.draws);
@@ -210,15 +210,15 @@ void expect_rows_are_their_grids(const DatasetConfig& config) {
   }
 }
 
-TEST(OperatingPointRows, AreTheirGridsOwnRecords) { expect_rows_are_their_grids(config()); }
-TEST(OperatingPointRows, AlsoWhereOneGeneratorVaries) {
+TEST(OperatingPointRows, EqualRecordsOfTheirGrid) { expect_rows_are_their_grids(config()); }
+TEST(OperatingPointRows, EqualRecordsOfTheirGrid_WhenOneGeneratorVaries) {
   DatasetConfig c = config("ieee39_genrou", 60);
   c.operating_point = config().operating_point;
   expect_rows_are_their_grids(c);
 }
 
-/// Ranks and shards cut a dataset anywhere, also inside a block.
-TEST(OperatingPointRows, PartsMakeTheWhole) {
+/// Ranks and shards may divide a dataset anywhere, also inside a block.
+TEST(OperatingPointRows, PartsEqualTheWhole) {
   Case c(config());
   const store::ShardData whole = c.make(0, 24), first = c.make(0, 11), rest = c.make(11, 13);
   auto hashes = store::row_hashes(first), more = store::row_hashes(rest);
@@ -230,7 +230,7 @@ TEST(OperatingPointRows, PartsMakeTheWhole) {
   EXPECT_EQ(redrawn.size(), 48u);
 }
 
-TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
+TEST(OperatingPointConfigFile, HashCoversEveryKeyAndRefusalsNameThem) {
   const test::Folder folder;
   const std::string text = read_text(kPointConfigs / "ieee39_gencls_points.toml");
   const auto read = [&](const std::string& from, const std::string& to) {
@@ -264,7 +264,7 @@ TEST(OperatingPointConfigFile, HashKnowsEveryKeyAndRefusalsNameThem) {
   EXPECT_THAT(refusal("voltage = 0.03", "volts = 0.03"), HasSubstr("unknown key operating_point.volts"));
 }
 
-TEST(OperatingPointRows, WithoutTheTableThereAreNone) {
+TEST(OperatingPointRows, AreAbsentWithoutTheTable) {
   DatasetConfig c = config();
   const std::string with = c.canonical();
   c.operating_point.reset();

@@ -20,7 +20,7 @@ struct MadeCase {
     o.draws = draws;
     DatasetConfig c =
         read_dataset_config(std::string(SWINGBANK_SOURCE) + "/configs/datasets/" + name + ".toml", o);
-    c.record.t_end = 3.0;  // enough to see the fault, quick
+    c.record.t_end = 3.0;  // covers the fault; short for speed
     return load_study(c);
   }
   MadeCase(const std::string& name, std::uint64_t draws)
@@ -35,7 +35,7 @@ std::size_t channel_index(const MadeCase& c, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
+TEST(Sampling, GeneratorsAlternateAndFaultsShareADatabankPoint) {
   MadeCase c("ieee39_gencls", 40);
   Sampler sampler(c.study, c.bank);
   for (std::uint64_t id = 0; id < 40; ++id) {
@@ -52,15 +52,16 @@ TEST(Sampling, GeneratorsTakeTurnsAndFaultsShareAPoint) {
   EXPECT_NE(shared.draw(0).job.event.faults[0].t_off, shared.draw(1).job.event.faults[0].t_off);
 }
 
-TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
+TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
   MadeCase c("ieee39_gencls", 20);
   const store::ShardData d = c.maker.make(0, 20, no_tick);
   ASSERT_GT(d.rows, 10u);
   Sampler sampler(c.study, c.bank);
   sim::lanes::BatchOptions options = batch_options(c.study.config);
   options.lanes = 1;
-  sim::lanes::Batch alone(c.study.grid,
-                          options);  // every plant, every channel, one lane: another way to the same values
+  sim::lanes::Batch alone(
+      c.study.grid,
+      options);  // every plant and channel, one lane: an independent way to the same values
   const std::size_t q = channel_index(c, "Q");
   for (std::size_t row = 0; row < d.rows; row += 5) {
     const Draw draw = sampler.draw(d.sample_id[row]);
@@ -78,7 +79,7 @@ TEST(ShardMaking, RowsAreTheKernelsOwnRecords) {
   }
 }
 
-TEST(ShardMaking, PartsMakeTheWhole) {
+TEST(ShardMaking, PartsEqualTheWhole) {
   MadeCase c("ieee39_genrou", 24);
   const store::ShardData whole = c.maker.make(0, 24, no_tick), first = c.maker.make(0, 7, no_tick),
                          rest = c.maker.make(7, 17, no_tick);
@@ -94,13 +95,13 @@ TEST(ShardMaking, TicksCountEveryRun) {
   EXPECT_EQ(ticks, 30u);
 }
 
-TEST(ShardMaking, UnstableDrawsLeaveNoRowButAreListed) {
+TEST(ShardMaking, UnstableDrawsAreListedWithoutARow) {
   MadeCase c("ieee39_genrou", 60);
   const store::ShardData d = c.maker.make(0, 60, no_tick);
   ASSERT_EQ(d.draw_outcome.size(), 60u);
   const auto stable = static_cast<std::size_t>(std::ranges::count(d.draw_outcome, 0));
   EXPECT_EQ(d.rows, stable);
-  EXPECT_LT(stable, 60u);  // at three seconds some of sixty have lost synchronism
+  EXPECT_LT(stable, 60u);  // within three seconds some of sixty lose synchronism
   for (std::size_t row = 0; row < d.rows; ++row) EXPECT_EQ(d.draw_outcome[d.sample_id[row]], 0);
   for (const float v : d.records) ASSERT_TRUE(std::isfinite(v));
 }
@@ -114,7 +115,7 @@ TEST(ShardMaking, AllVaryGivesARowPerGenerator) {
   EXPECT_NE(d.parameters[0], d.parameters[2]);
 }
 
-TEST(ShardMaking, AngleIsMarkedInvalidExactlyWhereTheTerminalIsShorted) {
+TEST(ShardMaking, AngleIsInvalidOnlyDuringATerminalFault) {
   MadeCase c("ieee39_gencls_all", 1);
   // A fault at the terminal of bus 30, 0.1 s: samples in (2.0, 2.1] see V = 0, the one at 2.0 is the value
   // before.
@@ -126,8 +127,8 @@ TEST(ShardMaking, AngleIsMarkedInvalidExactlyWhereTheTerminalIsShorted) {
   for (std::size_t k = 0; k < d.samples; ++k) {
     const bool shorted = k > 240 && k <= 252;
     EXPECT_EQ(d.angle_valid[k], shorted ? 0 : 1) << k;
-    EXPECT_EQ(std::abs(d.records[v * d.samples + k]) < 1e-11F, shorted) << k;  // the kernel gives 1e-12
-    EXPECT_EQ(d.angle_valid[d.samples + k], 1) << k;                           // bus 31 keeps some voltage
+    EXPECT_EQ(std::abs(d.records[v * d.samples + k]) < 1e-11F, shorted) << k;  // the kernel returns 1e-12
+    EXPECT_EQ(d.angle_valid[d.samples + k], 1) << k;                           // bus 31 has a nonzero voltage
     EXPECT_LT(std::abs(d.records[f * d.samples + k]), 0.5F);
   }
   EXPECT_EQ(d.records[f * d.samples], 0.0F);

@@ -1,4 +1,4 @@
-// Shards from memory are the same whether one thread makes them or several.
+// Shards in memory do not depend on the number of threads.
 #include "mpi/draw/simulated_shards.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(SimulatedShards, DoNotDependOnTheNumberOfThreads) {
   o.draws = 10;
   o.draws_per_shard = 2;
   DatasetConfig c = read_dataset_config(SWINGBANK_SOURCE "/configs/datasets/ieee14_genrou_bus3.toml", o);
-  c.record.t_end = 2.0;  // enough to see the fault, quick
+  c.record.t_end = 2.0;  // covers the fault; short for speed
   SimulatedShards one(c, 1), three(c, 3);
   ASSERT_EQ(one.header().shard_count(), 5U);
   for (std::uint64_t k = 0; k < one.header().shard_count(); ++k) {

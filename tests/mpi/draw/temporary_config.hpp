@@ -1,10 +1,10 @@
 #pragma once
-// Dataset configs made by tests.
+// Dataset configs for tests.
 #include "mpi/draw/dataset_config.hpp"
 
 namespace swingbank::test {
 
-/// The thesis's GENROU box, without a network: enough for a databank.
+/// The thesis's GENROU parameter box without a network, sufficient for a databank.
 inline mpi::draw::DatasetConfig genrou_box() {
   mpi::draw::DatasetConfig c;
   c.file = "genrou.toml";

@@ -1,4 +1,4 @@
-// Datasets with effects that the .dyr lacks, and with parameters of others than the machine.
+// Datasets with effects beyond the .dyr, and with varied parameters of other effects than the machine.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string with_replaced(std::string text, const std::string& from, const std::
 
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-/// The example with an exciter, small, with some texts replaced.
+/// The example with an exciter at a small size, with some texts replaced.
 DatasetConfig varied_config(const Changes& changes = {}, std::uint64_t draws = 30) {
   const test::Folder folder;
   std::string text = read_text(kEffectConfigs / "ieee39_genrou_sexs.toml");
@@ -39,7 +39,7 @@ DatasetConfig varied_config(const Changes& changes = {}, std::uint64_t draws = 3
   Overrides o;
   o.draws = draws;
   DatasetConfig c = read_dataset_config(folder.path / "c.toml", o);
-  c.record.t_end = 3.0;  // enough to see the fault, quick
+  c.record.t_end = 3.0;  // covers the fault; short for speed
   return c;
 }
 
@@ -98,15 +98,15 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(refusal("attach = [", "laws = [\"none.toml\"]\nattach = ["), HasSubstr("none.toml"));
 }
 
-TEST(VariedEffects, HashKnowsThemAndOlderConfigsKeepTheirs) {
+TEST(VariedEffects, HashCoversThemAndOlderConfigsKeepTheirHash) {
   const std::string base = config_hash(varied_config(), "k");
   EXPECT_NE(config_hash(varied_config({{"K=100,TE=0.1", "K=100,TE=0.11"}}), "k"), base);
   EXPECT_NE(config_hash(varied_config({{"TE = [0.02, 0.5]", "TE = [0.02, 0.51]"}}), "k"), base);
-  // What is said by a standard value and what is written out are the same dataset.
+  // An implicit default and the same value written out give the same dataset.
   EXPECT_EQ(config_hash(varied_config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TB=10"}}), "k"),
             config_hash(varied_config({{"TAoverTB=0.1,TB=10,EMIN=-4,EMAX=5", "TAoverTB=0.1"}}), "k"));
-  // Printed by `generate` before there were effects, or operating points, in configs; datasets made then are
-  // still known as theirs.
+  // Hashes printed by `generate` before configs had effects or operating points; such datasets must still
+  // match their configs.
   const auto hash = [](const char* name, std::uint64_t draws) {
     Overrides o;
     o.draws = draws;
@@ -132,7 +132,7 @@ TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
           sum += std::pow((b.point(i)[k] - b.point(j)[k]) / (c.box[k].high - c.box[k].low), 2.0);
       least = std::min(least, sum);
     }
-  // The distance was judged in units of the box before the values were scaled to it: rounding only.
+  // The distance was checked in units of the box before scaling: rounding only.
   EXPECT_GE(std::sqrt(least), 0.7 * (1.0 - 1e-12));
   const auto column = [&](std::size_t k) {
     double low = 1e300, high = -1e300;
@@ -142,14 +142,14 @@ TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
     }
     return std::pair(low, high);
   };
-  // 3000 uniform values leave a hundredth of either end empty with probability 0.99^3000 = 1e-13.
+  // 3000 uniform values miss the outer hundredth of an end with probability 0.99^3000 = 1e-13.
   const auto [low, high] = column(b.dimensions - 2);
   EXPECT_THAT(std::vector({low, high}),
               ElementsAre(::testing::DoubleNear(20, 2.8), ::testing::DoubleNear(300, 2.8)));
 }
 
-/// Every seventh row against a run of a grid whose plant itself has the row's parameters: another way to the
-/// same values than a job's parameters, on one lane.
+/// Compares every seventh row with a run of a grid whose plant has the row's parameters, on one lane: an
+/// independent way to the values, without the parameters of a job.
 void expect_rows_are_runs(const DatasetConfig& config) {
   VariedCase c(config);
   const store::ShardData d = c.maker.make(0, config.draws, [](std::uint64_t) {});
@@ -190,7 +190,7 @@ TEST(VariedEffects, AStepUpTransformerVariesToo) {
   expect_rows_are_runs(c);
 }
 
-TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
+TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
   const std::string law = (fs::path(SWINGBANK_SOURCE) / "configs/laws/sexs.toml").string();
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
@@ -208,7 +208,7 @@ TEST(VariedEffects, LawsAreAttachedAndVariedLikeCompiledEffects) {
     ASSERT_NEAR(both[0].records[i], both[1].records[i], 5e-6) << i;
 }
 
-TEST(VariedEffects, ShardsSayWhoseParametersTheyHold) {
+TEST(VariedEffects, ShardsNameTheEffectsOfTheirParameters) {
   const Study s = load_study(varied_config());
   store::ShardData d = test::sample_shard();
   d.attributes.parameter_effects = {"GENCLS", "SEXS"};

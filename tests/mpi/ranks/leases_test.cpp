@@ -1,5 +1,5 @@
-// Leases grow with what a shard costs and shrink towards the end; what comes back undone is given again. The
-// journal's keeper flushes once for all lines that wait, and says why a line could not be written.
+// Leases grow until they last the requested time and shrink towards the end; unfinished items are leased
+// again. The journal's keeper flushes once for all pending lines and reports why a line could not be written.
 #include "mpi/ranks/detail/leases.hpp"
 
 #include <gtest/gtest.h>
@@ -23,16 +23,16 @@ std::deque<std::uint64_t> first_shards(std::uint64_t n) {
   return all;
 }
 
-TEST(Leases, LastAsLongAsAskedOnceTheCostIsKnown) {
+TEST(Leases, LastTheRequestedTimeOnceTheCostIsKnown) {
   Leases leases(first_shards(10000), 10.0, 2);
   const auto now = Leases::Clock::now();
   EXPECT_EQ(leases.give(1, false, now), Shards{0});
   leases.take_back(1, {0}, 0.5);
   EXPECT_EQ(leases.give(1, false, now).size(), 20u);
-  EXPECT_EQ(leases.give(0, true, now).size(), 1u);  // the master's own group hands in each
+  EXPECT_EQ(leases.give(0, true, now).size(), 1u);  // the master's own group returns each shard singly
 }
 
-TEST(Leases, EndTogether) {
+TEST(Leases, ShrinkTowardsACommonEnd) {
   Leases leases(first_shards(101), 10.0, 5);
   const auto now = Leases::Clock::now();
   leases.give(1, false, now);
@@ -68,7 +68,7 @@ std::vector<store::JournalLine> line(std::uint64_t shard) {
   return {{shard, "shards/a.h5", 1, 1, 1, "0000000000000000", "0000000000000000", {}}};
 }
 
-TEST(JournalKeeper, FlushesOnceForAllThatWait) {
+TEST(JournalKeeper, FlushesOnceForAllPendingLines) {
   std::atomic<int> flushes = 0;
   std::set<std::uint64_t> written;
   JournalKeeper keeper([&](std::span<const store::JournalLine> lines) {
@@ -82,7 +82,7 @@ TEST(JournalKeeper, FlushesOnceForAllThatWait) {
   EXPECT_LE(flushes, 3);
 }
 
-TEST(JournalKeeper, SaysWhyAndWritesNoMore) {
+TEST(JournalKeeper, ReportsTheReasonAndStopsWriting) {
   int calls = 0;
   JournalKeeper keeper([&](std::span<const store::JournalLine>) {
     ++calls;

@@ -1,5 +1,5 @@
-// What several ranks do together. tests/mpi/ranks.sh runs these under mpirun with 1, 3 and 5 ranks; alone
-// they run on one.
+// Collective operations of several ranks. tests/mpi/ranks.sh runs these tests under mpirun with 1, 3 and 5
+// ranks; without a launcher they run on one.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// MPI for those tests that need it, ended when all tests are over.
+/// MPI session for the tests that need it; ends after all tests.
 class Ranks : public ::testing::Test {
  protected:
   static MpiSession& session() {
@@ -53,7 +53,7 @@ class Ranks : public ::testing::Test {
 };
 
 TEST_F(Ranks, ShardOfAGroupEqualsThatOfOneRank) {
-  // Rank r brings r + 1 rows, so that parts are uneven.
+  // Rank r contributes r + 1 rows, so that parts are uneven.
   const auto first = static_cast<std::uint64_t>(rank * (rank + 1) / 2), n = static_cast<std::uint64_t>(size);
   const ShardReceipt receipt = write_shard(
       folder / "group.h5", test::sample_shard(static_cast<std::uint64_t>(rank) + 1, first), MPI_COMM_WORLD);
@@ -76,17 +76,17 @@ TEST_F(Ranks, RanksWithoutRowsTakePart) {
   EXPECT_EQ(store::read_shard(folder / "a.h5").rows, receipt.rows);
 }
 
-TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
+TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
   const swingbank::mpi::ranks::Ranks ranks{MPI_COMM_WORLD};
   std::vector<int> told(20, 0);
   int own = 0;
   SharedItems shared;
-  for (std::size_t i = 0; i < told.size(); i += 2) shared.items.push_back(i);  // any set of numbers
+  for (std::size_t i = 0; i < told.size(); i += 2) shared.items.push_back(i);  // an arbitrary set of numbers
   shared.work = [&](std::size_t i) {
     ++own;
-    // the last rank is slow: the others take what it leaves
+    // the last rank is slow: the others take its items
     std::this_thread::sleep_for(std::chrono::milliseconds(rank == size - 1 ? 40 : 2));
-    return fmt::format("item {}\nby {}", i, rank);  // several words and lines arrive as they are
+    return fmt::format("item {}\nby {}", i, rank);  // several words and lines arrive unchanged
   };
   shared.done = [&](std::size_t i, const std::string& result) {
     EXPECT_EQ(rank, 0);
@@ -104,7 +104,7 @@ TEST_F(Ranks, EveryItemIsDoneOnceWhoeverIsFree) {
   }
 }
 
-TEST(ItemLimit, AnItemThatTakesTooLongEndsTheRunWithItsName) {
+TEST(ItemLimit, SlowItemEndsTheRunWithItsName) {
   SharedItems shared;
   shared.items = {0, 1};
   shared.work = [](std::size_t i) {
@@ -118,7 +118,7 @@ TEST(ItemLimit, AnItemThatTakesTooLongEndsTheRunWithItsName) {
               "plant 1 takes longer than 0.05 s at rank 0");
 }
 
-TEST_F(Ranks, FailureOfOneIsToldByAll) {
+TEST_F(Ranks, AllRanksReportTheFailureOfOne) {
   try {
     agree(MPI_COMM_WORLD, "here", [&] {
       if (rank == size - 1) throw InputError({"disk full", "/x", "no space", "free some"});
@@ -129,7 +129,7 @@ TEST_F(Ranks, FailureOfOneIsToldByAll) {
   }
 }
 
-TEST_F(Ranks, FolderThatIsAFileLeavesNothing) {
+TEST_F(Ranks, LeavesNothing_WhenTheFolderIsAFile) {
   if (rank == 0) write_text(folder / "file", "x");
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_THROW(write_shard(folder / "file" / "a.h5", test::sample_shard(1, static_cast<std::uint64_t>(rank)),
@@ -137,9 +137,8 @@ TEST_F(Ranks, FolderThatIsAFileLeavesNothing) {
                InputError);
 }
 
-// OpenMPI 4.1.4 gives wrong data here from three ranks up unless MpiSession's setting stands
-// (open-mpi/ompi#10546): every fourth sample of rows that differ from rank to rank, read collectively, many
-// times.
+// Repeated collective reads of every fourth sample, with different rows on each rank. OpenMPI 4.1.4 returns
+// wrong data here for three or more ranks without the setting of MpiSession (open-mpi/ompi#10546).
 TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
   constexpr hsize_t kRows = 64, kSamples = 600, kStep = 4;
   if (rank == 0) {
@@ -176,7 +175,7 @@ TEST_F(Ranks, CollectiveReadsOfIrregularSelectionsAreRight) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Report, SurvivesTheJourney) {
+TEST(Report, RoundTripKeepsAllFields) {
   Report r;
   r.finished = {
       {3,
@@ -200,13 +199,13 @@ TEST(Report, SurvivesTheJourney) {
   EXPECT_EQ(back.problems[0].remedy, r.problems[0].remedy);
 }
 
-TEST(Report, PathThatIsNoUtf8Travels) {
+TEST(Report, RoundTripKeepsPathsThatAreNotUtf8) {
   Report r;
   r.problems = {{"disk full", "/data/m\xfcller", "no space", "free some"}};
   EXPECT_EQ(unpack(pack(r)).problems.at(0).where, "/data/m\xEF\xBF\xBDller");  // U+FFFD
 }
 
-/// Where there are several ranks it ends them, so tests/mpi/failing_rank.sh runs it by itself.
+/// This test ends all ranks if there are several, so tests/mpi/failing_rank.sh runs it separately.
 class FailingRank : public Ranks {};
 
 TEST_F(FailingRank, EndsAll) {

@@ -1,4 +1,4 @@
-// A step that takes too long is told once, with the system's last error; one that ends in time is not.
+// A step that takes too long is reported once, with the last system error; one that ends in time is not.
 #include "mpi/ranks/detail/step_watch.hpp"
 
 #include <fcntl.h>
@@ -13,11 +13,11 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-TEST(StepWatch, TellsOfAStepThatHangs) {
+TEST(StepWatch, ReportsAStepThatHangs) {
   testing::internal::CaptureStderr();
   {
     const StepWatch watch(3, "create", "shards/0.h5", milliseconds(20));
-    EXPECT_EQ(::open("/", O_WRONLY), -1);  // of the step
+    EXPECT_EQ(::open("/", O_WRONLY), -1);  // last system error of the step
     std::this_thread::sleep_for(milliseconds(400));
     EXPECT_EQ(::open("", O_RDONLY), -1);
   }
@@ -28,7 +28,7 @@ TEST(StepWatch, TellsOfAStepThatHangs) {
   EXPECT_EQ(told.find("rank 3"), told.rfind("rank 3"));
 }
 
-TEST(StepWatch, IsSilentOfStepsThatEnd) {
+TEST(StepWatch, IgnoresStepsThatEnd) {
   testing::internal::CaptureStderr();
   for (int k = 0; k < 300; ++k) const StepWatch watch(0, "close", "shards/0.h5");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

@@ -59,7 +59,7 @@ struct TwoShards : Folder {
     Journal journal(path / "journal.jsonl");
     const JournalLine finished[] = {line_of(path, 1, sample_shard(5, 5, 1)),
                                     line_of(path, 0, sample_shard(5, 0, 0))};
-    journal.append(finished);  // order of finishing is not order of number
+    journal.append(finished);  // shards finish in another order than their numbers
   }
 };
 
@@ -107,7 +107,7 @@ void edit_line(const std::filesystem::path& folder, const std::function<void(Jou
   write_text(folder / "journal.jsonl", text);
 }
 
-/// The journal as if shard 0 had been written as it is now, but for its hash.
+/// The journal with a line that matches the present shard 0 except for its hash.
 void journal_as_it_is(const std::filesystem::path& folder) {
   edit_line(folder, [&](JournalLine& l) {
     l.bytes = std::filesystem::file_size(folder / l.file);
@@ -115,7 +115,7 @@ void journal_as_it_is(const std::filesystem::path& folder) {
   });
 }
 
-TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsAChangedRow) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000000.h5";
   ShardData d = read_shard(file);
@@ -129,7 +129,7 @@ TEST(DatasetFolder, ChangedRowIsFoundByVerify) {
               HasSubstr("changed shard at " + file.string() + " (its hash"));
 }
 
-TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsAShardOfAnotherConfig) {
   const TwoShards folder;
   const auto file = folder.path / "shards/shard-000000.h5";
   ShardData d = read_shard(file);
@@ -143,7 +143,7 @@ TEST(DatasetFolder, ShardOfAnotherConfigIsFoundByVerify) {
               HasSubstr("a shard of another config"));
 }
 
-TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
+TEST(DatasetFolder, VerifyDetectsWrongCountsInTheJournal) {
   const std::pair<std::function<void(JournalLine&)>, std::string> wrong[] = {
       {[](JournalLine& l) { l.rows = 1'000'000'000'000'000; }, "wrong shape of /records"},
       {[](JournalLine& l) { l.rows = 4; }, "wrong shape of /records"},
@@ -161,7 +161,7 @@ TEST(DatasetFolder, JournalThatCountsOtherwiseIsFoundByVerify) {
   }
 }
 
-TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
+TEST(DatasetFolder, RefusesShapesThatContradictTheHeader) {
   const std::pair<std::function<void(ShardData&)>, std::string> wrong[] = {
       {[](ShardData& d) { d.samples = 3; }, "it is 5 x 2 x 3, not 5 x 2 x 9"},
       {[](ShardData& d) {
@@ -189,7 +189,7 @@ TEST(DatasetFolder, ShapesThatAreNotTheHeadersAreRefused) {
   }
 }
 
-TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
+TEST(DatasetFolder, RefusesHeadersThatJsonCannotHold) {
   const Folder folder;
   DatasetHeader h;
   h.name = "b\xff";
@@ -198,7 +198,7 @@ TEST(DatasetFolder, HeaderThatJsonCannotHoldIsRefused) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
-TEST(DatasetFolder, HeaderSaysWhatTheMachinesHold) {
+TEST(DatasetFolder, HeaderDescribesTheMachines) {
   const Folder folder;
   DatasetHeader h;
   h.draws_per_shard = 1;
@@ -224,12 +224,12 @@ TEST(DatasetFolder, HeaderSaysWhatTheMachinesHold) {
               HasSubstr("held or machine_base is not given for each of its generators"));
 }
 
-TEST(DatasetFolder, NoDatasetIsNamed) {
+TEST(DatasetFolder, NamesFoldersWithoutADataset) {
   const Folder folder;
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
 }
 
-/// Flips one bit of every `step`-th byte of every file of a dataset, one after the other; each must be found.
+/// Flips one bit of every `step`-th byte of every file of a dataset, one at a time; each must be detected.
 void flip_every(std::size_t step) {
   const TwoShards folder;
   int flipped = 0;
@@ -237,8 +237,7 @@ void flip_every(std::size_t step) {
        {"dataset.json", "journal.jsonl", "shards/shard-000000.h5", "shards/shard-000001.h5"}) {
     const std::string whole = read_text(folder.path / name);
     for (std::size_t i = 0; i < whole.size(); i += step) {
-      if (whole[i] == '\n' && i + 1 == whole.size())
-        continue;  // a last line without its line feed is left out
+      if (whole[i] == '\n' && i + 1 == whole.size()) continue;  // a last line without line feed is ignored
       std::string changed = whole;
       changed[i] = static_cast<char>(changed[i] ^ (1 << i % 8));
       std::ofstream(folder.path / name, std::ios::binary) << changed;
@@ -252,10 +251,10 @@ void flip_every(std::size_t step) {
   ::testing::Test::RecordProperty("flipped", flipped);
 }
 
-TEST(DatasetFolder, FlippedBytesAreFound) { flip_every(37); }
-TEST(DatasetFolderFull, EveryFlippedByteIsFound) { flip_every(1); }
+TEST(DatasetFolder, DetectsFlippedBytes) { flip_every(37); }
+TEST(DatasetFolderFull, DetectsEveryFlippedByte) { flip_every(1); }
 
-TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
+TEST(JournalFile, DropsAHalfWrittenLastLine) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
   std::ofstream(file, std::ios::app) << "{\"shard\":2,\"fi";
@@ -270,7 +269,7 @@ TEST(JournalFile, HalfWrittenLastLineIsLeftOutAndCutOff) {
   EXPECT_EQ(lines[2].shard, 2u);
 }
 
-/// The journal's text with shard 1 once more, with another number of rows.
+/// The journal with a second line for shard 1 that has another number of rows.
 std::string contradiction(const std::filesystem::path& file) {
   JournalLine other = parse_journal_line(read_text(file));  // of shard 1, which ended first
   other.rows += 1;
@@ -288,7 +287,7 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   EXPECT_THAT(sentence, HasSubstr("damaged journal line at " + file.string() + ":1"));
   EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":6 (it is not what " +
                                   file.string() + ":2 says"));
-  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // the same line twice is no contradiction
+  EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // a repeated line is no contradiction
 
   Problems damaged;
   EXPECT_EQ(read_journals(folder.path, &damaged).size(), 1u);
@@ -299,7 +298,7 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   EXPECT_EQ(lines[0].shard, 0u);
 }
 
-TEST(JournalFile, ACountThatIsNoneIsDamageThoughTheSumIsTrue) {
+TEST(JournalFile, RefusesInvalidCountsWithACorrectChecksum) {
   const TwoShards folder;
   const auto file = folder.path / "journal.jsonl";
   const std::string text = read_text(file);
@@ -314,7 +313,7 @@ TEST(JournalFile, ACountThatIsNoneIsDamageThoughTheSumIsTrue) {
   }
 }
 
-TEST(JournalFile, PartsAreReadAsOne) {
+TEST(JournalFile, ReadsAllPartsTogether) {
   const TwoShards folder;
   const std::string text = read_text(folder.path / "journal.jsonl"),
                     first = text.substr(0, text.find('\n') + 1);

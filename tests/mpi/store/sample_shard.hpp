@@ -1,5 +1,5 @@
 #pragma once
-// A small shard with recognisable contents, and a folder that removes itself.
+// A small shard with recognisable contents, and a temporary folder.
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,5 +1,4 @@
-// What keeps a dataset of millions of shards usable: int16 records, folders, manifest, virtual dataset,
-// merge.
+// Support for datasets of millions of shards: int16 records, folders, manifest, virtual dataset, merge.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -33,7 +32,7 @@ std::string sentence_from(const std::function<void()>& work) {
   return "nothing thrown";
 }
 
-/// `shards` shards of five rows; those in `made` are there.
+/// A dataset of `shards` shards of five rows; only those in `made` exist.
 void make_part(const fs::path& folder, std::uint64_t shards, const std::vector<std::uint64_t>& made,
                const std::string& config = "0123456789abcdef", bool int16 = false) {
   const ShardAttributes a = sample_shard().attributes;
@@ -73,7 +72,7 @@ void make_part(const fs::path& folder, std::uint64_t shards, const std::vector<s
   }
 }
 
-TEST(Quantise, IsOffByAtMostHalfAStep) {
+TEST(Quantise, ErrorIsAtMostHalfAStep) {
   RowBlock b;
   b.rows = 2;
   b.channels = 3;
@@ -108,7 +107,7 @@ TEST(Quantise, IsOffByAtMostHalfAStep) {
   EXPECT_EQ(again.records, b.records);
 }
 
-TEST(Quantise, ShardGivesBackWhatItHashed) {
+TEST(Quantise, ShardReturnsTheHashedValues) {
   const Folder folder;
   make_part(folder.path, 1, {0}, "0123456789abcdef", true);
   const Dataset d = open_dataset(folder.path);
@@ -124,7 +123,7 @@ TEST(Quantise, ShardGivesBackWhatItHashed) {
   EXPECT_EQ(f.text_attribute("format"), "swingbank-shard-2");
 }
 
-TEST(Quantise, TakesHalfTheBytes) {
+TEST(Quantise, HalvesTheBytes) {
   const Folder folder;
   ShardData d = sample_shard();
   d.samples = 1800;
@@ -138,7 +137,7 @@ TEST(Quantise, TakesHalfTheBytes) {
               5 * 2 * 1800 * 2, 1000);
 }
 
-TEST(ShardNames, NoFolderHoldsMoreThanAThousand) {
+TEST(ShardNames, FoldersHoldAtMostAThousandShards) {
   EXPECT_EQ(shard_file_name(12, 1000), "shards/shard-000012.h5");
   EXPECT_EQ(shard_file_name(12, 1001), "shards/000/shard-000012.h5");
   EXPECT_EQ(shard_file_name(1012, 2000), "shards/001/shard-001012.h5");
@@ -153,7 +152,7 @@ TEST(ShardNames, NoFolderHoldsMoreThanAThousand) {
   for (const auto& [folder, names] : entries) EXPECT_LE(names.size(), 1000U) << folder;
 }
 
-TEST(Manifest, SaysWhatTheJournalsSay) {
+TEST(Manifest, EqualsTheJournals) {
   const Folder folder;
   make_part(folder.path, 3, {2, 0, 1});
   EXPECT_FALSE(read_manifest(folder.path));
@@ -167,7 +166,7 @@ TEST(Manifest, SaysWhatTheJournalsSay) {
   EXPECT_EQ(after.outcomes, before.outcomes);
 }
 
-TEST(Manifest, OpensWithoutALookAtEachFile) {
+TEST(Manifest, OpensADatasetWithoutReadingEachFile) {
   const Folder folder;
   make_part(folder.path, 3, {0, 1, 2});
   index_dataset(folder.path);
@@ -180,7 +179,7 @@ TEST(Manifest, OpensWithoutALookAtEachFile) {
   EXPECT_THAT(sentence_from([&] { open_dataset(folder.path); }), HasSubstr("missing shard at"));
 }
 
-TEST(Manifest, OfOtherJournalsCountsAsNone) {
+TEST(Manifest, IsIgnored_WhenTheJournalsDiffer) {
   const Folder folder;
   make_part(folder.path, 3, {0, 1, 2});
   index_dataset(folder.path);
@@ -190,7 +189,7 @@ TEST(Manifest, OfOtherJournalsCountsAsNone) {
   EXPECT_THAT(sentence_from([&] { open_dataset(folder.path); }), HasSubstr("1 of 3 shards"));
 }
 
-TEST(Manifest, EveryChangedByteIsFound) {
+TEST(Manifest, DetectsEveryChangedByte) {
   const Folder folder;
   make_part(folder.path, 2, {0, 1});
   index_dataset(folder.path);
@@ -204,7 +203,7 @@ TEST(Manifest, EveryChangedByteIsFound) {
   }
 }
 
-TEST(Manifest, GoesWhenAShardIsStruck) {
+TEST(Manifest, IsRemoved_WhenAShardIsDiscarded) {
   const Folder folder;
   make_part(folder.path, 2, {0, 1});
   index_dataset(folder.path);
@@ -217,7 +216,7 @@ TEST(VirtualDataset, HoldsAllRowsInOrder) {
     const Folder folder;
     make_part(folder.path / "a", 3, {2, 0, 1}, "0123456789abcdef", int16);
     index_dataset(folder.path / "a");
-    fs::rename(folder.path / "a", folder.path / "b");  // it moves with its folder
+    fs::rename(folder.path / "a", folder.path / "b");  // the dataset may be moved with its folder
     const h5::File f = h5::File::open(folder.path / "b" / kVirtualFile);
     ShardData all = sample_shard(15);
     if (int16) {
@@ -258,7 +257,7 @@ TEST(Merge, JoinsPartsToTheSameDataset) {
   EXPECT_TRUE(fs::exists(folder.path / "out" / kVirtualFile));
 }
 
-TEST(Merge, RefusesWhatDoesNotBelongTogether) {
+TEST(Merge, RefusesPartsOfDifferentDatasets) {
   const Folder folder;
   make_part(folder.path / "a", 4, {0, 2});
   make_part(folder.path / "other", 4, {1, 3}, "ffffffffffffffff");
@@ -274,7 +273,7 @@ TEST(Merge, RefusesWhatDoesNotBelongTogether) {
               }),
               HasSubstr("changed shard at " + (folder.path / "b/shards/shard-000003.h5").string()));
   const Dataset d = open_dataset(folder.path / "out", true);
-  EXPECT_EQ(d.shards.size(), 3U);  // the others are there
+  EXPECT_EQ(d.shards.size(), 3U);  // the others exist
   EXPECT_FALSE(fs::exists(folder.path / "out/shards/shard-000003.h5"));
 }
 

@@ -28,7 +28,7 @@ std::string refusal_of(const std::function<void()>& work) {
   return "nothing thrown";
 }
 
-TEST(Shard, ComesBackAsWritten) {
+TEST(Shard, RoundTripKeepsAllData) {
   const Folder folder;
   const ShardData d = sample_shard();
   write_shard(folder.path / "a.h5", d);
@@ -99,12 +99,13 @@ TEST(Shard, EmptyShardIsReadable) {
 TEST(Shard, EqualContentMakesEqualBytes) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's times count seconds
+  std::this_thread::sleep_for(
+      std::chrono::milliseconds(1100));  // HDF5's time stamps have a resolution of 1 s
   write_shard(folder.path / "b.h5", sample_shard());
   EXPECT_EQ(read_text(folder.path / "a.h5"), read_text(folder.path / "b.h5"));
 }
 
-TEST(Shard, EveryByteOfARowCounts) {
+TEST(Shard, HashCoversEveryByteOfARow) {
   const std::uint64_t hash = shard_hash(sample_shard());
   ShardData d = sample_shard();
   d.records.back() += 1.0F;
@@ -153,7 +154,7 @@ TEST(Shard, AnotherConfigIsRefused) {
               HasSubstr("another config"));
 }
 
-TEST(Shard, ReadApartIsTheSame) {
+TEST(Shard, SeparateProcessReadsTheSameData) {
   const Folder folder;
   const std::filesystem::path file = folder.path / "s.h5";
   for (const bool points : {false, true}) {
@@ -172,13 +173,13 @@ TEST(Shard, ReadApartIsTheSame) {
     EXPECT_EQ(apart.machine_base, here.machine_base);
   }
 }
-TEST(Shard, DamagedIsToldApart) {
+TEST(Shard, DistinguishesDamagedFiles) {
   const Folder folder;
   const std::filesystem::path file = folder.path / "s.h5";
   write_shard(file, test::sample_shard());
   const std::string whole = read_text(file);
   int told = 0;
-  for (std::size_t k = 0; k < 40; ++k) {  // over all of it: most bytes are descriptions
+  for (std::size_t k = 0; k < 40; ++k) {  // over the whole file: most bytes are metadata
     std::string bytes = whole;
     bytes[k * whole.size() / 40] ^= '\x7f';
     std::ofstream(file, std::ios::binary) << bytes;

@@ -18,14 +18,14 @@ std::vector<double> frequency_of(const std::vector<double>& theta) {
 }
 
 TEST(TerminalFrequency, SteadyRampGivesItsSlope) {
-  const double deviation = 0.01;  // pu: theta grows by 2 pi 60 0.01 rad/s, several turns in all
+  const double deviation = 0.01;  // pu: theta grows by 2 pi 60 0.01 rad/s and wraps several times
   std::vector<double> theta;
   for (int k = 0; k < 600; ++k) theta.push_back(2 * std::numbers::pi * kF0 * deviation * k / kRate);
-  // After 5 s the slower filter has settled to exp(-50); rounding of the angles remains.
+  // After 5 s the slower filter has settled to exp(-50); only rounding of the angles remains.
   EXPECT_NEAR(frequency_of(theta).back(), deviation, 1e-10);
 }
 
-TEST(TerminalFrequency, WrappedAnglesGiveTheSame) {
+TEST(TerminalFrequency, WrappedAnglesGiveTheSameResult) {
   std::vector<double> straight, wrapped;
   for (int k = 0; k < 600; ++k) {
     straight.push_back(0.5 + 4.0 * k / kRate);
@@ -35,7 +35,7 @@ TEST(TerminalFrequency, WrappedAnglesGiveTheSame) {
   for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-12);  // rounding of remainder()
 }
 
-TEST(TerminalFrequency, RampFollowsTheAnalyticAnswer) {
+TEST(TerminalFrequency, RampFollowsTheAnalyticResponse) {
   std::vector<double> theta;
   for (int k = 0; k < 120; ++k) theta.push_back(k / kRate);  // 1 rad/s
   const auto f = frequency_of(theta);
@@ -49,9 +49,9 @@ TEST(TerminalFrequency, RampFollowsTheAnalyticAnswer) {
   }
 }
 
-TEST(TerminalFrequency, GivesTheAngleBack) {
+TEST(TerminalFrequency, IntegralReturnsTheAngle) {
   std::vector<double> theta;
-  for (int k = 0; k < 1800; ++k)  // leaps and swings
+  for (int k = 0; k < 1800; ++k)  // steps and oscillation
     theta.push_back(0.3 + (k > 240 ? -0.4 : 0.0) + 0.8 * std::sin(0.02 * k) + (k == 900 ? 1.0 : 0.0));
   const auto f = frequency_of(theta);
   std::vector<double> back(theta.size());

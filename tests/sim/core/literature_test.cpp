@@ -1,4 +1,4 @@
-// Sources of parameters' values: what is said once for an effect, and what a record says itself.
+// Sources of parameter values: stated once for an effect, or by a single parameter.
 #include <gtest/gtest.h>
 
 #include "sim/core/effect.hpp"
@@ -17,7 +17,7 @@ struct Model {
        literature::derived("a time")}};
 };
 
-TEST(Literature, ARecordsSourceStandsBeforeTheEffects) {
+TEST(Literature, SourceOfAParameterPrecedesThatOfTheEffect) {
   const auto& [a, b, c] = kSourced<Model>;
   EXPECT_EQ(as_text(a.default_from), "Kundur: table 4.2");
   EXPECT_EQ(as_text(a.bounds_from), "own choice: for this test");
@@ -27,7 +27,7 @@ TEST(Literature, ARecordsSourceStandsBeforeTheEffects) {
   EXPECT_EQ(as_text(c.bounds_from), "derived: a time");
 }
 
-TEST(Literature, AReasonIsNoPublishedWork) {
+TEST(Literature, OwnReasonIsNoPublishedWork) {
   EXPECT_TRUE(kPage.work->published());
   EXPECT_FALSE(kChosen.work->published());
   EXPECT_EQ(as_text(literature::law("my_limiter.toml")), "my_limiter.toml");

@@ -76,7 +76,7 @@ TEST(FloatPackMath, AgreesWithTheLibrary) {
   EXPECT_EQ(atan2(FloatPack(0.0), FloatPack(0.0))[0], 0.0F);
 }
 
-TEST(FloatPackMath, EachLaneByItself) {
+TEST(FloatPackMath, LanesAreIndependent) {
   FloatPack x(0.0), none(-1.0);
   x.set(9, 5.0);
   const FloatPack r = select(x > FloatPack(1.0), FloatPack(1.0), FloatPack(2.0));

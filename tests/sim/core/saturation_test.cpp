@@ -1,4 +1,4 @@
-// Machine saturation through its two factors: what the quadratic is where they hardly differ.
+// Quadratic machine saturation through its two factors, also where they differ little.
 #include "sim/core/saturation.hpp"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ TEST(QuadraticSaturation, PassesThroughBothFactors) {
 
 // psi Se = B (psi - A)^2 through (1, S1.0) and (1.2, 1.2 S1.2): sqrt(1.2 S1.2/S1.0) = (1.2 - A)/(1 - A).
 // Where S1.2 < 1.2 S1.0 the vertex A lies below zero: the field then needs B A^2 at the smallest flux, and
-// more than the air-gap line says at every flux. Of the two roots the other one, (1.2 + r)/(1 + r), lies
-// between the two points; a curve from there would fall from 1 to A and is no saturation.
+// more than the air-gap line gives at every flux. The other root, (1.2 + r)/(1 + r), lies between the two
+// points; its curve would fall from 1 to A and is no saturation.
 TEST(QuadraticSaturation, FactorsThatHardlyDifferPutTheVertexBelowZero) {
   const double r = std::sqrt(1.2 * 1.02 / 1.01), A = (1.2 - r) / (1.0 - r),
                B = 1.01 / ((1.0 - A) * (1.0 - A));
@@ -35,13 +35,13 @@ TEST(QuadraticSaturation, FactorsThatHardlyDifferPutTheVertexBelowZero) {
     EXPECT_NEAR(field_demand(1.01, 1.02, psi), B * (psi - A) * (psi - A), 1e-12) << psi;
     EXPECT_GT(field_demand(1.01, 1.02, psi), 0.24) << psi;
   }
-  // What is left at the smallest flux: 0.248 pu.
+  // Field demand at the smallest flux: 0.248 pu.
   EXPECT_NEAR(field_demand(1.01, 1.02, 1e-9), B * A * A, 1e-6);
-  EXPECT_GT(field_demand(0.3, 0.37, 1e-9), -1e-12);  // a vertex above zero: nothing below it
+  EXPECT_GT(field_demand(0.3, 0.37, 1e-9), -1e-12);  // vertex above zero: no saturation below it
   EXPECT_EQ(field_demand(0.3, 0.37, 1e-6), 0.0);
 }
 
-TEST(QuadraticSaturation, NoFactorAtRatedFluxIsNone) {
+TEST(QuadraticSaturation, ZeroFactorAtRatedFluxMeansNoSaturation) {
   EXPECT_EQ(field_demand(0.0, 1.0, 1.2), 0.0);
   EXPECT_FALSE(QuadraticSaturation::possible(1.0, 0.8));
 }

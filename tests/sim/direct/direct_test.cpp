@@ -16,7 +16,7 @@ const std::vector<double> kClosedForm = {0.005, 0.01, 0.15, 0.7, 1e-4, 1e-3, 0.0
 const std::vector<double> kRefined = {2e-4, 3e-3, 1e-3, 3e-3, 1e-4, 1e-3, 1e-4, 2e-4,
                                       1e-4, 1e-3, 0,    2e-3, 2e-3, 2e-4, 0};
 
-/// Indices of GENROU's parameters that the fluxes show, with their bounds.
+/// Indices of GENROU's parameters that the fluxes determine, with their bounds.
 struct Free {
   std::vector<int> index = {0, 1, 2, 3, 6, 7, 8, 9, 11, 12, 13};
   std::vector<double> low, high;
@@ -28,7 +28,7 @@ struct Free {
   }
 };
 
-/// `worst`: largest error allowed, as a share of each parameter's value, in its order.
+/// `worst`: largest relative error allowed for each parameter, in the same order.
 void expect_near(const std::vector<double>& found, const std::vector<double>& truth,
                  const std::vector<double>& worst, const plant::Plant& plant) {
   for (std::size_t k = 0; k < truth.size(); ++k)
@@ -36,8 +36,8 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& tr
         << plant.name << " " << plant.machine.effect->parameters[k].name;
 }
 
-// The shares are the worst of these twenty records, doubled. The closed form's own weak ones are T''qo, Xl
-// and the saturation, which an integral hardly shows.
+// The limits are twice the largest errors of these twenty records. The closed form is weakest for T''qo, Xl
+// and the saturation, to which an integral is hardly sensitive.
 TEST(Direct, FindsEveryParameterOfEveryMachine) {
   const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   for (const auto& [bus, cleared] : {std::pair{16, 2.063}, {4, 2.087}}) {
@@ -70,7 +70,7 @@ TEST(Direct, FindsInertiaAndDampingOfClassicalMachines) {
   }
 }
 
-TEST(Direct, AStretchThatIsTooShortGivesNothing) {
+TEST(Direct, ReturnsNothing_WhenTheSegmentIsTooShort) {
   const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   Recording r = recorded(grid, 16, 2.063).front();
   for (auto* channel : {&r.V, &r.theta, &r.P, &r.Q, &r.speed, &r.Ifd}) channel->resize(270);

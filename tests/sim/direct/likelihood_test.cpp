@@ -1,4 +1,4 @@
-// Machines of the IEEE 39-bus system in a fault, recorded with noise: the fit is as good as the noise allows.
+// Machines of the IEEE 39-bus system in a fault, recorded with noise: the fit reaches the Cramer-Rao bound.
 #include "sim/direct/likelihood.hpp"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ Judged judge(const std::string& system, std::span<const FreeParameter> free, dou
   return all;
 }
 
-// Of ten records with two unknowns each, the mean of a squared normal number scatters by 0.3.
+// For ten records with two unknowns each, the mean of squared normal numbers has a standard deviation of 0.3.
 TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
   const std::vector<FreeParameter> free = {uniform_parameter(0, 1, 10), uniform_parameter(1, 0, 8),
                                            uniform_parameter(3, 0.05, 0.6)};
@@ -69,7 +69,7 @@ TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
   }
 }
 
-// Round-rotor machines: thirteen unknowns each, of which the stronger ones pull at one another.
+// Round-rotor machines: thirteen unknowns each, several of them strongly correlated.
 TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
   const std::vector<FreeParameter> free = {
       uniform_parameter(0, 2, 10),     uniform_parameter(1, 0.05, 0.2),   uniform_parameter(2, 0.5, 1.2),
@@ -82,7 +82,7 @@ TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
   EXPECT_LT(j.ratio, 1.6);
 }
 
-TEST(Likelihood, NamesMachinesThatItCannotPlay) {
+TEST(Likelihood, NamesUnsupportedMachines) {
   EXPECT_TRUE(has_likelihood(*library::compiled().find("GENROU")));
   EXPECT_TRUE(has_likelihood(*library::compiled().find("GENCLS")));
   EXPECT_FALSE(has_likelihood(*library::compiled().find("GENTPJ")));

@@ -7,7 +7,7 @@
 
 namespace swingbank::sim::direct {
 
-/// What a dataset keeps of one machine: 120 samples/s, single precision.
+/// Record of one machine as in a dataset: 120 samples/s, single precision.
 inline std::vector<Recording> recorded(const grid::Grid& grid, int bus, double cleared) {
   network::Event event;
   event.faults.push_back({grid.network.bus_index(bus), 2.0, cleared, {}});

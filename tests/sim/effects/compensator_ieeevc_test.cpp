@@ -1,4 +1,4 @@
-// IEEEVC: the regulated voltage by complex arithmetic, droop and line drop, nothing at zero.
+// IEEEVC: the regulated voltage by complex arithmetic, droop and line-drop compensation, no effect at zero.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

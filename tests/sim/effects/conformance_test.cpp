@@ -1,5 +1,5 @@
-// Runs over every registered effect, with no edit when one is added: records, steady state, lanes against
-// double, duals against central differences, vanishing at neutral.
+// Runs over every registered effect, including later ones: records, steady state, SIMD batch against double,
+// dual numbers against central differences, no influence at the null value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace swingbank::sim::effects {
 namespace {
 
-/// One machine evaluation; the outputs an integrator sees: emf (where the machine gives its current itself:
-/// that), speed, Te, Ifd and every derivative.
+/// Evaluates a machine once. Outputs as an integrator uses them: emf (or the current, if the machine returns
+/// it), speed, Te, Ifd and all derivatives.
 template <class T>
 struct MachineCase {
   std::vector<T> p, c, x, m;
@@ -53,7 +53,7 @@ MachineCase<T> at_steady(const Effect& e, const std::vector<T>& p, const Convent
   return k;
 }
 
-/// Whether a plant would refuse the point: a state lies outside its limits there.
+/// Returns whether a plant refuses the operating point because a state is outside its limits.
 bool beyond_limits(const Effect& e, const MachineCase<double>& k) {
   for (std::size_t i = 0; i < k.x.size(); ++i) {
     const State& state = e.states[i];
@@ -64,7 +64,7 @@ bool beyond_limits(const Effect& e, const MachineCase<double>& k) {
   return false;
 }
 
-/// Physical parameters near the middle of the records, from the standard values.
+/// Physical parameters between the defaults and the middle of their ranges.
 std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(0.95, 1.05);
   for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -100,7 +100,7 @@ TEST(Conformance, RecordsAreComplete) {
       EXPECT_LE(r.default_value, r.high) << e.name << "." << r.name;
       EXPECT_FALSE(r.unit.empty() || r.meaning.empty()) << e.name << "." << r.name;
       EXPECT_TRUE(r.default_from.given() && r.bounds_from.given()) << e.name << "." << r.name;
-      if (r.null_value == r.null_value) {  // not NaN: it has one
+      if (r.null_value == r.null_value) {  // not NaN: a null value exists
         EXPECT_TRUE(std::min(r.low, 0.0) <= r.null_value && r.null_value <= r.high)
             << e.name << "." << r.name;
       }
@@ -112,7 +112,7 @@ TEST(Conformance, RecordsAreComplete) {
   }
 }
 
-TEST(Conformance, SteadyStateStandsStill) {
+TEST(Conformance, SteadyStateHasZeroDerivatives) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (const Effect* e : machines())
@@ -176,7 +176,7 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
   }
 }
 
-TEST(Conformance, StatesStandStillWithoutTheirMovers) {
+TEST(Conformance, StatesStayConstantWithoutTheirMovers) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int tested = 0;
@@ -216,7 +216,7 @@ TEST(Conformance, LanesEqualDouble) {
     }
 }
 
-/// Outputs after prepare and steady at parameters p, with the states moved off equilibrium by `shift`.
+/// Outputs after prepare and steady at parameters p, with the states shifted from equilibrium by `shift`.
 template <class T>
 std::vector<T> moved(const Effect& e, const std::vector<T>& p, const std::vector<double>& shift) {
   auto k = at_steady<T>(e, p, Conventions::psse(), 1.02, 0.1, 0.7, -0.2);
@@ -251,8 +251,8 @@ TEST(Conformance, DualsEqualCentralDifferences) {
     }
 }
 
-TEST(Conformance, NeutralIsWhereTheInfluenceVanishes) {
-  // All parameters with a neutral value at neutral, then a hair away: outputs may move by that hair only.
+TEST(Conformance, InfluenceVanishesAtNullValue) {
+  // All parameters at their null values, then slightly away: the outputs may change only by a similar amount.
   for (const Effect* e : machines()) {
     auto null_value = e->default_parameters();
     for (std::size_t i = 0; i < null_value.size(); ++i)

@@ -1,6 +1,6 @@
 #pragma once
-// A control on the bench: its inputs are given, its outputs are read; no machine, no network. For tests of
-// step responses, of limits (wind-up and release) and of transfer functions.
+// Test bench for one control with given inputs, without machine and network. For tests of step responses,
+// limits (wind-up and release) and transfer functions.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -28,7 +28,7 @@ class ControlBench {
     s.Efd = s.Ifd = 2.0;
     return s;
   }
-  /// The effect at its standard values with `changes`, brought to steady state at `at`.
+  /// The effect with its defaults and `changes`, in steady state at `at`.
   explicit ControlBench(const Effect& effect, const Changes& changes = {}, Signals<double> at = rated(),
                         Conventions conventions = Conventions::psse())
       : effect_(&effect), in(at) {
@@ -48,12 +48,12 @@ class ControlBench {
                         Conventions conventions = Conventions::psse())
       : ControlBench(compiled(name), changes, at, conventions) {}
 
-  /// Signals as the control leaves them, at the present inputs and states.
+  /// Signals after the control's evaluation, at the present inputs and states.
   [[nodiscard]] Signals<double> out() const {
     std::vector<double> dx(x.size());
     return evaluate(x, dx);
   }
-  /// Derivatives as an integrator uses them: zero where a limit holds a state.
+  /// Derivatives as an integrator uses them: zero where a limit clamps a state.
   [[nodiscard]] std::vector<double> derivative() const {
     std::vector<double> dx(x.size());
     evaluate(x, dx);
@@ -70,22 +70,22 @@ class ControlBench {
       if (effect_->states[i].name == name) return x[i];
     throw std::runtime_error("no state " + name);
   }
-  /// Runge-Kutta steps of at most `step` with the inputs held [s]: local error (step/T)^5/120 of the shortest
-  /// time constant T.
+  /// Integrates by Runge-Kutta steps of at most `step` [s] with constant inputs. Local error (step/T)^5/120
+  /// for the shortest time constant T.
   void run(double seconds, double step = 1e-3) {
     const auto n = static_cast<int>(std::ceil(seconds / step - 1e-9));
     const double h = seconds / n;
     for (int i = 0; i < n; ++i) advance(h);
   }
-  /// Transfer function from an input to an output at s = j omega, from the linearisation at the present
-  /// point; `omega` [rad/s].
+  /// Transfer function from an input to an output at s = j omega, linearised at the present state; `omega`
+  /// [rad/s].
   std::complex<double> response(Output input, Output output, double omega) {
     return response([input](Signals<double>& s, double d) { s.*input += d; }, output, omega);
   }
   template <class Move>
   std::complex<double> response(Move move, Output output, double omega) {
     const auto n = static_cast<Eigen::Index>(x.size());
-    const double d = 1e-6;  // the equations are linear there: only rounding, 1e-10, is lost
+    const double d = 1e-6;  // the equations are linear there: only rounding of 1e-10 remains
     Eigen::MatrixXd A(n, n);
     Eigen::VectorXd B(n), C(n);
     const auto column = [&](auto change, auto restore, Eigen::Ref<Eigen::VectorXd> to) {
@@ -122,10 +122,10 @@ class ControlBench {
   const Effect* effect_;
 
  public:
-  Signals<double> in;  ///< inputs; move them between runs
+  Signals<double> in;  ///< inputs; may change between runs
   std::vector<double> p, c, x;
-  Problems problems;    ///< what check() says of the parameters
-  std::string refused;  ///< what steady() says of the operating point
+  Problems problems;    ///< reported by check() for the parameters
+  std::string refused;  ///< reason of steady() to refuse the operating point; empty: none
 
  private:
   [[nodiscard]] const Ops<double>& ops() const { return effect_->get<double>(); }
@@ -174,7 +174,7 @@ class ControlBench {
   }
 };
 
-/// (1 + s Ta)/(1 + s Tb) at s = j omega: what diagrams are multiplied from.
+/// (1 + s Ta)/(1 + s Tb) at s = j omega, a factor of block diagrams.
 inline std::complex<double> lead_over_lag(double Ta, double Tb, double omega) {
   const std::complex<double> s(0.0, omega);
   return (1.0 + s * Ta) / (1.0 + s * Tb);

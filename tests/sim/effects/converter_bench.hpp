@@ -1,5 +1,5 @@
 #pragma once
-// A converter behind an impedance alone: its steady state at 1 pu, its current and its slopes at a voltage.
+// A single converter behind an impedance: its steady state at 1 pu, its current and derivatives at a voltage.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ struct BehindImpedance {
     ops.prepare(p.data(), Conventions::psse(), c.data());
     refused = ops.machine.steady(p.data(), c.data(), s, x.data());
   }
-  /// Current along `axis` and, lagging, across it.
+  /// Current in phase with `axis` and lagging it by 90 degrees.
   std::complex<double> current(std::complex<double> v, std::complex<double> axis) {
     s.Vr = v.real(), s.Vi = v.imag();
     ops.machine.current(c.data(), x.data(), m.data(), s);

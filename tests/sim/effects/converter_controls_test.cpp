@@ -1,5 +1,5 @@
-// Controls of converters by hand: limits of the currents, what rides through a dip and after it, dead-bands,
-// freezing, the shaft's torsion.
+// Converter controls against hand calculations: current limits, behaviour during and after a voltage dip,
+// dead-bands, freezing, torsion of the shaft.
 #include <cmath>
 #include <numbers>
 
@@ -20,7 +20,7 @@ Signals<double> at_rated(double reactive = 0.0) {
   return s;
 }
 
-TEST(Reecb1, ReactiveCurrentLeavesTheRestToActive) {
+TEST(Reecb1, QPriorityLimitsTheActiveCurrent) {
   ControlBench bench("REECB1", {{"Imax", 1.0}, {"Kqv", 2.0}, {"dbd1", -0.05}, {"dbd2", 0.05}}, at_rated());
   EXPECT_TRUE(bench.problems.empty());
   EXPECT_EQ(bench.refused, "");
@@ -29,9 +29,9 @@ TEST(Reecb1, ReactiveCurrentLeavesTheRestToActive) {
   bench.run(1.0);
   const double Iq = 2.0 * (1.0 - 0.5 - 0.05);
   EXPECT_NEAR(bench.out().Efd, Iq, 1e-9);
-  EXPECT_NEAR(bench.out().Tm, std::sqrt(1.0 - Iq * Iq), 1e-9);  // 0.8/0.5 was asked for
+  EXPECT_NEAR(bench.out().Tm, std::sqrt(1.0 - Iq * Iq), 1e-9);  // demand: 0.8/0.5
 }
-TEST(Reecb1, ActiveCurrentLeavesTheRestToReactive) {
+TEST(Reecb1, PPriorityLimitsTheReactiveCurrent) {
   ControlBench bench("REECB1", {{"Imax", 1.0}, {"Kqv", 2.0}, {"PQFLAG", 1.0}}, at_rated());
   bench.in.V = 0.9;
   bench.run(1.0);
@@ -39,7 +39,7 @@ TEST(Reecb1, ActiveCurrentLeavesTheRestToReactive) {
   EXPECT_NEAR(bench.out().Tm, Ip, 1e-9);
   EXPECT_NEAR(bench.out().Efd, std::min(0.2, std::sqrt(1.0 - Ip * Ip)), 1e-9);
 }
-TEST(Reecb1, ADipFreezesTheOrderedPower) {
+TEST(Reecb1, VoltageDipFreezesTheOrderedPower) {
   ControlBench bench("REECB1", {{"Vdip", 0.9}}, at_rated());
   bench.in.V = 0.8;
   bench.in.Pext = -0.3;
@@ -49,12 +49,12 @@ TEST(Reecb1, ADipFreezesTheOrderedPower) {
   bench.run(1.0);
   EXPECT_NEAR(bench.state("Pord"), 0.5, 1e-9);
 }
-TEST(Reecb1, RefusesMoreThanItsCurrent) {
+TEST(Reecb1, RefusesOperatingPointBeyondItsCurrentLimit) {
   EXPECT_NE(ControlBench("REECB1", {{"Imax", 0.7}}, at_rated()).refused, "");
   EXPECT_EQ(ControlBench("REECB1", {{"VFLAG", 2.0}}, at_rated()).problems.list().size(), 1u);
 }
 
-TEST(Reeca1, InjectsInADipAndGoesOnAfterIt) {
+TEST(Reeca1, InjectsDuringAndAfterAVoltageDip) {
   ControlBench bench("REECA1", {{"Vdip", 0.85}, {"Vup", 1.2}, {"Kqv", 2.0}, {"Thld", -0.5}, {"Trv", 0.0}},
                      at_rated());
   EXPECT_EQ(bench.refused, "");
@@ -70,7 +70,7 @@ TEST(Reeca1, InjectsInADipAndGoesOnAfterIt) {
   bench.run(0.1);
   EXPECT_NEAR(bench.out().Efd, 0.0, 1e-12);
 }
-TEST(Reeca1, HoldsIqfrzAfterADip) {
+TEST(Reeca1, KeepsIqfrzAfterAVoltageDip) {
   ControlBench bench("REECA1", {{"Vdip", 0.85}, {"Kqv", 2.0}, {"Thld", 0.5}, {"Iqfrz", 0.15}, {"Trv", 0.0}},
                      at_rated());
   bench.in.V = 0.7;
@@ -117,7 +117,7 @@ TEST(Repca1, RegulatesOutsideItsDeadBandAndFreezes) {
   EXPECT_NEAR(bench.state("integral"), 0.1, 1e-12);
   bench.in.V = 0.97;
   bench.run(0.5);
-  bench.in.V = 1.0;  // what is measured comes back within the filter's 0.02 s
+  bench.in.V = 1.0;  // the measurement recovers with the filter's 0.02 s
   EXPECT_NEAR(bench.state("integral"), 0.1 + 5.0 * 0.02 * 0.5, 3e-3);
   bench.in.V = 0.6;
   const double before = bench.state("integral");
@@ -134,16 +134,16 @@ TEST(Repca1, DroopsWithTheFrequency) {
   EXPECT_NEAR(bench.out().Pext, 0.0, 1e-6);
 }
 
-TEST(Wtdta1, TurnsAgainstItselfAtFreq1) {
+TEST(Wtdta1, TorsionalModeOscillatesAtFreq1) {
   ControlBench bench("WTDTA1", {{"Freq1", 2.0}, {"Dshaft", 0.0}, {"Htfrac", 0.8}}, at_rated());
   EXPECT_LT(bench.largest_derivative(), 1e-12);
   const double rest = bench.state("twist");
   bench.state("twist") += 1e-3;
   bench.run(0.25, 1e-4);  // half a period
-  // constant powers are torques that fall with speed: the amplitude changes by some per cent
+  // at constant power the torque falls with speed: the amplitude changes by some per cent
   EXPECT_NEAR(bench.state("twist"), rest - 1e-3, 1e-4);
 }
-TEST(Wttqa1, AsksForTheSpeedOfItsCurve) {
+TEST(Wttqa1, SpeedReferenceFollowsItsCurve) {
   auto in = at_rated();
   in.P = in.Pneed = 0.5;
   ControlBench bench("WTTQA1", {}, in);

@@ -1,4 +1,4 @@
-// CSVGN1 by hand: what it delivers, its regulator's answer to a step, the reactor's range, what is refused.
+// CSVGN1 against hand calculations: output, step response of the regulator, range of the reactor, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ struct Compensator {
   std::string refused;
 };
 
-TEST(ConverterCsvgn1, DeliversItsCapacitorLessItsReactor) {
+TEST(ConverterCsvgn1, OutputIsCapacitorMinusReactor) {
   const std::complex<double> v = std::polar(1.04, 0.3), power(-0.01, 0.25);  // 100 MVA, 60 Mvar of capacitor
   Compensator svc({}, v, std::conj(power / v));
   ASSERT_TRUE(svc.problems.empty());
@@ -57,20 +57,20 @@ TEST(ConverterCsvgn1, DeliversItsCapacitorLessItsReactor) {
   EXPECT_NEAR(std::abs(svc.power() - power * square), 0.0, 1e-14);
 }
 
-TEST(ConverterCsvgn1, ItsRegulatorFollowsTheDiagram) {
+TEST(ConverterCsvgn1, RegulatorFollowsTheDiagram) {
   Compensator svc({{"T1", 0.3}, {"T2", 0.5}, {"T4", 2.0}, {"K", 10.0}}, 1.0, {0.0, -0.3});
   svc.at(1.02);
   auto dx = svc.derivative();
-  // The leads pass the step on at once: K (T1/T3)(T2/T4) 0.02 is asked for.
+  // The leads pass the step without delay: the demand is K (T1/T3)(T2/T4) 0.02.
   const double asked = 10.0 * 0.3 / 0.154833 * 0.25 * 0.02;
   EXPECT_NEAR(dx[2], asked / 0.005167, 1e-9);
   EXPECT_NEAR(dx[0], 0.02 / 0.154833, 1e-12);
-  svc.s.dVref = 0.02;  // the reference moved as far
+  svc.s.dVref = 0.02;  // the same change of the reference
   for (const double d : {svc.derivative()[0], svc.derivative()[1], svc.derivative()[2]})
     EXPECT_NEAR(d, 0.0, 1e-11);
 }
 
-TEST(ConverterCsvgn1, ItsLimitsAreThoseOfTheReactor) {
+TEST(ConverterCsvgn1, LimitsAreThoseOfTheReactor) {
   Compensator svc({{"RMIN", 20.0}}, 1.0, {0.0, -0.3});
   EXPECT_EQ(svc.c[static_cast<std::size_t>(svc.effect.states[2].low)], 0.2);
   EXPECT_EQ(svc.c[static_cast<std::size_t>(svc.effect.states[2].high)], 1.0);

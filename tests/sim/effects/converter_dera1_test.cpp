@@ -1,5 +1,5 @@
-// DERA1 by hand: what rides through, what is taken off and comes back, what frequency does, which current
-// yields, what is refused.
+// DERA1 against hand calculations: ride-through, tripping and reconnection, frequency response, current
+// priority, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,8 @@ struct Distributed {
     ops.machine.derivative(c.data(), at.data(), m.data(), s, dx.data());
     return dx;
   }
-  /// For `duration` [s] at the voltage v(t), t from 0: the midpoint rule, far below every time constant.
+  /// Integrates for `duration` [s] at the voltage v(t), t from 0, by the midpoint rule with steps far below
+  /// every time constant.
   void run(double duration, const std::function<std::complex<double>(double)>& v) {
     constexpr double h = 2e-5;
     const long steps = std::lround(duration / h);
@@ -82,27 +83,27 @@ struct Distributed {
   std::string refused;
 };
 
-TEST(ConverterDera1, StandsAndRidesThroughASag) {
+TEST(ConverterDera1, StaysAtOperatingPointAndRidesThroughASag) {
   Distributed der;
   ASSERT_TRUE(der.problems.empty());
   ASSERT_EQ(der.refused, "");
   for (const double d : der.slopes(der.x)) EXPECT_NEAR(d, 0.0, 1e-12);
   der.run(1.0, 0.9);
-  // The dead-band of 0.05 pu is left by 0.05 pu, at 5 pu/pu; the power comes back.
+  // The voltage exceeds the dead-band of 0.05 pu by 0.05 pu, at 5 pu/pu; the power recovers.
   EXPECT_NEAR(der.power().real(), kActive, 1e-6);
   EXPECT_NEAR(der.state("Iq"), kReactive / 0.9 + 0.25, 1e-6);
   EXPECT_EQ(der.state("least"), 0.49);
 }
 
-TEST(ConverterDera1, APartIsOffBetweenItsVoltagesAndAShareStaysOff) {
+TEST(ConverterDera1, LowVoltageTripsAPartAndAFractionReconnects) {
   const DeraChanges sags = {{"Kqv", 0.0}, {"freqFlag", 0.0}, {"Imax", 2.0}};
   Distributed brief(sags);
-  brief.run(0.2, 0.465);  // below Vl1 for 0.14 s, as the voltmeter sees it
+  brief.run(0.2, 0.465);  // below Vl1 for 0.14 s behind the voltage measurement
   EXPECT_NEAR(brief.state("M"), 0.5, 5e-3);
   brief.run(0.5, 1.0);
   EXPECT_NEAR(brief.state("M"), 1.0, 1e-6);
   EXPECT_NEAR(brief.power().real(), kActive, 1e-6);
-  EXPECT_NEAR(brief.state("low1"), 0.0, 1e-9);  // the next sag begins anew
+  EXPECT_NEAR(brief.state("low1"), 0.0, 1e-9);  // the timer is reset for the next sag
 
   Distributed lasting(sags);
   lasting.run(0.4, 0.465);
@@ -110,7 +111,7 @@ TEST(ConverterDera1, APartIsOffBetweenItsVoltagesAndAShareStaysOff) {
   EXPECT_NEAR(lasting.state("M"), 0.5 + 0.7 * 0.5, 1e-6);
   EXPECT_NEAR(lasting.power().real(), 0.85 * kActive, 1e-6);
   EXPECT_NEAR(lasting.power().imag(), 0.85 * kReactive, 1e-6);
-  lasting.run(0.4, 0.479);  // a shallower sag takes nothing more off
+  lasting.run(0.4, 0.479);  // a shallower sag trips nothing more
   EXPECT_NEAR(lasting.state("M"), 0.5 + 0.7 * (0.479 - 0.465) / 0.05, 1e-6);
 }
 
@@ -125,7 +126,7 @@ TEST(ConverterDera1, HighVoltageMirrorsLowVoltage) {
   EXPECT_NEAR(der.state("M"), 0.0, 1e-6);
 }
 
-TEST(ConverterDera1, BelowVl0ForTvl0NothingComesBack) {
+TEST(ConverterDera1, NothingReconnectsAfterTvl0BelowVl0) {
   Distributed brief({{"freqFlag", 0.0}}), lasting({{"freqFlag", 0.0}});
   brief.run(0.12, 0.2);
   EXPECT_LT(brief.state("M"), 0.1);
@@ -137,7 +138,7 @@ TEST(ConverterDera1, BelowVl0ForTvl0NothingComesBack) {
   EXPECT_NEAR(std::abs(lasting.power()), 0.0, 1e-6);
 }
 
-/// The voltage of a grid that runs `deviation` pu beside rated frequency.
+/// Voltage of a grid whose frequency deviates by `deviation` pu from the rated one.
 std::complex<double> turning_voltage(double deviation, double t) {
   return std::polar(1.0, 2 * std::numbers::pi * 60.0 * deviation * t);
 }
@@ -146,10 +147,11 @@ TEST(ConverterDera1, PowerFollowsHighFrequencyAtItsRate) {
   Distributed der;
   const auto v = [](double t) { return turning_voltage(0.005, t); };
   der.run(0.1, v);
-  EXPECT_NEAR(der.state("Pset"), kActive - 0.5 * 0.1, 0.01);  // dPmin, after the frequency's lag
+  EXPECT_NEAR(der.state("Pset"), kActive - 0.5 * 0.1,
+              0.01);  // dPmin, after the lag of the frequency measurement
   der.run(3.0, [&](double t) { return v(t + 0.1); });
   EXPECT_NEAR(der.power().real(), kActive - 20.0 * (0.005 - 0.0006), 1e-4);
-  // Dup = 0: low frequency asks for nothing.
+  // Dup = 0: no response to low frequency.
   Distributed low;
   low.run(2.0, [](double t) { return turning_voltage(-0.005, t); });
   EXPECT_NEAR(low.power().real(), kActive, 1e-6);
@@ -170,10 +172,10 @@ TEST(ConverterDera1, FrequencyTripsUnlessTheVoltageIsLow) {
   EXPECT_NEAR(low.state("M"), 1.0, 1e-6);
 }
 
-TEST(ConverterDera1, AtImaxTheFlagSaysWhichCurrentYields) {
+TEST(ConverterDera1, FlagSetsCurrentPriorityAtImax) {
   for (const bool p_first : {false, true}) {
     Distributed der({{"freqFlag", 0.0}, {"vtripFlag", 0.0}, {"Imax", 0.8}, {"pqFlag", p_first ? 1.0 : 0.0}});
-    der.run(1.0, 0.8);  // 0.75 and 0.9375 pu are asked for
+    der.run(1.0, 0.8);  // demands: 0.75 and 0.9375 pu
     const double asked_p = kActive / 0.8, asked_q = kReactive / 0.8 + 5.0 * 0.15;
     EXPECT_GT(std::hypot(asked_p, asked_q), 0.8);
     EXPECT_NEAR(std::hypot(der.state("Ip"), der.state("Iq")), 0.8, 1e-6);
@@ -184,14 +186,14 @@ TEST(ConverterDera1, AtImaxTheFlagSaysWhichCurrentYields) {
 TEST(ConverterDera1, ActiveCurrentRisesByItsRate) {
   Distributed der({{"freqFlag", 0.0}, {"rrpwr", 0.5}, {"tvl0", 99.0}, {"tvl1", 99.0}, {"Kqv", 0.0}});
   der.run(0.5, 0.2);
-  EXPECT_NEAR(der.state("Ip"), 0.0, 1e-6);  // down at once
+  EXPECT_NEAR(der.state("Ip"), 0.0, 1e-6);  // decreases without delay
   der.run(0.1, 1.0);
   const double early = der.state("Ip");
   der.run(0.5, 1.0);
   EXPECT_NEAR(der.state("Ip") - early, 0.25, 1e-6);
 }
 
-TEST(ConverterDera1, BatteriesDrawAndGeneratorsDoNot) {
+TEST(ConverterDera1, OnlyBatteriesDrawPower) {
   EXPECT_NE(Distributed({}, {-0.3, 0.0}).refused.find("genFlag"), std::string::npos);
   Distributed battery({{"genFlag", 0.0}, {"Pmin", -1.1}}, {-0.3, 0.0});
   EXPECT_EQ(battery.refused, "");
@@ -199,7 +201,7 @@ TEST(ConverterDera1, BatteriesDrawAndGeneratorsDoNot) {
   EXPECT_NEAR(battery.power().real(), -0.3, 1e-6);
 }
 
-TEST(ConverterDera1, RefusesWhatItCannotHold) {
+TEST(ConverterDera1, RefusesOperatingPointBeyondItsLimits) {
   EXPECT_NE(Distributed({{"Imax", 0.5}}).refused.find("Imax"), std::string::npos);
   EXPECT_NE(Distributed({{"Vl1", 1.02}}).refused.find("Vl1"), std::string::npos);
   EXPECT_NE(Distributed({{"ftripFlag", 1.0}, {"fh", 59.0}}).refused.find("fh"), std::string::npos);

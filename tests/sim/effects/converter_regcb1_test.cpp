@@ -1,5 +1,5 @@
-// REGCB1 by hand: the current commanded at rest, the reactance at a voltage that jumps, limits, rates, what
-// is refused.
+// REGCB1 against hand calculations: commanded current in steady state, voltage step across the reactance,
+// limits, rates, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,19 +15,19 @@ struct Behind : BehindImpedance {
   std::complex<double> current(std::complex<double> v) { return BehindImpedance::current(v, v); }
 };
 
-TEST(ConverterRegcb1, RestsWhereItIsCommanded) {
+TEST(ConverterRegcb1, StartsAtItsCommands) {
   for (const double rate_flag : {0.0, 1.0}) {
     Behind b({{"rateFlag", rate_flag}, {"Re", 0.02}});
     ASSERT_TRUE(b.problems.empty());
     ASSERT_EQ(b.refused, "");
     for (const double d : b.slopes(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
-    expect_near(b.current(std::polar(1.0, 0.7)), {0.6, 0.2}, 1e-14);  // it turns with its voltage
+    expect_near(b.current(std::polar(1.0, 0.7)), {0.6, 0.2}, 1e-14);  // rotates with the voltage
   }
 }
 
-TEST(ConverterRegcb1, AVoltageThatFallsDrivesCurrentThroughTheReactance) {
+TEST(ConverterRegcb1, VoltageDropDrivesCurrentThroughTheReactance) {
   Behind b({});
-  // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current, at once
+  // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current without delay
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
   EXPECT_NEAR(b.slopes(0.95)[3], (0.95 + 0.25 * 0.2 - b.x[3]) / 0.01, 1e-10);
   Behind resistive({{"Re", 0.25}, {"Xe", 1e-9}});
@@ -36,12 +36,12 @@ TEST(ConverterRegcb1, AVoltageThatFallsDrivesCurrentThroughTheReactance) {
   expect_near(at_once.current(0.95), {0.6, 0.2}, 1e-13);
 }
 
-TEST(ConverterRegcb1, TheLeadingCurrentTakesItsPart) {
+TEST(ConverterRegcb1, PriorityCurrentIsLimitedLast) {
   Behind q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
   expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);
   expect_near(p_leads.current(0.7), {0.6, 0.8}, 1e-13);
-  // Where it takes all, 0.025 Imax are left.
+  // At full priority current, 0.025 Imax remain for the other.
   expect_near(q_leads.current(0.5), {0.025, 1.0}, 1e-13);
 }
 
@@ -51,7 +51,7 @@ TEST(ConverterRegcb1, RatesAndRefusals) {
   auto dx = b.slopes(1.0);
   EXPECT_NEAR(dx[0], 0.5, 1e-14);
   EXPECT_NEAR(dx[1], 3.0, 1e-14);
-  b.s.Tm = 0.1, b.s.Efd = 0.1;  // downwards there is no limit: Q0 > 0
+  b.s.Tm = 0.1, b.s.Efd = 0.1;  // no lower rate limit: Q0 > 0
   dx = b.slopes(1.0);
   EXPECT_NEAR(dx[0], (0.1 - 0.6) / 0.02, 1e-11);
   EXPECT_NEAR(dx[1], (0.1 - 0.2) / 0.02, 1e-11);

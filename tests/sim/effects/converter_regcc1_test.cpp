@@ -1,5 +1,5 @@
-// REGCC1 by hand: the current commanded at rest, the phase-locked loop at an angle that jumps, its limits and
-// its freezing, the current control and its limits, the source behind its impedance, what is refused.
+// REGCC1 against hand calculations: commanded current in steady state, phase-locked loop at an angle step
+// with its limits and freezing, current control with its limits, source behind its impedance, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,14 +12,14 @@ namespace {
 
 enum X { Ip, Iq, Vf, Sp, Sq, Ed, Eq, phi, w };
 
-/// Its axis stands at angle 0, where steady() finds the voltage.
+/// The loop's axis is at angle 0, the angle of the voltage in steady().
 struct Locked : BehindImpedance {
   explicit Locked(const Changes& changes, std::complex<double> power = {0.6, 0.2})
       : BehindImpedance("REGCC1", changes, power) {}
   std::complex<double> current(std::complex<double> v) { return BehindImpedance::current(v, 1.0); }
 };
 
-TEST(ConverterRegcc1, RestsWhereItIsCommanded) {
+TEST(ConverterRegcc1, StartsAtItsCommands) {
   for (const double rate_flag : {0.0, 1.0})
     for (const double te : {0.0, 0.02}) {
       Locked b({{"rateFlag", rate_flag}, {"Re", 0.02}, {"Te", te}});
@@ -30,7 +30,7 @@ TEST(ConverterRegcc1, RestsWhereItIsCommanded) {
     }
 }
 
-TEST(ConverterRegcc1, TheLoopFollowsAnAngleThatJumps) {
+TEST(ConverterRegcc1, PllFollowsAnAngleStep) {
   Locked b({{"Kppll", 8.0}, {"Kipll", 600.0}});
   const double across = std::sin(0.1);
   auto dx = b.slopes(std::polar(1.0, 0.1));
@@ -41,12 +41,12 @@ TEST(ConverterRegcc1, TheLoopFollowsAnAngleThatJumps) {
   b.x[phi] = 0.1;
   b.x[w] = 2.0;
   dx = b.slopes(std::polar(1.0, 0.1));
-  EXPECT_NEAR(dx[phi], 2.0, 1e-13);  // locked on a frequency that is 2 rad/s too high
+  EXPECT_NEAR(dx[phi], 2.0, 1e-13);  // locked to a frequency 2 rad/s above nominal
   EXPECT_NEAR(dx[w], 0.0, 1e-11);
 }
-TEST(ConverterRegcc1, TheLoopHasLimitsAndStandsStillAtLowVoltage) {
+TEST(ConverterRegcc1, PllIsLimitedAndFrozenAtLowVoltage) {
   Locked b({{"Kppll", 100.0}, {"wmax", 3.0}, {"wmin", -4.0}});
-  auto dx = b.slopes(std::polar(1.0, 0.1));  // 100 sin 0.1 = 9.98 rad/s asked
+  auto dx = b.slopes(std::polar(1.0, 0.1));  // demand: 100 sin 0.1 = 9.98 rad/s
   EXPECT_EQ(dx[phi], 3.0);
   EXPECT_EQ(dx[w], 0.0);
   dx = b.slopes(std::polar(1.0, -0.1));
@@ -60,27 +60,27 @@ TEST(ConverterRegcc1, TheLoopHasLimitsAndStandsStillAtLowVoltage) {
   EXPECT_NEAR(frozen.slopes(std::polar(0.301, 0.1))[w], 600.0 * 0.301 * std::sin(0.1), 1e-11);
 }
 
-TEST(ConverterRegcc1, AVoltageThatMovesDrivesCurrentThroughTheReactance) {
+TEST(ConverterRegcc1, VoltageChangeDrivesCurrentThroughTheReactance) {
   Locked b({});
-  // 0.05 pu less at a held inner voltage: 0.05/0.25 pu more reactive current, at once
+  // 0.05 pu less at constant inner voltage: 0.05/0.25 pu more reactive current without delay
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
-  // An angle of 0.02 rad ahead of the loop: (E - V)/(j Xe) along the loop's own axis.
+  // Voltage 0.02 rad ahead of the loop: (E - V)/(j Xe) in the loop's frame.
   const std::complex<double> inner(1.0 + 0.25 * 0.2, 0.25 * 0.6), v = std::polar(1.0, 0.02);
   expect_near(b.current(v), std::conj((inner - v) / std::complex<double>(0.0, 0.25)), 1e-13);
-  // and once the loop has turned by it the current commanded, turned with it
+  // after the loop has followed: the commanded current, rotated by the same angle
   b.x[phi] = 0.02;
   expect_near(b.BehindImpedance::current(v, v), {0.6, 0.2}, 1e-13);
 }
-TEST(ConverterRegcc1, TheControlMovesTheInnerVoltage) {
+TEST(ConverterRegcc1, CurrentControlMovesTheInnerVoltage) {
   Locked b({{"Kip", 2.0}, {"Kii", 30.0}, {"Re", 0.02}, {"Te", 0.01}});
-  b.x[Ip] = 0.7;  // 0.1 pu of active and 0.05 pu of reactive current more than flows
+  b.x[Ip] = 0.7;  // commands exceed the flowing current by 0.1 pu active and 0.05 pu reactive
   b.x[Iq] = 0.25;
   const auto dx = b.slopes(1.0);
   EXPECT_NEAR(dx[Sp], 30.0 * 0.1, 1e-12);
   EXPECT_NEAR(dx[Sq], 30.0 * 0.05, 1e-12);
   EXPECT_NEAR(dx[Ed], (0.02 * 2.0 * 0.1 + 0.25 * 2.0 * 0.05) / 0.01, 1e-10);
   EXPECT_NEAR(dx[Eq], (0.25 * 2.0 * 0.1 - 0.02 * 2.0 * 0.05) / 0.01, 1e-10);
-  // Te 0: I = Kip (Ip - I) + integral, so I = (Kip Ip + integral)/(1 + Kip), whatever the voltage.
+  // Te 0: I = Kip (Ip - I) + integral, so I = (Kip Ip + integral)/(1 + Kip), for any voltage.
   Locked at_once({{"Kip", 2.0}, {"Te", 0.0}});
   at_once.x[Ip] = 0.75;
   at_once.x[Iq] = 0.26;
@@ -89,28 +89,28 @@ TEST(ConverterRegcc1, TheControlMovesTheInnerVoltage) {
               1e-14);
 }
 
-TEST(ConverterRegcc1, TheLeadingCurrentTakesItsPart) {
+TEST(ConverterRegcc1, PriorityCurrentIsLimitedLast) {
   Locked q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
   expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);
   expect_near(p_leads.current(0.7), {0.6, 0.8}, 1e-13);
   expect_near(q_leads.current(0.5), {0.025, 1.0}, 1e-13);
 }
-TEST(ConverterRegcc1, TheIntegralsStopWithinImax) {
+TEST(ConverterRegcc1, IntegralsAreLimitedByImax) {
   Locked b({{"Imax", 1.0}, {"Kip", 1.0}, {"Kii", 30.0}, {"Te", 0.02}});
-  b.x[Iq] = 0.9;  // 0.7 pu more than flows: with the integral's 0.2 pu 0.9 pu, which leave sqrt(0.19) pu
+  b.x[Iq] = 0.9;  // 0.7 pu above the flowing current, 0.9 pu with the integral's 0.2 pu: sqrt(0.19) pu remain
   b.x[Sp] = 0.6;
   auto dx = b.slopes(1.0);
   EXPECT_NEAR(dx[Sq], 30.0 * 0.7, 1e-11);
   const double room = std::sqrt(1.0 - 0.81);
   EXPECT_NEAR(dx[Eq], 0.25 * (room - 0.6) / 0.02, 1e-10);
-  b.x[Ip] = 0.65;  // beyond the room the active integral does not rise
+  b.x[Ip] = 0.65;  // beyond its limit the active integral does not rise
   dx = b.slopes(1.0);
   EXPECT_EQ(dx[Sp], 0.0);
-  b.x[Ip] = 0.55;  // but falls
+  b.x[Ip] = 0.55;  // but may fall
   dx = b.slopes(1.0);
   EXPECT_NEAR(dx[Sp], -30.0 * 0.05, 1e-12);
-  b.x[Iq] = 1.2;  // 1.0 + 0.2 pu: the reactive one is beyond Imax itself
+  b.x[Iq] = 1.2;  // 1.0 + 0.2 pu: the reactive current alone exceeds Imax
   dx = b.slopes(1.0);
   EXPECT_EQ(dx[Sq], 0.0);
   EXPECT_NEAR(dx[Ed], 0.25 * (1.0 - 0.2) / 0.02, 1e-10);
@@ -122,7 +122,7 @@ TEST(ConverterRegcc1, RatesAndRefusals) {
   auto dx = b.slopes(1.0);
   EXPECT_NEAR(dx[Ip], 0.5, 1e-14);
   EXPECT_NEAR(dx[Iq], 3.0, 1e-14);
-  b.s.Tm = 0.1, b.s.Efd = 0.1;  // downwards there is no limit: Q0 > 0
+  b.s.Tm = 0.1, b.s.Efd = 0.1;  // no lower rate limit: Q0 > 0
   dx = b.slopes(1.0);
   EXPECT_NEAR(dx[Ip], (0.1 - 0.6) / 0.02, 1e-11);
   EXPECT_NEAR(dx[Iq], (0.1 - 0.2) / 0.02, 1e-11);

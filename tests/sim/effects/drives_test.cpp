@@ -1,5 +1,4 @@
-// The disturbance drives: their shapes against values computed by hand, and what plants make of them against
-// solutions in closed form.
+// Playback drives: their time series against hand calculations, and plant responses against closed forms.
 #include <complex>
 #include <numbers>
 
@@ -12,7 +11,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// The signals a drive leaves behind at time t; Tm is 0.8 before.
+/// Signals after a drive's evaluation at time t; Tm is 0.8 before it.
 Signals<double> at(const char* name, const Values& p, double t) {
   const Effect& e = *library::compiled().find(name);
   Values c(static_cast<std::size_t>(e.coefficients));
@@ -25,7 +24,7 @@ Signals<double> at(const char* name, const Values& p, double t) {
   return s;
 }
 
-TEST(Drives, StepsStandBetweenTheirInstants) {
+TEST(Drives, StepsLastBetweenTheirSwitchingTimes) {
   for (const auto& [t, value] :
        {std::pair{1.9999, 0.0}, {2.0, 0.03}, {2.9999, 0.03}, {3.0, 0.0}, {-1.0, 0.0}}) {
     EXPECT_EQ(at("VREFSTEP", {0.03, 2.0, 3.0}, t).dVref, value) << t;
@@ -33,7 +32,7 @@ TEST(Drives, StepsStandBetweenTheirInstants) {
   }
 }
 
-TEST(Drives, RampsAreStraightAndStay) {
+TEST(Drives, RampsAreLinearAndKeepTheirFinalValue) {
   for (const auto& [t, value] : {std::pair{1.9, 0.0}, {2.0, 0.0}, {3.0, 0.01}, {4.0, 0.02}, {9.0, 0.02}}) {
     EXPECT_DOUBLE_EQ(at("VREFRAMP", {0.02, 2.0, 2.0}, t).dVref, value) << t;
     EXPECT_DOUBLE_EQ(at("PREFRAMP", {0.02, 2.0, 2.0}, t).dPref, value) << t;
@@ -56,7 +55,7 @@ TEST(Drives, AgcMovesAddUp) {
     EXPECT_NEAR(at("AGCMOVES", p, t).dPref, value, 1e-15) << t;  // sums of six numbers
 }
 
-TEST(Drives, FastValvingClosesHoldsAndReopens) {
+TEST(Drives, FastValvingClosesWaitsAndReopens) {
   const Values p = {0.5, 1.0, 0.2, 0.3, 2.0};
   for (const auto& [t, value] :
        {std::pair{0.99, 0.8}, {1.1, 0.6}, {1.2, 0.4}, {1.5, 0.4}, {2.5, 0.6}, {3.5, 0.8}, {9.0, 0.8}})
@@ -70,7 +69,7 @@ TEST(Drives, ForcedOscillationIsASine) {
     EXPECT_NEAR(at("FORCEDOSC", p, t).Tm, value, 1e-14) << t;
 }
 
-TEST(Drives, EveryJumpAndKinkIsNamed) {
+TEST(Drives, EveryStepAndKinkIsListed) {
   const auto instants = [](const char* name, const Values& p) {
     return library::compiled().find(name)->instants(nullptr, p.data());
   };
@@ -82,7 +81,7 @@ TEST(Drives, EveryJumpAndKinkIsNamed) {
             (Values{1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 17.0, 19.0, 21.0, 23.0}));
 }
 
-TEST(Drives, RefuseWhatCannotBe) {
+TEST(Drives, RefuseImpossibleParameters) {
   const auto count = [](const char* name, const Values& p) {
     Problems problems;
     library::compiled().find(name)->check(nullptr, p.data(), "here", problems);
@@ -95,8 +94,8 @@ TEST(Drives, RefuseWhatCannotBe) {
   EXPECT_EQ(count("AGCMOVES", {-1.0, 0.0, -1.0, 0, 0, 0, 0, 0, 0}), 3u);
 }
 
-/// Two infinite buses; the second has an exciter and a governor, whose responses are then known in closed
-/// form: neither speed nor terminal voltage ever moves.
+/// Two infinite buses; the second has an exciter and a governor. Speed and terminal voltage are constant, so
+/// their responses have a closed form.
 grid::Grid two_infinite_buses() {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = grid.plants[1];
@@ -126,7 +125,7 @@ Trajectory lanes(const grid::Grid& grid, double t_end = 8.0) {
             [&](const lanes::Job&, const Trajectory& t) { run = t; });
   return run;
 }
-/// Largest distance of a channel's departure from its first value from `expected(t)`.
+/// Largest difference between a channel's deviation from its first value and `expected(t)`.
 template <class F>
 double worst(const Trajectory& run, Channel channel, const F& expected) {
   double most = 0.0;
@@ -138,8 +137,8 @@ double worst(const Trajectory& run, Channel channel, const F& expected) {
 double lagged(double tau, double T) { return tau <= 0.0 ? 0.0 : -std::expm1(-tau / T); }
 double lagged_ramp(double tau, double T) { return tau <= 0.0 ? 0.0 : tau - T * lagged(tau, T); }
 
-// IDA holds 1e-8 per step, the lanes 1e-6; exponentials forget old errors, so little more than that remains.
-// The infinite bus's impedance of 1e-6 pu divides the rounding of its voltages, hence no tighter.
+// Tolerances per step: IDA 1e-8, the SIMD batch 1e-6; exponential decay forgets old errors. The infinite
+// bus's impedance of 1e-6 pu amplifies the rounding of its voltage, which limits the tolerance.
 constexpr double kReference = 1e-6, kLanes = 1e-5;
 
 TEST(Drives, VrefStepIsLaggedByTheExciter) {
@@ -181,13 +180,13 @@ TEST(Drives, FastValvingActsAfterTheGovernor) {
     const double shut = std::clamp((t - 2.0) / 0.1, 0.0, 1.0) - std::clamp((t - 2.6) / 2.0, 0.0, 1.0);
     return -0.4 * before * shut;
   };
-  // No state in between; a sample at a kink shows the torque 1e-9 s before it, at up to 4 pu/s.
+  // No state in between; a sample at a kink is the torque 1e-9 s before it, at up to 4 pu/s.
   EXPECT_LE(worst(reference(grid), Channel::Tm, expected), 1e-8);
   EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), 1e-8);
 }
 
 /// A classical machine swings linearly for a small torque: speed = A s / (2 H s^2 + D s + w0 Ks).
-TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
+TEST(Drives, ForcedOscillationMatchesTheLinearModel) {
   grid::Grid grid = test::two_machine_grid(Conventions::andes());
   plant::Plant& plant = grid.plants[1];
   constexpr double H = 3.0, D = 20.0, A = 1e-4, f = 0.7, start = 1.0, x = 0.25;
@@ -196,7 +195,7 @@ TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
   add(plant, "FORCEDOSC", {A, f, 0.0, start, 1e5});
   const reference::ReferenceRun run = reference(grid, 15.0);
   const double w = 2.0 * std::numbers::pi * f, w0 = 2.0 * std::numbers::pi * 60.0;
-  // Synchronising torque from a second run, shifted in torque for good: Ks = change of torque / of angle.
+  // Synchronising torque from a second run with a permanent torque change: Ks = change of torque / of angle.
   grid::Grid shifted = grid;
   shifted.plants[1].controls = {
       {library::compiled().find("FORCEDOSC"), {A, 1e-3, std::numbers::pi / 2, 1.0, 1e5}}};
@@ -210,19 +209,19 @@ TEST(Drives, ForcedOscillationSwingsTheMachineAsTheLinearModelSays) {
   double most = 0.0, largest = 0.0;
   for (int k = 0; k < run.samples; ++k) {
     const double t = k / run.rate;
-    if (t < 10.0) continue;  // the free swing dies with D/4H = 1.7 per second: 3e-7 of it is left
+    if (t < 10.0) continue;  // the free swing decays with D/4H = 1.7 per second to 3e-7
     const double expected = A * (gain * std::exp(s * (t - start))).imag();
     most = std::max(most, std::abs(speed[k] - expected));
     largest = std::max(largest, std::abs(expected));
   }
-  // The swing of 1e-4 pu is linear to its square over the operating torque; the angle for Ks still creeps by
-  // 0.1 % as its slow sine goes on.
+  // The nonlinearity of a swing of 1e-4 pu is of second order; the angle for Ks still changes by 0.1 %
+  // because of its slow sine.
   EXPECT_LE(most, 5e-3 * largest);
   EXPECT_GT(largest, 1e-7);
   EXPECT_GT(operating.Tm, 0.0);
 }
 
-TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
+TEST(Drives, HaveNoEffectBeforeTheirFirstSwitchingTime) {
   const std::vector<std::pair<const char*, std::pair<Values, Values>>> drives = {
       {"VREFSTEP", {{0.05, 2.0, 3.0}, {0.0, 2.0, 3.0}}},
       {"VREFRAMP", {{0.05, 2.0, 1.0}, {0.0, 2.0, 1.0}}},
@@ -239,7 +238,7 @@ TEST(Drives, AreExactlySilentBeforeTheirFirstInstant) {
     grid::Grid silent = grid;
     add(grid.plants[1], name, values.first);
     add(silent.plants[1], name, values.second);
-    const network::Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // so that there is something to disturb
+    const network::Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // a disturbance for the drives to act on
     reference::ReferenceOptions options;
     options.t_end = 4.0;
     const reference::ReferenceRun a = reference::run_reference(grid, event, options),

@@ -1,5 +1,5 @@
-// REECD1: REECB1 where nothing of its own acts, the compensated voltage, what stays after a dip, blocking,
-// tables.
+// REECD1: equality with REECB1 without its own parts, compensated voltage, currents kept after a voltage dip,
+// blocking, tables.
 #include <cmath>
 
 #include "tests/sim/effects/control_bench.hpp"
@@ -19,7 +19,7 @@ Signals<double> at_rated(double reactive = 0.1) {
   return s;
 }
 
-TEST(Reecd1, WithoutItsOwnPartsItIsReecb1) {
+TEST(Reecd1, EqualsReecb1_WhenItsOwnPartsAreOff) {
   for (const Values& flags : {Values{{"QFLAG", 1.0}, {"VFLAG", 1.0}, {"Kqp", 0.2}},
                               {{"QFLAG", 1.0}, {"VFLAG", 0.0}},
                               {{"QFLAG", 0.0}, {"PQFLAG", 1.0}}}) {
@@ -45,7 +45,7 @@ TEST(Reecd1, WithoutItsOwnPartsItIsReecb1) {
   }
 }
 
-TEST(Reecd1, HoldsTheVoltageBehindItsImpedanceOrWithADroop) {
+TEST(Reecd1, RegulatesTheVoltageBehindItsImpedanceOrWithDroop) {
   const Values regulates = {{"QFLAG", 1.0}, {"VFLAG", 0.0}, {"Kvp", 0.0},
                             {"Kvi", 5.0},   {"Tr1", 0.1},   {"Kc", 0.2}};
   for (const double flag : {1.0, 0.0}) {
@@ -65,7 +65,7 @@ TEST(Reecd1, HoldsTheVoltageBehindItsImpedanceOrWithADroop) {
     bench.in.Q = 0.3;
     bench.run(1.0);
     const double off = held(0.8, -0.1) - held(0.8, -0.3), seen = 1.0 - 0.1 * (1.0 - std::exp(-10.0));
-    EXPECT_NEAR(bench.out().Efd, 0.1 + 5.0 * off * seen, 1e-9);  // of what is measured behind 0.1 s
+    EXPECT_NEAR(bench.out().Efd, 0.1 + 5.0 * off * seen, 1e-9);  // of the measurement behind 0.1 s
   }
 }
 
@@ -90,7 +90,7 @@ TEST(Reecd1, AfterADipItKeepsTheActiveCurrent) {
   ControlBench bench("REECD1", {{"Vdip", 0.85}, {"Thld2", 0.5}, {"Trv", 0.0}, {"Imax", 0.9}}, at_rated(0.0));
   bench.in.V = 0.7;
   bench.run(0.1);
-  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-9);  // 0.8/0.7 is asked for
+  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-9);  // demand: 0.8/0.7
   bench.in.V = 1.0;
   bench.run(0.45);
   EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);
@@ -98,7 +98,7 @@ TEST(Reecd1, AfterADipItKeepsTheActiveCurrent) {
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);
 }
 
-TEST(Reecd1, BlocksOutsideItsVoltagesAndAWhileAfter) {
+TEST(Reecd1, BlocksOutsideItsVoltageRangeAndForADelayAfterwards) {
   ControlBench bench("REECD1", {{"Vblkl", 0.5}, {"Vblkh", 1.3}, {"Tblk", 0.3}, {"Trv", 0.0}, {"Kqv", 2.0}},
                      at_rated());
   ASSERT_EQ(bench.refused, "");
@@ -139,7 +139,7 @@ TEST(Reecd1, ABatteryDrawsUpToKe) {
   ControlBench bench("REECD1", {{"Ke", 0.5}, {"Pmin", -1.0}, {"Imax", 1.0}}, at_rated(0.0));
   bench.in.Pext = -1.6;
   bench.run(1.0);
-  EXPECT_NEAR(bench.out().Tm, -0.5 * 1.0, 1e-9);  // half of the points' least, Imax
+  EXPECT_NEAR(bench.out().Tm, -0.5 * 1.0, 1e-9);  // half of the smallest limit, Imax
 }
 
 TEST(Reecd1, RefusesParametersThatCannotBeIntegrated) {

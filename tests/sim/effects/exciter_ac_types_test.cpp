@@ -27,7 +27,7 @@ TEST(ExciterAcTypes, Exac2ClosesItsInnerLoop) {
   }
 }
 
-TEST(ExciterAcTypes, Exac2EndsWhereItsLimiterBalancesTheField) {
+TEST(ExciterAcTypes, Exac2CeilingIsWhereItsLimiterBalancesTheField) {
   auto values = kExac2;
   values["VLR"] = 5.0;
   ControlBench bench("EXAC2", values);
@@ -57,7 +57,7 @@ TEST(ExciterAcTypes, Esac6aTransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterAcTypes, Esac6aFieldLimiterTakesWithinItsBounds) {
+TEST(ExciterAcTypes, Esac6aFieldLimiterActsWithinItsBounds) {
   auto values = kEsac6a;
   values["VFELIM"] = 8.0;
   values["KH"] = 10.0;
@@ -71,7 +71,7 @@ TEST(ExciterAcTypes, Esac6aFieldLimiterTakesWithinItsBounds) {
   EXPECT_NEAR(bench.out().Efd, (Vfe - 0.3 * 2.0) / 1.2, 1e-6);
 }
 
-TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseAtOnce) {
+TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseWithoutDelay) {
   auto values = kEsac6a;
   values["KH"] = 0.0;
   values["VRMAX"] = 20.0;
@@ -80,7 +80,7 @@ TEST(ExciterAcTypes, Esac6aLimitsFollowTheVoltageAndReleaseAtOnce) {
   bench.in.V = 0.5;
   bench.run(30.0);
   EXPECT_NEAR(bench.out().Efd, (0.5 * 20.0 - 0.3 * 2.0) / 1.2, 1e-6);
-  EXPECT_NEAR(bench.state("second"), 75.0, 1e-4);  // where its output's limit stands, not 300
+  EXPECT_NEAR(bench.state("second"), 75.0, 1e-4);  // at the limit of its output, not at 300
   bench.in.dVref = -1.0;
   bench.in.V = 1.0;
   bench.run(0.5);

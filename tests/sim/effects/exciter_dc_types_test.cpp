@@ -1,5 +1,4 @@
-// IEEEX1, ESDC1A, ESDC2A, IEEET2: transfer functions against their diagrams, what tells them from one
-// another.
+// IEEEX1, ESDC1A, ESDC2A, IEEET2: transfer functions against their diagrams, and their differences.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -10,7 +9,7 @@ const ControlBench::Changes kLinearDc = {{"TR", 0.03}, {"KA", 60.0}, {"TA", 0.08
                                          {"TC", 0.7},  {"KE", 0.9},  {"TE", 0.7},  {"KF", 0.05},
                                          {"TF", 0.9},  {"SE1", 0.0}, {"SE2", 0.0}};
 
-TEST(ExciterDcTypes, LeadLagStandsBeforeTheRegulator) {
+TEST(ExciterDcTypes, LeadLagPrecedesTheRegulator) {
   for (const char* name : {"IEEEX1", "ESDC1A", "ESDC2A"})
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
       ControlBench bench(name, kLinearDc);
@@ -29,7 +28,7 @@ TEST(ExciterDcTypes, LeadLagStandsBeforeTheRegulator) {
     }
 }
 
-TEST(ExciterDcTypes, WithoutItsLeadLagIeeex1IsIeeet1) {
+TEST(ExciterDcTypes, Ieeex1EqualsIeeet1_WithoutLeadLag) {
   const ControlBench::Changes same = {{"KA", 50.0}, {"TA", 0.1}, {"KF", 0.04}, {"E1", 3.0},
                                       {"SE1", 0.1}, {"E2", 4.0}, {"SE2", 0.3}};
   auto bypassed = same;
@@ -43,7 +42,7 @@ TEST(ExciterDcTypes, WithoutItsLeadLagIeeex1IsIeeet1) {
   }
 }
 
-TEST(ExciterDcTypes, OnlyTheTypesOf1992EndAtZero) {
+TEST(ExciterDcTypes, OnlyTypesOf1992LimitEfdAtZero) {
   for (const auto& [name, ends] :
        {std::pair{"IEEEX1", false}, {"ESDC1A", true}, {"EXDC2", false}, {"ESDC2A", true}}) {
     ControlBench bench(name, {{"VRMIN", -5.0}, {"TB", 0.0}});
@@ -65,7 +64,7 @@ TEST(ExciterDcTypes, TerminalFedLimitsFollowTheVoltage) {
   bench.in.dVref = 1.0;
   bench.in.V = 0.6;
   bench.run(30.0);
-  EXPECT_NEAR(bench.out().Efd, 3.0, 0.05);  // V VRMAX/KE; Vr passes its limit by 1/(500 TA) of what asks
+  EXPECT_NEAR(bench.out().Efd, 3.0, 0.05);  // V VRMAX/KE; Vr exceeds its limit by 1/(500 TA) of the demand
 }
 
 TEST(ExciterDcTypes, Ieeet2FeedsTheRegulatorBackThroughTwoLags) {

@@ -7,7 +7,7 @@ namespace {
 
 using C = std::complex<double>;
 
-/// FEX as IEEE Std 421.5, annex D, writes it.
+/// FEX of IEEE Std 421.5, annex D.
 double fex(double in) {
   if (in <= 0.0) return 1.0;
   if (in <= std::sqrt(3.0) / 4.0) return 1.0 - in / std::sqrt(3.0);
@@ -69,7 +69,7 @@ TEST(ExciterEsac1a, CeilingIsWhereTheFieldBalancesVrmaxAndReleaseIsImmediate) {
   const double saturation = std::pow(low + (high - low) * (ve - 3.14) / (4.18 - 3.14), 2);
   EXPECT_NEAR(ve + saturation + 0.38 * 2.0, 6.03, 1e-8);
   EXPECT_NEAR(bench.out().Efd, ve - 0.1 * 2.0 / std::sqrt(3.0), 1e-14);
-  // reference down: Va leaves its limit as a lag from 14.5, not later
+  // reference down: Va leaves its limit without delay, as a lag from 14.5
   bench.in.dVref = -0.5;
   bench.run(0.01);
   EXPECT_LT(bench.state("Va"), 14.5);

@@ -31,7 +31,7 @@ TEST(ExciterEsst1a, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterEsst1a, AStabiliserBehindTheRegulatorIsSeenByTheRateFeedbackAlone) {
+TEST(ExciterEsst1a, StabiliserBehindTheRegulatorReachesOnlyTheRateFeedback) {
   auto values = kEsst1a;
   values["VOS"] = 2.0;
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
@@ -67,10 +67,10 @@ TEST(ExciterEsst1a, TheRegulatorDoesNotWindUp) {
   EXPECT_LT(bench.state("Va"), 4.0);
 }
 
-TEST(ExciterEsst1a, TheFieldLimiterTakesWhatIsAboveItsReference) {
+TEST(ExciterEsst1a, FieldLimiterActsAboveItsReference) {
   auto values = kEsst1a;
   values["KLR"] = 2.0;
-  values["ILR"] = 1.5;  // the machine stands at 2 pu
+  values["ILR"] = 1.5;  // field current at the operating point: 2 pu
   ControlBench bench("ESST1A", values);
   EXPECT_DOUBLE_EQ(bench.state("Va"), 2.0 + 2.0 * 0.5);
   EXPECT_DOUBLE_EQ(bench.out().Efd, 2.0);
@@ -80,7 +80,7 @@ TEST(ExciterEsst1a, TheFieldLimiterTakesWhatIsAboveItsReference) {
   EXPECT_DOUBLE_EQ(bench.out().Efd, 1.0);
 }
 
-TEST(ExciterEsst1a, ZerosAreBypasses) {
+TEST(ExciterEsst1a, ZeroTimeConstantsAreBypassed) {
   ControlBench bench("ESST1A",
                      {{"TR", 0.0}, {"TA", 0.0}, {"TB", 0.0}, {"TB1", 0.0}, {"TF", 0.0}, {"KA", 50.0}});
   EXPECT_TRUE(bench.problems.empty());

@@ -46,12 +46,12 @@ TEST(ExciterEsst3a, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterEsst3a, CeilingIsVmmaxTimesTheSourceAndIsLeftAtOnce) {
+TEST(ExciterEsst3a, CeilingIsVmmaxTimesTheSourceAndReleasesWithoutDelay) {
   ControlBench bench("ESST3A", esst3a_with({{"VMMAX", 0.6}, {"VMMIN", -0.2}, {"TB", 0.0}, {"TC", 0.0}}));
   bench.in.dVref = 0.15;
   bench.run(10.0);
   EXPECT_NEAR(bench.out().Efd, 0.6 * esst3a_source(bench.in), 1e-14);
-  bench.in.Vr = 0.5;  // the source follows V and I at once
+  bench.in.Vr = 0.5;  // the source follows V and I without delay
   bench.in.Ii = -0.6;
   EXPECT_NEAR(bench.out().Efd, 0.6 * esst3a_source(bench.in), 1e-14);
   bench.in.dVref = -0.15;
@@ -67,7 +67,7 @@ TEST(ExciterEsst3a, BeyondVgmaxTheLoopIsOpen) {
         "ESST3A", esst3a_with({{"VGMAX", 1.9}, {"VMMAX", 99.0}, {"VBMAX", 99.0}, {"TB", 0.0}, {"TM", TM}}));
     bench.in.dVref = 0.005;
     bench.run(10.0);
-    // Vr rises by 100 0.005; KG Efd comes to VGMAX and the rest is amplified by KM
+    // Vr rises by 100 0.005; KG Efd reaches VGMAX and the remainder is amplified by KM
     const double VB = esst3a_source(bench.in), vr = 0.8 * 2.0 + 2.0 / VB / 4.0 + 0.5;
     const double expected = std::max(4.0 * vr / (1.0 + 4.0 * 0.8 * VB), 4.0 * (vr - 1.9)) * VB;
     EXPECT_GT(0.8 * expected, 1.9);

@@ -1,5 +1,5 @@
 // ESST4B: the source against its phasor definition, transfer function against the diagram, limits of both
-// regulators and their release, what cannot be held.
+// regulators and their release, refusals.
 #include <numbers>
 
 #include "tests/sim/effects/control_bench.hpp"
@@ -11,7 +11,7 @@ using C = std::complex<double>;
 using Values = ControlBench::Changes;
 constexpr auto kEsst4bEfd = &Signals<double>::Efd;
 
-/// KP, KI, KC, XL and THETAP all at work.
+/// KP, KI, KC, XL and THETAP all nonzero.
 Values esst4b_with(Values more) {
   Values v = {{"TR", 0.02}, {"KPR", 3.0},     {"KIR", 4.0},  {"TA", 0.05}, {"KPM", 0.6},
               {"KIM", 2.0}, {"KG", 0.15},     {"KP", 6.0},   {"KI", 0.4},  {"KC", 0.1},
@@ -59,7 +59,7 @@ TEST(ExciterEsst4b, CeilingIsVmmaxTimesTheSource) {
   bench.in.dVref = 0.5;
   bench.run(20.0);
   EXPECT_NEAR(bench.out().Efd, 0.8 * source(bench.in), 1e-14);
-  bench.in.Vr = 0.5;  // the source follows V and I at once
+  bench.in.Vr = 0.5;  // the source follows V and I without delay
   bench.in.Vi = 0.1;
   bench.in.Ii = -0.6;
   bench.in.Ifd = 3.0;
@@ -77,11 +77,11 @@ TEST(ExciterEsst4b, SourceIsLimitedByVbmax) {
   EXPECT_NEAR(bench.out().Efd, 0.8 * 4.0, 1e-14);
 }
 
-TEST(ExciterEsst4b, RegulatorsStopIntegratingAtTheirLimitsAndReleaseAtOnce) {
+TEST(ExciterEsst4b, RegulatorsDoNotWindUpAndReleaseWithoutDelay) {
   ControlBench bench("ESST4B", esst4b_with({{"VRMAX", 1.5}, {"VMMAX", 0.6}, {"KG", 0.0}}));
   bench.in.dVref = 0.1;
   bench.run(30.0);
-  // both stand with output, not integral, at the limit; at most the band of 0.002 pu beyond it
+  // the output of both, not the integral, is at its limit; at most 0.002 pu beyond it
   EXPECT_GE(bench.state("xr") + 3.0 * 0.1, 1.5);
   EXPECT_LE(bench.state("xr") + 3.0 * 0.1, 1.502);
   EXPECT_NEAR(bench.state("Va"), 1.5, 1e-12);

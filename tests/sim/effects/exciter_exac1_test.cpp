@@ -1,4 +1,4 @@
-// EXAC1: transfer function against the diagram, ceiling and release, what it cannot hold.
+// EXAC1: transfer function against the diagram, ceiling and release, refusals.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -23,7 +23,8 @@ TEST(ExciterExac1, TransferFunctionIsTheDiagramsWithALoadedRectifier) {
     const C closed = forward / (1.0 + forward * 1.1 * rate);
     // difference quotients over 1e-6, with KA/TA = 3000 in them
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-5);
-    // Field current takes KC/sqrt(3) at once (first mode) and KD through the alternator and its feedback.
+    // Field current acts through KC/sqrt(3) without delay (first mode) and through KD, alternator and
+    // feedback.
     const C load =
         -0.1 / std::sqrt(3.0) - 0.3 * (1.0 / (1.1 + 0.9 * s) + forward * rate) / (1.0 + forward * 1.1 * rate);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Ifd, &Signals<double>::Efd, omega) - load), 1e-5);

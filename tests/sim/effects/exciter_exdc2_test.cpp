@@ -1,4 +1,4 @@
-// EXDC2: transfer function against the diagram, ceiling that falls with V, limits that move, what zeros mean.
+// EXDC2: transfer function against the diagram, voltage-dependent ceiling and limits, meaning of zeros.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -50,32 +50,32 @@ TEST(ExciterExdc2, ReleaseIsThatOfALimiterWithoutWindUp) {
   bench.run(2.0, 1e-4);
   bench.in.dVref = -1.0;
   bench.run(0.01, 1e-4);
-  // From 6 pu on Vr falls towards rest - 40 with TA; at most 2 ms later than at once.
+  // Vr falls from 6 pu towards rest - 40 with TA, delayed by at most 2 ms.
   const auto falling = [&](double t) { return 6.0 + (rest - 40.0 - 6.0) * (1.0 - std::exp(-t / 0.1)); };
   EXPECT_GE(bench.state("Vr"), falling(0.01));
   EXPECT_LE(bench.state("Vr"), falling(0.008));
 }
 
-TEST(ExciterExdc2, LimitTakesTheRegulatorAlongWhenItFallsWithV) {
+TEST(ExciterExdc2, FallingLimitPullsTheRegulatorDown) {
   ControlBench bench("EXDC2", kRegulator);
   const double rest = bench.state("Vr");
   bench.in.dVref = 0.2;
   bench.run(2.0, 1e-4);
-  bench.in.V = 0.5;  // Vc stands, for the error to stay
+  bench.in.V = 0.5;  // Vc is kept, so that the error stays constant
   bench.run(0.03, 1e-4);
-  // drawn to 3 pu, less what its own lag pushes: (rest + 8 - 3)/(TA 500 + 1)
+  // pulled to 3 pu, offset by the drive of its own lag: (rest + 8 - 3)/(TA 500 + 1)
   EXPECT_NEAR(bench.state("Vr"), 3.0 + (rest + 8.0 - 3.0) / 51.0, 1e-5);  // exp(-0.03 510) of 3 pu
   bench.in.V = 1.0;
   bench.run(0.02, 1e-4);
-  EXPECT_LT(bench.state("Vr"), 5.0);  // it rises again with TA: 3.2 + 7.5 (1 - exp(-0.2)) = 4.5
+  EXPECT_LT(bench.state("Vr"), 5.0);  // rises again with TA: 3.2 + 7.5 (1 - exp(-0.2)) = 4.5
   EXPECT_GT(bench.state("Vr"), 4.0);
 }
 
-TEST(ExciterExdc2, ZerosAreFoundAsPsseFindsThem) {
+TEST(ExciterExdc2, ZeroLimitsAndKeAreComputedAsInPsse) {
   ControlBench limit("EXDC2", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});  // VRMAX = (0.5 + 1) 5
   limit.in.dVref = 5.0;
   limit.run(60.0);
-  const double efd = limit.out().Efd;  // where 7.5 = Efd + B (Efd - A)^2: at E2
+  const double efd = limit.out().Efd;  // solution of 7.5 = Efd + B (Efd - A)^2: E2
   EXPECT_NEAR(efd, 5.0, 1e-12);
   ControlBench self("EXDC2", {{"KE", 0.0}, {"VRMAX", 6.0}});
   EXPECT_DOUBLE_EQ(self.state("Vr"), 0.6);

@@ -1,5 +1,4 @@
-// EXPIC1: transfer functions against the diagram with and without an exciter, its source, limits, what is
-// refused.
+// EXPIC1: transfer functions against the diagram with and without an exciter, source, limits, refusals.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -62,14 +61,14 @@ TEST(ExciterExpic1, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(ExciterExpic1, ABridgeFollowsTheVoltageAndItsRectifier) {
+TEST(ExciterExpic1, BridgeFollowsVoltageAndRectifierLoading) {
   ControlBench bench("EXPIC1", {{"KC", 0.1}});
-  bench.in.V = bench.in.Vr = 0.8;  // what the exciter regulates stays
+  bench.in.V = bench.in.Vr = 0.8;  // the regulated voltage is kept
   const double vr = 2.0 / (6.5 - 0.2 / std::sqrt(3.0));
   EXPECT_NEAR(bench.out().Efd, vr * (0.8 * 6.5 - 0.2 / std::sqrt(3.0)), 1e-12);
 }
 
-TEST(ExciterExpic1, NothingWindsUp) {
+TEST(ExciterExpic1, IntegralsDoNotWindUp) {
   ControlBench bench("EXPIC1", {{"VR1", 0.8}, {"KC", 0.0}});
   bench.in.dVref = 0.1;
   bench.run(20.0);
@@ -90,7 +89,7 @@ TEST(ExciterExpic1, RefusesParametersThatCannotBeIntegrated) {
                 .problems.list()
                 .size(),
             4u);
-  // Vr would feed itself: one lag in the feedback, none before Vr.
+  // Algebraic loop of Vr: one lag in the feedback, none before Vr.
   EXPECT_EQ(ControlBench("EXPIC1", {{"KF", 0.1}, {"TF2", 0.0}, {"TA2", 0.0}}).problems.list().size(), 1u);
   EXPECT_EQ(ControlBench("EXPIC1", {{"KF", 0.1}, {"TF1", 0.0}}).problems.list().size(), 1u);
 }

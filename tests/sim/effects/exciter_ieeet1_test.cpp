@@ -1,4 +1,4 @@
-// IEEET1: transfer function against the diagram, ceiling by saturation, release, what zeros mean.
+// IEEET1: transfer function against the diagram, ceiling by saturation, release, meaning of zeros.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -35,7 +35,7 @@ TEST(ExciterIeeet1, CeilingIsWhereSaturationBalancesVrmaxAndReleaseIsImmediate) 
   EXPECT_LT(bench.state("Vr"), 5.2);
 }
 
-TEST(ExciterIeeet1, ZerosAreFoundAsPsseFindsThem) {
+TEST(ExciterIeeet1, ZeroLimitsAndKeAreComputedAsInPsse) {
   // VRMAX = (0.5 + 1) 5
   ControlBench limit("IEEET1", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});
   limit.in.dVref = 5.0;
@@ -49,7 +49,7 @@ TEST(ExciterIeeet1, ZerosAreFoundAsPsseFindsThem) {
   EXPECT_DOUBLE_EQ(self.state("Vr"), 0.6);
   EXPECT_DOUBLE_EQ(self.out().Efd, 2.0);
   EXPECT_LT(self.largest_derivative(), 1e-11);
-  // KE <= 0 is left out of VRMAX: 0.5 times 5
+  // KE <= 0 does not enter VRMAX: 0.5 times 5
   ControlBench both("IEEET1", {{"KE", 0.0}, {"VRMAX", 0.0}});
   EXPECT_DOUBLE_EQ(both.state("Vr"), 0.25);
 }

@@ -1,5 +1,4 @@
-// IEEET3: transfer function against the diagram, the source of voltage and current, its end at a high field
-// current.
+// IEEET3: transfer function against the diagram, compound source, its limit at high field current.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -8,7 +7,7 @@ namespace {
 using C = std::complex<double>;
 using Values = ControlBench::Changes;
 
-/// What the source adds at `field` current, with the bench's 0.8 pu of current beside V.
+/// Contribution of the source at `field` current, for the bench's 0.8 pu of current in phase with V.
 double added(double V, double field) {
   const double ve = std::abs(C(1.19 * V, 1.86 * 0.8));
   return std::sqrt(ve * ve - std::pow(0.78 * field, 2));
@@ -38,7 +37,7 @@ TEST(ExciterIeeet3, TransferFunctionIsTheDiagrams) {
     }
 }
 
-TEST(ExciterIeeet3, TheSourceFollowsVoltageAndCurrentAndEnds) {
+TEST(ExciterIeeet3, SourceFollowsVoltageAndCurrentAndIsLimited) {
   ControlBench bench("IEEET3", {{"KF", 0.0}});
   bench.in.dVref = -1.0;  // Vr goes to its lower limit
   bench.in.V = bench.in.Vr = 1.2;

@@ -1,5 +1,5 @@
-// REXS: transfer function against the diagram, a step against the equations integrated here, limits, what
-// cannot be held.
+// REXS: transfer function against the diagram, step response against equations integrated here, limits,
+// refusals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@ using C = std::complex<double>;
 using Values = ControlBench::Changes;
 constexpr auto kEfd = &Signals<double>::Efd;
 
-/// Everything at work but saturation and the rectifier.
+/// All parts active except saturation and rectifier.
 Values rexs_with(const Values& more) {
   Values v = {{"TR", 0.02}, {"KVP", 30.0}, {"KVI", 12.0}, {"VIMAX", 1.0}, {"TA", 0.03}, {"TB1", 4.0},
               {"TC1", 1.0}, {"TB2", 0.4},  {"TC2", 0.1},  {"KF", 0.04},   {"TF", 1.3},  {"TF1", 0.2},
@@ -60,7 +60,7 @@ TEST(ExciterRexs, TransferFunctionIsTheDiagrams) {
   }
 }
 
-/// The equations as the diagram draws them, written a second time: limits hold the states, no returning.
+/// Independent implementation of the diagram's equations: limits clamp the states directly.
 class Drawn {
  public:
   std::array<double, 9> x{};  ///< Vm, xv, first, second, Vr, rate, rate_lag, Vfield, Ve
@@ -142,7 +142,7 @@ TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
   drawn.x = {1.0, Vr, Vr, Vr, Vr, Vfe, 0.0, Vfe, low};
   drawn.Vref = 1.0;
   double most = 0.0, worst = 0.0, least = 9.0;
-  for (int k = 0; k < 8000; ++k) {  // 0.2 up for a second, 0.3 down for four, back, a sag
+  for (int k = 0; k < 8000; ++k) {  // +0.2 for one second, -0.3 for four, back, then a sag
     const double t = 0.001 * k;
     bench.in.dVref = drawn.dVref = t < 1 ? 0.2 : t < 5 ? -0.3 : 0.0;
     bench.in.V = bench.in.Vc = drawn.V = t < 7 ? 1.0 : 0.8;
@@ -154,11 +154,11 @@ TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
   }
   EXPECT_GT(most, 4.5);  // both limits of the regulator were reached
   EXPECT_LT(least, -2.0);
-  // A lag leaves its limit within 2 ms here, at once there; Efd swings by more than 2 pu.
+  // A lag leaves its limit within 2 ms in REXS, without delay in this copy; Efd swings by more than 2 pu.
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(ExciterRexs, LimitsFollowTheVoltageAsFlimfSays) {
+TEST(ExciterRexs, LimitsFollowTheVoltageInProportionToFlimf) {
   for (const double follow : {0.0, 0.5, 1.0}) {
     ControlBench bench(
         "REXS", rexs_with({{"VRMAX", 5.0}, {"KH", 0.0}, {"KII", 0.0}, {"KIP", 1.0}, {"FLIMF", follow}}));
@@ -176,7 +176,7 @@ TEST(ExciterRexs, TheFieldsRegulatorStopsIntegratingAtItsLimit) {
   bench.in.dVref = 1.0;
   bench.run(20.0, 2e-3);
   EXPECT_NEAR(bench.out().Efd, (4.0 - 0.4 * 2.0) / 0.9, 1e-6);
-  EXPECT_LT(bench.state("xi"), 4.0);  // Vr stands above it: its integral has gone nowhere
+  EXPECT_LT(bench.state("xi"), 4.0);  // Vr is above it: its integral did not wind up
   bench.in.dVref = -1.0;
   bench.run(2.0, 2e-3);
   EXPECT_LT(bench.out().Efd, 2.0);

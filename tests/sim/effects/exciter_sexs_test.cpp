@@ -36,15 +36,15 @@ TEST(ExciterSexs, EveryInputEntersWithItsSign) {
   }
 }
 
-TEST(ExciterSexs, CeilingHoldsWithoutWindUpAndReleasesAtOnce) {
+TEST(ExciterSexs, CeilingDoesNotWindUpAndReleasesWithoutDelay) {
   ControlBench bench("SEXS", {{"TAoverTB", 1.0}, {"TB", 0.0}, {"K", 100.0}, {"TE", 0.5}, {"EMAX", 4.0}});
-  bench.in.Vc = 0.8;  // K * 0.2 = 20 pu asked for above the operating point
+  bench.in.Vc = 0.8;  // demand: K * 0.2 = 20 pu above the operating point
   bench.run(10.0);
   EXPECT_EQ(bench.out().Efd, 4.0);
   EXPECT_EQ(bench.state("Efd"), 4.0);
   bench.in.Vc = 1.0;
   bench.run(0.1);
-  // From the ceiling back to 2 pu with TE alone, as if the 10 s had not been.
+  // From the ceiling back to 2 pu with TE alone, independent of the 10 s before.
   EXPECT_NEAR(bench.out().Efd, 2.0 + 2.0 * std::exp(-0.1 / 0.5), 1e-10);  // (h/TE)^4 with h = 1 ms
   bench.in.Vc = 1.3;
   bench.run(10.0);

@@ -42,7 +42,7 @@ TEST(ExciterSt5b, CeilingsMoveWithTheVoltage) {
   ControlBench bench("ST5B", st5b_with({}));
   bench.in.dVref = 1.0;
   bench.run(10.0);
-  EXPECT_NEAR(bench.out().Efd, 5.0 - 0.1 * 2.0, 1e-9);  // VRMAX less the rectifier's drop
+  EXPECT_NEAR(bench.out().Efd, 5.0 - 0.1 * 2.0, 1e-9);  // VRMAX minus the rectifier's drop
   bench.in.V = 0.6;
   bench.run(0.1);
   EXPECT_DOUBLE_EQ(bench.out().Efd, 0.6 * 5.0);
@@ -51,7 +51,7 @@ TEST(ExciterSt5b, CeilingsMoveWithTheVoltage) {
   EXPECT_DOUBLE_EQ(bench.out().Efd, -0.6 * 4.0);
 }
 
-TEST(ExciterSt5b, NothingWindsUp) {
+TEST(ExciterSt5b, IntegralsDoNotWindUp) {
   ControlBench bench("ST5B", st5b_with({}));
   bench.in.dVref = 1.0;
   bench.in.V = 0.6;

@@ -1,4 +1,4 @@
-// FVFAULT beside FASTVALVE, which does the same at a given time.
+// FVFAULT against FASTVALVE, which acts at a given time.
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -24,16 +24,16 @@ double most_apart(const reference::ReferenceRun& a, const reference::ReferenceRu
 
 constexpr double kNearFault = 0.02, kFarFault = 50.0;  ///< reactance of the fault [pu]
 
-TEST(FastValvingOnFault, DoesWhatFastValvingAtItsTimeDoes) {
+TEST(FastValvingOnFault, EqualsFastValvingAtTheFaultTime) {
   const auto on_fault = run_with("FVFAULT", {0.3, 0.05, 0.15, 0.2, 0.5, 3.0}, kNearFault),
              at_time = run_with("FASTVALVE", {0.3, 1.15, 0.2, 0.5, 3.0}, kNearFault),
              never = run_with("FASTVALVE", {0.0, 1.15, 0.2, 0.5, 3.0}, kNearFault);
   const double apart = most_apart(at_time, never);
   EXPECT_GT(apart, 0.05);
-  // the detector takes its hundredth of a second: 0.012 s of 0.2 s of closing
+  // the detection delay of about 0.01 s: 0.012 s of 0.2 s of closing
   EXPECT_LT(most_apart(on_fault, at_time), 0.12 * apart);
 }
-TEST(FastValvingOnFault, AFaultFarAwayDoesNotSetItOff) {
+TEST(FastValvingOnFault, IgnoresRemoteFaults) {
   const auto on_fault = run_with("FVFAULT", {0.3, 0.05, 0.15, 0.2, 0.5, 3.0}, kFarFault),
              never = run_with("FVFAULT", {0.0, 0.05, 0.15, 0.2, 0.5, 3.0}, kFarFault);
   EXPECT_EQ(most_apart(on_fault, never), 0.0);

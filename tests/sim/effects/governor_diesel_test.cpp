@@ -13,7 +13,7 @@ C engine(double omega, double delay) {
          lead_over_lag(0.0, 0.05, omega) * std::exp(-delay * s);
 }
 
-TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
+TEST(GovernorDiesel, IsochronousGovernorIntegratesTheSpeed) {
   for (const double omega : {0.3, 1.0, 7.0, 30.0}) {
     ControlBench bench("DEGOV", kDiesel);
     ASSERT_TRUE(bench.problems.empty());
@@ -26,7 +26,7 @@ TEST(GovernorDiesel, IsochronousOneIntegratesTheSpeed) {
   }
 }
 
-TEST(GovernorDiesel, WithoutDelayAndControlBoxItIsTheActuator) {
+TEST(GovernorDiesel, EqualsTheActuator_WithoutDelayAndControlBox) {
   auto values = kDiesel;
   values["TD"] = values["T1"] = values["T2"] = values["T3"] = 0.0;
   for (const double omega : {0.3, 7.0}) {
@@ -38,7 +38,7 @@ TEST(GovernorDiesel, WithoutDelayAndControlBoxItIsTheActuator) {
   }
 }
 
-TEST(GovernorDiesel, DelayPassesAStepLate) {
+TEST(GovernorDiesel, DelayShiftsAStep) {
   ControlBench bench("DEGOV", {{"TD", 1.0},
                                {"K", 1.0},
                                {"T1", 0.0},
@@ -63,8 +63,7 @@ TEST(GovernorDiesel, DroopIsOfThrottleOrPower) {
     if (code == 0.0)
       EXPECT_NEAR(bench.state("throttle"), 0.8 + 0.002 / 0.04, 1e-6);
     else
-      // The power has taken up what the droop allows, but for what was integrated while its transducer
-      // lagged.
+      // The power has reached the droop's value, except for the integral over the lag of its transducer.
       EXPECT_NEAR(bench.state("throttle"), 0.8 + 8.0 * 0.002 * 0.1, 1e-6);
   }
 }

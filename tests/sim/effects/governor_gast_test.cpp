@@ -1,4 +1,4 @@
-// GAST: transfer function below the temperature limit, the limit's own steady state, limits without wind-up.
+// GAST: transfer function below the temperature limit, steady state at that limit, limits without wind-up.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -18,11 +18,11 @@ TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
   }
 }
 
-TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
+TEST(GovernorGast, TemperatureLimitsThePowerAndReleases) {
   ControlBench bench("GAST", kGastValues);
-  bench.in.speed = -0.02;  // droop asks for 1.2 pu
+  bench.in.speed = -0.02;  // demand of the droop: 1.2 pu
   bench.run(0.3);
-  EXPECT_GT(bench.state("fuel"), 0.9);  // the measurement is slow: for a while more than the limit flows
+  EXPECT_GT(bench.state("fuel"), 0.9);  // the measurement is slow: the fuel exceeds the limit temporarily
   bench.run(60.0);
   // fuel = AT + KT (AT - fuel) has the only solution AT; the slowest mode has T3/(1 + KT) = 1 s.
   EXPECT_NEAR(bench.out().Tm, 0.9 + 0.3 * 0.02, 1e-12);
@@ -31,17 +31,17 @@ TEST(GovernorGast, TemperatureHoldsThePowerAtItsLimitAndLetsGo) {
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-8);  // exp(-60/3) of 0.1
 }
 
-TEST(GovernorGast, FuelValveStopsAtItsEndsWithoutWindUp) {
+TEST(GovernorGast, FuelValveStopsAtItsLimitsWithoutWindUp) {
   ControlBench bench("GAST", kGastValues);
-  bench.in.speed = 0.1;  // droop asks for -1.2 pu
+  bench.in.speed = 0.1;  // demand of the droop: -1.2 pu
   bench.run(10.0);
   EXPECT_EQ(bench.state("fuel"), -0.05);
   bench.in.speed = 0.0;
   bench.run(0.4);
-  EXPECT_NEAR(bench.state("fuel"), 0.8 - 0.85 * std::exp(-1.0), 1e-9);  // T1 from the end on, no delay
+  EXPECT_NEAR(bench.state("fuel"), 0.8 - 0.85 * std::exp(-1.0), 1e-9);  // T1 from the limit, without delay
 }
 
-TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorGast, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kGastValues;
   values["db"] = 0.0006;
   ControlBench bench("GAST", values);
@@ -51,7 +51,7 @@ TEST(GovernorGast, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05 / 0.4, 1e-12);
 }
 
-TEST(GovernorGast, StandsAtItsTemperatureLimitWhateverThePowerFlowRounds) {
+TEST(GovernorGast, ToleratesRoundingAtTheTemperatureLimit) {
   auto at = ControlBench::rated();
   at.Tm = 0.9 + 1e-12;
   ControlBench bench("GAST", kGastValues, at);

@@ -18,14 +18,14 @@ ControlBench bench_with(ControlBench::Changes changes, Signals<double> at = Cont
   return ControlBench("GGOV1", all, at);
 }
 
-/// Speed to Pm with the power held: electrical power is an input of its own.
+/// Transfer function from speed to Pm at constant electrical power, which is a separate input.
 TEST(GovernorGgov1, SmallSignalsFollowTheTransferFunction) {
   for (const double code : {1.0, 0.0, -1.0, -2.0})
     for (const double flag : {0.0, 1.0}) {
       ControlBench bench = bench_with({{"Rselect", code}, {"Flag", flag}});
       ASSERT_EQ(bench.refused, "");
       EXPECT_LT(bench.largest_derivative(), 1e-12);
-      const double valve = (0.8 + 0.2) / 1.5 + 0.2;  // Dm at rated speed takes 0.2 pu
+      const double valve = (0.8 + 0.2) / 1.5 + 0.2;  // Dm reduces the power by 0.2 pu at rated speed
       for (const double omega : {0.05, 0.5, 5.0}) {
         const Complex s(0.0, omega), actuator = 1.0 / (1.0 + s * 0.4);
         Complex stroke = -pid(s);
@@ -63,14 +63,14 @@ TEST(GovernorGgov1, BaseOfTheTurbineRating) {
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-15);
 }
 
-/// Load limiter: however low the speed, the measured exhaust settles where it is Ldref/Kturb + Wfnl.
-TEST(GovernorGgov1, LoadLimiterHoldsItsReferenceAndLetsGo) {
+/// Load limiter: at any low speed the measured exhaust settles at Ldref/Kturb + Wfnl.
+TEST(GovernorGgov1, LoadLimiterRegulatesToItsReferenceAndReleases) {
   ControlBench bench = bench_with({{"Ldref", 0.9}, {"Dm", 0.0}, {"Rselect", 0.0}, {"Aset", 99.0}});
   bench.in.speed = -0.003;  // isochronous: the governor would open to Vmax
   bench.run(200.0);
   EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);  // exp(-200/10) of 0.3, about
-  // The governor's integral stands at Vmax = 1 pu. At speed +0.003 its output is 1 - 8 * 0.003 less
-  // 1.5 * 0.003 per second: it takes the stroke, then 0.8 pu, over after (0.2 - 0.024)/0.0045 = 39.1 s.
+  // The governor's integral is at Vmax = 1 pu. At speed +0.003 its output is 1 - 8 * 0.003 and falls by
+  // 1.5 * 0.003 per second: it takes over the stroke, then 0.8 pu, after (0.2 - 0.024)/0.0045 = 39.1 s.
   bench.in.speed = 0.003;
   bench.run(38.0);
   EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);
@@ -85,13 +85,13 @@ TEST(GovernorGgov1, IntegralsDoNotWindUp) {
   EXPECT_EQ(bench.state("integral"), 1.0);
   EXPECT_NEAR(bench.state("valve"), 1.0, 1e-12);  // a lag after it
   EXPECT_EQ(bench.state("load"), 1.0);
-  bench.in.speed = 0.02;  // stroke = 1 - 8 * 0.02 - 1.5 * 0.02 t at once, the valve at 0.1 pu/s at most
+  bench.in.speed = 0.02;  // stroke = 1 - 8 * 0.02 - 1.5 * 0.02 t without delay, valve at most 0.1 pu/s
   bench.run(0.5);
   EXPECT_NEAR(bench.state("valve"), 1.0 - 0.1 * 0.5, 1e-9);
   EXPECT_NEAR(bench.state("integral"), 1.0 - 1.5 * 0.02 * 0.5, 1e-9);
 }
 
-TEST(GovernorGgov1, ValveKeepsItsSpeedsAndEnds) {
+TEST(GovernorGgov1, ValveRespectsRateAndPositionLimits) {
   ControlBench bench = bench_with({{"Ropen", 0.05}, {"Rclose", -0.2}, {"Ka", 0.0}});
   const double start = bench.state("valve");
   bench.in.speed = -0.02;
@@ -113,13 +113,13 @@ TEST(GovernorGgov1, AccelerationLimiterRampsTheStroke) {
     bench.in.speed = slope * (t + step / 2);
     bench.run(step, step);
   }
-  // Measured acceleration slope (1 - exp(-t/Ta)): its integral falls short of slope t by slope Ta; the
-  // state follows `wanted` from above until the first milliseconds have passed. Tolerance: the speed is
-  // held through each step, step * slope * Ka.
+  // Measured acceleration slope (1 - exp(-t/Ta)): its integral is slope Ta below slope t; during the first
+  // milliseconds the state follows `wanted` from above. Tolerance: step * slope * Ka, because the speed is
+  // constant during each step.
   const double expected = start - 5.0 * (slope - 0.01) * seconds + 5.0 * slope * 0.05;
   EXPECT_NEAR(bench.state("accel"), expected, 3e-3);
   EXPECT_LT(bench.state("accel"), start - 0.15);
-  bench.run(1.0);  // speed constant again: the stroke comes back at Ka Aset = 0.05 pu/s
+  bench.run(1.0);  // constant speed: the stroke recovers at Ka Aset = 0.05 pu/s
   const double low = bench.state("accel");
   bench.run(1.0);
   EXPECT_NEAR(bench.state("accel"), low + 0.05, 1e-6);
@@ -133,11 +133,11 @@ TEST(GovernorGgov1, ExhaustTemperatureFollowsSpeedByNegativeDm) {
   bench.in.speed = -0.04;
   bench.run(60.0);
   EXPECT_NEAR(bench.state("exhaust"), valve * std::pow(0.96, -0.5), 1e-6);  // exp(-60/5) of 0.015
-  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);  // power itself does not depend on speed then
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);  // the power then does not depend on speed
 }
 
 TEST(GovernorGgov1, PowerControllerReturnsTheLoadToItsSetPoint) {
-  // The plant delivers what the turbine gives: P = Tm, at another speed.
+  // The plant delivers the turbine's power: P = Tm, at another speed.
   ControlBench bench = bench_with({{"Kimw", 0.01}, {"Dm", 0.0}});
   bench.in.speed = 0.001;
   for (int i = 0; i < 60000; ++i) {

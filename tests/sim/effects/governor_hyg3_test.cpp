@@ -1,4 +1,4 @@
-// HYG3: transfer functions of both regulators, the curve and its ends, the water column by hand, limits.
+// HYG3: transfer functions of both regulators, gate curve and its ends, hand-calculated water column, limits.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -42,7 +42,7 @@ TEST(GovernorHyg3, TransferFunctionsAreTheDiagrams) {
       const C filter = lead_over_lag(0.0, v.at("TD"), omega), wash = s / (1.0 + s * 0.15);
       const bool pid = !v.contains("FLAG");
       const C regulator = pid ? filter * (1.2 + v.at("KI") / s + 0.3 * wash) : v.at("KI") / s;
-      const C cv = regulator / (1.0 + 0.04 * regulator);  // by its reference
+      const C cv = regulator / (1.0 + 0.04 * regulator);  // with gate feedback
       const C servo = 4.0 * lead_over_lag(0.0, v.at("TP"), omega) / s, gate = servo / (1.0 + servo);
       // TW dq = H0 - (q/pgv)^2; Pm = At (q/pgv)^2 (q - qNL)
       const double g = 2.0 * flow / (pgv * pgv);
@@ -63,7 +63,7 @@ TEST(GovernorHyg3, TransferFunctionsAreTheDiagrams) {
   }
 }
 
-TEST(GovernorHyg3, TheCurveBeginsAtNothingAndEndsAtEverything) {
+TEST(GovernorHyg3, GateCurveSpansZeroToFullPower) {
   const auto gate = [](double pm, const Values& more) {
     Signals<double> at = ControlBench::rated();
     at.Tm = at.P = pm;
@@ -81,11 +81,11 @@ TEST(GovernorHyg3, TheCurveBeginsAtNothingAndEndsAtEverything) {
   EXPECT_NEAR(gate(0.7, none), 0.7, 1e-14);
 }
 
-TEST(GovernorHyg3, BandIsInHertzAndBacklashInMegawatts) {
+TEST(GovernorHyg3, DeadBandIsInHertzAndBacklashInMegawatts) {
   ControlBench bench(
       "HYG3", hyg3_with({{"DBH", 0.06}, {"DBL", -0.12}, {"DTURB", 0.0}, {"RELEC", 0.0}, {"db2", 2.0}}));
   const double before = bench.state("gate");
-  bench.in.speed = 0.0009;  // the edges lie at 0.001 and -0.002
+  bench.in.speed = 0.0009;  // edges of the dead-band: 0.001 and -0.002
   bench.run(5.0);
   EXPECT_EQ(bench.state("gate"), before);
   bench.in.speed = 0.002;
@@ -97,7 +97,7 @@ TEST(GovernorHyg3, BandIsInHertzAndBacklashInMegawatts) {
   EXPECT_NEAR(bench.state("position"), before + 0.002 / 0.04, 1e-5);
 }
 
-TEST(GovernorHyg3, GateKeepsItsVelocitiesAndLimits) {
+TEST(GovernorHyg3, GateRespectsVelocityAndPositionLimits) {
   for (const double flag : {1.0, 0.0}) {
     ControlBench bench(
         "HYG3",
@@ -110,7 +110,7 @@ TEST(GovernorHyg3, GateKeepsItsVelocitiesAndLimits) {
     EXPECT_NEAR(first - bench.state("gate"), 0.075, 1e-9);
     bench.run(20.0);
     EXPECT_NEAR(bench.state("gate"), 0.2, 1e-9);
-    EXPECT_GE(bench.state("integral"), 0.2);  // nothing winds up
+    EXPECT_GE(bench.state("integral"), 0.2);  // no wind-up
     bench.in.dPref = 20.0;
     bench.run(2.5);
     const double rising = bench.state("gate");

@@ -33,7 +33,7 @@ TEST(GovernorHygov, PermanentDroop) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 1.2 * 0.1 + 0.4 * 0.005 * bench.state("gate"), 1e-8);
 }
 
-TEST(GovernorHygov, GateMovesNoFasterThanItsVelocityLimitAndStopsAtItsEnd) {
+TEST(GovernorHygov, GateRespectsVelocityAndPositionLimits) {
   ControlBench bench("HYGOV", kHygovValues);
   const double before = bench.state("desired");
   bench.in.speed = -0.2;
@@ -44,10 +44,10 @@ TEST(GovernorHygov, GateMovesNoFasterThanItsVelocityLimitAndStopsAtItsEnd) {
   EXPECT_EQ(bench.state("desired"), 1.0);
   bench.in.speed = 0.2;
   bench.run(0.5);
-  EXPECT_LT(bench.state("desired"), 1.0 - 0.2 * 0.4);  // no time lost in winding back
+  EXPECT_LT(bench.state("desired"), 1.0 - 0.2 * 0.4);  // no delay by wind-up
 }
 
-TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorHygov, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kHygovValues;
   values["db"] = 0.0006;
   values["Dturb"] = 0.0;
@@ -55,7 +55,7 @@ TEST(GovernorHygov, DeadBandTakesItsWidthFromTheSpeed) {
   bench.in.speed = 0.0005;
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   bench.in.speed = 0.0016;
-  EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05, 1e-12);  // the filter sees what is beyond the edge
+  EXPECT_NEAR(bench.derivative()[0], -0.001 / 0.05, 1e-12);  // the filter's input is the part beyond the edge
 }
 
 TEST(GovernorHygov, RefusesParametersThatCannotBeIntegrated) {

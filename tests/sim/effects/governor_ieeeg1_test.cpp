@@ -42,17 +42,17 @@ TEST(GovernorIeeeg1, DroopBeyondTheDeadBand) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 20.0 * 0.002, 1e-10);  // exp(-200/7) of 0.04 is 2e-14
 }
 
-TEST(GovernorIeeeg1, ValveKeepsItsSpeedsAndComesOffItsEndAtOnce) {
+TEST(GovernorIeeeg1, ValveRespectsRateLimitsAndLeavesItsEndWithoutDelay) {
   ControlBench bench("IEEEG1", kIeeeg1Values);
   bench.in.speed = -0.05;
   bench.run(0.5);
-  EXPECT_NEAR(bench.state("valve"), 0.8 + 0.2 * 0.5, 1e-12);  // the error, 0.25 pu, is over UO T3 at once
+  EXPECT_NEAR(bench.state("valve"), 0.8 + 0.2 * 0.5, 1e-12);  // the error, 0.25 pu, exceeds UO T3 immediately
   bench.run(10.0);
   EXPECT_EQ(bench.state("valve"), 1.0);
   bench.in.speed = 0.05;
   bench.run(2.0);
   const double before = bench.state("valve");
-  EXPECT_LT(before, 1.0 - 0.3 * 1.8);  // only T1 = 0.2 s passes before it closes: nothing was wound up
+  EXPECT_LT(before, 1.0 - 0.3 * 1.8);  // only T1 = 0.2 s passes before it closes: no wind-up
   bench.run(1.0);
   EXPECT_NEAR(bench.state("valve"), std::max(0.0, before - 0.3), 1e-12);
 }

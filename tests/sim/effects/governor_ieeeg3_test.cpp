@@ -31,7 +31,7 @@ TEST(GovernorIeeeg2, TransferFunctionIsTheDiagrams) {
     }
 }
 
-TEST(GovernorIeeeg2, TheGateStaysWithinItsLimits) {
+TEST(GovernorIeeeg2, GateStaysWithinItsLimits) {
   ControlBench bench("IEEEG2", ieeeg2_with({{"PMIN", 0.2}, {"PMAX", 0.9}}));
   bench.in.speed = 0.05;
   bench.run(60.0, 1e-2);
@@ -72,7 +72,7 @@ TEST(GovernorIeeeg3, TransferFunctionIsTheDiagrams) {
     }
 }
 
-TEST(GovernorIeeeg3, AtRestTheGateHasMovedBySpeedOverDroop) {
+TEST(GovernorIeeeg3, SteadyStateGateFollowsTheDroop) {
   ControlBench bench("IEEEG3", ieeeg3_with({}));
   bench.in.speed = 0.005;
   bench.in.dPref = 0.03;
@@ -81,7 +81,7 @@ TEST(GovernorIeeeg3, AtRestTheGateHasMovedBySpeedOverDroop) {
   EXPECT_NEAR(bench.out().Tm, 1.2 * (0.8 / 1.2 - 0.07), 1e-6);
 }
 
-TEST(GovernorIeeeg3, GateKeepsItsVelocitiesAndLimits) {
+TEST(GovernorIeeeg3, GateRespectsVelocityAndPositionLimits) {
   for (const double lag : {0.0, 0.06}) {
     ControlBench bench("IEEEG3", ieeeg3_with({{"PMIN", 0.1}, {"PMAX", 0.95}, {"TP", lag}}));
     bench.in.speed = 0.3;

@@ -45,7 +45,7 @@ TEST(GovernorPidgov, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(GovernorPidgov, AtRestTheGateHasMovedBySpeedOverDroop) {
+TEST(GovernorPidgov, SteadyStateGateFollowsTheDroop) {
   ControlBench bench("PIDGOV", pidgov_with({{"DTURB", 0.0}}));
   const double before = bench.state("gate");
   EXPECT_NEAR(before, 0.7 + 0.1 * 0.3 / 0.36, 1e-14);
@@ -55,7 +55,7 @@ TEST(GovernorPidgov, AtRestTheGateHasMovedBySpeedOverDroop) {
   EXPECT_NEAR(bench.state("gate"), before - 0.05, 1e-6);
 }
 
-TEST(GovernorPidgov, GateKeepsItsVelocitiesAndLimits) {
+TEST(GovernorPidgov, GateRespectsVelocityAndPositionLimits) {
   ControlBench bench("PIDGOV",
                      pidgov_with({{"VELMAX", 0.1}, {"VELMIN", -0.15}, {"GMAX", 0.9}, {"GMIN", 0.2}}));
   const double before = bench.state("gate");

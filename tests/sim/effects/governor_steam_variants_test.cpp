@@ -20,7 +20,7 @@ TEST(GovernorSteamVariants, Tgov3SmallSignals) {
   }
 }
 
-TEST(GovernorSteamVariants, Tgov3ReheaterEndsAtItsPressure) {
+TEST(GovernorSteamVariants, Tgov3ReheaterIsLimitedByItsPressure) {
   ControlBench bench("TGOV3", {{"PRMAX", 0.9}, {"K1", 0.3}, {"K2", 0.4}, {"K3", 0.3}, {"PMAX", 1.0}});
   ASSERT_EQ(bench.refused, "");
   bench.in.dPref = 1.0;
@@ -48,7 +48,7 @@ TEST(GovernorSteamVariants, IeesgoSmallSignals) {
   }
 }
 
-TEST(GovernorSteamVariants, IeesgoLimitsWhatItAsksFor) {
+TEST(GovernorSteamVariants, IeesgoLimitsItsPowerDemand) {
   ControlBench bench("IEESGO", {{"K1", 20.0}, {"db", 0.0005}});
   bench.in.speed = -0.0005;
   EXPECT_LT(bench.largest_derivative(), 1e-14);

@@ -29,7 +29,7 @@ TEST(GovernorTgov1, DroopAndTurbineDamping) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 0.005 / 0.05 + 0.5 * 0.005, 1e-12);  // exp(-30 / 0.8) is below
 }
 
-TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
+TEST(GovernorTgov1, DeadBandSubtractsItsWidthFromTheSpeed) {
   auto values = kTgov1Values;
   values["db"] = 0.0006;
   ControlBench bench("TGOV1", values);
@@ -40,16 +40,16 @@ TEST(GovernorTgov1, DeadBandTakesItsWidthFromTheSpeed) {
   EXPECT_NEAR(bench.out().Tm, 0.8 + 0.001 / 0.05, 1e-12);  // exp(-30 / 0.8) is below
 }
 
-TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemAtOnce) {
+TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemWithoutDelay) {
   auto values = kTgov1Values;
-  values["T2"] = values["T3"] = 0.0;  // no reheater: the valve is the power
+  values["T2"] = values["T3"] = 0.0;  // no reheater: the power equals the valve position
   ControlBench bench("TGOV1", values);
   bench.in.speed = -0.1;
   bench.run(10.0);
   EXPECT_EQ(bench.out().Tm, 1.2);
   bench.in.speed = 0.0;
   bench.run(0.1);
-  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.4 * std::exp(-0.1 / 0.2), 1e-11);  // as if the 10 s had not been
+  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.4 * std::exp(-0.1 / 0.2), 1e-11);  // independent of the 10 s before
   bench.in.speed = 0.1;
   bench.run(10.0);
   EXPECT_EQ(bench.out().Tm, 0.1);

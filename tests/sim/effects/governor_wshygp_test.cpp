@@ -29,7 +29,7 @@ TEST(GovernorWshygp, TransferFunctionIsTheDiagrams) {
     const Values v = wshygp_with(more);
     // psse()'s machine has 100 MVA
     const double base = v.contains("TRATE") ? 100.0 / 80.0 : 1.0;
-    if (base > 1.0 && v.at("TT") > 0.0) continue;  // beyond the curve's last point, where it goes on straight
+    if (base > 1.0 && v.at("TT") > 0.0) continue;  // beyond the curve's last point, extrapolated linearly
     for (const double omega : {0.02, 0.3, 4.0}) {
       ControlBench bench("WSHYGP", v);
       ASSERT_TRUE(bench.problems.empty());
@@ -62,7 +62,7 @@ TEST(GovernorWshygp, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(GovernorWshygp, AtRestThePowerHasMovedBySpeedOverDroop) {
+TEST(GovernorWshygp, SteadyStatePowerFollowsTheDroop) {
   ControlBench bench("WSHYGP", wshygp_with({{"TT", 0.0}, {"db1", 0.001}}));
   const double before = bench.state("gate");
   EXPECT_NEAR(before, 0.5 + 0.35 / 1.25, 1e-14);
@@ -71,7 +71,7 @@ TEST(GovernorWshygp, AtRestThePowerHasMovedBySpeedOverDroop) {
   EXPECT_NEAR(bench.state("gate"), before - 0.004 / 0.04, 1e-6);
 }
 
-TEST(GovernorWshygp, EitherSignOfVelcloseIsTheSame) {
+TEST(GovernorWshygp, SignOfVelcloseDoesNotMatter) {
   for (const double sign : {1.0, -1.0}) {
     ControlBench bench("WSHYGP", wshygp_with({{"VELCLOSE", 0.2 * sign}}));
     ASSERT_TRUE(bench.problems.empty());
@@ -85,7 +85,7 @@ TEST(GovernorWshygp, EitherSignOfVelcloseIsTheSame) {
   }
 }
 
-TEST(GovernorWshygp, BacklashHoldsThePowerUntilTheGateHasTurnedThroughIt) {
+TEST(GovernorWshygp, BacklashDelaysReversalOfThePower) {
   ControlBench bench("WSHYGP", wshygp_with({{"TT", 0.0}, {"db2", 0.01}}));
   bench.in.dPref = 0.05;
   bench.run(900.0, 1e-2);
@@ -95,7 +95,7 @@ TEST(GovernorWshygp, BacklashHoldsThePowerUntilTheGateHasTurnedThroughIt) {
   bench.in.dPref = 0.049;
   bench.run(0.5);
   EXPECT_LT(bench.state("gate"), there + 0.01);
-  EXPECT_NEAR(bench.state("position"), there, 1e-6);  // the play is not through
+  EXPECT_NEAR(bench.state("position"), there, 1e-6);  // still within the backlash
 }
 
 TEST(GovernorWshygp, RefusesUnmodelledOptions) {

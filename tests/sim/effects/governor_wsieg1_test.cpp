@@ -7,7 +7,7 @@ namespace {
 const ControlBench::Changes kGateCurve = {{"GV1", 0.0},  {"PGV1", 0.0}, {"GV2", 0.5},
                                           {"PGV2", 0.7}, {"GV3", 1.0},  {"PGV3", 1.0}};
 
-TEST(GovernorWsieg1, WithoutItsOwnPartsItIsIeeeg1) {
+TEST(GovernorWsieg1, EqualsIeeeg1_WhenItsOwnPartsAreOff) {
   ControlBench one("IEEEG1", {{"db", 0.0003}}), other("WSIEG1", {{"db1", 0.0003}});
   ASSERT_TRUE(other.problems.empty());
   for (ControlBench* bench : {&one, &other}) bench->in.speed = -0.004;
@@ -18,7 +18,7 @@ TEST(GovernorWsieg1, WithoutItsOwnPartsItIsIeeeg1) {
   }
 }
 
-TEST(GovernorWsieg1, TheValveStandsWhereItsCurveGivesThePower) {
+TEST(GovernorWsieg1, InitialValvePositionFollowsTheCurve) {
   ControlBench bench("WSIEG1", kGateCurve);  // 0.8 pu: a third of the way from 0.5 to 1
   EXPECT_NEAR(bench.state("valve"), 0.5 + 0.5 / 3.0, 1e-14);
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-14);
@@ -37,22 +37,22 @@ TEST(GovernorWsieg1, PointsMustAscend) {
   EXPECT_FALSE(ControlBench("WSIEG1", values).problems.empty());
 }
 
-TEST(GovernorWsieg1, BacklashHoldsTheGateUntilTheValveHasTurnedThroughIt) {
+TEST(GovernorWsieg1, BacklashDelaysReversalOfTheGate) {
   ControlBench bench("WSIEG1", {{"db2", 0.01}, {"T1", 0.0}, {"PMAX", 2.0}});
   bench.in.dPref = 0.05;
   bench.run(30.0, 5e-3);
-  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the governor sees the gate and brings it there
+  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the governor measures the gate and regulates it
   EXPECT_NEAR(bench.state("valve"), 0.86, 1e-6);
   bench.in.dPref = 0.04;
   bench.run(0.05);
   EXPECT_LT(bench.state("valve"), 0.86);
-  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // the play is not through
+  EXPECT_NEAR(bench.state("gate"), 0.85, 1e-6);  // still within the backlash
   bench.run(30.0, 5e-3);
   EXPECT_NEAR(bench.state("gate"), 0.84, 1e-6);
   EXPECT_NEAR(bench.state("valve"), 0.83, 1e-6);
 }
 
-TEST(GovernorWsieg1, BlockedDirectionsAreThoseOfTheCode) {
+TEST(GovernorWsieg1, CodeBlocksDirectionsOfMotion) {
   for (const double code : {1.0, 2.0, 3.0})
     for (const double asked : {-0.1, 0.1}) {
       ControlBench bench("WSIEG1", {{"IBLOCK", code}, {"PMIN", 0.0}, {"PMAX", code == 1.0 ? 1.0 : 0.0}});

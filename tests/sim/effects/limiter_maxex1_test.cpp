@@ -1,4 +1,4 @@
-// MAXEX1: inverse time of the field voltage, its gain, its limit, that it stays, and beside MAXEX2.
+// MAXEX1: inverse time of the field voltage, gain, limit, latching, and operation together with MAXEX2.
 #include <algorithm>
 
 #include "sim/plant/equations.hpp"
@@ -12,7 +12,7 @@ const ControlBench::Changes kMaxex1Values = {
     {"EFD3", 1.5},     {"TIME3", 15.0}, {"EFDDES", 0.9}, {"KMX", 0.04}, {"VLOW", -0.05}};
 
 TEST(LimiterMaxex1, OperatesAfterTheInverseTimeOfTheFieldVoltage) {
-  // On the characteristic by hand; found in steps of 2 ms, and ten time constants of the measurement.
+  // Hand-calculated characteristic; tolerance: steps of 2 ms and ten time constants of the measurement.
   for (const auto& [voltage, time] : {std::pair{1.15, 45.0}, {1.3, 25.0}, {2.0, 15.0}}) {
     ControlBench bench("MAXEX1", kMaxex1Values);
     ASSERT_TRUE(bench.problems.empty());
@@ -23,7 +23,7 @@ TEST(LimiterMaxex1, OperatesAfterTheInverseTimeOfTheFieldVoltage) {
   ControlBench current("MAXEX1", kMaxex1Values);
   current.in.Ifd = 2.5 * 2.0;
   current.run(20.0, 0.002);
-  EXPECT_EQ(current.state("timer"), 0.0);  // the current may be what it will
+  EXPECT_EQ(current.state("timer"), 0.0);  // independent of the current
 }
 
 TEST(LimiterMaxex1, LowersByItsGainWithoutAnIntegral) {
@@ -38,7 +38,7 @@ TEST(LimiterMaxex1, LowersByItsGainWithoutAnIntegral) {
   bench.in.Efd = 2.5 * 1.6;  // 0.07 pu: beyond VLOW
   bench.run(0.5, 0.002);
   EXPECT_EQ(bench.out().Vlimiter, -0.05);
-  bench.in.Efd = 2.5 * 0.95;  // below the pickup: it has operated and goes on
+  bench.in.Efd = 2.5 * 0.95;  // below the pickup, but it has operated and stays active
   bench.run(0.5, 0.002);
   EXPECT_NEAR(bench.out().Vlimiter, 0.04 * 2.5 * (0.9 - 0.95), 1e-12);
   bench.in.Efd = 2.5 * 0.8;
@@ -65,8 +65,8 @@ TEST(LimiterMaxex1, TimerResetsBelowPickupUnlessOperated) {
   EXPECT_LT(bench.state("timer"), 1e-8);  // exp(-20)
 }
 
-/// Of a plant: the exciter stands behind the limiter, which yet measures what it makes.
-TEST(LimiterMaxex1, MeasuresWhatTheExciterMakesNow) {
+/// In a plant the exciter is evaluated after the limiter, which still measures the present field voltage.
+TEST(LimiterMaxex1, MeasuresThePresentFieldVoltage) {
   plant::Plant plant;
   plant.bus = 0;
   plant.generation = {0.6, 0.15};

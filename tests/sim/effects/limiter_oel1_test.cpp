@@ -1,4 +1,4 @@
-// OEL1: inverse and definite time, run-back as a ramp and as a step, where it is held, alarm, refusals.
+// OEL1: inverse and definite time, run-back as a ramp and as a step, clamping, alarm, refusals.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -29,12 +29,12 @@ TEST(LimiterOel1, TimeIsInverseOrDefinite) {
   EXPECT_GE(oel1_operates_after({}, 2.79), 200.0);
 }
 
-TEST(LimiterOel1, RampsBackUntilWhatMayLastAndIsHeldThere) {
+TEST(LimiterOel1, RampsToThePermanentLimitAndIsClampedThere) {
   ControlBench bench("OEL1", values({}));
   bench.in.Ifd = 3.8;
   bench.run(11.0, 0.01);
-  EXPECT_NEAR(bench.out().Vlimiter, -1.0 / 50.0, 3e-4);  // for 1 s; the start is met within a step
-  bench.in.Ifd = 2.6;                                    // below the pickup, above what may last: it goes on
+  EXPECT_NEAR(bench.out().Vlimiter, -1.0 / 50.0, 3e-4);  // for 1 s; the start is exact to one step
+  bench.in.Ifd = 2.6;                                    // between permanent limit and pickup: it continues
   bench.run(4.0, 0.01);
   EXPECT_NEAR(bench.out().Vlimiter, -5.0 / 50.0, 3e-4);
   bench.in.Ifd = 2.3;
@@ -42,7 +42,7 @@ TEST(LimiterOel1, RampsBackUntilWhatMayLastAndIsHeldThere) {
   bench.run(5.0, 0.01);
   EXPECT_EQ(bench.out().Vlimiter, held);
   EXPECT_LT(bench.state("timer"), 1e-8);
-  bench.in.Ifd = 2.6;  // reset: it needs the pickup again
+  bench.in.Ifd = 2.6;  // reset: it operates only above the pickup
   bench.run(5.0, 0.01);
   EXPECT_EQ(bench.out().Vlimiter, held);
   bench.in.Ifd = 3.8;
@@ -50,7 +50,7 @@ TEST(LimiterOel1, RampsBackUntilWhatMayLastAndIsHeldThere) {
   EXPECT_NEAR(bench.out().Vlimiter, held - 1.0 / 50.0, 3e-4);
 }
 
-TEST(LimiterOel1, NegativeRunbackIsAStepThatStays) {
+TEST(LimiterOel1, NegativeRunbackIsALastingStep) {
   ControlBench bench("OEL1", values({{"Runback", -0.03}}));
   bench.in.Ifd = 3.8;
   bench.run(9.9, 0.01);
@@ -62,7 +62,7 @@ TEST(LimiterOel1, NegativeRunbackIsAStepThatStays) {
   EXPECT_NEAR(bench.out().Vlimiter, -0.03, 1e-8);
 }
 
-TEST(LimiterOel1, TimerStandsBetweenWhatMayLastAndPickup) {
+TEST(LimiterOel1, TimerPausesBetweenPermanentLimitAndPickup) {
   ControlBench bench("OEL1", values({}));
   bench.in.Ifd = 3.8;
   bench.run(6.0, 0.01);
@@ -74,7 +74,7 @@ TEST(LimiterOel1, TimerStandsBetweenWhatMayLastAndPickup) {
   EXPECT_LT(bench.state("timer"), 1e-8);
 }
 
-TEST(LimiterOel1, TakesTheFieldVoltageAndKeepsStillAsAnAlarm) {
+TEST(LimiterOel1, MeasuresTheFieldVoltageAndHasNoOutputAsAlarm) {
   ControlBench voltage("OEL1", values({{"Vfdflag", 1.0}}));
   voltage.in.Ifd = 3.8;
   voltage.run(20.0, 0.01);
@@ -99,7 +99,7 @@ TEST(LimiterOel1, RefusesUnsupportedParameters) {
           .problems.list()
           .size(),
       4u);
-  // Vfdflag first, as PowerWorld lists them: Tset stands where Ifcont is expected.
+  // Vfdflag first, in PowerWorld's order: Tset is read as Ifcont.
   const Effect& oel1 = *library::compiled().find("OEL1");
   Problems problems;
   const double other[] = {0.0, 1.05, 1.5, 10.0, 100.0, 0.0, 999.0, 1.0, 0.0};

@@ -1,4 +1,4 @@
-// UEL1: its circle in the P-Q plane, transfer function outside, wind-up and return, what it refuses.
+// UEL1: its circle in the P-Q plane, transfer function outside, wind-up and return, refusals.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -20,7 +20,7 @@ void deliver(Signals<double>& s, C V, C power) {
 }
 
 TEST(LimiterUel1, ActsOutsideItsCircleOnly) {
-  // proportional alone
+  // proportional part only
   const Values v = {{"KUI", 0.0}, {"KUL", 2.0}, {"TU2", 0.0}, {"VULMAX", 1.0}, {"KUR", 1.6}, {"KUC", 1.2}};
   for (const double magnitude : {0.85, 1.0, 1.1})
     for (const double P : {0.0, 0.5, 0.9}) {
@@ -52,7 +52,7 @@ TEST(LimiterUel1, TransferFunctionIsTheDiagrams) {
     const C exact = phasor.real() / std::abs(phasor) * (0.7 + 3.0 / C(0.0, omega)) *
                     lead_over_lag(0.3, 0.05, omega) * lead_over_lag(0.2, 0.6, omega);
     const C found = bench.response(&Signals<double>::Ii, &Signals<double>::Vlimiter, omega);
-    // difference quotients over 1e-6, magnified by the leads' 6
+    // difference quotients over 1e-6, amplified 6 times by the leads
     EXPECT_LT(std::abs(found - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;
   }
 }

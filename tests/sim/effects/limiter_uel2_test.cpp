@@ -7,13 +7,13 @@ namespace {
 using C = std::complex<double>;
 using Values = ControlBench::Changes;
 
-/// The proportional part alone, without a lag of P and V.
+/// Proportional part only, without lags of P and V.
 Values lines(const Values& changes = {}) {
   Values all = {{"KUI", 0.0}, {"KUL", 2.0}, {"TUV", 0.0}, {"TUP", 0.0}, {"VULMAX", 5.0}};
   for (const auto& [name, value] : changes) all[name] = value;
   return all;
 }
-/// What it adds where a machine delivers P + jQ at V.
+/// Output of the limiter for a machine that delivers P + jQ at V.
 double added(const Values& changes, double V, double P, double Q) {
   ControlBench bench("UEL2", lines(changes));
   EXPECT_TRUE(bench.problems.empty());
@@ -49,7 +49,7 @@ TEST(LimiterUel2, VoltageMovesTheLinesByItsExponents) {
             << k1 << " " << k2;
 }
 
-TEST(LimiterUel2, LeftOfTheAxisIsAMirrorOrTheFirstLine) {
+TEST(LimiterUel2, NegativePowerUsesAMirrorOrTheFirstLine) {
   const Values slope = {{"Q0", -0.5}, {"Q1", -0.2}};  // 1 pu/pu from (0, -0.5) on
   const auto with = [&](double quadrant) {
     Values all = slope;
@@ -80,7 +80,7 @@ TEST(LimiterUel2, TransferFunctionIsTheDiagrams) {
     const C of_p = behind * (0.07 / 0.3) / (1.0 + 5.0 * s);  // slope from (0.6, -0.28) to (0.9, -0.21)
     // d(Q' Vf^2)/dV with P' = P/Vf^2 behind TUP = 5 s, both of Vf behind TUV = 5 s
     const C of_v = behind / (1.0 + 5.0 * s) * (2.0 * -0.245 + (0.07 / 0.3) * (-2.0 * 0.75) / (1.0 + 5.0 * s));
-    // difference quotients over 1e-6, magnified by the leads' 6
+    // difference quotients over 1e-6, amplified 6 times by the leads
     const auto near = [&](const C& found, const C& exact, const char* of) {
       EXPECT_LT(std::abs(found - exact), 1e-7 * (1.0 + std::abs(exact))) << of << " " << omega;
     };
@@ -105,7 +105,7 @@ TEST(LimiterUel2, WindsUpToItsLimitAndReturnsFromThere) {
   EXPECT_EQ(bench.out().Vlimiter, 0.0);
 }
 
-TEST(LimiterUel2, AVoltageNearNothingDoesNotBreakIt) { EXPECT_TRUE(std::isfinite(added({}, 0.0, 0.0, 0.0))); }
+TEST(LimiterUel2, StaysFiniteNearZeroVoltage) { EXPECT_TRUE(std::isfinite(added({}, 0.0, 0.0, 0.0))); }
 
 TEST(LimiterUel2, RefusesUnsupportedParameters) {
   auto weak = ControlBench::rated();

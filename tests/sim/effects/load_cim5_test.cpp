@@ -1,5 +1,5 @@
-// CIM5 against the motor's equivalent circuits, short-circuit time constant, torque laws, stalling, and in
-// both integrators.
+// CIM5 against the motor's equivalent circuits, short-circuit time constant, load torque, stalling, and both
+// integrators.
 #include "sim/effects/load_cim5.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ struct Motor {
   double& at(const char* name) {
     return load.block.p[static_cast<std::size_t>(load.block.effect->parameter_index(name))];
   }
-  /// Current that the bus sees leave it, at voltage v.
+  /// Current drawn from the bus at voltage v.
   [[nodiscard]] Complex drawn(Complex v) const {
     const auto s = evaluated(v);
     return {-s.Ir, -s.Ii};
@@ -56,7 +56,7 @@ struct Motor {
 Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 
 /// Standard values: Ra 0.013, Xa 0.067, Xm 3.8, R1 0.009, X1 0.17; second cage R2 0.02, X2 0.3.
-TEST(LoadCim5, DrawsWhatItsEquivalentCircuitDrawsAndAShuntTheRest) {
+TEST(LoadCim5, MatchesItsEquivalentCircuitWithAShunt) {
   for (const int circuit : {0, 1, 2}) {
     Motor m(circuit == 0 ? Changes{} : Changes{{"IT", circuit}, {"R2", 0.02}, {"X2", 0.3}});
     const double s = m.o.x[X::slip];
@@ -67,19 +67,19 @@ TEST(LoadCim5, DrawsWhatItsEquivalentCircuitDrawsAndAShuntTheRest) {
     if (circuit == 2) cages = 0.17 * j + parallel(0.009 / s, 0.02 / s + 0.3 * j);
     const Complex i = kV0 / (0.013 + 0.067 * j + parallel(3.8 * j, cages));
     const Complex power = kV0 * std::conj(i);
-    EXPECT_NEAR(power.real(), 0.8, 1e-10) << circuit;  // Newton's method stops at rounding
+    EXPECT_NEAR(power.real(), 0.8, 1e-10) << circuit;  // Newton's method converges to rounding
     const Complex whole = m.drawn(kV0);
     EXPECT_NEAR(std::abs(kV0 * std::conj(whole) - Complex(0.8, 0.3)), 0.0, 1e-10) << circuit;
-    // The shunt's part scales with the square of the voltage: what is left is the motor's.
+    // The shunt's power scales with the square of the voltage: the remainder is the motor's.
     const double b = (0.3 - power.imag()) / std::norm(kV0);
     EXPECT_NEAR(std::abs(whole + j * b * kV0 - i), 0.0, 1e-9) << circuit;
-    // Air-gap power is the torque; it stands against the load torque.
+    // The air-gap power is the torque and equals the load torque.
     const double torque = power.real() - 0.013 * std::norm(i);
     EXPECT_NEAR(m.o.c[load_cim5::Model::T0] * std::pow(1 - s, 2), torque, 1e-10) << circuit;
   }
 }
 
-/// Stator shorted: the rotor's flux turns with the slip and decays with T' = T'o X'/X.
+/// Shorted stator: the rotor flux rotates with the slip and decays with T' = T'o X'/X.
 TEST(LoadCim5, ShortCircuitTimeConstant) {
   Motor m({{"Ra", 0.0}});
   const double open = (0.17 + 3.8) / (kW0 * 0.009), transient = 0.067 + 0.17 * 3.8 / (0.17 + 3.8);
@@ -103,12 +103,12 @@ TEST(LoadCim5, LoadTorqueSlowsAMotorWithoutFlux) {
     m.o.x[X::slip] = 0.4;
     EXPECT_NEAR(m.derivative(0.0)[X::slip], T0 * polynomial(0.6) / (2 * 0.8), 1e-12);
     m.o.x[X::slip] = 1.0;
-    EXPECT_LE(m.derivative(0.0)[X::slip], 0.0);  // at rest it stays
+    EXPECT_LE(m.derivative(0.0)[X::slip], 0.0);  // does not restart from standstill
   }
 }
 
-/// Nearly without load the rotor's second current is the saturation's alone: i = (psi_m + Se psi'')/Xm.
-TEST(LoadCim5, SaturationTakesMagnetisingCurrent) {
+/// Near no load the magnetising current includes saturation: i = (psi_m + Se psi'')/Xm.
+TEST(LoadCim5, SaturationIncreasesMagnetisingCurrent) {
   Motor m({{"Ra", 0.0}, {"E1", 0.8}, {"S1", 0.06}, {"E2", 1.0}, {"S2", 0.6}}, {1e-7, 0.3});
   // sqrt(psi Se) is a straight line through (0.8, sqrt 0.048) and (1, sqrt 0.6).
   const auto saturation = [](double psi) {
@@ -170,7 +170,7 @@ Trajectory compared(const grid::Grid& grid, const network::Event& event) {
             [&](const lanes::Job&, const Trajectory& run) {
               kept = run;
               EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, event, exact)),
-                        1e-4);  // the limit asked for
+                        1e-4);  // required limit
             });
   return kept;
 }

@@ -1,4 +1,4 @@
-// LDFR against hand-computed powers; CIM6 is CIM5 but for where its torque is read from.
+// LDFR against hand-computed powers; CIM6 equals CIM5 except for the source of its torque.
 #include "sim/effects/load_ldfr.hpp"
 
 #include <gtest/gtest.h>
@@ -35,21 +35,21 @@ TEST(LoadLdfr, PowerAndCurrentPartsFollowPowersOfTheFrequency) {
       "LDFR",
       {{"m", 1.5}, {"n", -1.0}, {"r", 0.5}, {"s", 2.0}, {"Pi", 0.3}, {"Pp", 0.5}, {"Qi", 0.2}, {"Qp", 0.1}});
   const double v = 0.9 / 0.98;
-  Complex s = drawn_by(load, std::polar(0.9, 0.3));                   // at rated frequency: as ZIP
+  Complex s = drawn_by(load, std::polar(0.9, 0.3));                   // at rated frequency: equals ZIP
   EXPECT_NEAR(s.real(), 0.8 * (0.2 * v * v + 0.3 * v + 0.5), 1e-14);  // rounding
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v + 0.1), 1e-14);
-  // The lag follows a voltage that turns at df by the angle whose sine is 2 pi f0 Tf df.
+  // The lag trails a voltage that rotates at df by the angle whose sine is 2 pi f0 Tf df.
   const double df = 0.004, turn = 2 * 3.14159265358979323846 * 60 * 0.05 * df, f = 1 + df;
   s = drawn_by(load, std::polar(0.9, 0.3 + std::asin(turn)));
   EXPECT_NEAR(s.real(), 0.8 * (0.2 * v * v + 0.3 * v * std::pow(f, 0.5) + 0.5 * std::pow(f, 1.5)), 1e-12);
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v * f * f + 0.1 / f), 1e-12);
 }
 
-TEST(LoadLdfr, IsNothingAtZeroVoltage) {
+TEST(LoadLdfr, VanishesAtZeroVoltage) {
   EXPECT_EQ(drawn_by(consumer("LDFR", {{"Pi", 0.3}}), 0.0), Complex());
 }
 
-TEST(LoadCim6, IsCim5WithTheSameTorque) {
+TEST(LoadCim6, EqualsCim5_WithTheSameTorque) {
   const std::vector<std::pair<const char*, double>> torque = {{"A", 0.4}, {"B", 0.1},  {"D", 0.2},
                                                               {"E", 1.5}, {"C0", 0.3}, {"Mbase", 100.0}};
   const Complex v = std::polar(0.8, 0.25);

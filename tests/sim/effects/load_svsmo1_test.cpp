@@ -1,5 +1,5 @@
-// SVSMO1 by hand: what it delivers, its regulator's answer to a step, its slope, limits that hold for a time,
-// its dead-band, what trips it, what is refused.
+// SVSMO1 against hand calculations: output, step response of the regulator, slope, short-term limits,
+// dead-band, tripping, refusals.
 #include "sim/effects/load_svsmo1.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using Changes = std::vector<std::pair<const char*, double>>;
 constexpr double kV0 = 1.02, kQ0 = 0.4;  ///< [pu] at the operating point; Q is delivered
 const double kB0 = kQ0 / (kV0 * kV0);
 
-/// The compensator at a bus whose voltage is given, another one's or its own.
+/// Compensator that regulates its own or another bus, at given voltages.
 class Bench {
  public:
   explicit Bench(const Changes& changes, double delivers = kQ0) : load_(consumer(changes, delivers)) {
@@ -64,7 +64,7 @@ class Bench {
   [[nodiscard]] Signals<double> signals(const std::vector<double>& at) const {
     Signals<double> s;
     s.Vr = V;
-    s.Vpi = far;  // its angle does not matter
+    s.Vpi = far;  // independent of its angle
     plant::LoadEquations<double>(load_).current(at_.c.data(), at.data(), s);
     return s;
   }
@@ -88,7 +88,7 @@ Changes with(Changes changes, const Changes& more) {
   return changes;
 }
 
-TEST(Svsmo1, StandsAtItsSusceptanceAndDeliversWithTheSquareOfTheVoltage) {
+TEST(Svsmo1, StartsAtItsSusceptanceAndFollowsTheSquareOfTheVoltage) {
   Bench bench({});
   EXPECT_NEAR(bench.B(), kB0, 1e-15);
   bench.run(2.0);
@@ -98,12 +98,12 @@ TEST(Svsmo1, StandsAtItsSusceptanceAndDeliversWithTheSquareOfTheVoltage) {
   EXPECT_NEAR(bench.delivered().real(), 0.0, 1e-15);
 }
 
-/// The integral of a lagged step of the error, behind the lag of the firing, written out.
+/// Closed form: integral of a lagged error step behind the lag of the firing.
 double after_a_step(double error, double t) {
   const double T1 = 0.02, T2 = 0.05, K = 20.0, e1 = std::exp(-t / T1), e2 = std::exp(-t / T2);
   return K * error * (t - T2 + T2 * e2 - T1 * (1 - e2) + T1 * (e1 - e2) / (1 - T2 / T1));
 }
-TEST(Svsmo1, ItsIntegralAnswersAStepByHand) {
+TEST(Svsmo1, IntegralResponseToAStepByHand) {
   Bench bench(kIntegral);
   bench.far -= 0.01;
   double t = 0.0;
@@ -112,21 +112,21 @@ TEST(Svsmo1, ItsIntegralAnswersAStepByHand) {
     t += dt;
     EXPECT_NEAR(bench.B() - kB0, after_a_step(0.01, t), 1e-9) << t;  // Runge-Kutta at T1/200
   }
-  bench.V = 0.9;  // its own bus counts by the slope alone, and there is none
+  bench.V = 0.9;  // its own bus acts only through the slope, which is zero
   const double before = bench.B(), grows = 20.0 * 0.01;
   bench.run(1.0);
   EXPECT_NEAR(bench.B() - before, grows * 1.0, 1e-4);
 }
 
-TEST(Svsmo1, ItsSlopeLetsTheVoltageFallWithItsCurrent) {
+TEST(Svsmo1, SlopeLowersTheVoltageWithCurrent) {
   Bench bench(with(kIntegral, {{"Xc1", 0.05}}));
   bench.both(0.98);
   bench.run(20.0);
-  // Vref - V - Xc1 V B = 0, and Vref is that of the operating point.
+  // Vref - V - Xc1 V B = 0 with Vref of the operating point.
   EXPECT_NEAR(bench.B(), (kV0 + 0.05 * kV0 * kB0 - 0.98) / (0.05 * 0.98), 1e-6);
 }
 
-TEST(Svsmo1, ItsGainActsThroughTheLeadLagWithinTheErrorsLimits) {
+TEST(Svsmo1, GainActsThroughTheLeadLagWithinErrorLimits) {
   Bench bench({{"Kiv", 0.0},
                {"Kpv", 10.0},
                {"Xc1", 0.0},
@@ -136,14 +136,14 @@ TEST(Svsmo1, ItsGainActsThroughTheLeadLagWithinTheErrorsLimits) {
                {"T2", 1e-3},
                {"Vemax", 0.02}});
   bench.both(kV0 - 0.05);
-  bench.run(0.02);  // the lead's quarter of the error's limit, and what its lag has let through
+  bench.run(0.02);  // a quarter of the error's limit through the lead, plus the lagged part
   EXPECT_NEAR(bench.B() - kB0, 10 * 0.02 * (1 - 0.75 * std::exp(-0.019 / 0.4)), 2e-5);  // T2 = 1 ms late
   bench.run(5.0);
   EXPECT_NEAR(bench.B() - kB0, 10 * 0.02, 1e-6);
 }
 
 const Changes kQuick = {{"Bshrt", 1.1}, {"Bmax", 0.95}, {"Bmin", -0.3}, {"Tshrt", 0.5}};
-TEST(Svsmo1, ItDeliversMoreThanItCanLastForAShortTime) {
+TEST(Svsmo1, AllowsShortTermOverload) {
   Bench bench(kQuick);
   bench.both(0.8);
   bench.run(0.4);
@@ -152,12 +152,12 @@ TEST(Svsmo1, ItDeliversMoreThanItCanLastForAShortTime) {
   EXPECT_NEAR(bench.B(), 0.95, 1e-4);
   bench.run(3.0);
   EXPECT_NEAR(bench.B(), 0.95, 1e-4);
-  bench.both(1.2);  // it has not wound up
+  bench.both(1.2);  // no wind-up
   bench.run(0.2);
   EXPECT_NEAR(bench.B(), -0.3, 1e-4);
 }
 
-TEST(Svsmo1, ALowVoltageLowersItsLimitAndTheDelayHoldsItThere) {
+TEST(Svsmo1, UndervoltageLowersTheLimitForTheDelay) {
   Bench bench(with(kQuick, {{"UVT", 0.0}, {"UVtm1", 0.2}, {"PLLdelay", 0.1}, {"UVSBmax", 0.18}}));
   bench.both(0.5);
   bench.run(0.15);
@@ -171,7 +171,7 @@ TEST(Svsmo1, ALowVoltageLowersItsLimitAndTheDelayHoldsItThere) {
   EXPECT_GT(bench.B(), 0.9);
 }
 
-TEST(Svsmo1, ItTripsForGood) {
+TEST(Svsmo1, TripsPermanently) {
   for (const auto& [volts, delay, quick] : {std::tuple{0.3, 0.6, 0.3}, {1.6, 0.4, 0.3}, {1.9, 0.1, 0.05}}) {
     Bench bench({{"UV1", 0.0},
                  {"UVT", 0.48},
@@ -184,7 +184,7 @@ TEST(Svsmo1, ItTripsForGood) {
     bench.run(quick);
     EXPECT_GT(std::abs(bench.B()), 0.1) << volts;
     bench.both(kV0);
-    bench.run(0.5);  // the timer begins anew
+    bench.run(0.5);  // the timer restarts
     bench.both(volts);
     bench.run(delay + 0.15);
     EXPECT_NEAR(bench.B(), 0.0, 1e-3) << volts;
@@ -194,7 +194,7 @@ TEST(Svsmo1, ItTripsForGood) {
   }
 }
 
-TEST(Svsmo1, ItsDeadBandSleepsUntilTheErrorIsLargeAndAgainOnceItWasSmall) {
+TEST(Svsmo1, DeadBandHasHysteresisAndADelay) {
   Bench bench(with(kIntegral, {{"Vdbd1", 0.02}, {"Vdbd2", 0.005}, {"Tdbd", 0.3}}));
   bench.far = kV0 - 0.015;
   bench.run(1.0);
@@ -202,8 +202,8 @@ TEST(Svsmo1, ItsDeadBandSleepsUntilTheErrorIsLargeAndAgainOnceItWasSmall) {
   bench.far = kV0 - 0.03;
   bench.run(0.5);
   const double awake = bench.B();
-  EXPECT_NEAR(awake - kB0, after_a_step(0.03, 0.5), 0.03 * 20.0 * 0.02);  // it woke within a few ms
-  bench.far = kV0 - 0.015;                                                // between the edges it goes on
+  EXPECT_NEAR(awake - kB0, after_a_step(0.03, 0.5), 0.03 * 20.0 * 0.02);  // active within a few ms
+  bench.far = kV0 - 0.015;                                                // stays active between the edges
   bench.run(1.0);
   EXPECT_NEAR(bench.B() - awake, 20.0 * 0.015 * 1.0, 0.03);
   bench.far = kV0 - 0.004;
@@ -241,7 +241,7 @@ TEST(Svsmo1, ReportsNeglectedParameters) {
   EXPECT_THAT(says({{"UV2", 0.3}}), HasSubstr("below UV2 = 0.3 pu"));
 }
 
-TEST(Svsmo1, ValuesThatNoEquationTakesAreRefused) {
+TEST(Svsmo1, RefusesInvalidValues) {
   for (const auto& [parameter, value] : {std::pair{"T2", 0.0},
                                          {"Bmax", 4.0},
                                          {"Bmin", 3.1},

@@ -36,7 +36,7 @@ Complex drawn_by_zip(const plant::Consumer& load, Complex v) {
   return -v * std::conj(Complex(s.Ir, s.Ii));
 }
 
-TEST(LoadZip, DrawsItsPolynomial) {
+TEST(LoadZip, FollowsItsPolynomial) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}, {"Qi", 0.2}, {"Qp", 0.1}});
   const double v = 0.9 / 0.98;
   const Complex s = drawn_by_zip(load, std::polar(0.9, 0.3));
@@ -44,33 +44,33 @@ TEST(LoadZip, DrawsItsPolynomial) {
   EXPECT_NEAR(s.imag(), 0.3 * (0.7 * v * v + 0.2 * v + 0.1), 1e-14);
 }
 
-/// What OpenIPSL writes of PSS/E's constant current below 0.5 pu.
+/// PSS/E's constant current below 0.5 pu, as implemented in OpenIPSL.
 double current_left(double v) {
   return 1.502 * 1.769 * std::pow(v, 0.769) * std::exp(-1.502 * std::pow(v, 1.769));
 }
 
-TEST(LoadZip, GivesWayBelowItsThresholdsAsPsseDoesAndIsNothingAtZero) {
+TEST(LoadZip, FollowsPsseBelowItsThresholdsDownToZero) {
   const auto load = consumer({{"Pi", 0.3}, {"Pp", 0.5}});
   const auto p = [&](double v) { return drawn_by_zip(load, std::polar(v, 0.3)).real(); };
   const auto impedance = [](double v) { return 0.2 * v * v / (0.98 * 0.98); };
   // At 0.35 pu, half of Vp, the constant power has fallen to a half; at 0.2 pu to 2 (2/7)^2.
   EXPECT_NEAR(p(0.35), 0.8 * (impedance(0.35) + 0.3 * 0.35 / 0.98 * current_left(0.35) + 0.5 * 0.5), 1e-14);
-  EXPECT_NEAR(current_left(0.2), 0.71, 0.005);  // an impedance would leave 0.40
+  EXPECT_NEAR(current_left(0.2), 0.71, 0.005);  // a constant impedance would give 0.40
   EXPECT_NEAR(p(0.2), 0.8 * (impedance(0.2) + 0.3 * 0.2 / 0.98 * current_left(0.2) + 0.5 * 8.0 / 49.0),
               1e-14);
-  // Between a half and the whole of Vp: 1 - 2 (1 - x)^2; the current is whole still.
+  // Between Vp/2 and Vp: 1 - 2 (1 - x)^2; the current part is not yet reduced.
   EXPECT_NEAR(p(0.6), 0.8 * (impedance(0.6) + 0.3 * 0.6 / 0.98 + 0.5 * (1 - 2.0 / 49.0)), 1e-14);
   for (const double edge : {0.35, 0.5, 0.7}) EXPECT_NEAR(p(edge + 1e-9), p(edge - 1e-9), 1e-8);  // slope < 3
   EXPECT_EQ(drawn_by_zip(load, 0.0), Complex());
 }
 
-TEST(LoadZip, BothFallToNothingWithTheVoltage) {
+TEST(LoadZip, CurrentStaysBoundedAndVanishesWithTheVoltage) {
   for (const char* part : {"Pi", "Pp"}) {
     const auto load = consumer({{part, 1.0}});
     double before = 1.0;
     for (double v = 0.69; v > 1e-6; v *= 0.7) {
       const double current = std::abs(drawn_by_zip(load, std::polar(v, 0.3)).real()) / v;
-      // Constant power: (1 - 2 (1 - x)^2)/x is greatest at x = sqrt(1/2), 4 - 2 sqrt(2).
+      // Constant power: (1 - 2 (1 - x)^2)/x has its maximum at x = sqrt(1/2), 4 - 2 sqrt(2).
       EXPECT_LT(current, part[1] == 'i' ? 0.8 / 0.98 + 1e-12 : 0.8 / 0.7 * 1.1716) << v;
       before = current;
     }
@@ -79,7 +79,8 @@ TEST(LoadZip, BothFallToNothingWithTheVoltage) {
 }
 
 TEST(LoadZip, FollowsTheFrequencyOfItsBus) {
-  // The lag follows a voltage that turns at df with sin(angle) = 2 pi f0 Tf df / sqrt(1 + (2 pi f0 Tf df)^2).
+  // The lag trails a voltage that rotates at df with sin(angle) = 2 pi f0 Tf df / sqrt(1 + (2 pi f0 Tf
+  // df)^2).
   const double df = 0.001, turn = 2 * 3.14159265358979323846 * 60 * 0.05 * df;
   const auto load = consumer({{"Kpf", 2.0}, {"Kqf", -1.0}});
   const Complex v0 = std::polar(0.98, 0.3), v = v0 * std::polar(1.0, std::atan(turn));
@@ -99,7 +100,7 @@ TEST(LoadZip, RefusesAnOperatingPointBelowItsThreshold) {
   }
 }
 
-TEST(LoadZip, EveryFaultOfAChoiceIsReported) {
+TEST(LoadZip, ReportsEveryErrorOfAChoice) {
   grid::Grid grid = test::configured_grid(kGrid, Conventions::psse());
   Problems problems;
   for (const char* text : {"8", "8:GENROU", "99:ZIP", "8:ZIP:Pp=x,Pz=1", "8:ZIP:Kpf=1,Tf=0"})
@@ -128,7 +129,7 @@ void lanes_equal_reference(const grid::Grid& grid, const network::Event& event) 
       [&](const lanes::Job&, const Trajectory& run) {
         done = true;
         EXPECT_EQ(run.outcome, Outcome::stable);
-        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound asked for
+        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // required bound
       });
   EXPECT_TRUE(done);
 }

@@ -1,5 +1,5 @@
-// GENROE and GENSAE: exponential saturation, worked by hand, and without it the same as GENROU and (but for
-// the saturation of the other axis) GENSAL.
+// GENROE and GENSAE: exponential saturation against hand calculations; without it they equal GENROU and
+// GENSAL (except for saturation of the other axis).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,12 +40,12 @@ TEST(ExponentialSaturation, PassesThroughBothFactors) {
   EXPECT_NEAR(exponential_saturation(0.1, x, 1.44), 0.4, 1e-14);
   EXPECT_NEAR(exponential_saturation(0.1, x, 1.1 * 1.1),
               std::sqrt(0.1 * 0.4) * std::pow(1.1 / std::sqrt(1.2), x),
-              1e-14);  // about the geometric mean of 1.0 and 1.2
+              1e-14);  // symmetric about the geometric mean of 1.0 and 1.2
   EXPECT_EQ(exponential_saturation(0.0, saturation_exponent(0.0, 0.0), 1.3), 0.0);
 }
 
-TEST(ExponentialSaturation, WithoutItTheMachinesAreTheQuadraticOnes) {
-  // Tolerance: rounding; GENSAE finds its angle on another way than GENSAL.
+TEST(ExponentialSaturation, EqualsQuadraticMachines_WhenSwitchedOff) {
+  // Tolerance: rounding; GENSAE computes its angle by another formula than GENSAL.
   for (const auto& [exponential, quadratic] : {std::pair{"GENROE", "GENROU"}, {"GENSAE", "GENSAL"}}) {
     const ExponentialMachine a(exponential, 0.0, 0.0, 0.8, -0.3), b(quadratic, 0.0, 0.0, 0.8, -0.3);
     for (std::size_t i = 0; i < a.x.size(); ++i) EXPECT_NEAR(a.x[i], b.x[i], 1e-14) << exponential << i;

@@ -1,4 +1,4 @@
-// GENQEC: its field by hand, equality with GENROU where both are the same machine, rest, what is refused.
+// GENQEC: hand-calculated field, equality with GENROU for the same machine, steady state, refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ plant::Block block_with(const char* name, const Settings& changes) {
     block.p[static_cast<std::size_t>(effect->parameter_index(parameter))] = value;
   return block;
 }
-/// Field voltage and states at rest with the current `i` at the voltage `v`.
+/// Steady-state field voltage and states for the current `i` at the voltage `v`.
 std::pair<double, std::vector<double>> at_rest(const plant::Block& block, Complex v, Complex i) {
   const Effect& effect = *block.effect;
   const auto& ops = effect.get<double>();
@@ -36,8 +36,8 @@ double scaled_quadratic(double s10, double s12, double u) {  // sqrt(u Se) is a 
   return root > 0 ? root * root / u : 0.0;
 }
 
-/// Over-excited by the current -jI at V = 1 all flux lies in the d axis: the air gap holds 1 + Xl I, and the
-/// field needs (1 + Se) times that beside (Xd - Xl) I, over 1 - Kw I.
+/// Over-excited by the current -jI at V = 1 all flux lies in the d axis: the air-gap flux is 1 + Xl I, and
+/// the field needs (1 + Se) times this flux plus (Xd - Xl) I, divided by 1 - Kw I.
 TEST(MachineGenqec, FieldByHand) {
   EXPECT_NEAR(at_rest(block_with("GENQEC", {}), 1.0, 0.0).first, 1.1, 1e-14);
   const double k = 1.0 + scaled_quadratic(0.1, 0.4, 1.12);
@@ -55,8 +55,8 @@ TEST(MachineGenqec, AngleFollowsTheSaturatedQuadratureReactance) {
   EXPECT_NEAR(x[0], std::atan2(xqs * 0.9, 1.0 + 0.01 * 0.9), 1e-14);
 }
 
-/// Without saturation and correction: GENROU, through a fault, to what two runs of IDA differ by.
-TEST(MachineGenqec, WithoutSaturationItIsGenrou) {
+/// Without saturation and correction it equals GENROU through a fault, to the accuracy of two IDA runs.
+TEST(MachineGenqec, EqualsGenrou_WithoutSaturation) {
   const Settings common = {{"S10", 0.0}, {"S12", 0.0}, {"Xdpp", 0.25}, {"Xl", 0.15}, {"Xqp", 0.5}};
   Settings mine = common;
   mine.insert(mine.end(), {{"Xqpp", 0.25}, {"Kw", 0.0}});

@@ -1,4 +1,4 @@
-// GENSAL against the phasor diagram of a salient-pole machine, worked by hand.
+// GENSAL against the hand-calculated phasor diagram of a salient-pole machine.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// GENTPJ: steady states by hand, the current against a search by halving, equality with GENROU where both
-// are the same machine, response of a plant in both integrators.
+// GENTPJ: hand-calculated steady states, current against a bisection, equality with GENROU for the same
+// machine, response of a plant in both integrators.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ double quadratic(double s10, double s12, double u) {  // sqrt(u Se) is a straigh
 }
 
 /// At no load psi'' = E'q = V = 1 and the field needs 1 + S1.0. Over-excited by the current -jI at V = 1 all
-/// flux lies in the d axis: the air gap holds 1 + Xl I, so u = 1 + (Xl + Kis) I, and the field needs
+/// flux lies in the d axis: the air-gap flux is 1 + Xl I, so u = 1 + (Xl + Kis) I, and the field needs
 /// (1 + Se) times the flux behind the saturated reactances: (1 + Se)(1 + Xl I) + (Xd - Xl) I.
 TEST(MachineGentpj, FieldByHand) {
   EXPECT_NEAR(TypeJMachine("GENTPJ", {}, 1.0, 0.0).s.Efd, 1.1, 1e-14);  // tolerances: rounding
@@ -86,8 +86,8 @@ TEST(MachineGentpj, AngleFollowsTheSaturatedQuadratureReactance) {
   EXPECT_NEAR(m.s.Tm, 0.9 + 0.01 * 0.9 * 0.9, 1e-14);  // losses of the stator
 }
 
-/// Where neither saturates and Xl = X'' in GENROU's rotor circuits, the two are the same equations.
-TEST(MachineGentpj, WithoutSaturationItIsGenrouWithLeakageUpToTheSubtransient) {
+/// Without saturation and with Xl = X'' in GENROU's rotor circuits, both have the same equations.
+TEST(MachineGentpj, EqualsGenrouWithSubtransientLeakage_WithoutSaturation) {
   for (const auto& conventions : {Conventions::psse(), Conventions::andes(), Conventions{}}) {
     const Complex v = std::polar(1.02, 0.1), i(0.8, -0.3), dip = std::polar(0.6, 0.2);
     const Changes common = {{"S10", 0.0}, {"S12", 0.0},  {"Xdpp", 0.25},
@@ -112,7 +112,7 @@ TEST(MachineGentpj, WithoutSaturationItIsGenrouWithLeakageUpToTheSubtransient) {
   }
 }
 
-/// Se by halving an interval: the current must be the one whose own flux gives the Se it was found with.
+/// Bisection for Se: the flux of the resulting current must give the same Se.
 TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
   for (const double kis : {0.0, 0.05, 0.15})
     for (const double depth : {1.0, 0.8, 0.3, 0.0})
@@ -166,14 +166,14 @@ void expect_lanes_equal_the_reference(const grid::Grid& grid) {
       [&](const lanes::Job& job, const Trajectory& run) {
         ++done;
         EXPECT_EQ(run.outcome, Outcome::stable) << job.id;
-        // the bound asked for
+        // required bound
         EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, job.event, exact)), 1e-4)
             << job.id;
       });
   EXPECT_EQ(done, events.size());
 }
 
-/// Every second machine of IEEE 39 a GENTPJ.
+/// IEEE 39 with GENTPJ as every second machine.
 grid::Grid every_second() {
   grid::Grid grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const Effect& gentpj = *library::compiled().find("GENTPJ");
@@ -188,8 +188,8 @@ TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
     grid.plants[i].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
   expect_lanes_equal_the_reference(grid);
 }
-/// Without saturation, behind a transformer too, it is the GENROU of the test above.
-TEST(MachineGentpj, BehindATransformerWithoutSaturationItIsGenrou) {
+/// Without saturation it equals the GENROU of the test above, also behind a transformer.
+TEST(MachineGentpj, EqualsGenrouBehindATransformer_WithoutSaturation) {
   grid::Grid linear = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = linear.plants[1];
   plant.transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -230,7 +230,7 @@ TEST(MachineGentpj, SingularValuesAreRefused) {
   }
 }
 
-TEST(MachineGentpj, AMachineWithoutTransientCircuitInTheQuadratureAxis) {
+TEST(MachineGentpj, AcceptsAMissingQAxisTransientCircuit) {
   TypeJMachine m("GENTPJ", {{"Tqop", 0.0}, {"Xq", 1.1}, {"Xqp", 1.1}}, 1.0, {0.8, -0.2});
   Problems problems;
   m.effect.check(nullptr, m.p.data(), "test", problems);

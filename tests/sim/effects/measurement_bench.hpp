@@ -1,5 +1,5 @@
 #pragma once
-// Phasors to send through an instrument.
+// Phasors as input of measurement effects.
 #include <gtest/gtest.h>
 
 #include "sim/core/effect.hpp"
@@ -9,7 +9,7 @@ namespace swingbank::sim::test {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A swing as a plant sees it, `seconds` long: smooth, a few Hz, with the frequency that belongs to V's
+/// Smooth swing of a few Hz at a plant's terminal, `seconds` long; the frequency is consistent with V's
 /// angle.
 inline Phasors swing(double rate, double seconds = 4.0) {
   Phasors p{rate, 60.0, {}, {}, {}};
@@ -24,7 +24,7 @@ inline Phasors swing(double rate, double seconds = 4.0) {
 
 inline const Effect& effect(const char* name) { return *library::compiled().find(name); }
 
-/// What the instrument with these parameters makes of phasors.
+/// Output of the instrument with these parameters.
 inline Phasors measured(const Effect& e, const std::vector<double>& p, Phasors phasors,
                         std::uint64_t seed = 1) {
   e.measure(p.data(), seed, phasors);

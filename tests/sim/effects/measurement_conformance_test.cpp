@@ -1,4 +1,4 @@
-// Runs over every registered measurement, with no edit when one is added.
+// Runs over every registered measurement, including later ones.
 #include <cstring>
 
 #include "sim/library/library.hpp"
@@ -24,8 +24,8 @@ std::vector<double> null_value(const Effect& e) {
   return p;
 }
 
-/// Parameters at which the instrument does something: away from neutral by a fiftieth of the way to the
-/// highest value.
+/// Parameters at which the instrument has an effect: a fiftieth of the range away from the null value towards
+/// the highest value.
 std::vector<double> busy(const Effect& e) {
   auto p = null_value(e);
   for (std::size_t i = 0; i < p.size(); ++i)
@@ -34,7 +34,7 @@ std::vector<double> busy(const Effect& e) {
   return p;
 }
 
-/// busy() with every choice ("code") at its lowest and its highest, as far as check() lets it.
+/// busy() with every choice ("code") at its lowest and highest value that check() accepts.
 std::vector<std::vector<double>> variants(const Effect& e) {
   std::vector<std::vector<double>> list{busy(e)}, allowed;
   for (std::size_t i = 0; i < e.parameters.size(); ++i) {
@@ -74,7 +74,7 @@ double distance(const Phasors& a, const Phasors& b, std::size_t k, std::size_t l
   return std::max({std::abs(a.V[k] - b.V[l]), std::abs(a.I[k] - b.I[l]), std::fabs(a.df[k] - b.df[l])});
 }
 
-TEST(MeasurementConformance, VanishesAtNeutral) {
+TEST(MeasurementConformance, VanishesAtNullValue) {
   ASSERT_FALSE(instruments().empty());
   for (const Effect* e : instruments()) {
     ASSERT_NE(e->measure, nullptr) << e->name;
@@ -84,7 +84,7 @@ TEST(MeasurementConformance, VanishesAtNeutral) {
   }
 }
 
-TEST(MeasurementConformance, EachParameterWithANeutralValueActs) {
+TEST(MeasurementConformance, EachParameterWithANullValueActs) {
   for (const Effect* e : instruments()) {
     int acting = 0;
     for (std::size_t i = 0; i < e->parameters.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(MeasurementConformance, EachParameterWithANeutralValueActs) {
   }
 }
 
-TEST(MeasurementConformance, OneSeedOneAnswer) {
+TEST(MeasurementConformance, SameSeedGivesSameResult) {
   for (const Effect* e : instruments()) {
     const auto p = busy(*e);
     const Phasors first = measured(*e, p, swing(120.0), 7);
@@ -110,7 +110,7 @@ TEST(MeasurementConformance, OneSeedOneAnswer) {
   }
 }
 
-TEST(MeasurementConformance, TheRateDoesNotMatter) {
+TEST(MeasurementConformance, ResultDoesNotDependOnTheRate) {
   for (const Effect* e : instruments()) {
     if (is_random(*e)) continue;
     for (const auto& p : variants(*e)) {
@@ -124,7 +124,7 @@ TEST(MeasurementConformance, TheRateDoesNotMatter) {
   }
 }
 
-TEST(MeasurementConformance, ReachesNoFurtherThanItsMemory) {
+TEST(MeasurementConformance, RespectsItsStatedMemory) {
   for (const Effect* e : instruments()) {
     if (is_random(*e)) continue;
     for (const auto& p : variants(*e)) {
@@ -136,7 +136,7 @@ TEST(MeasurementConformance, ReachesNoFurtherThanItsMemory) {
       moved.df[at] += 0.001;
       const Phasors a = measured(*e, p, swing(rate)), b = measured(*e, p, moved);
       const double reach = e->memory ? e->memory(p.data()) : 0.0;
-      const double samples = reach * rate + (reach > 0 ? 3.0 : 0.0);  // an interpolation sees two more
+      const double samples = reach * rate + (reach > 0 ? 3.0 : 0.0);  // interpolation uses two more
       for (std::size_t k = 0; k < a.V.size(); ++k) {
         if (std::fabs(static_cast<double>(k) - static_cast<double>(at)) <= samples) continue;
         ASSERT_LT(distance(a, b, k, k), 1e-14) << e->name << " sample " << k << ", moved at " << at;

@@ -1,4 +1,4 @@
-// Windows of class P and M and the frequency they give, against what their formulas say by hand.
+// Windows of class P and M and the resulting frequency, against hand-calculated formulas.
 #include "tests/sim/effects/measurement_bench.hpp"
 
 namespace swingbank::sim::effects {
@@ -7,7 +7,7 @@ namespace {
 using test::kPi;
 using test::measured;
 
-/// A phasor that turns at `hz` against the synchronous frame.
+/// Phasor that rotates at `hz` relative to the synchronous frame.
 Phasors turning(double rate, double hz, double seconds = 3.0) {
   Phasors p{rate, 60.0, {}, {}, {}};
   for (int k = 0; k <= static_cast<int>(seconds * rate); ++k) {
@@ -24,7 +24,7 @@ std::complex<double> gain(double rate, double hz, const std::vector<double>& p) 
   const std::size_t k = before.V.size() / 2;
   EXPECT_LT(std::abs(after.V[k] / before.V[k] - after.I[k] / before.I[k]), 1e-13);  // V and I alike
   const std::complex<double> ratio = after.V[k] / before.V[k];
-  // rounding; where next to nothing comes through, its angle is rounding alone
+  // rounding; near zero gain the angle is rounding only
   if (std::abs(ratio) > 0.05) {
     EXPECT_NEAR(after.df[k], hz / 60.0, 1e-12);
   }
@@ -35,7 +35,7 @@ double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(x) / x; }
 
 constexpr double kClassP = 0.0, kClassM = 1.0;
 
-TEST(PmuFilterP, ATriangleOfTwoCyclesIsASquaredSinc) {
+TEST(PmuFilterP, TwoCycleTriangleHasASquaredSincResponse) {
   // (sin(pi/12) / (pi/12))^2 = (0.2588190 / 0.2617994)^2
   EXPECT_NEAR(gain(960.0, 5.0, {kClassP, 1, 60, 0}).real(), 0.9773613, 1e-6);
   for (const double hz : {0.5, 2.0, 10.0, 30.0}) {
@@ -69,7 +69,7 @@ TEST(PmuFilterP, AStepTakesTwoCycles) {
     before.df.push_back(0.0);
   }
   const Phasors after = measured("PMUFILTER", {kClassP, 1, 60, 1}, before);
-  const auto moved = [&](double seconds) {  // share of the step that is seen, by time since its middle
+  const auto moved = [&](double seconds) {  // measured fraction of the step, by time since its middle
     const double k = at + 0.5 + seconds * rate;
     const auto low = static_cast<std::size_t>(std::floor(k));
     const double u = k - std::floor(k);
@@ -80,17 +80,17 @@ TEST(PmuFilterP, AStepTakesTwoCycles) {
   EXPECT_NEAR(moved(-cycle - slack), 0.0, 1e-14);
   EXPECT_NEAR(moved(cycle + slack), 1.0, 1e-14);
   EXPECT_NEAR(moved(0.0), 0.5, 1e-12);
-  // 1/2 + u - u^2/2 of the triangle, u in cycles; a jump is a ramp of one sample: u^2 / 24 of 1/16 = 2e-4
+  // 1/2 + u - u^2/2 of the triangle, u in cycles; a step is a ramp of one sample: u^2 / 24 of 1/16 = 2e-4
   EXPECT_NEAR(moved(0.5 * cycle), 0.875, 4e-4);
   EXPECT_NEAR(moved(-0.5 * cycle), 0.125, 4e-4);
 }
 
-TEST(PmuFilterM, IsTheStandardsWindow) {
+TEST(PmuFilterM, EqualsTheStandardsWindow) {
   struct Row {
     double reports, Ffr;
     int order;
   };
-  // Taps of the standard at 960 samples per second, and what they make of an offset.
+  // Taps of the standard at 960 samples per second, and their gain at a frequency offset.
   for (const Row row : {Row{60, 8.19, 164}, Row{30, 5.02, 306}, Row{120, 16.25, 70}, Row{10, 1.78, 968}})
     for (const double share : {0.1, 0.5, 1.0, 2.0, 2.5}) {
       const double hz = share * row.Ffr;
@@ -102,7 +102,7 @@ TEST(PmuFilterM, IsTheStandardsWindow) {
         of += tap * std::cos(2 * kPi * hz * k / 960.0);
       }
       // The last taps count half in an integral. They are largest with 120 reports, 0.08 x 0.12 of a sum of
-      // 15; both of them, in the average and in what it is divided by: 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
+      // 15; both taps, in the average and in its divisor: 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
       EXPECT_NEAR(gain(960.0, hz, {kClassM, 1, row.reports, 1}).real(), of / sum, 1.5e-3)
           << row.reports << " reports, " << hz << " Hz";
     }
@@ -116,7 +116,7 @@ TEST(PmuFilterM, HalvesAtTwiceTheReferenceFrequency) {
   EXPECT_NEAR(gain(960.0, 1.0, {kClassM, 1, 60, 1}).real(), 1.0, 2e-3);
 }
 
-TEST(PmuFilterM, SaysWhereTheStandardHasNoWindow) {
+TEST(PmuFilterM, ReportsRatesWithoutAStandardWindow) {
   EXPECT_THROW(measured("PMUFILTER", {kClassM, 1, 25, 1}, turning(60.0, 0.0)), InputError);
   Phasors fifty = turning(50.0, 0.0);
   fifty.frequency = 50.0;
@@ -127,7 +127,7 @@ TEST(PmuFilterM, SaysWhereTheStandardHasNoWindow) {
   EXPECT_EQ(problems.list().size(), 1u);
 }
 
-TEST(PmuFilter, AMissingSampleLeavesAWindowOfThem) {
+TEST(PmuFilter, MissingSampleInvalidatesAWindow) {
   Phasors before = turning(240.0, 0.5);
   before.V[300] = std::numeric_limits<double>::quiet_NaN();
   const Phasors after = measured("PMUFILTER", {kClassP, 1, 60, 1}, before);
@@ -135,7 +135,7 @@ TEST(PmuFilter, AMissingSampleLeavesAWindowOfThem) {
   EXPECT_FALSE(std::isnan(std::abs(after.V[308])) || std::isnan(after.df[308]));
 }
 
-/// Angle A sin(W t): everything about its frequency is known.
+/// Angle A sin(W t), whose frequency is known in closed form.
 Phasors wavering(double rate, double A, double W) {
   Phasors p{rate, 60.0, {}, {}, {}};
   for (int k = 0; k <= static_cast<int>(5 * rate); ++k) {
@@ -161,7 +161,7 @@ TEST(PmuFrequency, DifferenceAndAverageOfASine) {
   }
 }
 
-TEST(PmuFrequency, TheEndsUseWhatThereIs) {
+TEST(PmuFrequency, EndsUseTheAvailableSamples) {
   Phasors before = wavering(120.0, 0.0, 1.0);
   const Phasors after = measured("PMUFREQ", {0.5, 0.0}, before);
   for (const double df : after.df) EXPECT_NEAR(df, 0.05, 1e-12);  // a steady 3 Hz up to the last sample

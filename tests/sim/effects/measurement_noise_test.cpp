@@ -1,4 +1,4 @@
-// Noise, gaps and steps: what statistics and rounding say by hand.
+// Noise, gaps and quantisation against hand-calculated statistics and rounding.
 #include <algorithm>
 
 #include "tests/sim/effects/measurement_bench.hpp"
@@ -39,7 +39,7 @@ void expect_normal(const Moments& m, double mean, double deviation) {
   EXPECT_NEAR(m.outside, 0.0455, 0.0043);
 }
 
-TEST(Noise, HasTheDeviationsThatAreAskedFor) {
+TEST(Noise, HasTheRequestedStandardDeviations) {
   const Phasors a = measured("NOISE", {0.002, 0, 0, 0.001, 0.005}, constant(), 3);
   expect_normal(moments(kMany, [&](std::size_t k) { return std::abs(a.V[k]); }), 1.1, 0.0022);
   expect_normal(moments(kMany, [&](std::size_t k) { return std::abs(a.I[k]); }), 0.7, 0.0014);
@@ -64,7 +64,7 @@ TEST(Noise, IsIndependentOfChannelAndNeighbour) {
   EXPECT_NEAR(along, 0.0, 0.02);
 }
 
-TEST(Noise, OneSeedOneNoiseWhateverElseThereIs) {
+TEST(Noise, DependsOnTheSeedOnly) {
   const std::vector<double> p = {0.001, 0, 0, 0.001, 0.001};
   const Phasors whole = measured("NOISE", p, constant(), 9), part = measured("NOISE", p, constant(100), 9);
   EXPECT_TRUE(std::equal(part.V.begin(), part.V.end(), whole.V.begin()));
@@ -75,7 +75,7 @@ TEST(Noise, OneSeedOneNoiseWhateverElseThereIs) {
   EXPECT_NE(measured("NOISE", p, constant(100), 10).V, part.V);
 }
 
-TEST(Gaps, HaveTheRateAndLengthThatAreAskedFor) {
+TEST(Gaps, HaveTheRequestedRateAndLength) {
   // Gaps of 0.2 s, 0.5 of them per second of good record at 60/s: a share 0.1 / 1.1 is missing.
   const std::size_t n = 600000;
   const Phasors a = measured("GAPS", {0.5, 0.2}, constant(n), 4);
@@ -100,7 +100,7 @@ TEST(Gaps, ShorterThanASampleAreOneSample) {
   for (std::size_t k = 1; k < 6000; ++k) runs += std::isnan(a.df[k]) && std::isnan(a.df[k - 1]);
   const auto gone = std::ranges::count_if(a.df, [](double v) { return std::isnan(v); });
   EXPECT_NEAR(static_cast<double>(gone), 100.0, 40.0);  // Poisson, 4 sqrt(100)
-  EXPECT_LE(runs, 8);                                   // one gap after another by chance: 100 / 60
+  EXPECT_LE(runs, 8);                                   // adjacent gaps by chance: 100 / 60
 }
 
 TEST(Quantise, RoundsToTheNearestStep) {

@@ -1,4 +1,4 @@
-// Current and voltage transformers, and the skew between the channels, by hand.
+// Current and voltage transformers, and the skew between channels, against hand calculations.
 #include "tests/sim/effects/measurement_bench.hpp"
 
 namespace swingbank::sim::effects {
@@ -8,7 +8,7 @@ using test::kPi;
 using test::measured;
 using test::swing;
 
-TEST(CurrentTransformer, ScalesAndTurnsTheCurrentAlone) {
+TEST(CurrentTransformer, ScalesAndRotatesTheCurrentOnly) {
   const Phasors before = swing(60.0), after = measured("CTERROR", {0.01, 0.02}, before);
   for (std::size_t k = 0; k < before.V.size(); ++k) {
     EXPECT_EQ(after.V[k], before.V[k]);
@@ -21,17 +21,17 @@ TEST(CurrentTransformer, ScalesAndTurnsTheCurrentAlone) {
   EXPECT_NEAR(std::imag(one.V[0] * std::conj(one.I[0])), -0.020198653360, 1e-12);
 }
 
-TEST(VoltageTransformer, ScalesAndTurnsTheVoltageAlone) {
+TEST(VoltageTransformer, ScalesAndRotatesTheVoltageOnly) {
   const Phasors before = swing(60.0), after = measured("PTERROR", {-0.02, 0.01}, before);
   for (std::size_t k = 0; k < before.V.size(); ++k) {
     EXPECT_EQ(after.I[k], before.I[k]);
     EXPECT_NEAR(std::abs(after.V[k]) / std::abs(before.V[k]), 0.98, 1e-14);
     EXPECT_NEAR(std::arg(after.V[k] * std::conj(before.V[k])), 0.01, 1e-14);
-    EXPECT_EQ(after.df[k], before.df[k]);  // a constant turn has no frequency
+    EXPECT_EQ(after.df[k], before.df[k]);  // a constant phase shift does not change the frequency
   }
 }
 
-TEST(Skew, OfASineIsAPhase) {
+TEST(Skew, ShiftsThePhaseOfASine) {
   const double rate = 60.0, slip = 2 * kPi * 1.0;
   Phasors before{rate, 60.0, {}, {}, {}};
   for (int k = 0; k < 300; ++k) {
@@ -50,7 +50,7 @@ TEST(Skew, OfASineIsAPhase) {
   }
 }
 
-TEST(Skew, OfAJumpSmearsOneSample) {
+TEST(Skew, OfAStepInterpolatesOneSample) {
   Phasors before{60.0, 60.0, {}, {}, {}};
   for (int k = 0; k < 40; ++k) {
     before.V.emplace_back(1.0);
@@ -63,11 +63,11 @@ TEST(Skew, OfAJumpSmearsOneSample) {
     const double left = 1.0 + 0.001 * 10, right = 3.0 - 0.002 * 11;
     const double expected =
         at <= 10 ? 1.0 + 0.001 * at : (at >= 11 ? 3.0 - 0.002 * at : left + (at - 10) * (right - left));
-    EXPECT_NEAR(after.I[k].real(), expected, 1e-13) << k;  // straight pieces are met exactly
+    EXPECT_NEAR(after.I[k].real(), expected, 1e-13) << k;  // exact for linear segments
   }
 }
 
-TEST(Skew, OutsideTheRecordTheCurrentStandsStill) {
+TEST(Skew, ExtrapolatesAConstantCurrent) {
   const Phasors before = swing(60.0), after = measured("SKEW", {0.5}, before);
   for (std::size_t k = 0; k <= 30; ++k) EXPECT_EQ(after.I[k], before.I[0]) << k;
   const Phasors early = measured("SKEW", {-100.0}, before);  // longer than the record

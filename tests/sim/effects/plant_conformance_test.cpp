@@ -1,6 +1,5 @@
-// Runs over every registered control, transformer and load, with no edit when one is added: each is set into
-// a plant (a GENROU with what the effect needs around it) or at a bus, and the whole is held against the
-// contract.
+// Runs over every registered control, transformer and load, including later ones. Each is placed in a plant
+// (a GENROU with the controls that the effect needs) or at a bus and checked against the contract of effects.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,12 +22,12 @@ plant::Plant converter_host(plant::Plant plant, const Effect& effect) {
   plant.machine = standard("REGCA1");
   plant.controls.push_back(standard(effect));
   if (effect.slot != Slot::electrical_control) plant.controls.push_back(standard("REECB1"));
-  if (effect.slot == Slot::torque_control) plant.controls.push_back(standard("WTDTA1"));  // what turns
+  if (effect.slot == Slot::torque_control) plant.controls.push_back(standard("WTDTA1"));  // the drive train
   std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
   return plant;
 }
 
-/// A plant with the effect in its slot, and where its signal would lead nowhere, with what reads it.
+/// Plant with the effect in its slot and, if necessary, a control that reads its signal.
 plant::Plant host(const Effect& effect) {
   plant::Plant plant;
   plant.name = std::string(effect.name);
@@ -64,7 +63,7 @@ std::vector<const Effect*> loads() {
   return list;
 }
 
-/// Parameters within 5 % of the standard values; codes stay.
+/// Parameters within 5 % of the defaults; codes are unchanged.
 std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(0.95, 1.05);
   for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -86,7 +85,7 @@ std::vector<std::vector<double>> parameters(const plant::Plant& plant) {
   return all;
 }
 
-/// What an integrator sees of a plant driven by the voltage at its bus: every derivative, P, Q, Efd, Tm.
+/// Outputs of a plant at a given bus voltage, as an integrator uses them: all derivatives, P, Q, Efd, Tm.
 template <class T>
 std::vector<T> outputs(const plant::Plant& plant, const plant::OperatingOf<T>& o, const std::vector<T>& x,
                        double t) {
@@ -107,7 +106,7 @@ std::vector<T> outputs(const plant::Plant& plant, const plant::OperatingOf<T>& o
   return out;
 }
 
-/// States moved off equilibrium.
+/// States shifted from equilibrium.
 std::vector<double> shifts(const plant::Plant& plant, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   std::vector<double> list;
@@ -120,13 +119,13 @@ std::vector<double> shifts(const plant::Plant& plant, std::mt19937_64& random) {
   return list;
 }
 
-/// A time at which every drive acts: half a second after its first jump.
+/// Time at which every drive acts: half a second after its first step.
 double busy_time(const plant::Plant& plant) {
   const auto instants = plant::instants_of(plant);
   return instants.empty() ? 1.0 : instants.front() + 0.5;
 }
 
-TEST(PlantConformance, StandsStillAtItsOperatingPoint) {
+TEST(PlantConformance, StaysAtItsOperatingPoint) {
   std::mt19937_64 random(11);
   for (const Effect* e : guests()) {
     plant::Plant plant = host(*e);
@@ -218,9 +217,10 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
       const auto here = moved<double>(plant, values, shift);
       for (std::size_t i = 0; i < exact.size(); ++i) {
         const double quotient = (a[i] - b[i]) / (2 * h);
-        // At a kink (a parameter whose sign decides what it does) the dual is the slope of one side.
+        // At a kink (a parameter whose sign selects its meaning) the dual number is the derivative of one
+        // side.
         const double kink = std::fabs(a[i] - 2 * here[i] + b[i]) / (2 * h);
-        // the quotient's own: a few ulp of what comes in, times gains of up to 1e3 (REXS)
+        // rounding of the quotient: a few ulp of the inputs, times gains of up to 1e3 (REXS)
         const double rounding = 1e-13 * std::fabs(here[i]) / h;
         EXPECT_NEAR(exact[i].d[0], quotient, 1e-5 * (1.0 + std::fabs(quotient)) + kink + rounding)
             << e->name << " output " << i << " of " << here[i] << " by " << record.name;
@@ -229,12 +229,12 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
   }
 }
 
-/// Effects that can be switched off by their own parameters change nothing then.
-TEST(PlantConformance, VanishesAtNeutral) {
+/// Effects that are switched off by their own parameters change nothing.
+TEST(PlantConformance, VanishesAtNullValue) {
   std::mt19937_64 random(14);
   for (const Effect* e : guests()) {
     if (e->slot == Slot::exciter || e->slot == Slot::governor || e->slot == Slot::electrical_control)
-      continue;  // they are never nothing
+      continue;  // no null value
     plant::Plant with = host(*e);
     plant::Block& own = own_block(with, *e);
     bool any = false;
@@ -283,7 +283,7 @@ std::vector<T> load_outputs(const plant::Consumer& load, const plant::OperatingO
   return out;
 }
 
-TEST(LoadConformance, StandsStillAndLanesEqualDouble) {
+TEST(LoadConformance, StaysAtItsOperatingPointAndLanesEqualDouble) {
   std::mt19937_64 random(15);
   std::uniform_real_distribution<double> u(-0.02, 0.02);
   for (const Effect* e : loads()) {

@@ -1,4 +1,4 @@
-// LCFB1: its PI by hand, limits of error and output, and what its output is to governors of either kind.
+// LCFB1: hand-calculated PI control, limits of error and output, and its output for both kinds of governors.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -26,17 +26,17 @@ TEST(SetpointLcfb1, EveryLimitActs) {
   bench.in.P = 0.785;  // 0.005 beyond it
   bench.run(1.0);
   EXPECT_NEAR(bench.out().dGref, 0.0005, 1e-12);
-  bench.in.P = 0.5;  // the error's limit
+  bench.in.P = 0.5;  // limit of the error
   bench.run(1.0);
   EXPECT_NEAR(bench.out().dGref, 0.0025, 1e-12);
-  bench.run(10.0);  // the output's
+  bench.run(10.0);  // limit of the output
   EXPECT_NEAR(bench.out().dGref, 0.005, 1e-12);
-  bench.in.P = 1.1;  // and no wind-up
+  bench.in.P = 1.1;  // no wind-up
   bench.run(1.0);
   EXPECT_NEAR(bench.out().dGref, 0.003, 1e-12);
 }
 
-TEST(SetpointLcfb1, FlagsChooseWhatItSees) {
+TEST(SetpointLcfb1, FlagsSelectItsInputs) {
   const auto after = [](double by_power, double by_speed) {
     ControlBench bench("LCFB1", {{"PBF", by_power},
                                  {"FBF", by_speed},
@@ -57,7 +57,7 @@ TEST(SetpointLcfb1, FlagsChooseWhatItSees) {
   EXPECT_EQ(ControlBench("LCFB1", {{"PBF", 2.0}, {"EMAX", -1.0}}).problems.list().size(), 2u);
 }
 
-// A governor's own unit: a speed's reference moves the power by what a droop makes of it.
+// Unit of the governor: a speed reference changes the power through the droop.
 TEST(SetpointLcfb1, MovesTheReferenceInTheGovernorsOwnUnit) {
   const auto moved = [](const char* governor, const Values& changes) {
     ControlBench bench(governor, changes);

@@ -1,4 +1,4 @@
-// IEEEST: transfer function against the product of its diagram, limits, cut-off by voltage, zeros.
+// IEEEST: transfer function against the product of its blocks, limits, cut-off by voltage, zeros.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -7,7 +7,7 @@ namespace {
 using C = std::complex<double>;
 constexpr auto kVs = &Signals<double>::Vs;
 
-/// The diagram, multiplied out at s = j omega.
+/// Product of the diagram's blocks at s = j omega.
 C diagram(const ControlBench::Changes& v, double omega) {
   const C s(0.0, omega);
   const auto a = [&](const char* n) { return v.contains(n) ? v.at(n) : 0.0; };
@@ -57,7 +57,7 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
 }
 
 /// Input codes 2 and 6 measure s/(1 + s Tf) of the terminal's angle and of its magnitude.
-TEST(StabiliserIeeest, FrequencyAndSlopeOfTheVoltageBehindTheirLag) {
+TEST(StabiliserIeeest, FrequencyAndVoltageDerivativeAreLagged) {
   const double w0 = 2 * 3.14159265358979323846 * 60, Tf = 0.03;
   for (const double code : {2.0, 6.0}) {
     auto all = with({{"A1", 0.06}, {"Tf", Tf}, {"ICS", code}});
@@ -69,7 +69,7 @@ TEST(StabiliserIeeest, FrequencyAndSlopeOfTheVoltageBehindTheirLag) {
       const C s(0.0, omega);
       const C exact = diagram(all, omega) * s / (1.0 + s * Tf) / (code == 2.0 ? w0 : 1.0);
       const auto move = [&](Signals<double>& signal, double d) {
-        (code == 2.0 ? signal.Vi : signal.V) += d;  // at V = 1 pu the angle's move is Vi's
+        (code == 2.0 ? signal.Vi : signal.V) += d;  // at V = 1 pu the change of the angle equals that of Vi
       };
       // difference quotients over 1e-6
       EXPECT_LT(std::abs(bench.response(move, kVs, omega) - exact), 1e-6 * (1.0 + std::abs(exact)));

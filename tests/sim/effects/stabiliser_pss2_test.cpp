@@ -1,5 +1,5 @@
-// PSS2B and PSS2A: transfer function from both inputs against the product of their diagram, the
-// ramp-tracking filter's order, ramps of power that are not seen, limits, zeros.
+// PSS2B and PSS2A: transfer functions from both inputs against the product of their blocks, order of the
+// ramp-tracking filter, rejection of power ramps, limits, zeros.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -48,7 +48,8 @@ Values third(Values v) {
 }
 
 void expect_diagram(const char* name, Values v, double omega) {
-  v["VSTMAX"] = 1e3;  // eight leads of T8/T9 magnify the difference quotient's step beyond ordinary limits
+  v["VSTMAX"] =
+      1e3;  // eight leads of T8/T9 amplify the step of the difference quotient beyond ordinary limits
   v["VSTMIN"] = -1e3;
   ControlBench bench(name, v);
   EXPECT_TRUE(bench.problems.empty());
@@ -88,7 +89,7 @@ TEST(StabiliserPss2, EveryCodeReadsItsSignal) {
                                         {3.0, &Signals<double>::P},
                                         {4.0, &Signals<double>::Tm},
                                         {5.0, &Signals<double>::V}}) {
-      // both inputs from there, so that one equation holds: only one of the two paths is left open
+      // both inputs use this signal; only one of the two paths is active
       Values v = third(common({{"IC1", number}, {"IC2", number}}));
       if (code[2] == '1') v["KS2"] = 0.0;
       v[code[2] == '1' ? "IC2" : "IC1"] = number == 1.0 ? 5.0 : 1.0;
@@ -101,8 +102,8 @@ TEST(StabiliserPss2, EveryCodeReadsItsSignal) {
     }
 }
 
-/// What the ramp-tracking filter is for: with T8 = M T9 and KS3 = 1 a ramp of mechanical power, at constant
-/// speed, leaves Vs alone; with T8 = 0 it does not.
+/// Purpose of the ramp-tracking filter: with T8 = M T9 and KS3 = 1 a ramp of mechanical power at constant
+/// speed does not change Vs; with T8 = 0 it does.
 TEST(StabiliserPss2, RampOfPowerIsTrackedBySecondOrder) {
   const auto after_a_ramp = [](double T8) {
     auto v = common({{"KS3", 1.0}, {"T8", T8}, {"T9", 0.1}, {"Tw3", 100.0}, {"Tw4", 0.0}, {"T7", 50.0}});
@@ -119,20 +120,21 @@ TEST(StabiliserPss2, RampOfPowerIsTrackedBySecondOrder) {
   EXPECT_LT(after_a_ramp(0.5), 0.1 * after_a_ramp(0.0));
 }
 
-TEST(StabiliserPss2, LimitsOfInputsAndOutputHoldAndRelease) {
+TEST(StabiliserPss2, InputAndOutputLimitsActAndRelease) {
   auto v = third(common({{"VS1MAX", 0.01}, {"VS1MIN", -0.02}, {"VSTMAX", 0.06}, {"VSTMIN", -0.05}}));
   ControlBench bench("PSS2B", v), at_limit("PSS2B", v);
   bench.in.speed = 0.5;
   at_limit.in.speed = 0.01;
   bench.run(0.3);
   at_limit.run(0.3);
-  EXPECT_EQ(bench.out().Vs, at_limit.out().Vs);  // beyond its limit an input is its limit
+  EXPECT_EQ(bench.out().Vs, at_limit.out().Vs);  // inputs are clamped at their limits
   EXPECT_EQ(bench.out().Vs, 0.06);
   bench.run(60.0);
   EXPECT_NEAR(bench.out().Vs, 0.0, 1e-6);  // washed out: exp(-60 / 3.3) of 0.07 pu
   bench.in.speed = 0.0;
   bench.run(0.3);
-  EXPECT_EQ(bench.out().Vs, -0.05);  // released at once: the step down of 0.01 pu washes past zero
+  EXPECT_EQ(bench.out().Vs,
+            -0.05);  // released without delay: the step of -0.01 pu passes through the washout
 }
 
 TEST(StabiliserPss2, RefusesUnsupportedParameters) {
@@ -149,7 +151,7 @@ TEST(StabiliserPss2, RefusesUnsupportedParameters) {
   EXPECT_NE(ControlBench("PSS2B", {{"VS2MAX", 0.7}}).refused.find("0.8000 pu"), std::string::npos);
 }
 
-TEST(StabiliserPss2, Pss2cHasAFourthLeadLagBehindTheSame) {
+TEST(StabiliserPss2, Pss2cAddsAFourthLeadLag) {
   for (const double omega : {0.3, 5.0}) {
     Values v = third(common({{"VSTMAX", 1e3}, {"VSTMIN", -1e3}}));
     ControlBench before("PSS2B", v);

@@ -1,4 +1,4 @@
-// ST2CUT: transfer functions of both inputs against its diagram, limits and the cut-off by voltage.
+// ST2CUT: transfer functions of both inputs against its diagram, limits and cut-off by voltage.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -28,7 +28,7 @@ TEST(StabiliserSt2cut, TransferFunctionsAreTheDiagrams) {
   }
 }
 
-TEST(StabiliserSt2cut, WithoutT3TheWashoutIsALagThatPassesWhatStays) {
+TEST(StabiliserSt2cut, WithoutT3TheWashoutIsALag) {
   ControlBench::Changes changes = kSt2cut;
   for (auto& [name, value] : changes)
     if (name == std::string("T3")) value = 0.0;

@@ -21,7 +21,7 @@ TEST(StabiliserStab1, TransferFunctionIsTheDiagrams) {
   }
 }
 
-TEST(StabiliserStab1, LimitsBothWaysAndWashesOut) {
+TEST(StabiliserStab1, LimitsBothSignsAndWashesOut) {
   ControlBench bench("STAB1", {{"HLIM", 0.05}});
   bench.in.speed = 0.02;
   EXPECT_EQ(bench.out().Vs, 0.05);

@@ -1,6 +1,6 @@
-// Time constants of zero in every registered control: the effect stands still in its steady state and stays
-// finite when moved, or check() refuses the value in one sentence. A block that is switched off gives the
-// outputs of the same block with a time constant of 1 s.
+// Time constants of zero in every registered control: the steady state has zero derivatives and the outputs
+// stay finite after a disturbance, or check() refuses the value in one sentence. A block switched off gives
+// the outputs of the same block with a time constant of 1 s.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@ namespace {
 
 using Changes = ControlBench::Changes;
 
-/// What a control may give.
+/// Possible outputs of a control.
 const std::vector<std::pair<const char*, ControlBench::Output>> kOutputs = {
     {"Efd", &Signals<double>::Efd},   {"Tm", &Signals<double>::Tm},
     {"Vs", &Signals<double>::Vs},     {"Vlimiter", &Signals<double>::Vlimiter},
     {"Vc", &Signals<double>::Vc},     {"Pext", &Signals<double>::Pext},
     {"Qext", &Signals<double>::Qext}, {"Pord", &Signals<double>::Pord}};
 
-/// Moves the inputs as an event does.
+/// Changes the inputs as an event does.
 void disturb(ControlBench& bench) {
   bench.in.V -= 0.02;
   bench.in.Vr -= 0.02;
@@ -32,7 +32,7 @@ void disturb(ControlBench& bench) {
   bench.in.speed += 1e-3;
 }
 
-TEST(ZeroTimeConstant, StandsStillOrIsRefusedInOneSentence) {
+TEST(ZeroTimeConstant, IsSteadyOrRefusedInOneSentence) {
   int zeros = 0, run = 0, refused = 0;
   for (const Effect& e : library::compiled_effects()) {
     if (!is_control(e.slot) || is_of_converter(e.slot)) continue;
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(test.param.effect) + "_" + test.param.time + "_" + test.param.off.begin()->first;
     });
 
-TEST(ZeroTimeConstant, OfTheRegulatorPassesInEXST1) {
+TEST(ZeroTimeConstant, OfTheRegulatorIsABypassInEXST1) {
   ControlBench none("EXST1", {{"TA", 0.0}, {"KF", 0.0}}), fast("EXST1", {{"TA", 1e-3}, {"KF", 0.0}});
   ASSERT_TRUE(none.problems.empty());
   EXPECT_LT(none.largest_derivative(), 1e-9);
@@ -130,7 +130,7 @@ TEST(ZeroTimeConstant, OfTheRegulatorPassesInEXST1) {
   EXPECT_THAT(fed_back.problems.list()[0].sentence(), testing::HasSubstr("act on itself"));
 }
 
-/// Current and derivatives of a load whose voltage has moved since its steady state.
+/// Current and derivatives of a load after a voltage change from its steady state.
 std::vector<double> moved_load(const Effect& e, const Changes& changes) {
   std::vector<double> p = e.default_parameters();
   for (const auto& [name, value] : changes) p.at(static_cast<std::size_t>(e.parameter_index(name))) = value;
@@ -182,7 +182,7 @@ grid::Grid switched_off_grid(const char* seconds) {
   problems.raise();
   return grid;
 }
-TEST(SwitchedOffBlocks, GiveOneRunInBothIntegrators) {
+TEST(SwitchedOffBlocks, GiveEqualRunsInBothIntegrators) {
   const grid::Grid zero = switched_off_grid("0"), one = switched_off_grid("1");
   network::Event event;
   event.faults = {{zero.network.bus_index(8), 1.0, 1.08, {}}};

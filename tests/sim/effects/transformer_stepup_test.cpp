@@ -1,4 +1,4 @@
-// A plant behind STEPUP against the same plant at its own bus behind the same transformer as a branch.
+// Plant behind STEPUP against the same plant at its own bus behind an equal transformer branch.
 #include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -57,7 +57,7 @@ network::Network network(bool branch) {
 }
 const formats::DyrRecord kGenrou = {
     0, "GENROU", "1", {8.0, 0.03, 0.4, 0.05, 6.175, 0.05, 1.8, 1.7, 0.3, 0.55, 0.25, 0.2, 0.1, 0.8}, 2};
-/// Its current is no linear function of the voltage.
+/// Machine whose current is a nonlinear function of the voltage.
 const formats::DyrRecord kGentpj = {
     0,
     "GENTPJU1",
@@ -72,7 +72,7 @@ std::vector<formats::DyrRecord> models(int bus, formats::DyrRecord machine = kGe
 struct Pair {
   grid::Grid branch, plant;
 };
-/// Both grids at one and the same power flow: the plant gets what flows into bus 2 from the branch.
+/// Both grids at the same power flow: the plant delivers the branch flow into bus 2.
 Pair grids(Conventions conventions, const formats::DyrRecord& machine = kGenrou) {
   Pair pair{grid::make_grid(network(true), models(3, machine), "branch", conventions), {}};
   const auto& v = pair.branch.flow.voltage;
@@ -129,7 +129,7 @@ TEST(TransformerStepup, RecordsTheGridsSide) {
   EXPECT_NEAR(run.at(0, 2)[0], power.imag(), 1e-9);
 }
 
-TEST(TransformerStepup, NeutralValuesChangeNothing) {
+TEST(TransformerStepup, NullValuesChangeNothing) {
   grid::Grid with = grid::make_grid(network(true), models(3), "neutral", Conventions::psse());
   const reference::ReferenceRun without = reference(with, {});
   with.plants[1].transformer = {library::compiled().find("STEPUP"), {0.0, 0.0, 1.0}};
@@ -137,7 +137,7 @@ TEST(TransformerStepup, NeutralValuesChangeNothing) {
   EXPECT_LE(test::largest_difference(reference(with, {}), without), 1e-8);
 }
 
-TEST(TransformerStepup, RefusesWhatIsNoTransformer) {
+TEST(TransformerStepup, RefusesInvalidTransformers) {
   const double wrong[] = {-0.01, -0.1, 0.0};
   Problems problems;
   library::compiled().find("STEPUP")->check(nullptr, wrong, "here", problems);

@@ -1,4 +1,4 @@
-// PSLF .dyd: records as PSLF and people write them, in the form of a .dyr, and back.
+// PSLF .dyd: records as written by PSLF and by hand, converted to the form of a .dyr and back.
 #include "sim/formats/dyd.hpp"
 
 #include <gmock/gmock.h>
@@ -48,7 +48,7 @@ TEST(Dyd, NamedAndUnnamedValuesAreTheSame) {
   EXPECT_EQ(plain.dyr.records.at(0).values, r.values);
 }
 
-TEST(Dyd, ATurbinesRatingBecomesTheMachinesBase) {
+TEST(Dyd, ConvertsTurbineRatingToTheMachineBase) {
   const DydSurvey s = parse_dyd_survey(
       kNamed + "tgov1 1 \"GEN1\" 22.00 \"1 \" : #1 mwcap=450.0 0.05 0.4 1.0 0.0 3.0 10.0 0.2\n", "c.dyd");
   EXPECT_EQ(faults(s), "");
@@ -66,7 +66,7 @@ TEST(Dyd, RefusesActiveParametersWithoutCounterpart) {
               AllOf(HasSubstr("tc = 0.5"), HasSubstr("efdmax = 4")));
 }
 
-TEST(Dyd, Oel1StandsInTheOrderOfTheFileThatIsPublic) {
+TEST(Dyd, Oel1FollowsTheOrderOfThePublicFile) {
   const DydSurvey s =
       parse_dyd_survey("oel1     1 \"GEN1\" 22.00 \"1 \" : #0 2.8 4.0 10 100 5 60 2.5 0 1\n", "o.dyd");
   EXPECT_EQ(faults(s), "");
@@ -74,7 +74,7 @@ TEST(Dyd, Oel1StandsInTheOrderOfTheFileThatIsPublic) {
   EXPECT_THAT(s.dyr.records.at(0).values, ElementsAre(2.8, 4, 10, 100, 5, 60, 2.5, 0, 1));
 }
 
-TEST(Dyd, RexsIsRefusedWithWhatIsNotModelled) {
+TEST(Dyd, RefusesRexsWithItsUnmodelledOptions) {
   const std::string values =
       "0.02 350 0 1 0.02 0 0 0 0 47 -20 0.05 1 0 0 1 1 0 0 47 -20 0 1 1.2 0.05 2 3 0.1 4 0.3 0 0 1.2 0 1 ";
   const std::string begin = "rexs 1 \"GEN1\" 22.00 \"1 \" : #9 ";
@@ -87,7 +87,7 @@ TEST(Dyd, RexsIsRefusedWithWhatIsNotModelled) {
       AllOf(HasSubstr("xc = 0.1 of rexs at r.dyd:1"), HasSubstr("vcmax = 2"), HasSubstr("kefd = 0.5")));
 }
 
-TEST(Dyd, FaultsNameTheirLine) {
+TEST(Dyd, ErrorsNameTheirLine) {
   const std::string all = faults(parse_dyd_survey(
       "genrou 1 \"GEN1\" 22.00 \"1 \" : #9 6.5 x\nhygov 1 \"G\" 22 \"1\" : #9 .05 .5 7\ngenrou GEN1 : 1\n",
       "f.dyd"));
@@ -96,7 +96,7 @@ TEST(Dyd, FaultsNameTheirLine) {
   EXPECT_THAT(all, HasSubstr("a record that cannot be told at f.dyd:3"));
 }
 
-TEST(Dyd, MetersAndLoadsArePassedOverOthersKept) {
+TEST(Dyd, SkipsMetersAndLoadsAndKeepsOthers) {
   const DydSurvey s = parse_dyd_survey(
       "fmeta 1 \"1\" 22.00 \"1 \" : #9 0 1\nimetr 6 ! ! ! 7 ! ! ! : #9 0\nccbt1 1 \"1\" 22.00 \"1 \" : #9 mwcap=12.5 1 2\n",
       "g.dyd");
@@ -129,8 +129,8 @@ TEST(Dyd, RecordsAreChosenByEitherName) {
       testing::ThrowsMessage<InputError>(HasSubstr("no model SEXS to ignore or map at h.dyd")));
 }
 
-/// Every model goes out and comes back to the same values.
-TEST(Dyd, OutAndBack) {
+/// Every model is written and read back with the same values.
+TEST(Dyd, RoundTripKeepsAllValues) {
   const std::string dyr =
       "7 'GENROU' 1 6.5 0.079 0.53 0.072 4 0 1.24 1.22 0.23 0.36 0.17 0.14 0.173 0.447 /\n"
       "8 'GENTPJU1' 1 8.9 0.04 0 0.08 3.8 0.5 0.85 0.61 0.22 0.61 0.18 0.18 0.14 0.163 0.378 0.08 /\n"

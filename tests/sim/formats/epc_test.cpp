@@ -1,4 +1,4 @@
-// PSLF .epc: the same grid as a .raw says, what the format has of its own, and faults with their lines.
+// PSLF .epc: the same grid as from a .raw, features of the format, and errors with their lines.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -60,7 +60,7 @@ struct EpcCase {
   std::string others = "area data  [1]\n 1 \"area\" 0 0.0 1.0 0.0 0.0\n", end = "end\n";
 
   static std::string section(const char* name, const std::string& records) {
-    int count = 0;  // records are not continued by their last line
+    int count = 0;  // the last line of a record has no continuation mark
     std::istringstream in(records);
     for (std::string l; std::getline(in, l);)
       if (!l.ends_with('/')) ++count;
@@ -92,14 +92,14 @@ TEST(Epc, IsTheSameGridAsItsRaw) {
   expect_same(raw.read(), epc.read());
 }
 
-TEST(Epc, IsReadByItsEndingInAnyCase) {
+TEST(Epc, IsRecognisedByItsExtensionInAnyCase) {
   const ScratchFile file("CASE.EPC",
                          "\xEF\xBB\xBF" + EpcCase().text().substr(EpcCase().text().find("title")));
   EXPECT_EQ(read_network(file.path, {60.0}).buses.size(), 3U);
   EXPECT_EQ(survey_network(file.path, {60.0}).generator_line.size(), 2U);
 }
 
-TEST(Epc, ThreeWindingsMeetAsInARaw) {
+TEST(Epc, ThreeWindingTransformersEqualThoseOfARaw) {
   RawCase raw;
   EpcCase epc;
   raw.transformers =
@@ -121,7 +121,7 @@ TEST(Epc, ThreeWindingsMeetAsInARaw) {
   }
 }
 
-TEST(Epc, TransformersHaveTheirOwnBaseAndNominalVoltages) {
+TEST(Epc, TransformersUseTheirOwnBaseAndNominalVoltages) {
   EpcCase c;
   c.transformers =
       transformer(101, 102, kNone, "50 0.01 0.1 0 0 0 0", "151.8 131.1 0", "0.98 1.05 1.1 0.0", "0 0 2.0 0");
@@ -134,7 +134,7 @@ TEST(Epc, TransformersHaveTheirOwnBaseAndNominalVoltages) {
   EXPECT_NEAR(b.shunt_from.imag(), -0.01 * 0.5 / 1.21, 1e-14);
 }
 
-TEST(Epc, SectionsOfALineStandInSeries) {
+TEST(Epc, SectionsOfALineAreInSeries) {
   EpcCase c;
   c.branches = line(101, 103, "1 0.004 0.05 0.3", 2) + line(102, 103, "1 0.01 0.12 0.0") +
                line(101, 103, "1 0.006 0.07 0.2", 1);
@@ -153,7 +153,7 @@ TEST(Epc, SectionsOfALineStandInSeries) {
   EXPECT_FALSE(c.read().branches[0].in_service);
 }
 
-TEST(Epc, ShuntsOfABranchStandAtItsEnds) {
+TEST(Epc, ShuntsOfABranchAreAtItsEnds) {
   EpcCase c;
   const auto of = [](const char* id, int at, int far) {
     return fmt::format("{} \"{}\" {} \"1 \" 1 \"  \" : 1 1 1 0.0 0.25 400101 391231 0 0\n", bus_of(at), id,
@@ -169,7 +169,7 @@ TEST(Epc, ShuntsOfABranchStandAtItsEnds) {
   EXPECT_THAT(c.faults(), AllOf(HasSubstr("shunt 'x' of a branch"), HasSubstr("no such branch")));
 }
 
-TEST(Epc, SvdsStandAtTheirBAndStepIfAsked) {
+TEST(Epc, SvdsStartAtTheirBAndStepOnRequest) {
   EpcCase c;
   const auto svd = [](const char* id, int type) {
     return fmt::format(
@@ -191,7 +191,7 @@ TEST(Epc, SvdsStandAtTheirBAndStepIfAsked) {
   EXPECT_EQ(places(n, "stay at b").size(), 1U);
 }
 
-TEST(Epc, AGeneratorHoldsTheVoltageOfItsRegulatedBus) {
+TEST(Epc, GeneratorRegulatesTheVoltageOfItsBus) {
   EpcCase c;
   c.generators = unit(101, "153.0 200 0 73.0 100 -100", bus_of(101)) +
                  unit(102, "100.0 200 0 -3.0 100 -100", bus_of(103), "0.001 0.1 1.02");
@@ -203,7 +203,7 @@ TEST(Epc, AGeneratorHoldsTheVoltageOfItsRegulatedBus) {
   EXPECT_EQ(places(n, "nominal ratio").size(), 1U);
 }
 
-TEST(Epc, ConvertersDrawWhatTheVoltagesSay) {
+TEST(Epc, ConverterPowerFollowsFromTheVoltages) {
   EpcCase c;
   const network::Network loaded = c.read();
   const auto flow = network::solve_power_flow(loaded);
@@ -242,7 +242,7 @@ TEST(Epc, ABusOutOfServiceAndOneOfTypeMinusTwo) {
   EXPECT_EQ(places(n, "st is not 0").size(), 1U);
 }
 
-TEST(Epc, FaultsAreToldTogetherWithTheirLines) {
+TEST(Epc, ReportsAllErrorsWithTheirLines) {
   EpcCase c;
   c.branches += line(101, 109, "1 0.01 0.12 0.0") + line(101, 102, "2 0.01 x 0.0") +
                 line(101, 103, "1 0.01 0.12 0.0") + line(102, 103, "1 0.01 0.12 0.0", 2, "0.0 0.95 1.0");
@@ -261,7 +261,7 @@ TEST(Epc, FaultsAreToldTogetherWithTheirLines) {
   EXPECT_THAT(faults, HasSubstr("a text without an end"));
 }
 
-TEST(Epc, ACountThatIsAnotherIsTold) {
+TEST(Epc, ReportsAWrongRecordCount) {
   std::string text = EpcCase().text();
   text.replace(text.find("load data  [    1]"), 18, "load data  [    2]");
   EXPECT_THAT(
@@ -284,14 +284,14 @@ TEST(Epc, ReportsMissingSectionsInOneSentence) {
   EXPECT_LE(raw.size(), 4U);
 }
 
-TEST(Epc, AnOhmIsNotAPerUnit) {
+TEST(Epc, RefusesImpedancesInOhms) {
   EpcCase c;
   c.branches.replace(c.branches.find(std::string(kOwners) + " 0 0"), std::string(kOwners).size() + 2,
                      std::string(kOwners) + " 1");
   EXPECT_THAT(c.faults(), HasSubstr("branch 101-103 circuit '1' in ohms"));
 }
 
-TEST(Epc, ASurveyGoesOnPastFaults) {
+TEST(Epc, SurveyContinuesAfterErrors) {
   EpcCase c;
   c.loads = "109 \"?\" 138.0 \"1 \" : 1 1 1 0 0 0 0\n";
   const std::string text = c.text();
@@ -317,7 +317,7 @@ TEST(EpcRepairs, RepeatedLineIsKeptAndDanglingLoadLeftOutOnRequest) {
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[2].x, 0.24);
   EXPECT_THAT(places(n, "left out, as asked"), ElementsAre(HasSubstr("load record at bus 177")));
-  options.repeated = Repeated::voltages;  // the voltages are those of one line
+  options.repeated = Repeated::voltages;  // the voltages agree with one line
   EXPECT_FALSE(parse_epc(c.text(), "case.epc", options).branches[2].in_service);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(EventText, UnitsAndInstants) {
+TEST(EventText, UnitsAndEventTimes) {
   const network::Network network = RawCase{}.read();
   const auto& first = network.generators.front();
   const std::string bus = std::to_string(network.buses[static_cast<std::size_t>(first.bus)].number);
@@ -56,7 +56,7 @@ TEST(EventText, ATripNamesABranchAWindingOrAWholeTransformer) {
   EXPECT_EQ(network.bus_text(4), "star point of 101-102-104");
 }
 
-TEST(EventText, EveryFaultIsReported) {
+TEST(EventText, ReportsEveryError) {
   const network::Network network = RawCase{}.read();
   Problems problems;
   (void)read_generator_trip("9999:1", network, 2.0, "--trip-generator", problems);

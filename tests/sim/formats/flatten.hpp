@@ -1,5 +1,5 @@
 #pragma once
-// A network as a list of bits, to compare what two files hold.
+// A network as a list of bits, to compare the contents of two files.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -54,7 +54,7 @@ inline Flat flatten(const network::Network& n) {
   }
   return f;
 }
-/// Every number equal to the last bit; `origin` apart.
+/// Expects every number except `origin` to be equal to the last bit.
 inline void expect_same(const network::Network& one, const network::Network& other) {
   const Flat a = flatten(one), b = flatten(other);
   EXPECT_EQ(a.words, b.words);

@@ -84,7 +84,7 @@ TEST(Matpower, TheSameCaseAsARawGivesTheSamePowerFlow) {
     EXPECT_LT(std::abs(a.voltage[i] - b.voltage[i]), 1e-13) << i;  // rounding
 }
 
-TEST(Matpower, EveryFaultIsReportedAtOnceWithItsLine) {
+TEST(Matpower, ReportsAllErrorsWithTheirLines) {
   const std::string text =
       "function mpc = bad\n"
       "mpc.version = '2';\n"
@@ -165,7 +165,7 @@ TEST(Matpower, OtherVersionsAreRefused) {
   EXPECT_THAT(sentences_of([&] { parse_matpower(t, "one.m", 60.0); }), HasSubstr("not 2 at one.m:3"));
 }
 
-TEST(Network, IsReadByExtensionAndTheFrequencyMustAgree) {
+TEST(Network, IsReadByExtensionAndChecksTheFrequency) {
   const ScratchFile m("four.m", kCase), raw("case.raw", RawCase().text());
   EXPECT_THAT(sentences_of([&] { read_network(m.path); }), HasSubstr("--frequency-hz"));
   EXPECT_THAT(sentences_of([&] { read_network(m.path, 0.0); }), HasSubstr("0 Hz"));
@@ -175,8 +175,8 @@ TEST(Network, IsReadByExtensionAndTheFrequencyMustAgree) {
   EXPECT_THAT(sentences_of([&] { read_network(raw.path, 50.0); }), HasSubstr("BASFRQ = 60 Hz"));
 }
 
-/// MATPOWER's cases belong to others and are not in this repository: looked for in
-/// $SWINGBANK_REFERENCE/networks, then in ../shared/reference/networks. Without them these tests fail;
+/// MATPOWER's cases are not part of this repository. The tests look in $SWINGBANK_REFERENCE/networks, then in
+/// ../shared/reference/networks. Without the files these tests fail;
 /// `.ci/run --without-psse` leaves the suite out.
 std::filesystem::path matpower_case(const std::string& name) {
   if (const char* given = std::getenv("SWINGBANK_REFERENCE"))
@@ -198,7 +198,7 @@ TEST_P(MatpowerRecords, SolveToTheirPrintedVoltages) {
   const network::Network n = read_matpower(file, 60.0);
   ASSERT_EQ(n.buses.size(), buses);
   network::PowerFlowOptions options;
-  options.reactive_limits = false;  // they were printed from a solution without: a unit of case39 is beyond
+  options.reactive_limits = false;  // the printed solution ignores them: a unit of case39 exceeds its limit
   const network::PowerFlow flow = network::solve_power_flow(n, options);
   for (std::size_t i = 0; i < buses; ++i) {
     EXPECT_NEAR(std::abs(flow.voltage[i]), n.buses[i].vm, magnitude) << n.buses[i].number;

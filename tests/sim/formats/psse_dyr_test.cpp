@@ -32,7 +32,7 @@ TEST(PsseDyr, RecordsSpanLinesAndEndAtASlash) {
   EXPECT_TRUE(r[2].values.empty());
 }
 
-TEST(PsseDyr, EveryFaultIsReportedAtOnceWithItsLine) {
+TEST(PsseDyr, ReportsAllErrorsWithTheirLines) {
   const auto problems = problems_of([] {
     read(
         "101 'GENCLS' 1 3.5 nan /\nx 'GENCLS' 1 1 0 /\n103 /\n104 'GENCLS' 1 1,x,2 /\n105 'GENCLS 1 1 /\n106 "
@@ -60,7 +60,7 @@ TEST(PsseDyr, EmptyParametersAreZeroAndCounted) {
   EXPECT_THAT(r[0].empty, ElementsAre(1, 3));
 }
 
-TEST(PsseDyr, CommentLinesMayStandWithinRecords) {
+TEST(PsseDyr, AllowsCommentLinesWithinRecords) {
   const auto r = read(
       "// head\n101 'GENCLS' 1 3.5 // rest / of / line\n102 'GENROU' 1 8.0\n  // inside, 'quote\n0.03 /\n");
   ASSERT_EQ(r.size(), 2u);
@@ -68,7 +68,7 @@ TEST(PsseDyr, CommentLinesMayStandWithinRecords) {
   EXPECT_THAT(r[1].values, ElementsAre(8.0, 0.03));
 }
 
-TEST(PsseDyr, TextInAModelThatIsNotUsedIsOnlyNoted) {
+TEST(PsseDyr, TextInAnUnusedModelIsOnlyNoted) {
   const auto r =
       read("101 'XYZ' 1 2.0 'text' 3.0 /\n102 'USRMDL' 1 'MyGov' 1 1 0 /\n0 'USRMSC' 'MYREL' 512 0 /\n");
   ASSERT_EQ(r.size(), 3u);
@@ -106,7 +106,7 @@ TEST(PsseDyr, AMissingFileIsNamed) {
   EXPECT_THAT(sentences_of([] { read_dyr("/nowhere/case.dyr"); }), HasSubstr("/nowhere/case.dyr"));
 }
 
-TEST(PsseDyr, ARecordThatTheNextRunsIntoEndsThere) {
+TEST(PsseDyr, UnterminatedRecordEndsBeforeTheNext) {
   const auto r =
       parse_dyr("5 'REGCA1' 'S ' 1\n 0.02 10.0\n5 'REECA1' 'S '\n 0 0.5 /\n6 'GENCLS' 1 3.0 0 /\n", "x.dyr");
   ASSERT_EQ(r.size(), 3u);
@@ -127,7 +127,7 @@ TEST(PsseDyr, TheLastRecordEndsWithItsFile) {
               HasSubstr("x.dyr:2"));
 }
 
-TEST(PsseDyr, RecordsOfEquipmentBearItsName) {
+TEST(PsseDyr, RecordsOfEquipmentKeepItsName) {
   const auto r = parse_dyr("'DC LINE 1' 'CDC6T' 1 2 'x' /\n\"V1 \" \"VSCP\" /\n", "x.dyr");
   ASSERT_EQ(r.size(), 2u);
   EXPECT_EQ(r[0].equipment, "DC LINE 1");
@@ -135,7 +135,7 @@ TEST(PsseDyr, RecordsOfEquipmentBearItsName) {
   EXPECT_EQ(r[1].equipment, "V1");
 }
 
-/// A text may be meant: the reader keeps it, and whoever takes the record as numbers tells it.
+/// Some models have text parameters: the reader keeps them, and models with numbers only report them.
 TEST(PsseDyr, TextsAmongTheParametersAreKept) {
   const auto r = parse_dyr("7 'MODEL' 1 2 'A1' '3' 4 /\n", "t.dyr");
   ASSERT_EQ(r.size(), 1U);
@@ -166,7 +166,7 @@ TEST(PsseDyr, HashAndExclamationMarkBeginComments) {
   EXPECT_EQ(r[1].equipment, "LINE #2");
 }
 
-TEST(PsseDyr, RepeatCountsAreWrittenOut) {
+TEST(PsseDyr, RepeatCountsAreExpanded) {
   const auto r = parse_dyr("6 'GENROU' 1 2*1.5 1*0.0 3 2*/\n7 'X' '*' 4*x /\n", "x.dyr");
   ASSERT_EQ(r.size(), 2U);
   EXPECT_THAT(r[0].values, ElementsAre(1.5, 1.5, 0.0, 3.0, 0.0, 0.0));
@@ -175,7 +175,7 @@ TEST(PsseDyr, RepeatCountsAreWrittenOut) {
   EXPECT_FALSE(r[1].faults.empty());
 }
 
-TEST(PsseDyr, UserWrittenModelsKeepTheirCodesCounted) {
+TEST(PsseDyr, CountsTheCodesOfUserWrittenModels) {
   const auto r = parse_dyr(
       "2 'USRMDL' 1 'REGCAU1' 101 1 1 14 3 4 1 0.02 /\n3 'USRLOD' 1 'LINJBL' 12 1 4 8 0 5 0 1 /\n"
       "4 'GENCLS' 1 3 0 /\n",

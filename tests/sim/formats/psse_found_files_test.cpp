@@ -1,5 +1,5 @@
-// Files as they are found: old versions, missing headers, byte-order marks, sections named twice, branches
-// without impedance, correction tables, remote regulation, islands; and a .rawx.
+// Files as found in practice: old versions, missing headers, byte-order marks, repeated sections, branches
+// without impedance, correction tables, remote regulation, islands; and .rawx files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -81,15 +81,15 @@ TEST(FoundFiles, AsksForMissingHeaderValuesByOption) {
   EXPECT_EQ(places(n, "--frequency-hz").size(), 1u);
 }
 
-TEST(FoundFiles, AByteOrderMarkIsPassedOverAndSaid) {
+TEST(FoundFiles, ByteOrderMarkIsSkippedWithARemark) {
   const network::Network n = parse_raw("\xEF\xBB\xBF" + RawCase{}.text(), "case.raw");
   EXPECT_EQ(n.buses.size(), 3u);
   EXPECT_EQ(places(n, "byte-order mark").size(), 1u);
 }
 
-TEST(FoundFiles, ASectionThatItsTitleBeginsAgainIsReadAgain) {
+TEST(FoundFiles, ReadsASectionThatIsRepeated) {
   std::string text = RawCase{}.text();
-  // The section of transformers is the sixth to end; after it areas stand twice.
+  // The section of transformers is the sixth; the section of areas behind it begins twice.
   std::size_t at = 0;
   for (int i = 0; i < 6; ++i) at = text.find("0 / END OF DATA\n", at) + 16;
   text.insert(at, "1,0,0,10,'A'\n0 / END OF TRANSFORMER DATA, BEGIN AREA DATA\n");
@@ -98,7 +98,7 @@ TEST(FoundFiles, ASectionThatItsTitleBeginsAgainIsReadAgain) {
   EXPECT_EQ(n.branches.size(), 2u);
 }
 
-TEST(FoundFiles, BranchesWithoutImpedanceGetNextToNone) {
+TEST(FoundFiles, BranchesWithoutImpedanceGetTheLeastImpedance) {
   RawCase c;
   c.buses += "104,'WEST',138.0,1,1,1,1,0.99,-8.7\n105,'EAST 2',138.0,1,1,1,1,0.99,-8.7\n";
   c.branches += "103,104,'Z',0.0,0.0\n";
@@ -109,7 +109,7 @@ TEST(FoundFiles, BranchesWithoutImpedanceGetNextToNone) {
   EXPECT_NEAR(std::abs(flow.voltage[2] - flow.voltage[4]), 0.0, 1e-9);
 }
 
-TEST(FoundFiles, CorrectionTablesCountAtThePresentTap) {
+TEST(FoundFiles, CorrectionTablesApplyAtThePresentTap) {
   const auto with = [](const std::string& winding, const std::string& table) {
     RawCase c;
     c.transformers = "101,102,0,'T',1,1,1\n0.02,0.1,100\n" + winding + ",0,0,0,0,0,0,0,0,0,0,3\n1.0\n";
@@ -118,13 +118,13 @@ TEST(FoundFiles, CorrectionTablesCountAtThePresentTap) {
   };
   const std::string ratios = "3,0.9,1.2,1.0,1.0,1.1,1.3\n", angles = "3,-30.0,1.4,0.0,1.0,30.0,1.4\n";
   EXPECT_NEAR(with("1.05,0,0", ratios).branches[2].x, 0.115, 1e-12);
-  EXPECT_NEAR(with("0.85,0,0", ratios).branches[2].x, 0.12, 1e-12);  // beyond the table its end holds
+  EXPECT_NEAR(with("0.85,0,0", ratios).branches[2].x, 0.12, 1e-12);  // the table is clamped at its end
   EXPECT_NEAR(with("1.05,0,15.0", angles).branches[2].r, 0.024, 1e-12);
   EXPECT_THAT(places(with("1.05,0,0", ratios), "corrected"),
               ::testing::ElementsAre(HasSubstr("101-102 circuit T by 1.15")));
 }
 
-TEST(FoundFiles, ACorrectionTableOfVersion34GoesOnOverLines) {
+TEST(FoundFiles, CorrectionTableOfVersion34SpansLines) {
   std::string t =
       "0,100,34,0,0,60\n1\n2\n0\n1,'A',100,3,1,1,1,1.0,0\n2,'B',100,1,1,1,1,1.0,0\n0\n0\n0\n1,'1',0,0,9,-9,1.0\n0\n0\n0\n"
       "1,2,0,'1',1,1,1\n0.02,0.1,100\n1.15" +
@@ -138,7 +138,7 @@ TEST(FoundFiles, ACorrectionTableOfVersion34GoesOnOverLines) {
   EXPECT_NEAR(n.branches[0].x, z.imag(), 1e-12);
 }
 
-TEST(FoundFiles, IslandsGetASlackBusOrGoOutOfService) {
+TEST(FoundFiles, IslandsGetASlackBusOrAreSwitchedOff) {
   RawCase c;
   c.buses +=
       "104,'A',138.0,2,1,1,1,1.0,20.0\n105,'B',138.0,1,1,1,1,1.0,0\n106,'C',138.0,1\n107,'D',138.0,1\n";
@@ -154,10 +154,10 @@ TEST(FoundFiles, IslandsGetASlackBusOrGoOutOfService) {
   EXPECT_NEAR(std::arg(network::solve_power_flow(n).voltage[3]), 20.0 * std::numbers::pi / 180.0, 1e-12);
 }
 
-TEST(FoundFiles, AGeneratorAtALoadBusDeliversOnlyIfTheVoltagesShowIt) {
+TEST(FoundFiles, GeneratorAtALoadBusDelivers_WhenTheVoltagesShowIt) {
   RawCase c;
   c.generators += "103,'9',100,20,1,-1,1.0,102,100,0,0.3\n";
-  const network::Network off = c.read();  // the voltages of RawCase are those of a load of 250 MW alone
+  const network::Network off = c.read();  // the voltages of RawCase agree with a load of 250 MW only
   EXPECT_FALSE(off.generators[2].in_service);
   EXPECT_EQ(off.generators[2].regulated, -1);
   EXPECT_THAT(places(off, "out of service, as in PSS/E"), ::testing::SizeIs(1));
@@ -170,7 +170,7 @@ TEST(FoundFiles, AGeneratorAtALoadBusDeliversOnlyIfTheVoltagesShowIt) {
   EXPECT_NEAR(flow.generation[2].imag(), 0.2, 1e-12);
 }
 
-TEST(FoundFiles, GeneratorsOfOneBusHoldOneVoltage) {
+TEST(FoundFiles, GeneratorsOfOneBusShareAVoltageSetpoint) {
   RawCase c;
   c.generators += "102,'2',1,0,1,-1,1.03,0,100,0,0.3\n";
   const network::Network n = c.read();
@@ -194,13 +194,13 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   EXPECT_EQ(own.generators[1].vset, 1.02);  // the file's voltage
   EXPECT_THAT(places(own, "a bus that is not there"), ::testing::SizeIs(1));
   c.generators.replace(c.generators.find("199"), 3, "105");
-  c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // it lies alone, so it is out of service
+  c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // isolated, hence out of service
   const network::Network alone = c.read();
   EXPECT_EQ(alone.generators[1].regulated, -1);
   EXPECT_THAT(places(alone, "a bus out of service"), ::testing::SizeIs(1));
 }
 
-TEST(FoundFiles, ValuesThatCannotStandAreReplacedAndSaid) {
+TEST(FoundFiles, ReplacesImpossibleValuesWithARemark) {
   RawCase c;
   c.buses.replace(c.buses.find("0.99,-8.7"), 4, "0.00");
   c.generators =
@@ -225,7 +225,7 @@ TEST(FoundFiles, AcceptsIntegersWithPointAndNamesWithApostrophe) {
   EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("'101.5'"));
 }
 
-TEST(FoundFiles, DevicesAreLeftOutOrTakenFromVoltagesThatAreNoSolutionIfAsked) {
+TEST(FoundFiles, OmitsOrInfersDevicesOnRequest) {
   RawCase c;
   c.other["FACTS device"] = "'F',102,0,1,0,0,1.0\n";
   c.loads += "103,'2',1,1,1,90.0,0\n";
@@ -270,7 +270,7 @@ TEST(FoundFiles, DropsRepeatedRecordsOnRequest) {
   EXPECT_EQ(n.branches[2].x, 0.1);
 }
 
-TEST(FoundFiles, APhaseShiftToABusAtRestEndsInNoCollapse) {
+TEST(FoundFiles, PhaseShiftToAnUnloadedBusConverges) {
   RawCase c;
   c.buses += "104,'T',13.8,1\n";
   c.transformers =

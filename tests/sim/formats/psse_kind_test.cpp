@@ -1,4 +1,4 @@
-// Files of another kind or version than they are taken for, and numbers as nearest doubles.
+// Files of another kind or version than expected, and numbers as nearest doubles.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -24,7 +24,7 @@ std::vector<std::string> sentences(const std::string& raw, const std::string& dy
   return all;
 }
 
-TEST(PsseKind, FilesInEachOthersPlaceAreOneSentence) {
+TEST(PsseKind, ReportsExchangedFilesInOneSentence) {
   const std::string raw = RawCase().text();
   EXPECT_THAT(sentences(raw, kDyr), ElementsAre());
   EXPECT_THAT(sentences(kDyr, raw), ElementsAre(HasSubstr("exchange --raw and --dyr")));
@@ -33,12 +33,12 @@ TEST(PsseKind, FilesInEachOthersPlaceAreOneSentence) {
   EXPECT_THAT(sentences("{\"network\": {}}", kDyr), ElementsAre());
   EXPECT_THAT(sentences(kDyr, "{\"network\": {}}"), ElementsAre(HasSubstr("exchange")));
   EXPECT_THAT(sentences(raw, "'DC 1' 'CDC6T' 1 2 /\n"), ElementsAre());
-  for (const char* nothing : {"", "\n\n", "// only a comment\n"})  // their readers tell
+  for (const char* nothing : {"", "\n\n", "// only a comment\n"})  // reported by their readers
     EXPECT_THAT(sentences(nothing, nothing), ElementsAre());
 }
 
-/// A network of version 33 whose header says something else.
-TEST(PsseKind, AWrongVersionIsOneSentenceWithTheRightOne) {
+/// Network of version 33 with another version in its header.
+TEST(PsseKind, ReportsAWrongVersionWithTheRightOne) {
   RawCase c;
   for (int k = 0; k < 30; ++k)
     c.branches += "101,102,'" + std::to_string(10 + k) + "',0.01,0.12,0,250,250,250,0,0,0,0,1,1,0,1,1\n";
@@ -63,9 +63,9 @@ TEST(PsseKind, AWrongVersionIsOneSentenceWithTheRightOne) {
   EXPECT_EQ(problems_of([&] { parse_raw_survey(header, "case.raw"); }).size(), 1u);
 }
 
-/// A decimal is the double nearest to it, whatever extended precision makes of it, and comes back as short as
-/// it was.
-TEST(PsseKind, NumbersAreTheNearestDoublesAndComeBackAsShort) {
+/// A decimal is read as the nearest double, also with extended precision, and written back with as few
+/// digits.
+TEST(PsseKind, NumbersAreNearestDoublesAndAreWrittenAsShort) {
   std::mt19937_64 random(7);
   int differ = 0;
   for (int k = 0; k < 20000; ++k) {

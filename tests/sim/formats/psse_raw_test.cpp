@@ -133,7 +133,7 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
       "103,1,0,1,1.1,0.9,0,100,'',-25.0,5,-5\n102,1,0,0,1.1,0.9,0,100,'',40.0,5,8\n"
       "101,1,0,1,1.1,0.9,0,100,'',0.0,5,8\n";
   const network::Network n = c.read();
-  ASSERT_EQ(n.shunts.size(), 2u);  // one is out of service, one has nothing switched in
+  ASSERT_EQ(n.shunts.size(), 2u);  // one is out of service, one has no step switched in
   EXPECT_EQ(n.shunts[0].bus, 2);
   EXPECT_EQ(n.shunts[0].admittance, Complex(0.0, -0.25));
   EXPECT_EQ(n.shunts[1].bus, 0);
@@ -144,7 +144,7 @@ TEST(PsseRaw, SwitchedShuntsCountWithTheirInitialSusceptance) {
   EXPECT_EQ(n.switched[1].present, 0.0);
 }
 
-TEST(PsseRaw, StepsOfSwitchedShuntsAreReactorsAndCapacitorsInTheirOrder) {
+TEST(PsseRaw, StepsOfSwitchedShuntsKeepTheOrderOfReactorsAndCapacitors) {
   RawCase c;
   c.other["switched shunt"] =
       "103,1,0,1,1.03,0.97,101,100,'',20.0,1,-30,2,10,0,99,3,5\n"
@@ -157,7 +157,7 @@ TEST(PsseRaw, StepsOfSwitchedShuntsAreReactorsAndCapacitorsInTheirOrder) {
   EXPECT_EQ(s.least, 0.97);
   EXPECT_EQ(s.most, 1.03);
   EXPECT_EQ(s.steps, (std::vector<double>{-0.3, 0.0, 0.1, 0.2, 0.25, 0.3, 0.35}));
-  ASSERT_EQ(n.remarks.size(), 1u);  // of the one that does not step
+  ASSERT_EQ(n.remarks.size(), 1u);  // about the shunt that does not step
   EXPECT_NE(n.remarks[0].what.find("do not step"), std::string::npos);
 }
 
@@ -176,8 +176,8 @@ struct Device {
   const char *section, *record, *bus;
 };
 class PsseRawDevices : public ::testing::TestWithParam<Device> {};
-TEST_P(PsseRawDevices, DrawWhatTheFilesVoltagesSay) {
-  // The three-bus case solved with a load at bus 103; then the device's record stands for the load.
+TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
+  // The three-bus case solved with a load at bus 103; the device's record then replaces the load.
   RawCase c;
   network::Network solved = c.read();
   const network::PowerFlow flow = network::solve_power_flow(solved);
@@ -205,7 +205,7 @@ TEST_P(PsseRawDevices, DrawWhatTheFilesVoltagesSay) {
   ASSERT_FALSE(n.remarks.empty());
   EXPECT_THAT(n.remarks[0].what, HasSubstr("equipment without a model"));
   EXPECT_THAT(n.remarks[0].places.back(), HasSubstr("at bus 103"));
-  // With voltages that are no solution nobody knows what it draws.
+  // Without a solved case its power is unknown.
   RawCase flat;
   flat.other[GetParam().bus] = GetParam().record;
   flat.loads = "102,'1',1,1,1,10.0,0\n";
@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         Device{"gne", "'GNE 1','MODEL',1,103,11,0,1\n1,1,1\n1,2,3,4,5,6,7,8,9,10\n11\n'A'\n", "GNE device"},
         Device{"induction machine", "103,'1',1,1,1,1,1,1,1,5,5\n", "induction machine"}));
 
-TEST(PsseRaw, DevicesOutOfServiceAreNone) {
+TEST(PsseRaw, IgnoresDevicesOutOfService) {
   RawCase c;
   c.other["two-terminal dc line"] = "'DC 1',0,8.2,100.0,500.0\n101,2,8,20\n103,2,8,20\n";
   c.other["FACTS device"] = "'F',103,0,0\n";
@@ -233,7 +233,7 @@ TEST(PsseRaw, DevicesOutOfServiceAreNone) {
   EXPECT_EQ(c.read().loads.size(), 1u);
 }
 
-TEST(PsseRaw, SectionsWithoutEffectOnTheEquationsArePassedOver) {
+TEST(PsseRaw, SkipsSectionsWithoutEffectOnTheEquations) {
   RawCase c;
   c.other["area"] = "1,101,0.0,10.0,'AREA, ONE'\n";
   c.other["impedance correction"] = "1,-30.0,1.1,0.0,1.0,30.0,1.1\n";
@@ -244,7 +244,7 @@ TEST(PsseRaw, SectionsWithoutEffectOnTheEquationsArePassedOver) {
   EXPECT_EQ(c.read().branches.size(), 2u);
 }
 
-TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
+TEST(PsseRaw, ReportsAllErrorsWithTheirLines) {
   RawCase c;
   c.buses +=
       "103,'TWICE',138.0,1\n105,'NAN',138.0,1,1,1,1,nan,0\n106,'TYPE',138.0,7\n107,'V',138,1,1,1,1,0.0\n";
@@ -281,15 +281,15 @@ TEST(PsseRaw, EveryFaultIsReportedAtOnceWithItsLine) {
   expect("101,102,103,'1'", "with 4 lines");
 }
 
-TEST(PsseRaw, CutAnywhereTheFileIsReportedAsTruncated) {
+TEST(PsseRaw, ReportsTruncation_WhereverTheFileEnds) {
   std::ifstream in(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   ASSERT_GT(lines.size(), 60u);
   ASSERT_EQ(lines.back(), "Q");
   std::string text;
-  // Programs leave out sections at the end. Where nothing but sections after the transformers is missing the
-  // file is whole, with a remark.
+  // Programs omit sections at the end. A file that lacks only sections after the transformers is complete and
+  // gets a remark.
   std::size_t k = 0;
   for (; lines[k] != "0 / end of transformer data"; ++k) {
     text += lines[k] + "\n";

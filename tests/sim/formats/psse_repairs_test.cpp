@@ -1,5 +1,5 @@
-// What is wrong in a .raw and is repaired on request or as PSS/E does: equipment that appears twice or at a
-// missing bus, references to what is not there, a missing title line, comments, dc lines off their schedule.
+// Errors of a .raw that are repaired on request or as PSS/E does: equipment that appears twice or at a
+// missing bus, dangling references, a missing title line, comments, dc lines that differ from their schedule.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ network::Network read(const RawCase& c, const RawOptions& options) {
   return parse_raw(c.text(), "case.raw", options);
 }
 
-/// Puts the voltages of the power flow of `solved` into the case.
+/// Writes the voltages of the power flow of `solved` into the case.
 void store_voltages(RawCase& c, const network::Network& solved) {
   const network::PowerFlow flow = network::solve_power_flow(solved);
   c.buses.clear();
@@ -46,7 +46,7 @@ void store_voltages(RawCase& c, const network::Network& solved) {
 }
 const char* const kParallel = "103,101,'1',0.01,0.12,0.0\n";
 
-TEST(RepeatedBranch, StaysUnderANewIdWhenTheVoltagesShowIt) {
+TEST(RepeatedBranch, IsKeptUnderANewId_WhenTheVoltagesShowIt) {
   RawCase both;
   both.branches += kParallel;
   RawCase distinct = both;
@@ -63,7 +63,7 @@ TEST(RepeatedBranch, StaysUnderANewIdWhenTheVoltagesShowIt) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
 
-TEST(RepeatedBranch, IsLeftOutWhenTheVoltagesShowIt) {
+TEST(RepeatedBranch, IsOmitted_WhenTheVoltagesShowIt) {
   RawCase c;
   store_voltages(c, RawCase{}.read());
   c.branches += kParallel;
@@ -75,7 +75,7 @@ TEST(RepeatedBranch, IsLeftOutWhenTheVoltagesShowIt) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
 
-TEST(RepeatedBranch, IsDecidedForEachPairAlone) {
+TEST(RepeatedBranch, IsDecidedForEachPairSeparately) {
   RawCase c;
   c.branches += kParallel;
   RawCase distinct = c;
@@ -202,7 +202,7 @@ TEST(TitleLines, AMissingOneIsNamed) {
   }
 }
 
-TEST(Comments, AtTheEndOfALineAndOnTheirOwnAreNotRead) {
+TEST(Comments, AreIgnoredAtLineEndsAndOnTheirOwnLines) {
   RawCase c;
   c.loads = "# loads of the summer peak\n103,'1',1,1,1,250.0,30.0 ! summer\n";
   c.branches = "! lines\n101,103,'1',0.01,0.12 # 40 km\n102,103,'1',0.01,0.12, # 40 km, old\n// no more\n";
@@ -221,13 +221,13 @@ TEST(DcLine, FarFromItsScheduleIsNamed) {
   const auto line = [](const std::string& mode, const std::string& set) {
     return "'DC1'," + mode + ",8.0," + set + ",200.0\n102,1,20.0\n103,1,20.0\n";
   };
-  // RawCase's voltages leave bus 103 balanced: the line draws next to nothing there.
+  // RawCase's voltages balance bus 103: the power of the line is almost zero there.
   c.other["two-terminal dc line"] = line("1", "100.0");
   const network::Network n = read(c, file);
   EXPECT_THAT(
       places(n, "far from what it is scheduled"),
       ::testing::Contains(AllOf(HasSubstr("dc line 'DC1' at bus 103"), HasSubstr("-98.00 MW scheduled"))));
-  // 500 A at 200 kV are the same 100 MW; below 0 the power is the inverter's.
+  // 500 A at 200 kV are the same 100 MW; a negative value is the inverter's power.
   c.other["two-terminal dc line"] = line("2", "500.0");
   EXPECT_THAT(places(read(c, file), "far from what it is scheduled"),
               ::testing::Contains(HasSubstr("-98.00 MW scheduled")));

@@ -1,4 +1,4 @@
-// Three windings against what they mean: the star of the measured impedances behind each winding's ratio.
+// Three-winding transformers against their definition: the star of the measured impedances behind the ratios.
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
@@ -58,7 +58,7 @@ TEST_P(PsseThreeWindings, GiveTheSameAdmittance) {
   ASSERT_EQ(n.buses.size(), 4u);
   EXPECT_EQ(n.buses[3].number, 104);
   EXPECT_DOUBLE_EQ(n.buses[3].vm, 0.98);
-  // Roundings of admittances of order 20.
+  // Rounding of admittances of order 20.
   EXPECT_LT((seen(n) - expected()).cwiseAbs().maxCoeff(), 1e-12);
   for (const int version : {32, 33, 34, 35})
     expect_same(n, parse_raw(raw_text(n, version, "out.raw"), "out.raw"));
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                "1.04,0,0\n0.97,0,30\n1.01,0,-30\n"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(PsseThreeWindingsStatus, TellsWhichWindingIsOut) {
+TEST(PsseThreeWindingsStatus, SelectsTheWindingOutOfService) {
   const auto in = [](int status) {
     std::array<bool, 3> on{};
     const network::Network n = with("101,102,103,'T',1,1,1,0.001,-0.002,2,''," + std::to_string(status) +

@@ -1,4 +1,4 @@
-// Every way to code one and the same transformer must give one and the same branch.
+// Every coding of a transformer must give the same branch.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ TEST_P(PsseTransformer, GivesTheSameBranch) {
   const network::Branch& b = n.branches.back();
   const double t2 = 0.98, r = 0.004 * 100 / 200 * t2 * t2, x = 0.12 * 100 / 200 * t2 * t2;
   const double g = 0.1 / 100, y = 0.005 * 200 / 100;
-  constexpr double tolerance = 1e-14;  // a few roundings of values of order 1
+  constexpr double tolerance = 1e-14;  // rounding of values of order 1
   EXPECT_TRUE(b.transformer);
   EXPECT_NEAR(b.r, r, tolerance);
   EXPECT_NEAR(b.x, x, tolerance);
@@ -39,8 +39,8 @@ TEST_P(PsseTransformer, GivesTheSameBranch) {
   EXPECT_NEAR(b.shunt_from.imag(), -std::sqrt(y * y - g * g), tolerance);
   EXPECT_EQ(b.circuit, "T1");
 }
-// Z = 0.12006664815842909 pu has R = 0.004 (0.8 MW at 200 MVA) and X = 0.12; B = -0.0099498743710662 goes
-// with Y = 0.01.
+// Z = 0.12006664815842909 pu has R = 0.004 (0.8 MW at 200 MVA) and X = 0.12; Y = 0.01 has
+// B = -0.0099498743710662.
 INSTANTIATE_TEST_SUITE_P(
     Codes, PsseTransformer,
     ::testing::Values(
@@ -89,7 +89,7 @@ TEST(PsseTransformerFaults, AreReportedWithLine) {
   for (const int offset : {0, 2, 5, 6, 8, 9}) EXPECT_THAT(all, HasSubstr(at(offset)));
 }
 
-TEST(PsseTransformerFaults, AnIncompleteRecordDoesNotSwallowTheNextSection) {
+TEST(PsseTransformerFaults, IncompleteRecordDoesNotConsumeTheNextSection) {
   const RawCase c = with_transformer("101,102,0,'1',1,1,1\n0,0.1,100\n");
   const auto problems = problems_of([&] { c.read(); });
   ASSERT_EQ(problems.size(), 1u);

@@ -1,4 +1,4 @@
-// One network in every version of the format; what versions 34 and 35 add, and what of it is refused.
+// One network in every version of the format; additions of versions 34 and 35, and refusals.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Two machines, two loads, lines, transformers of two and three windings, shunts; the columns that moved
-/// hold values that no neighbouring column could hold.
+/// Two machines, two loads, lines, transformers of two and three windings, shunts. Columns that differ
+/// between versions have values that are invalid for their neighbours.
 std::string text(int version, const std::string& load_extra = "", const std::string& substation = "") {
   const bool v34 = version >= 34, v35 = version >= 35;
   const std::string rates = v34 ? "211,212,213,214,215,216,217,218,219,220,221,222" : "211,212,213";
@@ -45,7 +45,7 @@ std::string text(int version, const std::string& load_extra = "", const std::str
   const std::string rating = v34 ? "'LINE, NORTH 1'," + rates : rates;
   t += "12,-13,'1',0.01,0.08,0.03," + rating + ",0.001,0.002,0.003,0.004,1,1,12.5,1,1.0\n";
   t += "12,13,'2',0.02,0.16,0.06," + rating + ",0,0,0,0,0,2,25.0,1,1.0\n";
-  if (!v34) t += "13,15,'@1',0,0.0004,0,0,0,0,0,0,0,0,1\n";  // before, a switch stood among the lines
+  if (!v34) t += "13,15,'@1',0,0.0004,0,0,0,0,0,0,0,0,1\n";  // earlier versions list a switch among the lines
   t += begin("BRANCH", v34 ? "SYSTEM SWITCHING DEVICE" : "TRANSFORMER");
   if (v34)
     t += labels("I,J,'CKT',X,RATE1,STAT,NSTAT,MET,STYPE,'NAME'") + "13,15,'@1',0.0004," + rates +
@@ -87,7 +87,7 @@ TEST_P(PsseVersions, HoldTheSameNetwork) {
   EXPECT_EQ(n.branches[0].shunt_to, Complex(0.003, 0.004));
   EXPECT_FALSE(n.branches[1].in_service);
   EXPECT_EQ(n.branches[2].x, 0.0004);      // the switch
-  EXPECT_FALSE(n.branches[2].in_service);  // to an isolated bus
+  EXPECT_FALSE(n.branches[2].in_service);  // connects an isolated bus
   ASSERT_EQ(n.generators.size(), 2u);
   EXPECT_EQ(n.generators[0].mva, 150.0);
   EXPECT_EQ(n.generators[0].zr, 0.002);
@@ -102,7 +102,7 @@ TEST_P(PsseVersions, WriteBackToTheLastBit) {
 }
 INSTANTIATE_TEST_SUITE_P(All, PsseVersions, ::testing::Values(32, 33, 34, 35));
 
-TEST(PsseVersion35, SwitchedShuntsOfOneBusAreToldApart) {
+TEST(PsseVersion35, DistinguishesSwitchedShuntsOfOneBus) {
   std::string t = text(35);
   const std::string first = "14,'1',1,0,1,1.1,0.9,14,0,100.0,'',12.5,1,2,6.25\n";
   t.replace(t.find(first), first.size(), first + "14,'2',1,0,1,1.1,0.9,14,0,100.0,'',-5.0\n");
@@ -115,7 +115,7 @@ TEST(PsseVersion35, SwitchedShuntsOfOneBusAreToldApart) {
   expect_same(n, parse_raw(raw_text(n, 33, "out.raw"), "out.raw"));
 }
 
-TEST(PsseVersion34, DistributedGenerationInALoadIsTakenOff) {
+TEST(PsseVersion34, SubtractsDistributedGenerationFromTheLoad) {
   const std::string running = ",8.0,1.0,1", off = ",8.0,1.0,0";
   const network::Network with = parse_raw(text(34, running), "case.raw"), without = parse_raw(text(34), "a");
   const auto difference = without.loads[0].power - with.loads[0].power;
@@ -150,12 +150,12 @@ std::string station(const std::string& status, const std::string& second_bus = "
          "0 / END OF SUBSTATION SWITCHING DEVICE DATA, BEGIN SUBSTATION TERMINAL DATA\n"
          "13,1,'B',12,'1'\n13,2,'L','1'\n0 / END OF SUBSTATION TERMINAL DATA\n";
 }
-TEST(PsseSubstation, ChangesNothingWhileItsBusesAreInOnePiece) {
+TEST(PsseSubstation, ChangesNothing_WhenItsBusesAreConnected) {
   for (const int version : {34, 35})
     expect_same(parse_raw(text(version), "a"),
                 parse_raw(text(version, "", station("1") + station("1")), "b"));
 }
-TEST(PsseSubstation, ASplitBusAndJoinedBusesAreRefused) {
+TEST(PsseSubstation, RefusesSplitAndJoinedBuses) {
   const std::string split = text(35, "", station("0")), joined = text(35, "", station("1", "12"));
   EXPECT_THAT(
       sentences_of([&] { parse_raw(split, "case.raw"); }),
@@ -163,7 +163,7 @@ TEST(PsseSubstation, ASplitBusAndJoinedBusesAreRefused) {
   EXPECT_THAT(sentences_of([&] { parse_raw(joined, "case.raw"); }),
               HasSubstr("closed switches join buses 13 and 12 at case.raw:"));
 }
-TEST(PsseSubstation, FaultsAreReportedWithTheirLine) {
+TEST(PsseSubstation, ReportsErrorsWithTheirLine) {
   const std::string t =
       text(35, "", "1,'S',0,0,0.1\n1,'N',13,1\n1,'N',77,1\n0\n1,9,'1','X','2',1\n0\n13,8,'L','1'\n0\n");
   const std::string all = sentences_of([&] { parse_raw(t, "case.raw"); });
@@ -173,7 +173,7 @@ TEST(PsseSubstation, FaultsAreReportedWithTheirLine) {
   EXPECT_THAT(all, HasSubstr("node 8 is not in the substation's nodes"));
 }
 
-TEST(PsseSwitch, FaultsAreReportedWithTheirLine) {
+TEST(PsseSwitch, ReportsErrorsWithTheirLine) {
   std::string t = text(35);
   const std::string good = "13,15,'@1',0.0004,";
   t.replace(t.find(good), good.size(), "13,13,'@1',0.0,");
@@ -182,7 +182,7 @@ TEST(PsseSwitch, FaultsAreReportedWithTheirLine) {
   EXPECT_THAT(all, HasSubstr("a switch from bus 13 to itself" + where));
 }
 
-TEST(PsseSwitch, WithoutReactanceGetsNextToNone) {
+TEST(PsseSwitch, GetsTheLeastImpedance_WithoutReactance) {
   std::string t = text(35);
   const std::string good = "13,15,'@1',0.0004,";
   t.replace(t.find(good), good.size(), "13,15,'@1',0.0,");

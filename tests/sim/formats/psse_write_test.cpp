@@ -29,14 +29,15 @@ INSTANTIATE_TEST_SUITE_P(Committed, PsseWriteNetworks,
                                            "ieee14_dataset_genrou", "ieee39_dataset_gencls",
                                            "ieee39_dataset_genrou"));
 
-/// Doubles with all 53 bits in use, on bases that no decimal divides: the hardest case for a text file.
+/// Doubles that use all 53 bits, on bases without a finite decimal quotient: the hardest case for a text
+/// file.
 network::Network random_network(double base, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> value(-3.0, 3.0);
   std::uniform_real_distribution<double> decade(-9.0, 4.0);
   const auto any = [&] { return value(random) * std::pow(10.0, decade(random)); };
   const auto positive = [&] { return std::abs(any()) + 1e-12; };
-  // Above the least impedance of a branch (sim/network/tie.hpp), which reading would mend.
+  // Above the least impedance of a branch (sim/network/tie.hpp), below which the reader changes it.
   const auto reactance = [&] {
     const double x = any();
     return x + std::copysign(1e-5, x);
@@ -52,8 +53,8 @@ network::Network random_network(double base, unsigned seed) {
   for (int i = 0; i < 40; ++i) {
     n.loads.push_back({i, "L", {any(), any()}, {any(), any()}, {any(), any()}, i % 4, 9 - i % 9, 1 + i % 2});
     n.shunts.push_back({i, "S", {any(), any()}});
-    // In service are the slack's generator, and branches that leave no bus alone: else reading mends the
-    // case.
+    // The slack generator and enough branches to connect all buses are in service; otherwise the reader
+    // repairs the case.
     const auto [q_min, q_max] = std::minmax({any(), any()});
     n.generators.push_back({i, "G1", any(), any(), positive(), positive(), any(), any(), i % 3 != 1, q_min,
                             q_max, positive(), positive(), i % 6 == 2 ? (i + 3) % 40 : -1, positive()});
@@ -89,7 +90,7 @@ TEST(PsseWrite, RandomNumbersReadBackToTheLastBit) {
     for (unsigned seed = 1; seed <= 5; ++seed) expect_round_trip(random_network(base, seed));
 }
 
-TEST(PsseWrite, FromVersionToVersionNothingChanges) {
+TEST(PsseWrite, VersionsConvertWithoutLoss) {
   const network::Network n = random_network(100.0, 9);
   network::Network again = n;
   for (const int version : {33, 34, 35, 33, 32, 35, 34})
@@ -104,7 +105,7 @@ TEST(PsseWrite, OtherVersionsAreRefused) {
                 HasSubstr("version " + std::to_string(version)));
 }
 
-TEST(PsseWrite, RefusesWhatARawCannotHold) {
+TEST(PsseWrite, RefusesContentThatARawCannotHold) {
   network::Network n = read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   n.branches[0].tap = 0.9;
   n.branches.back().b = 0.1;
@@ -115,10 +116,10 @@ TEST(PsseWrite, RefusesWhatARawCannotHold) {
   EXPECT_FALSE(std::filesystem::exists(file.path));
 }
 
-TEST(PsseWrite, AnImpossiblePathLeavesNothingBehind) {
+TEST(PsseWrite, ImpossiblePathLeavesNoFile) {
   const network::Network n = read_raw(std::string(SWINGBANK_SOURCE) + "/configs/networks/ieee14_genrou.raw");
   EXPECT_THAT(sentences_of([&] { write_raw(n, "/nowhere/at/all/out.raw"); }), HasSubstr("No such file"));
-  // A folder stands where the file should go: the rename fails and the temporary file is removed.
+  // The target is a folder: the rename fails and the temporary file is removed.
   const ScratchFile file("out.raw");
   std::filesystem::create_directories(file.path / "inside");
   EXPECT_THAT(sentences_of([&] { write_raw(n, file.path); }), HasSubstr("cannot write the file"));

@@ -1,5 +1,5 @@
 #pragma once
-// A small .raw file in parts, and what the reader tests need around it.
+// A small .raw file in parts, and helpers of the reader tests.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 
 namespace swingbank::sim::formats {
 
-/// A file that lives as long as the object.
+/// File that is removed with the object.
 class ScratchFile {
  public:
   ScratchFile(const std::string& name, const std::string& text) : ScratchFile(name) {
@@ -94,7 +94,7 @@ struct RawCase {
   }
 };
 
-/// The problems an action throws; empty if it throws none.
+/// Problems thrown by an action; empty if none.
 inline std::vector<Problem> problems_of(const std::function<void()>& action) {
   try {
     action();
@@ -103,13 +103,13 @@ inline std::vector<Problem> problems_of(const std::function<void()>& action) {
   }
   return {};
 }
-/// The sentences together, for substring tests.
+/// Problems as one text, for substring tests.
 inline std::string sentences_of(const std::function<void()>& action) {
   std::string all;
   for (const Problem& p : problems_of(action)) all += p.sentence() + "\n";
   return all;
 }
-/// The places of the remark whose text has `part`; empty: there is none.
+/// Places of the remark whose text contains `part`; empty if there is none.
 inline std::vector<std::string> places(const network::Network& n, const std::string& part) {
   for (const network::Remark& r : n.remarks)
     if (r.what.find(part) != std::string::npos) return r.places;

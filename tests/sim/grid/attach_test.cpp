@@ -23,17 +23,17 @@ TEST(Attach, PutsEffectsIntoTheirSlots) {
   EXPECT_TRUE(said(grid, "3:STEPUP:X=0.05").empty());
   EXPECT_TRUE(said(grid, "all:FASTVALVE:drop=0.2").empty());
   const auto& controls = grid.plants[1].controls;
-  ASSERT_EQ(controls.size(), 3u);  // in order of Slot, added ones last within theirs
+  ASSERT_EQ(controls.size(), 3u);  // in order of Slot, added ones last within their slot
   EXPECT_EQ(controls[0].effect->name, "FORCEDOSC");
   EXPECT_EQ(controls[1].effect->name, "FASTVALVE");
   EXPECT_EQ(controls[2].effect->name, "SEXS");
   EXPECT_EQ(controls[0].p[0], 0.01);
-  EXPECT_EQ(controls[0].p[3], 1.0);  // start: standard
+  EXPECT_EQ(controls[0].p[3], 1.0);  // start: default
   EXPECT_EQ(grid.plants[1].transformer.p, (std::vector<double>{0.0, 0.05, 1.0}));
   EXPECT_EQ(grid.plants[0].controls.size(), 1u);
 }
 
-TEST(Attach, SaysWhatIsWrong) {
+TEST(Attach, ReportsErrors) {
   Grid grid = test::two_machine_grid(Conventions::psse());
   (void)said(grid, "3:SEXS");
   const std::vector<std::pair<const char*, const char*>> cases = {
@@ -56,7 +56,7 @@ TEST(Attach, SaysWhatIsWrong) {
   EXPECT_EQ(grid.plants[1].controls.size(), 1u);
 }
 
-TEST(Attach, AControlMeasuresWhereTheNetworkHasSomething) {
+TEST(Attach, RemoteMeasurementsMustExistInTheNetwork) {
   std::string without = far_control::plants({});
   without.erase(without.find("104 'REPCA1'"));
   Grid grid = far_control::load_from(far_control::behind_a_branch(), without);

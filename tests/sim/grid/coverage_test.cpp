@@ -1,5 +1,4 @@
-// How much of a .dyr is covered: models that are not there, records that are refused, lines that are no
-// record.
+// Coverage of a .dyr: unknown models, refused records, and lines that are no record.
 #include "sim/grid/coverage.hpp"
 
 #include <gmock/gmock.h>
@@ -58,7 +57,7 @@ TEST(Coverage, AWrappedModelIsCoveredWithCodesBeforeItsConstants) {
   EXPECT_EQ(coverage.covered, 2) << of(coverage, "HYG3U1").fault;
 }
 
-TEST(Coverage, AFileThatIsNotThereIsRefused) { EXPECT_ANY_THROW(take_coverage({"/nowhere/none.dyr"})); }
+TEST(Coverage, RefusesMissingFiles) { EXPECT_ANY_THROW(take_coverage({"/nowhere/none.dyr"})); }
 
 }  // namespace
 }  // namespace swingbank::sim::grid

@@ -1,5 +1,5 @@
 #pragma once
-// A converter plant whose control measures elsewhere.
+// Converter plant whose control measures at a remote bus or branch.
 #include <fmt/format.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace swingbank::sim::grid::far_control {
 
-/// Bus 102 is the point where the plant joins the grid; its converter stands at 104 behind a transformer.
+/// Bus 102 is the point of common coupling; the converter is at bus 104 behind a transformer.
 inline formats::RawCase behind_a_branch() {
   formats::RawCase raw;
   raw.buses =

@@ -1,4 +1,4 @@
-// What a plant's control measures elsewhere: the voltage of a remote bus, the flow of a branch.
+// Remote measurements of a plant's control: the voltage of a bus, the flow of a branch.
 #include "sim/grid/far.hpp"
 
 #include <gmock/gmock.h>
@@ -37,7 +37,7 @@ double apart(const std::vector<double>& a, const std::vector<double>& b) {
   return most;
 }
 
-TEST(FarControl, ATransformerInTheNetworkIsThatOfTheGeneratorsRecord) {
+TEST(FarControl, NetworkTransformerEqualsThatOfTheGeneratorRecord) {
   const Grid one = load_from(behind_a_branch(), plants({}));
   const Complex V = one.flow.voltage[1];
   Control other;
@@ -52,7 +52,7 @@ TEST(FarControl, ATransformerInTheNetworkIsThatOfTheGeneratorsRecord) {
   EXPECT_GT(apart(a.bus_v, run(near, more_load(near), 102).bus_v), 1e-3);
 }
 
-TEST(FarControl, HoldsTheVoltageOfTheRemoteBus) {
+TEST(FarControl, RegulatesTheVoltageOfTheRemoteBus) {
   Control control;
   control.droop = "0 0 0";
   const Grid grid = load_from(behind_a_branch(), plants(control));
@@ -62,7 +62,7 @@ TEST(FarControl, HoldsTheVoltageOfTheRemoteBus) {
   EXPECT_GT(std::abs(own.bus_v.back() - std::abs(grid.flow.voltage[3])), 1e-3);
 }
 
-TEST(FarControl, HoldsStillWithoutAnEvent) {
+TEST(FarControl, IsSteadyWithoutAnEvent) {
   const Grid grid = load_from(behind_a_branch(), plants({}));
   const auto still = run(grid, {}, 102);
   for (const double v : still.bus_v) EXPECT_NEAR(v, std::abs(grid.flow.voltage[1]), 1e-9);
@@ -80,7 +80,7 @@ TEST(FarControl, MeasuresTheFlowAtTheFirstBusOfItsBranch) {
   EXPECT_NEAR(std::hypot(there.Vr, there.Vi), std::abs(out.flow.voltage[1]), 1e-12);
 }
 
-TEST(FarControl, AnOpenBranchCarriesNothing) {
+TEST(FarControl, OpenBranchHasZeroFlow) {
   Control control;
   control.flags = "0 0 1";  // Q of the branch, P of the branch
   formats::RawCase doubled = behind_a_branch();
@@ -89,7 +89,7 @@ TEST(FarControl, AnOpenBranchCarriesNothing) {
   EXPECT_NEAR(two.plants.at(1).far.value().P, 0.4, 1e-9);
   network::Event event;
   event.trips.push_back({two.network.branch_index(102, 103, "1"), 1.0, {}});
-  // The control asks for the power that its branch carried until the plant is at its limit.
+  // The control restores the branch flow until the plant is at its limit.
   reference::ReferenceOptions options;
   options.t_end = 20.0;
   options.rate = 30.0;
@@ -113,7 +113,7 @@ TEST(FarControl, ReportsUnknownBusesAndBranches) {
   EXPECT_FALSE(grid.plants.at(1).far.has_value());
 }
 
-TEST(FarControl, IsMeasuredAnewAtAnotherOperatingPoint) {
+TEST(FarControl, IsRecomputedAtAnotherOperatingPoint) {
   const Grid grid = load_from(behind_a_branch(), plants({}));
   network::Network less = grid.network;
   less.generators.at(1).p *= 0.5;
@@ -124,7 +124,7 @@ TEST(FarControl, IsMeasuredAnewAtAnotherOperatingPoint) {
   EXPECT_NEAR(larger.plants.at(1).far.value().P, 0.4, 1e-9);
 }
 
-TEST(FarControl, AUnitTakenOutOfTheCaseSaysWhereItsRecordsBelong) {
+TEST(FarControl, ExtractedUnitReportsItsMeasuringBus) {
   const formats::ScratchFile r("case.raw", behind_a_branch().text()), d("case.dyr", plants({}));
   UnitChoice choice;
   choice.raw = r.path;

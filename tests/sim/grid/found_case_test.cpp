@@ -1,4 +1,4 @@
-// Cases that are not whole: what is done to them, by which option, and that it is said.
+// Incomplete cases: repairs, the options that request them, and the remarks.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -43,19 +43,19 @@ TEST(FoundCase, GeneratorsWithoutAMachineBecomeNegativeLoadsOnRequest) {
 TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
   formats::RawCase raw;
   raw.generators += "102,'2',10,0,100,-100,1.02,0,100,0,0.3,0,0,1,0\n";
-  // That of the generator out of service may even be unknown; the other two are named.
+  // The model of the generator out of service may be unknown; the other two are named.
   const Grid grid =
       make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
   EXPECT_THAT(places(grid, "has not are left out"),
               ElementsAre(HasSubstr("GENCLS of '1' at bus 103 (case.dyr:4)"), HasSubstr("case.dyr:5")));
 }
 
-TEST(FoundCase, EmptyFieldsOfADyrAreZeroAndCommentsAreNone) {
+TEST(FoundCase, EmptyFieldsOfADyrAreZeroAndCommentsAreIgnored) {
   const Grid grid = make({}, "@! bus, model\n101 'GENCLS' 1 3 0 /\n102, 'GENCLS', 1, 3,, /\n");
   EXPECT_THAT(places(grid, "empty parameters"), ElementsAre("GENCLS parameter 2 (case.dyr:3)"));
 }
 
-TEST(FoundCase, ASolutionThatIsNotTheFilesIsNamed) {
+TEST(FoundCase, NamesASolutionThatDiffersFromTheFile) {
   formats::RawCase raw;
   const Grid solved = make(raw, kBoth);
   EXPECT_THAT(places(solved, "differs from the file's voltages"), ElementsAre(HasSubstr("bus 103 ")));
@@ -77,8 +77,8 @@ TEST(FoundCase, BusesAtTheirLimitAreNamed) {
   EXPECT_TRUE(places(make(raw, kBoth, options), "at a reactive limit").empty());
 }
 
-TEST(FoundCase, OperatingPointsBeyondLimitsAreToldTogetherOrTheLimitsMoved) {
-  // Valves of 0.5 pu where the machines deliver 1.5 and 1.0 pu.
+TEST(FoundCase, ReportsViolatedLimitsTogetherOrMovesThem) {
+  // Valve limits of 0.5 pu, but machines that deliver 1.5 and 1.0 pu.
   const std::string dyr =
       kBoth + "101 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n102 'TGOV1' 1 0.05 0.5 0.5 0 2 7 0 /\n";
   Grid grid = make({}, dyr);
@@ -110,7 +110,7 @@ TEST(FoundCase, CeilingsOfExcitersAreMovedToo) {
   }
 }
 
-TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
+TEST(FoundCase, CompletesOrCutsRecordsOfAnotherLengthOnRequest) {
   const std::string dyr = "101 'GENCLS' 1 3 /\n102 'GENCLS' 1 3 0 7 /\n";
   EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }), HasSubstr("--complete-records"));
   CaseOptions options;
@@ -126,7 +126,7 @@ TEST(FoundCase, RecordsOfAnotherLengthAreCompletedOrCutAsAsked) {
   EXPECT_EQ(machine.p[1], machine.effect->default_parameters()[1]);
 }
 
-TEST(FoundCase, TheSameFaultOfSeveralRecordsIsOneSentence) {
+TEST(FoundCase, ReportsARepeatedErrorInOneSentence) {
   const std::string dyr =
       kBoth + "101 'TGOV1' 1 0.05 0.5 1 /\n102 'TGOV1' 1 0.05 0.4 1 /\n102 'SEXS' 1 0.1 10 /\n";
   const std::string said = formats::sentences_of([&] { make({}, dyr); });
@@ -136,7 +136,7 @@ TEST(FoundCase, TheSameFaultOfSeveralRecordsIsOneSentence) {
   EXPECT_THAT(said, HasSubstr("SEXS with 2 parameters"));
 }
 
-TEST(FoundCase, RecordsThatTheirModelCannotTakeAreDroppedAsAsked) {
+TEST(FoundCase, DropsRefusedRecordsOnRequest) {
   const std::string dyr =
       kBoth + "101 'TGOV1' 1 0 0.5 0.5 0 2 7 0 /\n102 'GENCLS' 1 4 0 /\n102 'TGOV1' 1 x 0.5 2 0 2 7 0 /\n";
   EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }), HasSubstr("--drop-refused"));
@@ -148,21 +148,21 @@ TEST(FoundCase, RecordsThatTheirModelCannotTakeAreDroppedAsAsked) {
   EXPECT_EQ(grid.plants[1].machine.p[0], 3.0);
 }
 
-TEST(FoundCase, AGenrouWithoutTheQAxisTransientCircuitIsTakenAndSaid) {
+TEST(FoundCase, AcceptsGenrouWithoutQAxisTransientCircuitWithARemark) {
   const Grid grid = make({}, "101 'GENROU' 1 8.0 0.03 0 0.05 6.5 0 1.8 1.7 0.3 1.7 0.25 0.2 0.05 0.3 /\n" +
                                  kBoth.substr(kBoth.find('\n') + 1));
   EXPECT_THAT(places(grid, "in their own way"), ElementsAre(HasSubstr("T'qo = 0")));
   EXPECT_NO_THROW(plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions));
 }
 
-TEST(FoundCase, UnusualValuesAreRunAndSaid) {
+TEST(FoundCase, AcceptsUnusualValuesWithARemark) {
   const Grid grid = make({}, kBoth + "101 'TGOV1' 1 0.05 0.5 2 -1.5 2 7 0 /\n");
   EXPECT_THAT(places(grid, "usual for them"),
               ElementsAre("case.dyr:3: VMIN = -1.5 pu (TGOV1's is usually -1 to 1 pu)"));
   EXPECT_EQ(grid.plants[0].controls[0].p[3], -1.5);
 }
 
-TEST(FoundCase, AnExciterAtAMachineWithoutAFieldIsSaidToDoNothing) {
+TEST(FoundCase, ReportsAnIneffectiveExciter) {
   const std::string sexs = " 'SEXS' 1 0.1 10 100 0.1 0 3 /\n";
   const Grid grid = make({},
                          "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n"
@@ -171,7 +171,7 @@ TEST(FoundCase, AnExciterAtAMachineWithoutAFieldIsSaidToDoNothing) {
   EXPECT_THAT(places(grid, "do nothing"), ElementsAre("SEXS of generator 102: GENCLS has no field winding"));
 }
 
-TEST(FoundCase, AFileThatBreaksOffIsRecognised) {
+TEST(FoundCase, RecognisesTruncatedFiles) {
   const auto said = [](const std::string& dyr) { return formats::sentences_of([&] { make({}, dyr); }); };
   const std::string genrou = "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8";
   EXPECT_THAT(said(kBoth.substr(kBoth.find('\n') + 1) + genrou),
@@ -184,7 +184,7 @@ TEST(FoundCase, AFileThatBreaksOffIsRecognised) {
   EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("cut off")));
 }
 
-TEST(FoundCase, AMachineThatIsRefusedIsNotCalledMissingToo) {
+TEST(FoundCase, RefusedMachineIsNotReportedAsMissing) {
   const std::string dyr = "101 'GENCLS' 1 3 0 /\n102 'GENCLS' 1 -3 0 /\n";
   EXPECT_THAT(formats::sentences_of([&] { make({}, dyr); }),
               ::testing::AllOf(HasSubstr("case.dyr:2"), ::testing::Not(HasSubstr("no machine model"))));
@@ -193,14 +193,14 @@ TEST(FoundCase, AMachineThatIsRefusedIsNotCalledMissingToo) {
   EXPECT_THAT(formats::sentences_of([&] { make({}, dyr, options); }), HasSubstr("no machine model"));
 }
 
-TEST(FoundCase, AnUnknownModelIsSaidToBeNone) {
+TEST(FoundCase, ReportsUnknownModels) {
   EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "101 'EXDC9' 1 1 2 /\n"); }),
               ::testing::AllOf(HasSubstr("unknown model 'EXDC9'"), HasSubstr("there is no such model here"),
                                HasSubstr("swingbank effects --coverage case.dyr"),
                                ::testing::Not(HasSubstr("EXDC2"))));
 }
 
-TEST(FoundCase, ARecordOfEquipmentIsNamedByIt) {
+TEST(FoundCase, NamesRecordsByTheirEquipment) {
   EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "'DC 1' 'CDC6T' 1 2 /\n"); }),
               ::testing::AllOf(HasSubstr("equipment 'DC 1'"), HasSubstr("--ignore-model CDC6T")));
 }

@@ -39,7 +39,7 @@ TEST(Grid, JoinsGeneratorsAndModels) {
   formats::RawCase raw;
   raw.header_rest = ", 0, 1, 50.0";
   const Grid grid = load(raw, plain_dyr());
-  EXPECT_EQ(grid.conventions.frequency, 50.0);  // the network's own
+  EXPECT_EQ(grid.conventions.frequency, 50.0);  // from the network
   ASSERT_EQ(grid.plants.size(), 2u);
   EXPECT_EQ(grid.plants[0].name, "101");
   EXPECT_EQ(grid.plants[0].machine.effect->name, "GENCLS");
@@ -53,20 +53,20 @@ TEST(Grid, JoinsGeneratorsAndModels) {
   EXPECT_EQ(grid.plants[1].generator, 1);
 }
 
-TEST(Grid, SeveralMachinesAtABusCarryTheirIds) {
+TEST(Grid, SeveralMachinesAtABusKeepTheirIds) {
   formats::RawCase raw;
   raw.generators +=
       "102,'B',50.0,0,100,-100,1.02,0,50,0.002,0.4,0,0,1,1\n"
       "102,'C',50.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,0\n";
   const Grid grid = load(raw, plain_dyr() + "102 'GENCLS' 'B' 3.0 1.0 /\n102 'GENCLS' 'C' 3.0 1.0 /\n");
-  ASSERT_EQ(grid.plants.size(), 3u);  // C is out of service, its model is not a fault
+  ASSERT_EQ(grid.plants.size(), 3u);  // C is out of service, its model is no error
   EXPECT_EQ(grid.plants[1].name, "102/1");
   EXPECT_EQ(grid.plants[2].name, "102/B");
   EXPECT_EQ(parameter(grid.plants[2].machine, "Ra"), 0.002);
   EXPECT_EQ(grid.plants[2].mva, 50.0);
 }
 
-TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
+TEST(Grid, ReportsAllErrorsWithTheDyrLine) {
   formats::RawCase raw;
   raw.generators += "102,'B',50.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,1\n";
   const std::string all =
@@ -84,7 +84,7 @@ TEST(Grid, EveryFaultIsReportedAtOnceWithTheDyrLine) {
   EXPECT_THAT(all, HasSubstr("--net-generators"));
 }
 
-TEST(Grid, FaultsOfRawAndDyrAreReportedTogether) {
+TEST(Grid, ReportsErrorsOfRawAndDyrTogether) {
   formats::RawCase raw;
   raw.loads = "999,'1',1,1,1,250.0,30.0\n";
   const std::string all = complaints(raw, "101 'GENCLS'\n");
@@ -102,7 +102,7 @@ TEST(Grid, InconsistentReactancesAreRefused) {
   EXPECT_THAT(all, HasSubstr("case.dyr:2"));
 }
 
-/// What spdlog writes while an action runs.
+/// Log output of spdlog during an action.
 std::string logged(const std::function<void()>& action) {
   std::ostringstream out;
   const auto before = spdlog::default_logger();
@@ -162,7 +162,7 @@ TEST_P(OperatingPoints, AreSteadyAndFeedTheNetwork) {
     for (const plant::Plant& plant : grid.plants) {
       const Complex v = grid.flow.voltage[static_cast<std::size_t>(plant.bus)];
       const plant::Operating o = plant::operating_point(plant, v, grid.network.base_mva, grid.conventions);
-      // The derivative once more, from the contract alone: emf, network current, electrical, derivative.
+      // The derivative again, by the contract of effects only: emf, network current, electrical, derivative.
       const auto& machine = plant.machine.effect->get<double>().machine;
       std::vector<double> scratch(static_cast<std::size_t>(plant.machine.effect->scratch)), dx(o.x.size());
       double er = 0.0, ei = 0.0;
@@ -205,7 +205,7 @@ TEST(OperatingPoint, HasTheReferencesStatesAndFieldVoltage) {
   EXPECT_NEAR(std::abs(o.x[5]), 0.39848465513678144, tolerance);  // psi2q: the sign is a convention
 }
 
-TEST(OperatingPoint, OfAnInfiniteBusStandsStill) {
+TEST(OperatingPoint, OfAnInfiniteBusIsSteady) {
   const Grid grid = load({}, plain_dyr());
   const plant::Operating o =
       plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions);
@@ -221,8 +221,8 @@ TEST(OperatingPoint, AnImpossiblePointNamesThePlant) {
   EXPECT_THAT(text, HasSubstr("generator 102"));
 }
 
-/// Published PSS/E cases that stand beside the checkout or where SWINGBANK_REFERENCE points; they are not
-/// ours to commit, so these tests exist only where the files do.
+/// Published PSS/E cases beside the checkout or in the folder SWINGBANK_REFERENCE. They must not be
+/// committed here, so these tests exist only if the files do.
 std::filesystem::path reference() {
   const char* folder = std::getenv("SWINGBANK_REFERENCE");
   return std::filesystem::path(folder ? folder : std::string(SWINGBANK_SOURCE) + "/../shared/reference") /
@@ -272,7 +272,7 @@ TEST(Grid, ModelsThatAreNotAvailableAreAllNamedAndCanBeIgnoredOrMapped) {
   EXPECT_THAT(formats::sentences_of([&] { load_with(options); }), HasSubstr("GENCLS with 14 parameters"));
 }
 
-TEST(Grid, AMatpowerCaseTakesItsFrequencyFromTheCaller) {
+TEST(Grid, MatpowerCaseUsesTheCallersFrequency) {
   const formats::ScratchFile m(
       "two.m",
       "mpc.version = '2';\nmpc.baseMVA = 100;\n"
@@ -284,7 +284,7 @@ TEST(Grid, AMatpowerCaseTakesItsFrequencyFromTheCaller) {
   EXPECT_EQ(load_grid(m.path, d.path, Conventions::psse(), {}, 50.0).conventions.frequency, 50.0);
   EXPECT_THAT(formats::sentences_of([&] { load_grid(m.path, d.path, Conventions::psse()); }),
               HasSubstr("no frequency"));
-  // A case has no machine impedance for a model that takes its X'd from there.
+  // The case has no machine impedance, from which the model would take its X'd.
   EXPECT_THAT(
       formats::sentences_of([&] { load_grid(m.path, classical.path, Conventions::psse(), {}, 50.0); }),
       HasSubstr("X'd = 0"));

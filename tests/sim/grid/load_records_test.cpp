@@ -1,4 +1,4 @@
-// Load models in a .dyr: which load they belong to, round trip, faults; user-written models that are ours.
+// Load models in a .dyr: assignment to loads, round trip, errors; known user-written models.
 #include <gmock/gmock.h>
 
 #include "sim/grid/load_choice.hpp"
@@ -84,7 +84,7 @@ TEST(LoadRecords, ReportsLoadsThatADyrCannotHold) {
   EXPECT_FALSE(std::filesystem::exists(file.path));
 }
 
-TEST(LoadRecords, EveryFaultIsReported) {
+TEST(LoadRecords, ReportsEveryError) {
   const std::string all = formats::sentences_of([] {
     load_from({},
               kPlants + "103 " + kMotor + "103 " + kPowers + "999 " + kPowers + "103 'CIM5BL' 1 1 2 3 /\n");
@@ -102,7 +102,7 @@ TEST(LoadRecords, EveryFaultIsReported) {
   EXPECT_THAT(relay, HasSubstr("case.dyr:3"));
 }
 
-TEST(LoadRecords, TheirLoadsKeepThemWhereTheOthersAreAsComposed) {
+TEST(LoadRecords, KeepTheirModels_WhenOtherLoadsAreComposed) {
   Grid grid = load_from(two_loads(), kPlants + "103 " + kMotor);
   Problems problems;
   loads_as_composed(grid, problems);
@@ -122,7 +122,7 @@ std::string powers(const std::string& ending, const std::string& id, double a1) 
   return "'IEEL" + ending + "' " + id + " " + std::to_string(a1) +
          " 0.3 0.5 0.6 0.4 0 1.5 -1 2 1 0 2 1 0 /\n";
 }
-/// a1 of each load's model; -1 where it has none.
+/// a1 of each load's model; -1 without a model.
 std::vector<double> first_states(const Grid& grid) {
   std::vector<double> list(grid.network.loads.size(), -1.0);
   for (const plant::Consumer& c : grid.loads)
@@ -140,7 +140,7 @@ TEST(LoadRecords, ReachTheLoadsOfAnAreaZoneOwnerOrAll) {
   EXPECT_EQ(of("2 " + powers("ZN", "1", 0.25)), (Firsts{0.25, -1}));
   EXPECT_EQ(of("4 " + powers("OW", "*", 0.25)), (Firsts{0.25, -1}));
   EXPECT_EQ(of("0 " + powers("AL", "*", 0.25)), (Firsts{0.25, 0.25}));
-  // the more particular counts, in whatever order they come
+  // the more specific record applies, in any order
   const std::string all = "0 " + powers("AL", "*", 0.25), area = "3 " + powers("AR", "*", 0.5),
                     owner = "5 " + powers("OW", "*", 0.75), own = "103 " + powers("BL", "2", 1.0);
   EXPECT_EQ(of(all + area), (Firsts{0.25, 0.5}));
@@ -150,7 +150,7 @@ TEST(LoadRecords, ReachTheLoadsOfAnAreaZoneOwnerOrAll) {
               HasSubstr("a second model, IEELAR for load '*' in area 3"));
 }
 
-TEST(LoadRecords, AreasAreTheBusesUnlessTheLoadHasItsOwn) {
+TEST(LoadRecords, AreasOfLoadsDefaultToThoseOfTheirBuses) {
   formats::RawCase raw;
   raw.buses =
       "101,'N',138.0,3,1,1,1,1.05,0.0\n102,'E',138.0,2,1,1,1,1.02,-0.9\n103,'S',138.0,1,7,8,9,0.99,-8.7\n";
@@ -183,7 +183,7 @@ TEST(LoadRecords, AMotorWithItsLoadTorqueReadsBack) {
   EXPECT_EQ(again.loads.at(0).block.effect, motor.effect);
 }
 
-TEST(LoadRecords, AFrequencyDependentLoadIsComposedAsTheRawSays) {
+TEST(LoadRecords, FrequencyDependentLoadKeepsTheCompositionOfTheRaw) {
   formats::RawCase raw;
   raw.loads = "103,'1',1,1,1,150.0,0.0,60.0,-20.0,40.0,-10.0,1,1,0\n";
   Grid grid = load_from(raw, kPlants + "103 'LDFRBL' * 1.5 -1 0.5 0.25 /\n");
@@ -192,7 +192,7 @@ TEST(LoadRecords, AFrequencyDependentLoadIsComposedAsTheRawSays) {
   EXPECT_EQ(block.effect->name, "LDFR");
   EXPECT_EQ(parameter_of(block, "s"), 0.25);
   const double v = std::abs(grid.flow.voltage[2]), p = 1.5 + 0.6 * v + 0.4 * v * v;
-  const double q = -0.2 * v + 0.1 * v * v;  // YQ counts as susceptance
+  const double q = -0.2 * v + 0.1 * v * v;  // YQ is a susceptance
   EXPECT_NEAR(parameter_of(block, "Pp"), 1.5 / p, 1e-15);
   EXPECT_NEAR(parameter_of(block, "Pi"), 0.6 * v / p, 1e-15);
   EXPECT_EQ(parameter_of(block, "Qp"), 0.0);
@@ -222,7 +222,7 @@ TEST(LoadRecords, AStarIsEveryLoadWithoutAModel) {
 }
 
 /// RT and XT of a generator's record are the plant's step-up transformer.
-TEST(LoadRecords, StepUpTransformersStandInTheRaw) {
+TEST(LoadRecords, StepUpTransformersAreInTheRaw) {
   formats::RawCase raw;
   raw.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1\n"
@@ -244,7 +244,7 @@ TEST(LoadRecords, StepUpTransformersStandInTheRaw) {
 }
 
 /// PSS/E up to 33 writes GENTPJ as a user-written model, from 34 on as GENTPJ1.
-TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
+TEST(LoadRecords, KnownUserWrittenModelsAreReadAsEffects) {
   const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
                     values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.26 0.2 0.1 0.4 0.08 /\n";
   for (const std::string& record :
@@ -261,8 +261,8 @@ TEST(LoadRecords, UserWrittenModelsThatAreOursAreReadAsThat) {
       HasSubstr("GENTPJU1 with 22 parameters"));
 }
 
-/// 'GENTPJU1' is GENTPJ1, 'GENROUU1' GENROU: the rule holds for every model, mapped ones too.
-TEST(LoadRecords, UserWrittenNamesFollowOneRule) {
+/// 'GENTPJU1' is GENTPJ1, 'GENROUU1' GENROU: the rule applies to every model, including mapped ones.
+TEST(LoadRecords, NamesOfUserWrittenModelsFollowOneRule) {
   const std::string infinite = "101 'GENCLS' 1 0.0 0.0 /\n102 ",
                     values = " 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n";
   for (const std::string& record : {"'USRMDL' 1 'GENROUU1' 1 1 0 14 6 1" + values,

@@ -20,14 +20,14 @@ plant::TerminalRecord terminal() {
   plant::TerminalRecord r;
   for (int k = 0; k < 200; ++k) {
     r.V.push_back(1.0 + 0.001 * k);
-    r.theta.push_back(9.0 + 0.05 * k);  // more than a turn away, and through several
+    r.theta.push_back(9.0 + 0.05 * k);  // beyond 2 pi at the start, then through several turns
     r.P.push_back(0.7 - 0.002 * k);
     r.Q.push_back(0.1 + 0.001 * k);
   }
   return r;
 }
 
-TEST(Measure, ThereAndBackIsTheSame) {
+TEST(Measure, RoundTripKeepsTheRecord) {
   const plant::TerminalRecord before = terminal();
   const plant::TerminalRecord after =
       plant::terminal_of(plant::phasors_of(before, 50.0, 60.0, "test"), before.theta.front());
@@ -73,7 +73,7 @@ TEST(Measure, WithoutVoltageThereIsNoCurrent) {
   }
 }
 
-TEST(Measure, ReadsAChainAndSaysWhatIsWrong) {
+TEST(Measure, ReadsAChainAndReportsErrors) {
   EXPECT_EQ(block("skew:skew=0.01").effect->name, "SKEW");
   EXPECT_EQ(plant::memory(std::vector<plant::Block>{block("SKEW:skew=-0.01"), block("CTERROR:gain=0.1"),
                                                     block("SKEW:skew=0.02")}),
@@ -91,7 +91,7 @@ TEST(Measure, ReadsAChainAndSaysWhatIsWrong) {
   }
 }
 
-TEST(Measure, ARunIsMeasuredPlantByPlant) {
+TEST(Measure, MeasuresEachPlantOfARun) {
   Grid grid = test::two_machine_grid(Conventions::psse());
   grid.plants[1].measurements.push_back(block("PTERROR:gain=0.1"));
   reference::ReferenceOptions options;
@@ -109,7 +109,7 @@ TEST(Measure, ARunIsMeasuredPlantByPlant) {
     EXPECT_NEAR(after.at(1, 1)[k], 1.2 * 1.1 * before.at(1, 1)[k], 1e-13);
     EXPECT_NEAR(after.at(1, 4)[k], 1.1 * before.at(1, 4)[k], 1e-13);
     EXPECT_NEAR(after.at(1, 2)[k], before.at(1, 2)[k], 1e-13);
-    EXPECT_EQ(after.at(1, 3)[k], before.at(1, 3)[k]);  // the rotor angle passes no instrument
+    EXPECT_EQ(after.at(1, 3)[k], before.at(1, 3)[k]);  // the rotor angle is not measured by an instrument
     EXPECT_NEAR(frequency[0][k], 60.0, 1e-3);          // the infinite bus: a source behind a small impedance
   }
   EXPECT_GT(*std::ranges::max_element(frequency[1]), 60.01);  // the machine is accelerated by the fault

@@ -28,7 +28,7 @@ network::Network scaled(network::Network n, double s) {
   return n;
 }
 
-TEST(AnotherOperatingPoint, OfTheSameNetworkIsTheSame) {
+TEST(AnotherOperatingPoint, OfTheSameNetworkIsUnchanged) {
   const Grid grid = ieee39(), again = at_operating_point(grid, grid.network);
   EXPECT_EQ(again.flow.voltage, grid.flow.voltage);
   for (std::size_t i = 0; i < grid.plants.size(); ++i)
@@ -47,7 +47,7 @@ TEST(AnotherOperatingPoint, PlantsFollowThePowerFlow) {
   }
 }
 
-/// What a load model takes from the .raw depends on the voltage, so it is taken anew; what was given stays.
+/// A load model's values from the .raw depend on the voltage and are computed again; given values are kept.
 TEST(AnotherOperatingPoint, LoadsWithAModelFollowToo) {
   formats::RawCase raw;
   raw.loads = "103,'1',1,1,1,150.0,30.0,50.0,-5.0,0,0,1,1,0\n103,'2',1,1,1,50.0,10.0,0,0,0,0,1,1,0\n";
@@ -72,7 +72,7 @@ TEST(AnotherOperatingPoint, LoadsWithAModelFollowToo) {
   EXPECT_EQ(part(at.loads[1]), 0.4);
 }
 
-TEST(AnotherOperatingPoint, ABaseChangesNoPower) {
+TEST(AnotherOperatingPoint, MachineBaseDoesNotChangeThePower) {
   Grid grid = ieee39();
   const plant::Plant before = grid.plants[3];
   set_machine_base(grid, 3, 2.0 * before.mva);
@@ -85,7 +85,7 @@ TEST(AnotherOperatingPoint, ABaseChangesNoPower) {
   EXPECT_NEAR(steady(grid.plants[3]).s.P, 0.5 * steady(before).s.P, 1e-12);  // per unit on its own base
 }
 
-TEST(AnotherOperatingPoint, WithoutAPowerFlowIsRefused) {
+TEST(AnotherOperatingPoint, IsRefusedWithoutAPowerFlow) {
   const Grid grid = ieee39();
   EXPECT_THAT(formats::sentences_of([&] { at_operating_point(grid, scaled(grid.network, 20.0)); }),
               HasSubstr("the power flow diverges"));

@@ -1,5 +1,5 @@
-// Static var systems of a .dyr: which switched shunt they belong to, their two forms, a regulated bus far
-// off, round trip, faults.
+// Static var systems of a .dyr: assignment to switched shunts, their two forms, a remote regulated bus, round
+// trip, errors.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -61,7 +61,7 @@ TEST(StaticVar, TakesTheSusceptanceOfItsSwitchedShunt) {
   EXPECT_EQ(grid.loads[0].regulated, grid.loads[0].bus);
 }
 
-TEST(StaticVar, MayStandAtNothing) {
+TEST(StaticVar, MayStartAtZero) {
   const Grid grid = load_from(with_shunt("0.0"), kPlants + record("103"));
   ASSERT_EQ(grid.loads.size(), 1u);
   EXPECT_EQ(grid.loads[0].consumption, Complex());
@@ -81,8 +81,8 @@ double last_voltage(const Grid& grid, int bus) {
   EXPECT_EQ(run.outcome, Outcome::stable);
   return run.bus_v.back();
 }
-// Its slope is nothing, so that its integral brings the voltage it regulates back, and that one alone.
-TEST(StaticVar, HoldsItsOwnBusOrAnother) {
+// Its slope is zero, so that its integral restores exactly the regulated voltage.
+TEST(StaticVar, RegulatesItsOwnBusOrAnother) {
   const Grid own = load_from(with_shunt(), kPlants + record("103"));
   EXPECT_NEAR(last_voltage(own, 103), std::abs(own.flow.voltage[2]), 2e-5);
   const Grid far = load_from(with_shunt(), kPlants + record("102"));
@@ -118,7 +118,7 @@ TEST(StaticVar, ReadsBackToTheLastBit) {
   }
 }
 
-TEST(StaticVar, EveryFaultIsReported) {
+TEST(StaticVar, ReportsEveryError) {
   const std::string all = formats::sentences_of(
       [] { load_from(with_shunt(), kPlants + record("103") + record("103") + record("999")); });
   EXPECT_THAT(all, HasSubstr("a second model, SVSMO1T2 at bus 103"));
@@ -126,7 +126,7 @@ TEST(StaticVar, EveryFaultIsReported) {
   const std::string few =
       formats::sentences_of([] { load_from(with_shunt(), kPlants + "103 'SVSMO1T2' 103 0 0 1 2 /\n"); });
   EXPECT_THAT(few, HasSubstr("of 8 switched shunts"));
-  std::string text = record("103");  // a text has a meaning among the shunts beside it alone
+  std::string text = record("103");  // a text is defined only relative to its switched shunts
   text.replace(text.find(" 0.18 "), 6, " 'B' ");
   EXPECT_THAT(formats::sentences_of([&] { load_from(with_shunt(), kPlants + text); }),
               HasSubstr("SVSMO1T2 parameter 19 = 'B'"));

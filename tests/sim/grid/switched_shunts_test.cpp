@@ -1,4 +1,4 @@
-// Switched shunts of a case: as they are with a remark, or stepped and then part of the network.
+// Switched shunts of a case: fixed with a remark, or stepped and then part of the network.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ bool says(const Grid& grid, const std::string& what) {
       grid.network.remarks, [&](const network::Remark& r) { return r.what.find(what) != std::string::npos; });
 }
 
-TEST(SwitchedShunts, StayWithARemarkUnlessAsked) {
+TEST(SwitchedShunts, StayWithARemarkUnlessRequested) {
   const Grid grid = with_bank(1.045, 1.06, false);
   EXPECT_LT(std::abs(grid.flow.voltage[kBus]), 1.045);
   EXPECT_TRUE(says(grid, "stay at BINIT"));
 }
 
-TEST(SwitchedShunts, BecomePartOfTheNetworkWhereTheyWereStepped) {
+TEST(SwitchedShunts, StepsAreKeptInTheNetwork) {
   const Grid grid = with_bank(1.045, 1.06, true);
   EXPECT_TRUE(says(grid, "were stepped"));
   EXPECT_FALSE(says(grid, "stay at BINIT"));
@@ -40,13 +40,13 @@ TEST(SwitchedShunts, BecomePartOfTheNetworkWhereTheyWereStepped) {
   EXPECT_GT(bank->admittance.imag(), 0.0);
   EXPECT_EQ(grid.network.switched[0].present, bank->admittance.imag());
   EXPECT_GE(std::abs(grid.flow.voltage[kBus]), 1.045);
-  // The network as it now stands has that solution.
+  // The resulting network has that solution.
   const network::PowerFlow again = network::solve_power_flow(grid.network);
   for (std::size_t i = 0; i < again.voltage.size(); ++i)
     EXPECT_NEAR(std::abs(again.voltage[i] - grid.flow.voltage[i]), 0.0, 1e-11);
 }
 
-TEST(SwitchedShunts, ABandOutOfReachIsSaid) {
+TEST(SwitchedShunts, ReportsAnUnreachableBand) {
   EXPECT_TRUE(says(with_bank(1.3, 1.4, true), "no step that brings"));
 }
 

@@ -1,4 +1,4 @@
-// One unit of a case: read alone, whatever is wrong with the rest; written as .dyr records again; inventory.
+// One unit of a case: read independently of errors elsewhere; written back as .dyr records; inventory.
 #include "sim/grid/unit.hpp"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ class UnitTest : public ::testing::Test {
   formats::ScratchFile raw_{"case.raw"}, dyr_{"case.dyr"};
 };
 
-TEST_F(UnitTest, OthersFaultsAreOfNoConcern) {
+TEST_F(UnitTest, IgnoresErrorsOfOtherUnits) {
   formats::RawCase raw;
   raw.generators +=
       "103,'9',x,0,100,-100,1.02,101,50,0,0.4,0,0,1,1\n"
@@ -53,7 +53,7 @@ TEST_F(UnitTest, OthersFaultsAreOfNoConcern) {
   EXPECT_THAT(complaints(choice(101)), HasSubstr("unknown model 'WHATEVER' of unit '1' at bus 101"));
 }
 
-TEST_F(UnitTest, ItsOwnAreNamedWithTheirLine) {
+TEST_F(UnitTest, ReportsItsOwnErrorsWithTheirLine) {
   formats::RawCase raw;
   raw.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,100,0,0.3,0,0,1,1,100,318,0,1,1\n"
@@ -77,7 +77,7 @@ TEST_F(UnitTest, RecordsAreDroppedAndReplaced) {
   c.models.map = {{"X6", "sexs"}};
   const Unit six = read_unit(c);
   ASSERT_EQ(six.plant.controls.size(), 1u);
-  EXPECT_THAT(six.plant.controls[0].p, Contains(-5.0));  // as many parameters: its values
+  EXPECT_THAT(six.plant.controls[0].p, Contains(-5.0));  // equal number of parameters: values are taken over
   EXPECT_THAT(six.defaults, ElementsAre());
   EXPECT_THAT(six.notes, Contains(HasSubstr("no record of OTHER")));
   c.models.map = {{"X6", "IEEET1"}};
@@ -108,7 +108,7 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
     ASSERT_NE(block.effect, nullptr);
     double r = 0, x = 0, n = 0;
     block.effect->get<double>().transformer.impedance(block.p.data(), r, x, n);
-    // The same branch by its admittance matrix: what the machine's side must have for a voltage and current.
+    // The same branch by its admittance matrix: quantities at the machine's side for a voltage and current.
     const network::Network net = formats::read_raw(c.raw);
     const network::Branch& b = net.branches[static_cast<std::size_t>(net.branch_index(102, 103, "1"))];
     const Complex y = 1.0 / Complex(b.r, b.x), tap = std::polar(b.tap, b.shift);
@@ -127,7 +127,7 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
   }
 }
 
-/// A unit at 102 of 250 MVA behind what `transformers` holds, with bus 104 on the way where it is named.
+/// Unit of 250 MVA at bus 102 behind the given `transformers`, with bus 104 in between if they name it.
 formats::RawCase behind(const std::string& transformers, const std::string& buses = "") {
   formats::RawCase raw;
   raw.buses += buses;
@@ -176,7 +176,7 @@ TEST_F(UnitTest, TransformersInParallelAreJoined_WhenTheirRatiosAgree) {
   EXPECT_THAT(complaints(c), HasSubstr("parallel transformers of different ratios"));
 }
 
-TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdCarriesNothing) {
+TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdIsUnloaded) {
   const std::string three =
       "102,103,104,'1',1,1,1,0,0,2,'',1\n0,0.10,100,0,0.20,100,0,0.30,100,1.0,0\n1.0\n1.0\n1.0\n";
   write(behind(three, kMiddle).text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
@@ -192,11 +192,11 @@ TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdCarries
   write(loaded.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
   EXPECT_THAT(complaints(c), HasSubstr("winding at bus 104 of 102-103-104"));
   EXPECT_THAT(complaints(c), HasSubstr("--point"));
-  c.measured_at = 105;  // the number that the star point has inside
+  c.measured_at = 105;  // the internal number of the star point
   EXPECT_THAT(complaints(c), HasSubstr("no transformers lead from bus 102 to bus 105"));
 }
 
-TEST_F(UnitTest, APointFileIsNamed_WhenAnotherUnitSharesTheTransformer) {
+TEST_F(UnitTest, AsksForTheMeasuringPoint_WhenAnotherUnitSharesTheTransformer) {
   formats::RawCase raw = behind("102,103,0,'1',1,1,1,0,0,2,'',1\n0.0,0.1,100\n1.0\n1.0\n");
   raw.generators += "102,'2',50.0,-3.0,100,-100,1.02,0,250,0,0.25,0,0,1,1,100,318,0,1,1\n";
   write(raw.text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
@@ -224,7 +224,7 @@ TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
   EXPECT_EQ(back.plant.controls[0].p, unit.plant.controls[0].p);
 }
 
-TEST_F(UnitTest, AnInventoryCountsClassicalMachinesAndWhatDoesNothingThere) {
+TEST_F(UnitTest, InventoryCountsClassicalMachinesAndTheirIneffectiveRecords) {
   write(formats::RawCase().text(),
         "101 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n101 'GENCLS' 1 3 0 /\n102 'GENROU' 1 " + kRoundRotor +
             " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n");
@@ -237,7 +237,7 @@ TEST_F(UnitTest, AnInventoryCountsClassicalMachinesAndWhatDoesNothingThere) {
   EXPECT_THAT(read_unit(choice(101)).notes, Contains(HasSubstr("GENCLS has no field winding")));
 }
 
-TEST_F(UnitTest, ADispatchBeyondALimitIsSaid) {
+TEST_F(UnitTest, ReportsADispatchBeyondALimit) {
   const std::string governor = " /\n102 'TGOV1' 1 0.05 0.5 ";
   write(formats::RawCase().text(), "102 'GENROU' 1 " + kRoundRotor + governor + "0.5 0 2 7 0 /\n");
   EXPECT_THAT(read_unit(choice(102)).notes,
@@ -246,7 +246,7 @@ TEST_F(UnitTest, ADispatchBeyondALimitIsSaid) {
   EXPECT_THAT(read_unit(choice(102)).notes, Not(Contains(HasSubstr("at P, Q and V of"))));
 }
 
-TEST_F(UnitTest, AShortRecordIsCompletedAsAsked) {
+TEST_F(UnitTest, CompletesShortRecordsOnRequest) {
   write(formats::RawCase().text(),
         "102 'GENROU' 1 " + kRoundRotor + " /\n102 'SEXS' 1 0.1 10 100 0.1 -5 /\n");
   UnitChoice asked = choice(102);
@@ -257,7 +257,7 @@ TEST_F(UnitTest, AShortRecordIsCompletedAsAsked) {
   EXPECT_THAT(unit.notes, Contains(HasSubstr("has 5 of 6 values: EMAX = 0")));
 }
 
-TEST_F(UnitTest, AnInventoryGroupsWhatIsNotCovered) {
+TEST_F(UnitTest, InventoryGroupsUncoveredModels) {
   formats::RawCase raw;
   raw.generators += "103,'1',10.0,0,100,-100,1.02,0,50,0,0.4,0,0,1,1\n103,'2',10.0,0,9,-9,1.0,0,50,0,0.4\n";
   write(raw.text(), "101 'GENROU' 1 " + kRoundRotor + " /\n101 'X9' 1 4 /\n102 'GENROU' 1 " + kRoundRotor +

@@ -1,4 +1,4 @@
-// The lanes kernel against IDA, and IDA against itself, on random events drawn over every registered effect
+// The SIMD kernel against IDA, and IDA against itself, on random events drawn over every registered effect
 // (random_grids.hpp).
 #include <cstdlib>
 #include <map>
@@ -14,8 +14,8 @@ namespace {
 using test::Difference;
 using test::Draws;
 
-constexpr double kLimit = 1e-4;  ///< of max(1 pu, the channel's swing): the limit asked for
-/// In float an exciter passes the rounding of the voltage on with its gain (REXS: 2,800): Efd is allowed
+constexpr double kLimit = 1e-4;  ///< relative to max(1 pu, the channel's swing): required limit
+/// In float an exciter amplifies the rounding of the voltage by its gain (REXS: 2,800): the limit for Efd is
 /// 1e-3.
 constexpr double kEfdInFloat = 0.1;
 constexpr int kEventsPerGrid = 10;
@@ -56,7 +56,7 @@ struct Tally {
   }
 };
 
-/// Whether a fault 2 % longer would not be survived.
+/// Returns whether a fault 2 % longer leads to instability.
 bool is_near_critical(const grid::Grid& grid, network::Event event, BatchOptions options) {
   if (event.faults.empty()) return false;
   auto& f = event.faults[0];
@@ -68,9 +68,9 @@ bool is_near_critical(const grid::Grid& grid, network::Event event, BatchOptions
   return lost;
 }
 
-/// Whether the grid's operating point holds: a load step of 1e-4 pu for a fifth of a second does not move any
-/// Efd by 0.3 pu within `seconds`. Drawn controls may make a machine unstable by itself (a stabiliser fed
-/// with V: growth by 30/s); how long it then stays where it began is a matter of rounding.
+/// Returns whether the operating point is stable: a load step of 1e-4 pu for 0.2 s does not change any Efd by
+/// 0.3 pu within `seconds`. Drawn controls may be unstable (a stabiliser with input V: growth rate 30/s);
+/// rounding then determines when the run diverges.
 bool stands(const grid::Grid& grid, double seconds) {
   BatchOptions options;
   options.t_end = seconds;
@@ -94,8 +94,8 @@ bool stands(const grid::Grid& grid, double seconds) {
   return true;
 }
 
-/// Whether an island runs so fast that a rotor turns by half a turn from sample to sample: the reference then
-/// follows theta into the wrong turn.
+/// Returns whether an island is so fast that a rotor advances by half a turn between samples: the reference
+/// then unwraps theta wrongly.
 bool runs_away(const Trajectory& run) {
   const auto delta = static_cast<int>(Channel::delta);
   for (int plant = 0; plant < static_cast<int>(run.plants.size()); ++plant)
@@ -104,7 +104,7 @@ bool runs_away(const Trajectory& run) {
   return false;
 }
 
-/// Events the reference survives, with its runs.
+/// Events that are stable in the reference, with its runs.
 std::map<std::uint64_t, std::pair<Job, reference::ReferenceRun>> references(const grid::Grid& grid,
                                                                             Draws& draws, Tally& tally) {
   std::map<std::uint64_t, std::pair<Job, reference::ReferenceRun>> runs;
@@ -150,7 +150,7 @@ void compare(const grid::Grid& grid, Draws& draws, Tally& tally, int lanes = 0) 
             });
 }
 
-/// Every effect that takes part in a simulation of synchronous machines (converters: converters_test.cpp).
+/// All effects used with synchronous machines (converters: converters_test.cpp).
 std::set<std::string_view> all_names() {
   std::set<std::string_view> names;
   for (const Effect* e : library::compiled().all())
@@ -158,14 +158,13 @@ std::set<std::string_view> all_names() {
   return names;
 }
 
-/// Draws a grid's events and leaves them: the draws that follow stay the same.
+/// Draws a grid's events and discards them, so that later draws stay the same.
 void pass_over(const grid::Grid& grid, Draws& draws) {
   for (int i = 0; i < kEventsPerGrid; ++i) test::draw_event(grid, draws);
 }
 
-/// The next grid that stands by itself, looked at for half an event in double. In float for a whole one: what
-/// grows more slowly (a drawn PSS2C before an ST5B, 2/s) ends in a cycle, whose phase is that of the
-/// rounding.
+/// Returns the next stable grid, tested over half an event in double and a whole event in float. A slower
+/// growth (a drawn PSS2C before an ST5B, 2/s) ends in a limit cycle, whose phase depends on rounding.
 constexpr double kLookedAt = 3.0, kLookedAtInFloat = 6.0;  // [s]
 grid::Grid drawn(const grid::Grid& plain, Draws& draws, Tally& tally, double seconds = kLookedAt) {
   while (true) {
@@ -184,7 +183,7 @@ Tally run_events(int wanted, std::uint64_t seed) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   Draws draws(seed);
   Tally tally;
-  const int most = wanted / kEventsPerGrid * 3;  // else the draws say little
+  const int most = wanted / kEventsPerGrid * 3;  // otherwise too few draws are comparable
   for (int g = 0; g < most && tally.compared < wanted; ++g) {
     const grid::Grid grid = drawn(plain, draws, tally);
     compare(grid, draws, tally);
@@ -195,7 +194,7 @@ Tally run_events(int wanted, std::uint64_t seed) {
   return tally;
 }
 
-/// The same in float, over the machines whose current is linear.
+/// The same in float, over the machines with linear current.
 Tally run_in_float(int wanted, std::uint64_t seed) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   std::set<std::string_view> sought;
@@ -226,7 +225,7 @@ TEST(AllEffectsAgainstReferenceNight, ThousandRandomEvents) {
   EXPECT_EQ(tally.seen, all_names());
 }
 
-/// Effects that came after 2026-11-23.
+/// Effects added after 2026-11-23.
 const std::set<std::string_view> kLater = {
     "DEGOV",  "DEGOV1",  "DERA1",  "ESAC6A", "ESDC1A", "ESDC2A", "ESST1A", "ESST3A", "EXAC2",
     "EXPIC1", "FVFAULT", "GENQEC", "GENTPF", "HYG3",   "IEEEG2", "IEEEG3", "IEEET2", "IEEET3",
@@ -235,7 +234,7 @@ const std::set<std::string_view> kLater = {
 
 /// Three grids with events that were beyond the limit before decision 04 was amended on 2026-11-23, drawn
 /// from the effects of that day.
-TEST(AllEffectsAgainstReferenceFull, EventsOnceMissed) {
+TEST(AllEffectsAgainstReferenceFull, EventsBeyondTheFormerLimit) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const std::set<int> missed = {37, 45, 85};
   Draws draws(20261123, kLater);
@@ -252,13 +251,13 @@ TEST(AllEffectsAgainstReferenceFull, EventsOnceMissed) {
   for (const auto& [what, count] : tally.missed) ADD_FAILURE() << what;
 }
 
-/// REXS, whose standard gain is 2,800: one drawn machine with it moves Efd by 2.3e-6 of its swing within six
-/// seconds, with an error weight of 50 instead of 10 by 4.1e-6. Why is not understood.
+/// REXS has a default gain of 2,800: for one drawn machine Efd differs by 2.3e-6 of its swing within six
+/// seconds, with an error weight of 50 instead of 10 by 4.1e-6. The reason is unknown.
 const std::set<std::string_view> kBeyondOwnLimit = {"REXS"};
 
 /// The reference's own error: rtol 1e-8 against 1e-10.
 Tally run_references(int wanted, std::uint64_t seed) {
-  constexpr double limit = 1e-6;  // the limit asked for, in the same units
+  constexpr double limit = 1e-6;  // required limit, in the same units
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   reference::ReferenceOptions finer = exact();
   finer.rtol = 1e-10;
@@ -279,8 +278,8 @@ Tally run_references(int wanted, std::uint64_t seed) {
   return tally;
 }
 
-TEST(AllEffectsAgainstReferenceFull, TheReferenceAgainstItself) { run_references(20, 20213); }
-TEST(AllEffectsAgainstReferenceNight, TheReferenceAgainstItself) { run_references(200, 20213); }
+TEST(AllEffectsAgainstReferenceFull, ReferenceAgainstItself) { run_references(20, 20213); }
+TEST(AllEffectsAgainstReferenceNight, ReferenceAgainstItself) { run_references(200, 20213); }
 
 }  // namespace
 }  // namespace swingbank::sim::lanes

@@ -1,5 +1,5 @@
-// Forward sensitivities of the lanes over every registered effect of a plant: against central differences of
-// the plain kernel and against SUNDIALS CVODES; where limits act, apart.
+// Forward sensitivities of the SIMD kernel over every registered effect of a plant: against central
+// differences of the plain kernel and against SUNDIALS CVODES; active limits have a test of their own.
 #include <set>
 
 #include "sim/library/library.hpp"
@@ -14,7 +14,7 @@ constexpr int kAtOnce = kDirections;
 
 plant::Block standard(const Effect& effect) { return {&effect, effect.default_parameters()}; }
 
-/// The plant behind two lines (reference_support.hpp) with the effect and what reads its signal.
+/// The plant behind two lines (reference_support.hpp) with the effect and a control that reads its signal.
 grid::Grid host(const Effect& effect) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   plant::Plant& plant = grid.plants[kPlant];
@@ -55,10 +55,10 @@ bool moves_an_instant(const Effect& e, std::vector<double> p, std::size_t i) {
   return e.instants(e.law.get(), p.data()) != before;
 }
 
-/// Every parameter with a derivative at its standard value. Not those that move an instant at which equations
-/// jump: what is compared here is what the equations between them do.
-/// Known and not understood: a run with slopes of REPCA1's parameters ends with step_too_small at any
-/// tolerance, and the slopes of WTTQA1.p3, up to 2e-5, are off by 4.9e-7 where 1e-8 is asked for.
+/// Every parameter with a derivative at its default, except those that move a switching time: only the
+/// equations between switching times are compared. Known and not understood: a run with sensitivities to
+/// REPCA1's parameters ends with step_too_small at any tolerance, and the sensitivities to WTTQA1.p3, up to
+/// 2e-5, are off by 4.9e-7 (required: 1e-8).
 bool falls_short(const Effect& e, const Parameter& record) {
   return e.name == "REPCA1" || (e.name == "WTTQA1" && record.name == "p3");
 }
@@ -69,8 +69,7 @@ std::vector<Seed> seeds(const grid::Grid& grid, const Effect& e) {
   const auto p = e.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Parameter& record = e.parameters[i];
-    // At zero a time constant is a bypass, a limit or a stage is off: there is no derivative across its
-    // onset.
+    // At zero a time constant is a bypass, and a limit or block is off: not differentiable there.
     if (record.is_code() || p[i] == 0.0 || moves_an_instant(e, p, i) || falls_short(e, record)) continue;
     list.push_back({kPlant, {block, static_cast<int>(i)}, std::abs(p[i])});
   }
@@ -101,8 +100,8 @@ Trajectory with_slopes(const grid::Grid& grid, const network::Event& event, cons
   job.seeds = seeds;
   return play(grid, o, job);
 }
-/// Central differences of every row, times the seed's scale, their second-order term extrapolated away. The
-/// kernel's own error is magnified by 1/step.
+/// Central differences of every row, times the seed's scale, with Richardson extrapolation of the
+/// second-order term. The error of the kernel is amplified by 1/step.
 std::vector<std::vector<double>> quotients(const grid::Grid& grid, const network::Event& event,
                                            const Seed& seed, double step, double tolerance) {
   const auto moved = [&](double by) {
@@ -139,19 +138,19 @@ std::string column_name(const grid::Grid& grid, const Seed& seed, int row) {
          std::string(kChannels[static_cast<std::size_t>(row)].name);
 }
 
-/// A small load step before anything else: no limit is met.
+/// Small load step that reaches no limit.
 network::Event gentle() {
   network::Event event;
   event.load_steps = {{1, {0.04, 0.02}, 0.0, {}}};
   return event;
 }
 
-constexpr double kSlopeLimit = 1e-5;  ///< asked for: of a column's largest value
+constexpr double kSlopeLimit = 1e-5;  ///< required, relative to a column's largest value
 constexpr double kQuotientStep = 1e-3,
-                 kWideQuotientStep = 3e-3;  ///< of quotients; their noise falls with the step
+                 kWideQuotientStep = 3e-3;  ///< of difference quotients; their noise falls with a larger step
 /// Largest difference of each column over the column's largest value.
 void compare_with_quotients(const grid::Grid& grid, const Effect& e, Worst& worst) {
-  constexpr double floor = 2e-5;  // below it the quotients' noise, up to 1e-10, nears the limit
+  constexpr double floor = 2e-5;  // below it the noise of the quotients, up to 1e-10, is near the limit
   const auto all = seeds(grid, e);
   for (std::size_t first = 0; first < all.size(); first += kAtOnce) {
     const std::vector<Seed> some(
@@ -173,13 +172,14 @@ void compare_with_quotients(const grid::Grid& grid, const Effect& e, Worst& wors
         double largest = 0.0;
         for (const double v : expected) largest = std::max(largest, std::abs(v));
         double error = apart(expected);
-        if (largest >= floor && error > kSlopeLimit * largest)  // a stiff effect's quotients are noisier
+        if (largest >= floor &&
+            error > kSlopeLimit * largest)  // difference quotients of a stiff effect are noisier
           error = std::min(error, apart(quotients(grid, gentle(), some[d], kWideQuotientStep,
                                                   1e-12)[static_cast<std::size_t>(row)]));
         if (largest >= floor)
           worst.add(error / largest, column_name(grid, some[d], row));
         else
-          EXPECT_LT(error, 1e-8) << column_name(grid, some[d], row);  // nothing where there is nothing
+          EXPECT_LT(error, 1e-8) << column_name(grid, some[d], row);  // zero sensitivities stay zero
       }
     }
   }
@@ -202,7 +202,7 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
             << worst.where << "\n";
 }
 
-/// A machine whose current is no linear function of the voltage, its terminal behind a transformer.
+/// Machine with nonlinear current, its terminal behind a transformer.
 TEST(AllSensitivitiesFull, EqualCentralDifferencesBehindATransformer) {
   grid::Grid grid = host(*library::compiled().find("GENTPJ"));
   grid.plants[kPlant].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -214,14 +214,14 @@ TEST(AllSensitivitiesFull, EqualCentralDifferencesBehindATransformer) {
   }
 }
 
-/// The same against CVODES, whose plants have no algebraic equations (no converters, whose first states are
-/// no rotor's either), in the rotor's states.
+/// The same against CVODES for the rotor's states. Its plants have no algebraic equations, hence no
+/// converters, whose first states are not those of a rotor either.
 void compare_with_cvodes(const Effect& e, Worst& worst) {
   constexpr std::size_t most = 4;  // CVODES evaluates the whole grid twice per seed
   constexpr double floor = 1e-3;
-  // Allowed for CVODES's own difference quotients at rtol 1e-9. Taken from the one column that misses without
-  // it (SEXS.TAoverTB in delta, 1.0046e-5 of its largest value), not measured by itself: at rtol 1e-10 CVODES
-  // does not get through.
+  // Allowance for CVODES's difference quotients at rtol 1e-9. It follows from the only column that fails
+  // without it (SEXS.TAoverTB in delta, 1.0046e-5 of its largest value) and was not measured independently:
+  // CVODES fails at rtol 1e-10.
   constexpr double own_error = 1e-8;
   const grid::Grid grid = host(e);
   if (grid.plants[kPlant].machine.effect->get<double>().machine.current) return;
@@ -260,7 +260,7 @@ TEST(AllSensitivitiesNight, EqualThoseOfCvodes) {
   std::cout << worst.columns << " columns, worst " << worst.value << " " << worst.where << "\n";
 }
 
-/// Through ceilings, released again: a limit that stops a state stops its slope, and gives it its own.
+/// Through ceilings and release: a limit that clamps a state replaces the state's sensitivity by its own.
 TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
   grid::Grid grid = host(*library::compiled().find("SEXS"));
   const Effect& sexs = *library::compiled().find("SEXS");
@@ -280,7 +280,7 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
     at_ceiling += held;
     released += !held && at_ceiling > 0;
     if (!held) continue;
-    EXPECT_NEAR(dual.slope(0, 0, efd)[k], 1.0, 1e-9) << k;  // Efd is the ceiling itself
+    EXPECT_NEAR(dual.slope(0, 0, efd)[k], 1.0, 1e-9) << k;  // Efd equals the ceiling
   }
   EXPECT_GT(at_ceiling, 5);
   EXPECT_GT(released, 20);
@@ -293,8 +293,8 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
         difference += std::abs(dual.slope(static_cast<int>(d), 0, row)[k] - expected);
         size += std::abs(expected);
       }
-      // On average over the samples: at one that a limit's instant crosses while the parameter moves by 1e-3,
-      // the quotient is no derivative; there are two such instants among 181 samples.
+      // Mean over the samples: if a limit's switching time crosses a sample while the parameter changes by
+      // 1e-3, the quotient there is no derivative; this concerns two of 181 samples.
       EXPECT_LE(difference, 1e-3 * size + 1e-6 * dual.samples) << row << " by seed " << d;
     }
   }

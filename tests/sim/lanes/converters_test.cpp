@@ -1,4 +1,4 @@
-// Converters in the lanes against the reference integrator, through faults at and near their terminal.
+// Converters in the SIMD kernel against the reference integrator, through faults at and near their terminal.
 #include <map>
 
 #include "sim/grid/far.hpp"
@@ -10,7 +10,8 @@
 namespace swingbank::sim::lanes {
 namespace {
 
-constexpr double kConverterLimit = 2e-4;  ///< of max(1 pu, the channel's swing); measured up to 1.1e-4
+constexpr double kConverterLimit =
+    2e-4;  ///< relative to max(1 pu, the channel's swing); measured up to 1.1e-4
 constexpr std::size_t kConverter = 1;
 constexpr int kMiddle = 1, kTerminal = 2;  ///< buses
 
@@ -18,8 +19,8 @@ using Values = std::map<std::string, double>;
 struct Outfit {
   std::string name;
   std::vector<std::pair<std::string, Values>> blocks;  ///< the source first
-  /// Reactance of the nearest fault that is not bolted [pu]. Nearer ones leave a current that is given more
-  /// than one voltage, or one that ends during the fault, and the two integrators need not follow the same.
+  /// Reactance of the nearest fault that is not bolted [pu]. For smaller ones a given current has several
+  /// voltage solutions, or one that vanishes during the fault, and the integrators may follow different ones.
   double nearest = 0.001;
 };
 
@@ -62,7 +63,7 @@ std::vector<network::Event> events(const grid::Grid& grid, double nearest) {
   all[3].faults = {{kTerminal, 1.0, 1.15, {0.01, 0.1}}};
   all[4].trips = {{2, 1.0, 1.5}};
   all[5].generator_trips = {{grid.plants[kConverter].generator, 1.0}};
-  all[6].faults = {{kMiddle, 1.0, 1.1, {}}};  // what the converter gives cannot have a voltage there
+  all[6].faults = {{kMiddle, 1.0, 1.1, {}}};  // the converter's current has no voltage solution there
   return all;
 }
 
@@ -81,9 +82,9 @@ TEST_P(Converters, LanesFollowTheReference) {
     EXPECT_LT(d.value, kConverterLimit) << "event " << e << ": " << d.where;
   }
 }
-/// From bolted to 0.02 pu: whichever of its voltages a converter follows, and where one ends, the run goes
-/// on.
-TEST_P(Converters, NoFaultEndsARun) {
+/// Faults from bolted to 0.02 pu: the run continues for any voltage solution of the converter, also if the
+/// solution vanishes.
+TEST_P(Converters, RideThroughEveryFault) {
   const grid::Grid grid = grid_with(GetParam());
   std::vector<network::Event> all;
   for (const double x : {0.0, 0.0005, 0.001, 0.002, 0.004, 0.007, 0.01, 0.014, 0.02}) {
@@ -164,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
                {{"REGCB1", {{"Imax", 1.0}}}, {"REECB1", {{"Kqv", 10.0}, {"Imax", 1.0}}}},
                0.02},
         Outfit{"WithItsLoop", {{"REGCC1", {}}, {"REECB1", {{"Kqv", 2.0}}}}, 0.02},
-        // With Kip 10 besides, the terminal's angle differs by 4.4e-4 rad after the bolted fault's first
+        // With Kip 10 in addition, the terminal's angle differs by 4.4e-4 rad after the bolted fault's first
         // cycle, at 0.086 pu: 3.8e-5 pu of its voltage.
         Outfit{
             "WithItsLoopFrozen",

@@ -1,4 +1,4 @@
-// Critical clearing times: how long a bolted fault may last before a machine falls out of step.
+// Critical clearing times: longest bolted fault without loss of synchronism.
 #include <fmt/format.h>
 
 #include "sim/lanes/batch.hpp"
@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kStart = 0.5;   // [s]
 constexpr double kEnd = 10.0;    // several swings of the slowest machine [s]
-constexpr double kBound = 5e-3;  // the bound asked for between the two integrators [s]
-constexpr double kWidth = 1e-4;  // to which the engine's own time is bracketed, well below the bound [s]
+constexpr double kBound = 5e-3;  // required bound between the two integrators [s]
+constexpr double kWidth = 1e-4;  // width of the bracket of the engine's time, well below the bound [s]
 
 /// A fault at one bus and the durations between which stability is lost [s].
 struct Bracket {

@@ -1,5 +1,10 @@
+<<<<<<< HEAD
 // Sixteen lanes in float (decision 02) against eight in double: whatever switches, jumps or is out; the same
 // bits in any company; and what they refuse. all_effects_against_reference_test.cpp compares them with the
+=======
+// Sixteen lanes in float (decision 46) against eight in double: switching, steps and outages; bits that do
+// not depend on the other lanes; refusals. all_effects_against_reference_test.cpp compares them with the
+>>>>>>> 4a9caa8b656077bca57e84fb52af7a5d9cb9f4e8
 // reference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +26,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kFloatLimit = 1e-4;  ///< of max(1 pu, the swing): what is asked of all lanes
+constexpr double kFloatLimit = 1e-4;  ///< relative to max(1 pu, the swing): required of all lanes
 
 grid::Grid round_rotors() { return test::configured_grid("ieee39_dataset_genrou", Conventions::psse()); }
 
@@ -61,7 +66,7 @@ std::map<std::uint64_t, Trajectory> run_lanes(const grid::Grid& grid, const std:
   return run_jobs(grid, jobs, options);
 }
 
-/// Of the events that both find stable; returns how many.
+/// Compares the events that both find stable; returns their number.
 int agree(const grid::Grid& grid, const std::vector<Job>& jobs) {
   const auto doubles = run_lanes(grid, jobs, 8), floats = run_lanes(grid, jobs, 16);
   int compared = 0;
@@ -81,7 +86,7 @@ TEST(FloatLanes, AgreeWithDoublesOnRandomFaults) {
   EXPECT_GT(agree(with_controls(), faults_on(with_controls(), 20)), 10);
 }
 
-TEST(FloatLanes, AgreeWithDoublesOnWhatElseHappens) {
+TEST(FloatLanes, AgreeWithDoublesOnOtherEvents) {
   grid::Grid grid = with_controls();
   const Effect &step = *library::compiled().find("VREFSTEP"), &ramp = *library::compiled().find("PREFRAMP");
   grid.plants[2].controls.insert(grid.plants[2].controls.begin(), {&step, step.default_parameters()});
@@ -95,7 +100,7 @@ TEST(FloatLanes, AgreeWithDoublesOnWhatElseHappens) {
   EXPECT_EQ(agree(grid, jobs), 4);
 }
 
-TEST(FloatLanes, AgreeWithDoublesWhereLanesShareANetwork) {
+TEST(FloatLanes, AgreeWithDoublesOnASharedNetwork) {
   const grid::Grid grid = synthetic(41);
   EXPECT_GT(agree(grid, faults_on(grid, 16)), 8);
 }
@@ -112,7 +117,7 @@ TEST(FloatLanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   }
 }
 
-TEST(FloatLanes, RefuseAllThatTheyCannotRun) {
+TEST(FloatLanes, RefuseUnsupportedRuns) {
   grid::Grid grid = round_rotors();
   const auto block = [](const Effect& e) { return plant::Block{&e, e.default_parameters()}; };
   grid.plants[3].machine = block(*library::compiled().find("GENTPJ"));
@@ -134,7 +139,7 @@ TEST(FloatLanes, RefuseAllThatTheyCannotRun) {
   }
 }
 
-TEST(FloatLanes, StandInTheNameOfWhatMadeTheData) {
+TEST(FloatLanes, AreNamedInTheVariant) {
   BatchOptions options;
   options.lanes = 16;
   EXPECT_THAT(Batch(round_rotors(), options).variant(), HasSubstr("lanes=16 float"));

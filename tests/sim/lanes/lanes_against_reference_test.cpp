@@ -1,4 +1,4 @@
-// The engine against the reference integrator: two integrators, one source of equations.
+// The SIMD kernel against the reference integrator: two integrators of the same equations.
 #include <array>
 #include <random>
 
@@ -101,7 +101,7 @@ TEST_P(LanesAgainstReferenceFull, HundredRandomStableEvents) {
   for (int c = 0; c < kChannelCount; ++c) {
     RecordProperty("largest_" + std::string(kChannels[c].name), testing::PrintToString(worst[c]));
     EXPECT_LE(worst[c], 1e-4) << kChannels[c].name << " [" << kChannels[c].unit
-                              << "]";  // asked for: <= 1e-4 in every channel
+                              << "]";  // required: <= 1e-4 in every channel
   }
 }
 

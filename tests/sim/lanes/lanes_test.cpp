@@ -65,7 +65,7 @@ TEST(Lanes, EveryWidthGivesTheSameRecord) {
     ++compared;
     const auto x = t.packed(), y = b.at(id).packed(), z = c.at(id).packed();
     for (std::size_t i = 0; i < x.size(); ++i) {
-      // Rounding differs (sincos of packs); portable builds promise 1e-9.
+      // Rounding differs (sincos of packs); portable builds guarantee 1e-9.
       ASSERT_NEAR(x[i], y[i], 1e-9) << id;
       ASSERT_NEAR(x[i], z[i], 1e-9) << id;
     }
@@ -73,7 +73,7 @@ TEST(Lanes, EveryWidthGivesTheSameRecord) {
   EXPECT_GT(compared, 10);
 }
 
-TEST(Lanes, WithoutAnEventNothingMoves) {
+TEST(Lanes, StaysSteadyWithoutAnEvent) {
   std::vector<Job> jobs(1);
   const auto t = run(jobs, {}).at(0);
   EXPECT_EQ(t.outcome, Outcome::stable);
@@ -95,16 +95,16 @@ TEST(Lanes, TheSampleAtASwitchingIsTheValueJustBefore) {
   const auto t = run(jobs, options).at(0);
   const double* v = t.at(0, 0);
   const double* theta = t.at(0, 1);
-  EXPECT_GT(v[60], 0.9);           // t = 0.5 s: still the healthy grid
+  EXPECT_GT(v[60], 0.9);           // t = 0.5 s: still before the fault
   EXPECT_NEAR(v[61], 0.0, 1e-11);  // bolted: V = 0
   EXPECT_NEAR(v[72], 0.0, 1e-11);  // t = 0.6 s: still faulted
   EXPECT_GT(v[73], 0.5);
   for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta is held while V = 0";
 }
 
-TEST(Lanes, ALostRunSaysSoAndKeepsItsLastSample) {
+TEST(Lanes, LostRunIsReportedAndKeepsItsLastSample) {
   auto jobs = random_jobs(1, 4);
-  jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 1.5, {}};  // 1 s at the heart of the grid
+  jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 1.5, {}};  // 1 s at a central bus
   const auto t = run(jobs, {}).at(0);
   EXPECT_EQ(t.outcome, Outcome::lost_synchronism);
   EXPECT_GT(t.largest_spread, 3.14159);
@@ -112,12 +112,12 @@ TEST(Lanes, ALostRunSaysSoAndKeepsItsLastSample) {
   for (double v : t.packed()) ASSERT_TRUE(std::isfinite(v));
 }
 
-TEST(Lanes, TheSpreadIsThatSinceTheStart) {
+TEST(Lanes, AngleSpreadIsMeasuredFromTheStart) {
   auto jobs = random_jobs(1, 4);
   jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 0.501, {}};  // 1 ms: hardly a swing
   BatchOptions options;
   EXPECT_LT(run(jobs, options).at(0).largest_spread, 0.1);
-  options.lose_at = 0.1;  // less than what lies between the rotors at rest
+  options.lose_at = 0.1;  // less than the rotor angle spread in steady state
   EXPECT_EQ(run(jobs, options).at(0).outcome, Outcome::stable);
 }
 

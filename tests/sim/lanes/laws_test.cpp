@@ -1,4 +1,5 @@
-// Laws in lanes: as the compiled effect, in every kernel, and as the reference integrator has them.
+// User-defined models in the SIMD kernel: against the compiled effect, in every kernel, and against the
+// reference integrator.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,8 +32,8 @@ Trajectory lanes_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6)
   return run;
 }
 
-TEST(LawInLanes, SexsAsALawEqualsTheCompiledOne) {
-  const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},  // runs into the ceiling
+TEST(LawInLanes, SexsAsUserDefinedModelEqualsTheCompiledOne) {
+  const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},   // reaches the ceiling
                                                  {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not
                                                  {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
   bool reached = false;
@@ -45,8 +46,8 @@ TEST(LawInLanes, SexsAsALawEqualsTheCompiledOne) {
       const double* efd = a.at(0, static_cast<int>(Channel::Efd));
       reached = reached || *std::max_element(efd, efd + a.samples) == p[5];
     }
-    // The compiler contracts a product and a sum where the interpreter rounds twice; IDA then takes other
-    // steps, so the tolerance is held far below what is compared.
+    // The compiler uses fused multiply-adds, the interpreter rounds twice. IDA then takes other steps, so its
+    // tolerance is far below the compared difference.
     EXPECT_LE(test::largest_difference(test::reference_run(compiled, 1e-12), test::reference_run(law, 1e-12)),
               1e-10);
   }
@@ -66,17 +67,17 @@ TEST(LawInLanes, ANonlinearLawRunsInEveryKernel) {
   const auto at = plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
   EXPECT_NEAR(at.x[7], std::sqrt(at.s.V), 1e-12);  // six states of the machine, x, then the root
   const Trajectory one = lanes_run(grid, 1), eight = lanes_run(grid, 8), four = lanes_run(grid, 4);
-  // Packs have their own sincos, 2 ulp off; adaptive steps carry it on.
+  // Packs have their own sincos, 2 ulp off; adaptive steps propagate the difference.
   EXPECT_LE(test::largest_difference(one, eight), 1e-10);
   EXPECT_LE(test::largest_difference(one, four), 1e-10);
-  // The law has corners that no integrator locates; hence smaller steps than usual for this comparison.
+  // The model has kinks that no integrator locates; hence smaller steps than usual.
   EXPECT_LE(test::largest_difference(lanes_run(grid, 8, 1e-10), test::reference_run(grid, 1e-11)), 1e-5);
   grid::Grid without = grid;
   without.plants[1].controls.erase(without.plants[1].controls.begin());
-  EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // it does something
+  EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // the model has an effect
 }
 
-TEST(LawInLanes, APlantWithAnExampleStandsStillAndRunsThroughAFault) {
+TEST(LawInLanes, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/laws")) {
@@ -92,7 +93,7 @@ TEST(LawInLanes, APlantWithAnExampleStandsStillAndRunsThroughAFault) {
     const Trajectory run = lanes_run(grid, 8);
     EXPECT_EQ(run.outcome, Outcome::stable) << file.path();
     EXPECT_LE(test::largest_difference(run, test::reference_run(grid)), 1e-4)
-        << file.path();  // the kernel's promise
+        << file.path();  // guaranteed by the kernel
     ++count;
   }
   EXPECT_GE(count, 4);

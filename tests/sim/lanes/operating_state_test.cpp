@@ -19,7 +19,7 @@ const grid::Grid& new_england() {
                       SWINGBANK_SOURCE "/configs/networks/ieee39_dataset_genrou.dyr", Conventions::psse());
   return grid;
 }
-/// With its loads composed as the .raw says: constant power, which is no linear function of the voltage.
+/// Grid with the load composition of the .raw: constant power, whose current is nonlinear in the voltage.
 const grid::Grid& with_load_models() {
   static const grid::Grid grid = [] {
     grid::Grid g = new_england();
@@ -31,7 +31,7 @@ const grid::Grid& with_load_models() {
   return grid;
 }
 
-/// Other loads, dispatch, voltages, bases and, for some, a line less.
+/// Other loads, dispatch, voltages and bases; some grids have one line less.
 std::shared_ptr<const grid::Grid> another(const grid::Grid& grid, int number) {
   const double s = 0.7 + 0.1 * number;
   network::Network n = grid.network;
@@ -71,7 +71,7 @@ std::map<std::uint64_t, Trajectory> run(const grid::Grid& grid, const std::vecto
   return run_jobs(grid, jobs, options);
 }
 
-/// Jobs of several operating points in one batch, each against a batch of that grid by itself.
+/// Jobs of several operating points in one batch, each against a separate batch of its grid.
 void expect_its_own(const grid::Grid& grid, const BatchOptions& options, double tolerance) {
   const Mixed mixed(grid);
   const auto together = run(grid, mixed.jobs, options);
@@ -94,7 +94,7 @@ void expect_its_own(const grid::Grid& grid, const BatchOptions& options, double 
   }
 }
 
-TEST(OperatingStates, MixInOneBatch) {
+TEST(OperatingStates, MixedBatchEqualsSeparateBatches) {
   for (const int lanes : {1, 4, 8}) {
     BatchOptions options;
     options.lanes = lanes;
@@ -102,14 +102,17 @@ TEST(OperatingStates, MixInOneBatch) {
   }
 }
 
-TEST(OperatingStates, MixWithLoadsOfTheirOwn) { expect_its_own(with_load_models(), {}, 1e-12); }
+TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithLoadModels) {
+  expect_its_own(with_load_models(), {}, 1e-12);
+}
 
-/// Many sources share the grid's own matrix, which is another's at another operating point: rounding differs.
-TEST(OperatingStates, MixWithManySources) {
+/// With many sources the lanes share the matrix of their grid, which differs between operating points:
+/// rounding differs.
+TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithManySources) {
   static const grid::Grid grid = synthetic(41);
   const Mixed mixed(grid);
   BatchOptions one;
-  one.lanes = 1;  // shares with nobody
+  one.lanes = 1;  // no shared network
   const auto a = run(grid, mixed.jobs, one), b = run(grid, mixed.jobs, {});
   for (const auto& [id, t] : a) {
     const auto x = t.packed(), y = b.at(id).packed();
@@ -117,7 +120,7 @@ TEST(OperatingStates, MixWithManySources) {
   }
 }
 
-TEST(OperatingStates, StandStillUntilTheFault) {
+TEST(OperatingStates, StaySteadyUntilTheFault) {
   const Mixed mixed(new_england());
   for (const auto& [id, t] : run(new_england(), mixed.jobs, {}))
     for (int p = 0; p < 10; ++p)

@@ -1,6 +1,6 @@
 #pragma once
-// Random grids and events over every registered effect: the machines of a grid dressed in random machine
-// models, controls, drives and loads, and faults, trips and steps on it. A new effect joins by existing.
+// Random grids and events over every registered effect: random machine models, controls, drives and loads,
+// with faults, trips and steps. New effects are included automatically.
 #include <algorithm>
 #include <random>
 #include <set>
@@ -17,7 +17,7 @@ class Draws {
  public:
   explicit Draws(std::uint64_t seed, std::set<std::string_view> without = {})
       : without_(std::move(without)), random_(seed) {}
-  /// Whether an effect takes part: where it does not, the draws are those from before it was there.
+  /// Whether an effect is included; without it the draws equal those made before it existed.
   [[nodiscard]] bool knows(const Effect& e) const { return !without_.contains(e.name); }
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
@@ -37,8 +37,8 @@ inline std::vector<const Effect*> effects_in(Slot slot, const Draws& draws) {
   return list;
 }
 
-/// Standard values within 10 %; what stands at zero is at times up to 0.2 % of its range, so that every
-/// branch of the equations is drawn; codes at times another of theirs.
+/// Values within 10 % of the defaults. A value of zero is sometimes drawn up to 0.2 % of its range, and a
+/// code sometimes changed, so that every branch of the equations occurs.
 inline double draw_value(const Parameter& record, double standard, Draws& draws) {
   const bool moved = draws.chance(0.15);
   if (record.is_code()) return moved ? std::floor(draws.uniform(record.low, record.high + 1.0)) : standard;
@@ -46,12 +46,12 @@ inline double draw_value(const Parameter& record, double standard, Draws& draws)
   return moved ? draws.uniform(0.002 * record.low, 0.002 * record.high) : 0.0;
 }
 
-/// One of a slot's effects with values that it takes and a physical device has.
+/// One effect of a slot with values that it accepts and that are physical.
 inline plant::Block draw_block(Slot slot, Draws& draws) {
   const auto list = effects_in(slot, draws);
   if (list.empty()) return {};
   const Effect& e = *list[draws.index(list.size())];
-  constexpr int attempts = 3000;  // values are drawn one by one, orderings among them by luck
+  constexpr int attempts = 3000;  // values are drawn independently; orderings among them are met by chance
   for (int attempt = 0; attempt < attempts; ++attempt) {
     plant::Block block{&e, e.default_parameters()};
     for (std::size_t i = 0; i < block.p.size(); ++i)
@@ -92,14 +92,14 @@ inline bool holds(const plant::Plant& plant, const grid::Grid& grid) {
   }
 }
 
-/// Every load effect at some of the loads, where it can be held.
+/// Every load effect at some of the loads, if the operating point is feasible.
 inline void dress_loads(grid::Grid& grid, Draws& draws) {
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
     if (!draws.chance(0.2)) continue;
     grid::Grid next = grid;
     Problems problems;
     grid::set_load(next, static_cast<int>(i), draw_block(Slot::load, draws), "draw", problems);
-    if (!problems.empty()) continue;  // a load that draws nothing
+    if (!problems.empty()) continue;  // a load without power
     const plant::Consumer& load = *std::ranges::find(next.loads, static_cast<int>(i), &plant::Consumer::load);
     try {
       (void)plant::load_operating_point(load, load.block.p,
@@ -164,7 +164,7 @@ inline std::string outfit(const grid::Grid& grid) {
   return text;
 }
 
-/// Names of every effect a grid holds.
+/// Names of all effects in a grid.
 inline void add_effects(const grid::Grid& grid, std::set<std::string_view>& seen) {
   for (const plant::Plant& p : grid.plants) {
     seen.insert(p.machine.effect->name);
@@ -179,10 +179,11 @@ struct Difference {
   std::string where;
 };
 
-/// Worst difference over all channels, away from the switchings. One of Efd counts as `efd` of it.
+/// Largest difference over all channels, except near switching times. Differences of Efd are weighted by
+/// `efd`.
 inline Difference difference(const grid::Grid& grid, const network::Event& event, const Trajectory& a,
                              const Trajectory& b, double efd = 1.0) {
-  constexpr double near = 2e-3;  // samples this close to a switching are left out [s]
+  constexpr double near = 2e-3;  // samples this close to a switching time are excluded [s]
   std::vector<double> instants, jumps;
   for (const plant::Plant& p : grid.plants)
     for (const double t : plant::instants_of(p)) jumps.push_back(t);

@@ -1,7 +1,7 @@
 #pragma once
 // The reduced equations of a grid after its first switching, for SUNDIALS CVODES and its forward
-// sensitivities by its own difference quotients. Plants of any make but for machines whose current is no
-// linear function of the voltage; no modelled loads.
+// sensitivities by difference quotients. Supports all plants except machines with nonlinear current; no
+// modelled loads.
 #include <cvodes/cvodes.h>
 #include <gtest/gtest.h>
 #include <nvector/nvector_serial.h>
@@ -27,7 +27,7 @@ class ReducedSystem {
   }
   ReducedSystem(const ReducedSystem&) = delete;  // network_ refers to grid_
   ReducedSystem& operator=(const ReducedSystem&) = delete;
-  std::vector<double> p;  ///< seeded values, as CVODES moves them
+  std::vector<double> p;  ///< seeded values, changed by CVODES
 
   /// Every plant's states at its operating point.
   [[nodiscard]] std::vector<double> start() {
@@ -36,7 +36,7 @@ class ReducedSystem {
     for (const plant::Operating& o : at_) y.insert(y.end(), o.x.begin(), o.x.end());
     return y;
   }
-  /// Where a plant's states begin.
+  /// Index of a plant's first state.
   [[nodiscard]] std::size_t first(int plant) const {
     std::size_t states = 0;
     for (int i = 0; i < plant; ++i)
@@ -93,15 +93,15 @@ class ReducedSystem {
   }
 
   grid::Grid grid_;
-  lanes::InternalNetwork network_{grid_};  ///< keeps the reduction, for it depends on no parameter
+  lanes::InternalNetwork network_{grid_};  ///< stores the reduction, which depends on no parameter
   network::Topology topology_;
   std::vector<lanes::Seed> seeds_;
   std::vector<plant::Operating> at_;
   lanes::InternalMatrix matrix_;
-  std::vector<double> used_;  ///< the parameters `at_` was made with
+  std::vector<double> used_;  ///< the parameters of `at_`
 };
 
-/// Slopes of the first `states` states of a plant, times each seed's scale: [seed][state][sample].
+/// Sensitivities of the first `states` states of a plant, times each seed's scale: [seed][state][sample].
 class CvodesSlopes {
  public:
   CvodesSlopes(ReducedSystem& system, std::vector<lanes::Seed> seeds)
@@ -166,7 +166,7 @@ class CvodesSlopes {
     static_cast<ReducedSystem*>(user)->derivative(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
     return 0;
   }
-  /// Of the operating point, by central differences.
+  /// Sensitivities of the operating point, by central differences.
   void operating_slopes(sunindextype size) {
     const auto nominal = system_.p;
     for (std::size_t i = 0; i < seeds_.size(); ++i) {

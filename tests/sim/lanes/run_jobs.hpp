@@ -1,5 +1,5 @@
 #pragma once
-// A list of jobs in one batch, and what each gave.
+// Runs a list of jobs in one batch and returns the results.
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -18,7 +18,7 @@ inline std::map<std::uint64_t, Trajectory> run_jobs(const grid::Grid& grid, cons
   return all;
 }
 
-/// The same of events, by their order.
+/// The same for events, in their order.
 inline std::map<std::uint64_t, Trajectory> run_events(const grid::Grid& grid,
                                                       const std::vector<network::Event>& events,
                                                       const BatchOptions& options) {

@@ -1,5 +1,5 @@
-// Forward sensitivities of the lanes kernel against two other ways: central differences of the plain kernel,
-// and SUNDIALS CVODES with its own difference quotients on the same reduced equations. Over every effect:
+// Forward sensitivities of the SIMD kernel against two other methods: central differences of the plain
+// kernel, and SUNDIALS CVODES with difference quotients on the same reduced equations. For all effects:
 // all_sensitivities_test.cpp.
 #include "tests/sim/lanes/reduced_system.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -66,7 +66,7 @@ TEST(Sensitivities, EqualCentralDifferences) {
   const Trajectory dual = play_one(grid, options, job);
   ASSERT_EQ(dual.outcome, Outcome::stable);
   options.sensitivities = false;
-  options.tolerance = 1e-11;  // so that its own error, divided by the step below, stays beneath 1e-6
+  options.tolerance = 1e-11;  // so that its error, divided by the step below, stays under 1e-6
   for (std::size_t d = 0; d < job.seeds.size(); ++d) {
     const Seed& seed = job.seeds[d];
     const double h = 1e-4 * seed.scale;
@@ -81,13 +81,13 @@ TEST(Sensitivities, EqualCentralDifferences) {
     }
     const bool at_edge = plant::parameter_value(grid.plants[plant], seed.parameter) == 0.0 &&
                          plant::parameter_record(grid.plants[plant], seed.parameter).name == "S10";
-    if (at_edge) continue;  // no saturation in this file: there is no derivative across its onset
+    if (at_edge) continue;  // no saturation in this file: not differentiable at its onset
     for (int row = 0; row < dual.rows(); ++row) {
       std::vector<double> quotient(static_cast<std::size_t>(dual.samples));
       for (int k = 0; k < dual.samples; ++k)
         quotient[static_cast<std::size_t>(k)] =
             (side[0].row(row)[k] - side[1].row(row)[k]) / (2 * h) * seed.scale;
-      // the limit asked for; the quotient's third-order term is 1e-8 relative, the integrators' errors 1e-7
+      // required limit; the quotient's third-order term is 1e-8 relative, the integrators' errors 1e-7
       EXPECT_LT(worst_column(dual, static_cast<int>(d), quotient, row), 1e-5)
           << "row " << row << " by "
           << grid.plants[plant]
@@ -107,14 +107,14 @@ TEST(Sensitivities, ValuesAreThoseOfThePlainKernel) {
   options.sensitivities = false;
   const Trajectory plain = play_one(grid, options, job);
   for (int row = 0; row < plain.rows(); ++row)
-    for (int k = 0; k < plain.samples; ++k)  // other steps, each true to 1e-9 per step
+    for (int k = 0; k < plain.samples; ++k)  // other steps, with an error of 1e-9 per step
       EXPECT_NEAR(dual.row(row)[k], plain.row(row)[k], 1e-6);
 }
 
 TEST(Sensitivities, EqualThoseOfCvodes) {
   const grid::Grid grid = configured_grid("ieee14_genrou", Conventions::psse());
   Job job;
-  job.event.trips.push_back({grid.network.branch_index(2, 3, "1"), 0.0, {}});  // nothing switches later
+  job.event.trips.push_back({grid.network.branch_index(2, 3, "1"), 0.0, {}});  // no later switching
   ASSERT_GE(job.event.trips[0].branch, 0);
   job.seeds = seeds(grid, 1, {"H", "Tdop", "Xdp", "Xdpp"});
   BatchOptions options = sensitive(1e-10);
@@ -130,7 +130,7 @@ TEST(Sensitivities, EqualThoseOfCvodes) {
           worst_column(dual, static_cast<int>(i), columns[i][static_cast<std::size_t>(state)], state);
       RecordProperty("worst_" + std::to_string(i) + "_" + std::to_string(state),
                      testing::PrintToString(worst));
-      EXPECT_LT(worst, 1e-5) << "seed " << i << " state " << state;  // the limit asked for
+      EXPECT_LT(worst, 1e-5) << "seed " << i << " state " << state;  // required limit
     }
 }
 

@@ -13,7 +13,7 @@
 namespace swingbank::sim::lanes {
 namespace {
 
-constexpr int kMachines = 41;  // no whole number of rows together
+constexpr int kMachines = 41;  // not a multiple of the row block
 constexpr int kMost = SharedNetwork<P8>::most_products(kMachines);
 constexpr std::size_t kSubtransient = 10;  // X'' among the parameters of GENROU
 
@@ -22,7 +22,7 @@ const grid::Grid& grid() {
   return made;
 }
 
-/// A topology's matrix; the first `changed` machines have other impedances.
+/// Matrix of a topology; the first `changed` machines have other impedances.
 InternalMatrix matrix(const network::Topology& topology, int changed = 0) {
   const std::vector<double> r(kMachines, 0.002);
   std::vector<double> x(kMachines, 0.25);
@@ -30,7 +30,7 @@ InternalMatrix matrix(const network::Topology& topology, int changed = 0) {
   return InternalNetwork(grid()).matrix(topology, r, x);
 }
 
-/// What is left of the matrix after `from` and the products: its largest entry.
+/// Largest entry of the matrix minus `from` and the products.
 double rest(const InternalMatrix& of, const InternalMatrix& from, const LowRank& products) {
   double largest = 0.0;
   for (std::size_t i = 0; i < kMachines; ++i)
@@ -45,7 +45,7 @@ double rest(const InternalMatrix& of, const InternalMatrix& from, const LowRank&
   return largest;
 }
 
-/// How many products a difference takes; -1: more than kMost.
+/// Number of products of a difference; -1: more than kMost.
 int rank(const InternalMatrix& of) {
   const InternalMatrix from = matrix({});
   const auto found = difference(of, from, kMost);
@@ -68,7 +68,7 @@ TEST(LowRank, UpdatesAnEventByLowRankProducts) {
   EXPECT_EQ(rank(matrix({.faults = {{4, {}}}}, kMost)), -1);
 }
 
-TEST(LowRank, OtherImpedancesAreOneProductEach) {
+TEST(LowRank, EachImpedanceChangeIsOneProduct) {
   for (const network::Topology& topology :
        {network::Topology{}, network::Topology{.faults = {{5, {}}}}, network::Topology{.tripped = {1}}}) {
     LowRank products;
@@ -79,13 +79,13 @@ TEST(LowRank, OtherImpedancesAreOneProductEach) {
     EXPECT_EQ(products.rank, 4);
     EXPECT_LE(rest(matrix(topology, 4), from, products), 1e-12);
     EXPECT_GE(rest(matrix(topology, 4), from, {}), 1e-3);
-    auto both = *difference(from, matrix({}), kMost);  // and of products before
+    auto both = *difference(from, matrix({}), kMost);  // added to existing products
     add_impedances(both, matrix({}), changes);
     EXPECT_LE(rest(matrix(topology, 4), matrix({}), both), 1e-12);
   }
 }
 
-TEST(SwitchedNetwork, ChangesWhatReducingAnewDoes) {
+TEST(SwitchedNetwork, MatchesANewReduction) {
   grid::Grid shifted = grid();  // no symmetric matrix
   shifted.network.branches[2].shift = 0.3;
   const std::vector<double> r(kMachines, 0.002), x(kMachines, 0.25);
@@ -114,7 +114,7 @@ TEST(SwitchedNetwork, ChangesWhatReducingAnewDoes) {
   EXPECT_FALSE(switched.change({.open = {1, 4, 6, 9, 11}}, 5));  // six buses
 }
 
-/// A voltage of every source and lane.
+/// Voltage of every source and lane.
 std::vector<P8> voltages(double phase) {
   std::vector<P8> e(kMachines);
   for (int i = 0; i < kMachines; ++i)
@@ -122,20 +122,20 @@ std::vector<P8> voltages(double phase) {
   return e;
 }
 
-TEST(BusFactors, AreNotMadeWherePivotsWouldHaveToBeChosen) {
+TEST(BusFactors, RefuseMatricesThatNeedPivoting) {
   BusFactors::Sparse crossed(2, 2);
   crossed.insert(0, 1) = crossed.insert(1, 0) = 1.0;
   EXPECT_FALSE(BusFactors().factor(crossed));
 }
 
-/// As rows of the matrix, as factors of the whole network.
+/// Both forms: rows of the matrix, and factors of the whole network.
 class SharedNetworkForms : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Both, SharedNetworkForms, testing::Bool());
 
 TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
   const std::array<InternalMatrix, 8> lanes = {matrix({}),
                                                matrix({.faults = {{4, {}}}}),
-                                               matrix({.faults = {{4, {}}}}, kMost),  // no few products
+                                               matrix({.faults = {{4, {}}}}, kMost),  // not a few products
                                                matrix({.open = {1}}, 3),
                                                matrix({}, kMachines),
                                                matrix({.tripped = {3}}),
@@ -155,7 +155,8 @@ TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
     else
       network.set(lane, m);
   };
-  for (int l = 7; l >= 0; --l) set(l, lanes[static_cast<std::size_t>(l % 3)]);  // of these nothing may stay
+  for (int l = 7; l >= 0; --l)
+    set(l, lanes[static_cast<std::size_t>(l % 3)]);  // must be overwritten completely
   for (int l = 0; l < 8; ++l) set(l, lanes[static_cast<std::size_t>(l)]);
   const auto er = voltages(0.0), ei = voltages(1.0);
   std::vector<P8> ir(SharedRows::padded(kMachines)), ii = ir;
@@ -170,7 +171,7 @@ TEST_P(SharedNetworkForms, EveryLaneHasTheCurrentsOfItsOwnMatrix) {
       EXPECT_NEAR(ii[i][l], sum.imag(), 1e-12) << "lane " << l;
     }
   }
-  for (int of = 0; of < 8; ++of) {  // all lanes samples of one event
+  for (int of = 0; of < 8; ++of) {  // all lanes are samples of one event
     if (network.whole(of)) continue;
     network.solve_of(of, er.data(), ei.data(), ir.data(), ii.data());
     const InternalMatrix& m = lanes[static_cast<std::size_t>(of)];
@@ -199,8 +200,8 @@ TEST(SwitchedNetwork, GivesRowsAndColumnsOfTheReducedMatrix) {
   }
 }
 
-/// Faults, opened lines, lost generators, load steps, and machines of another impedance: few; so many that a
-/// fault is one product too many; all.
+/// Faults, opened lines, lost generators, load steps, and machines with another impedance: a few; so many
+/// that a fault exceeds the number of products; all.
 std::vector<Job> jobs() {
   std::vector<Job> list(20);
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -227,9 +228,9 @@ std::map<std::uint64_t, Trajectory> run_all(const std::vector<Job>& list, BatchO
   return run_jobs(grid(), list, options);
 }
 
-TEST(LanesOfManySources, AreTheRunsWithAMatrixEach) {
+TEST(LanesOfManySources, EqualRunsWithAMatrixEach) {
   BatchOptions one, eight;
-  one.lanes = 1;  // shares with nobody
+  one.lanes = 1;  // no shared network
   eight.lanes = 8;
   const auto a = run_all(jobs(), one), b = run_all(jobs(), eight);
   eight.plants = {17, 2};

@@ -1,5 +1,5 @@
-// A static var compensator at a switched shunt in the lanes against the reference integrator, through faults
-// near it and its protection; what the lanes cannot know is refused.
+// Static var compensator at a switched shunt in the SIMD kernel against the reference integrator, through
+// nearby faults and its protection; unsupported remote regulation is refused.
 #include <gmock/gmock.h>
 
 #include <iostream>
@@ -17,7 +17,7 @@ namespace swingbank::sim::lanes::static_var {
 namespace {
 
 using Values = std::map<std::string, double>;
-constexpr double kCompensatorLimit = 1e-4;  ///< of max(1 pu, the channel's swing)
+constexpr double kCompensatorLimit = 1e-4;  ///< relative to max(1 pu, the channel's swing)
 constexpr int kShuntBus = 1;                ///< in the middle between two machines
 
 grid::Grid with_compensator(const Values& changes, double susceptance) {
@@ -80,7 +80,7 @@ TEST(StaticVarLanes, FollowTheReference) {
   }
 }
 
-TEST(StaticVarLanes, AnotherRegulatedBusIsRefused) {
+TEST(StaticVarLanes, RefuseRemoteRegulation) {
   grid::Grid grid = with_compensator({}, 0.1);
   grid.loads[0].regulated = kShuntBus;
   EXPECT_NO_THROW(Batch(grid, {}));

@@ -1,5 +1,5 @@
-// Impedances near zero: bus ties, regulators without impedance and star legs of zero, in the power flow, in
-// the reference integrator and in the lanes.
+// Near-zero impedances: bus ties, regulators without impedance and star legs of zero, in the power flow, the
+// reference integrator and the SIMD kernel.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -21,7 +21,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// The load of 103 is at 104, behind what `branches` and `transformers` add; a unit may be at 105.
+/// The load of 103 is at 104, behind the added `branches` and `transformers`; a unit may be at 105.
 formats::RawCase case_with(const std::string& branches, const std::string& transformers,
                            const std::string& buses = "") {
   formats::RawCase c;
@@ -108,15 +108,15 @@ double apart(const Trajectory& a, const Trajectory& b) {
   return most;
 }
 
-/// One place of a near-zero impedance; `at` makes the case for R + jX there.
+/// Location of a near-zero impedance; `at` returns the case for R + jX there.
 struct Place {
   const char* name;
   formats::RawCase (*at)(double r, double x);
 };
 class NearZeroImpedance : public ::testing::TestWithParam<Place> {};
 
-// Up to 1e-6 pu all are one case. Beyond it the run moves with the impedance: rotor angles and field currents
-// by up to 300 rad or pu per pu (two resistances in series, during the fault).
+// Up to 1e-6 pu all impedances give the same case. Above it the run changes with the impedance: rotor angles
+// and field currents by up to 300 rad or pu per pu (two resistances in series, during the fault).
 TEST_P(NearZeroImpedance, BehavesLikeZero) {
   constexpr double kSame = 1e-5, kPerImpedance = 300.0;
   const auto [name, at] = GetParam();
@@ -143,7 +143,7 @@ TEST_P(NearZeroImpedance, BehavesLikeZero) {
     ASSERT_EQ(run.outcome, Outcome::stable) << r << " " << x;
     EXPECT_LT(apart(run, reference), same) << r << " " << x;
     EXPECT_LT(apart(run.bus_v, reference.bus_v), same) << r << " " << x;
-    EXPECT_LT(apart(in_lanes(grid, event), run), 1e-4) << r << " " << x;  // what the lanes promise
+    EXPECT_LT(apart(in_lanes(grid, event), run), 1e-4) << r << " " << x;  // guaranteed by the SIMD kernel
   }
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -197,7 +197,7 @@ TEST(Ties, FaultOnEitherSideIsTheSame) {
   EXPECT_LT(apart(here, there), 5e-5);  // 1e-6 pu of impedance to the fault
 }
 
-/// A tie that opens leaves what a line of the same event would: the load behind it is shed.
+/// Opening a tie has the same result as opening a line: the load behind it is shed.
 TEST(Ties, OpenAndCloseAgain) {
   const grid::Grid grid = grid_of(case_with(line("103,104", 0.0, 1e-8), ""));
   const network::Event event = trip(grid, "103:104:1:1:1.2");
@@ -226,7 +226,7 @@ TEST(Ties, UnitBehindATieRunsLikeOneAtTheBus) {
   EXPECT_LT(apart(in_lanes(a, fault(a, "104:1:1.1")), same), 1e-4);
 }
 
-TEST(CutOffBus, LosesItsLoadWithANote) {
+TEST(CutOffBus, LosesItsLoadWithARemark) {
   grid::Grid grid = grid_of(case_with(line("103,104", 0.0, 0.05), ""));
   const network::Event event = trip(grid, "103:104:1:1");
   const auto run = in_reference(grid, event);
@@ -235,7 +235,7 @@ TEST(CutOffBus, LosesItsLoadWithANote) {
   const double* v = run.bus_v.data() + 3 * run.samples;
   EXPECT_GT(v[60], 0.9);  // the value before the switching
   EXPECT_EQ(v[61], 0.0);
-  // What the units lose is the load: 150 MW and the losses of its way.
+  // The units lose this load: 150 MW and the losses on its path.
   const auto total = [&](int k) {
     double sum = 0.0;
     for (int i = 0; i < 2; ++i)

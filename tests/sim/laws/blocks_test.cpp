@@ -1,4 +1,4 @@
-// Blocks of law files, and where laws rest.
+// Blocks of user-defined models, and their operating points.
 #include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/laws/support.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -10,7 +10,6 @@ using test::kHead;
 using test::law_of;
 using test::sexs_law;
 
-// blocks
 std::complex<double> of_block(const std::string& block, double omega, const std::string& more = "") {
   const Effect law = make_law(
       fmt::format("name = \"B\"\n{}output = \"Vs\"\naction = \"replace\"\ninput = \"speed\"\nchain = "
@@ -29,7 +28,8 @@ TEST(LawBlocks, HaveTheirTransferFunctions) {
   const double w = 3.0;
   const std::complex<double> s(0.0, w);
   const auto same = [&](const std::string& block, std::complex<double> expected) {
-    EXPECT_NEAR(std::abs(of_block(block, w) - expected), 0.0, 1e-8) << block;  // difference quotients of 1e-6
+    EXPECT_NEAR(std::abs(of_block(block, w) - expected), 0.0, 1e-8)
+        << block;  // difference quotients with a step of 1e-6
   };
   same("kind = \"gain\"\nK = 3", 3.0);
   same("kind = \"lag\"\nT = 0.4", 1.0 / (1.0 + 0.4 * s));
@@ -79,7 +79,6 @@ T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
               0.0, 1e-8);
 }
 
-// operating point
 std::string refusal(const std::string& text, Signals<double> s = test::ControlBench::rated()) {
   const Effect law = make_law(text, "x.toml");
   const auto p = law.default_parameters();
@@ -102,11 +101,11 @@ TEST(LawOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
                      "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"log(x)\"")),
       "the derivative of x is no number there");
   EXPECT_EQ(refusal(law_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
-  // with a time before the first instant, whatever the value later
+  // evaluated before the first switching time, independent of the later value
   EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
 }
 
-TEST(LawOperatingPoint, ALimitInTheWayIsNamedWithItsValue) {
+TEST(LawOperatingPoint, NamesTheViolatedLimitAndItsValue) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
   grid.plants[1].controls = {{&sexs_law(), {0.1, 10.0, 100.0, 0.1, -4.0, 0.9}}};
   try {
@@ -137,7 +136,7 @@ T = { unit = "s", standard = 1, low = 0, high = 2, meaning = "divisor" })law"),
   const double zero = 0.0;
   Problems found;
   law.check(law.law.get(), &zero, "here", found);
-  (void)found;  // speed / T divides in the loop: the operating point refuses it
+  (void)found;  // speed / T divides by zero in the loop: refused at the operating point
   EXPECT_EQ(refusal(law_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
 T = { unit = "s", standard = 0, low = 0, high = 2, meaning = "divisor" })law")),

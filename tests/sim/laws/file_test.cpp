@@ -1,4 +1,4 @@
-// Law files as texts: expressions, and what is refused.
+// Files of user-defined models: expressions and refusals.
 #include "sim/library/library.hpp"
 #include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/laws/support.hpp"
@@ -9,7 +9,7 @@ namespace {
 using test::kHead;
 using test::law_of;
 
-/// A law with one expression, added to Vs.
+/// User-defined model with one expression, added to Vs.
 std::string one_value(const std::string& expression) {
   return fmt::format("name = \"ONE\"\n{}output = \"Vs\"\naction = \"add\"\nvalue = \"{}\"\n", kHead,
                      expression);
@@ -57,10 +57,10 @@ TEST(LawExpression, ComputesAsWritten) {
                                                              {"V*V - V^2", 0},
                                                              {"  1\\n + \\t 2 ", 3}};
   for (const auto& [expression, expected] : cases)
-    EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // a few roundings
+    EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // rounding
 }
 
-TEST(LawExpression, EveryFaultIsNamedWithItsPlace) {
+TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
   const auto message = [](const std::string& text) {
     try {
       (void)make_law(text, "x.toml");
@@ -96,8 +96,8 @@ TEST(LawExpression, EveryFaultIsNamedWithItsPlace) {
   EXPECT_NE(message(one_value(deep)).find("nested too deeply"), std::string::npos);
 }
 
-/// A full law for the refusals: every fault at once.
-TEST(LawFile, AllFaultsAreToldAtOnce) {
+/// Complete user-defined model that contains every error.
+TEST(LawFile, ReportsAllErrorsAtOnce) {
   const std::string text = std::string("name = \"a b\"\n") + kHead + R"law(
 output = "Efd"
 action = "replace"
@@ -141,7 +141,7 @@ TEST(LawFile, UnreadableFilesAreRefused) {
   EXPECT_THROW(make_law(std::string(200000, '#'), "x"), InputError);
 }
 
-TEST(LawFile, TheSameTextIsTheSameEffectAndANameIsTakenOnce) {
+TEST(LawFile, EqualTextsShareAnEffectAndNamesAreUnique) {
   library::EffectLibrary library;
   std::string text = one_value("speed");
   const Effect& first = load_law(text, "a.toml", library);
@@ -152,7 +152,7 @@ TEST(LawFile, TheSameTextIsTheSameEffectAndANameIsTakenOnce) {
   EXPECT_THROW(load_law(text, "c.toml", library), InputError);
 }
 
-TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
+TEST(LawFile, EqualTextsInTwoLibrariesAreOneEffect) {
   library::EffectLibrary one, other, changed;
   const Effect& law = load_law(one_value("speed"), "a.toml", one);
   EXPECT_TRUE(same_effect(law, load_law(one_value("speed"), "b.toml", other)));
@@ -161,7 +161,7 @@ TEST(LawFile, OneTextInTwoLibrariesIsTheSameEffect) {
   EXPECT_TRUE(same_effect(*one.find("SEXS"), *other.find("SEXS")));
 }
 
-TEST(LawFile, AValuesSourceIsWhatTheParameterSaysOrTheFile) {
+TEST(LawFile, SourceOfAValueIsTheParametersOrTheFile) {
   const Effect law = make_law(law_of("Vs", "add", R"law(value = "a * b * 0"
 [parameters]
 a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
@@ -172,7 +172,7 @@ b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law")
   EXPECT_EQ(as_text(law.parameters[1].default_from), "plant.toml");
 }
 
-TEST(LawFile, InstantsAreThoseOfTheParameters) {
+TEST(LawFile, SwitchingTimesComeFromParameters) {
   const Effect law = make_law(law_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
 instants = ["start", "start + 2"]
 [parameters]

@@ -1,4 +1,4 @@
-// What laws compute against compiled effects, in every scalar.
+// Results of user-defined models against compiled effects, in every scalar type.
 #include <random>
 
 #include "sim/laws/detail/definition.hpp"
@@ -46,7 +46,7 @@ TE = { unit = "s", standard = 0.1, low = 0.001, high = 5.0, meaning = "exciter" 
 EMIN = { unit = "pu", standard = -4.0, low = -100.0, high = 0.0, meaning = "lower" }
 EMAX = { unit = "pu", standard = 5.0, low = 0.5, high = 100.0, meaning = "upper" }
 )law";
-/// And as a transfer function with a clamp behind it (which winds up).
+/// The same exciter as a transfer function with a clamp behind it (which winds up).
 constexpr const char* kByTransferFunction = R"law(
 name = "SEXSBYTF"
 title = "SEXS by transfer function"
@@ -73,19 +73,19 @@ TEST(LawFile, ThreeWaysOfWritingAnExciterAgree) {
   const reference::ReferenceRun compiled = reference_run(with_exciter(*library::compiled().find("SEXS"), p));
   const Effect by_expressions = make_law(kByExpressions, "e"),
                by_transfer_function = make_law(kByTransferFunction, "t");
-  // Other unknowns and other roundings: what two runs at rtol 1e-8 differ by.
+  // Other unknowns and other rounding: the difference of two runs at rtol 1e-8.
   EXPECT_LE(test::largest_difference(compiled, reference_run(with_exciter(by_expressions, p))), 1e-6);
   const grid::Grid tf = with_exciter(by_transfer_function, {0.5, 2.0, 20.0, 0.05});
   EXPECT_LE(test::largest_difference(compiled, reference_run(tf)), 1e-6);
 }
 
-TEST(LawFile, ALimitedStateDoesNotWindUp) {
+TEST(LawFile, LimitedStatesDoNotWindUp) {
   test::ControlBench bench(sexs_law(),
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");
   EXPECT_LE(bench.largest_derivative(),
             1e-13);      // rounding of K y = 2 over TE: some 10 ulp, with or without FMA
-  bench.in.dVref = 1.0;  // asks for Efd = 12
+  bench.in.dVref = 1.0;  // demands Efd = 12
   bench.run(10.0);
   EXPECT_EQ(bench.out().Efd, 3.0);
   bench.in.dVref = 0.0;  // back to 2: it leaves the ceiling at once, e-folding 0.5 s
@@ -93,7 +93,7 @@ TEST(LawFile, ALimitedStateDoesNotWindUp) {
   EXPECT_NEAR(bench.out().Efd, 2.0 + std::exp(-1.0), 1e-9);  // Runge-Kutta at TE / 500
 }
 
-/// Every state's derivative and the output, off the operating point, for parameters p.
+/// Derivatives of all states, and the output, away from the operating point, for parameters p.
 template <class T>
 std::vector<T> outputs(const Effect& law, const std::vector<T>& p, const Signals<double>& at,
                        const Signals<double>& moved) {
@@ -137,7 +137,7 @@ TEST(LawFile, PacksEqualDouble) {
     for (int lane = 0; lane < 8; ++lane)
       for (std::size_t i = 0; i < together.size(); ++i) {
         const double alone = each[static_cast<std::size_t>(lane)][i];
-        // a contracted multiply-add here and not there, times gains of up to 1e3
+        // fused multiply-add in one of the two only, times gains of up to 1e3
         EXPECT_NEAR(together[i][lane], alone, 1e-12 * (1.0 + std::abs(alone))) << law->name << " " << i;
       }
   }
@@ -162,7 +162,7 @@ TEST(LawFile, DualsEqualCentralDifferences) {
                  b = outputs<double>(*law, down, test::ControlBench::rated(), disturbed());
       for (std::size_t i = 0; i < exact.size(); ++i) {
         const double quotient = (a[i] - b[i]) / (2 * h);
-        // the quotient's own rounding: 1e-16 of values up to 1e2 over h = 1e-8
+        // rounding of the quotient: 1e-16 of values up to 1e2, divided by h = 1e-8
         EXPECT_NEAR(exact[i].d[0], quotient, 1e-6 * (10.0 + std::abs(quotient)))
             << law->name << " output " << i << " by " << law->parameters[j].name;
         EXPECT_NEAR(lanes[i].d[3][kDualLanes - 1], exact[i].d[0], 1e-12 * (1.0 + std::abs(exact[i].d[0])))
@@ -172,8 +172,8 @@ TEST(LawFile, DualsEqualCentralDifferences) {
   }
 }
 
-/// An integrator with nothing to limit rests at its limit, and leaves it without delay.
-TEST(LawFile, AStateMayRestAtItsLimit) {
+/// A saturated integrator starts at its limit and leaves it without delay.
+TEST(LawFile, AllowsAnOperatingPointAtALimit) {
   library::EffectLibrary library;
   test::ControlBench bench(
       load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/laws/limiter_field_current.toml", library));
@@ -188,7 +188,7 @@ TEST(LawFile, AStateMayRestAtItsLimit) {
   EXPECT_EQ(bench.out().Vlimiter, -0.5);
 }
 
-TEST(LawFile, TheExamplesAreSound) {
+TEST(LawFile, ExamplesPassTheChecks) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/laws")) {

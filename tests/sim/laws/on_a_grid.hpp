@@ -1,5 +1,5 @@
 #pragma once
-// A plant with an exciter, a law or a compiled one, and a fault beside it.
+// Plant with a user-defined or compiled exciter, and a fault nearby.
 #include <utility>
 #include <vector>
 
@@ -18,7 +18,7 @@ inline reference::ReferenceRun reference_run(const grid::Grid& grid, double rtol
   options.t_end = 5.0;
   options.rtol = rtol;
   options.atol = rtol / 100;
-  options.plants = {1};  // the other stands behind 1e-4 pu, which magnifies its voltage's rounding
+  options.plants = {1};  // the other is behind 1e-4 pu, which amplifies the rounding of its voltage
   return reference::run_reference(grid, kFault, options);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Small laws for the tests.
+// Small user-defined models for the tests.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -11,12 +11,12 @@ namespace swingbank::sim::test {
 
 inline constexpr const char* kHead = "title = \"test\"\nsource = \"tests/sim/core\"\n";
 
-/// A law that makes `output` of the given lines.
+/// User-defined model that computes `output` by the given lines.
 inline std::string law_of(const std::string& output, const std::string& action, const std::string& rest) {
   return fmt::format("name = \"X\"\n{}output = \"{}\"\naction = \"{}\"\n{}", kHead, output, action, rest);
 }
 
-/// The example that is the compiled exciter SEXS again.
+/// Example that repeats the compiled exciter SEXS.
 inline const Effect& sexs_law() {
   static const library::EffectLibrary library = [] {
     library::EffectLibrary made;
@@ -26,7 +26,7 @@ inline const Effect& sexs_law() {
   return *library.find("SEXSLAW");
 }
 
-/// A nonlinear law.
+/// Nonlinear user-defined model.
 inline constexpr const char* kNonlinear = R"law(
 name = "NONLINEAR"
 title = "a bit of everything"

@@ -1,4 +1,4 @@
-// Libraries are values: what is added to one, no other sees.
+// Libraries are values: an effect added to one is absent from all others.
 #include "sim/library/library.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A law called MINE with one parameter and `factor` in its equation and description.
+/// User-defined model MINE with one parameter and `factor` in its equation and description.
 std::string law(double factor) {
   return fmt::format(R"law(name = "MINE"
 title = "{0} times the speed"
@@ -32,7 +32,7 @@ K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, mea
 }
 double standard(const EffectLibrary& library) { return library.find("MINE")->default_parameters().at(0); }
 
-TEST(EffectLibrary, AVariantNamesAnEffectOfItsSlotThatIsNone) {
+TEST(EffectLibrary, VariantsReferToANonVariantOfTheirSlot) {
   int variants = 0;
   for (const Effect& effect : compiled_effects())
     if (const Effect* other = variant_of(effect)) {
@@ -55,7 +55,7 @@ TEST(EffectLibrary, HoldsTheCompiledEffects) {
   EXPECT_THAT(library.names(Slot::machine), Not(HasSubstr("SEXS")));
 }
 
-TEST(EffectLibrary, TwoWithLawsOfOneNameDoNotSeeEachOther) {
+TEST(EffectLibrary, LibrariesWithEqualNamesAreIndependent) {
   EffectLibrary one, other;
   laws::load_law(law(2.0), "law.toml", one);
   laws::load_law(law(3.0), "law.toml", other);
@@ -66,7 +66,7 @@ TEST(EffectLibrary, TwoWithLawsOfOneNameDoNotSeeEachOther) {
   EXPECT_THAT(one.names(Slot::stabiliser), EndsWith(", MINE"));
 }
 
-TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
+TEST(EffectLibrary, CopySharesOnlyEarlierEffects) {
   EffectLibrary copy;
   const Effect* shared = nullptr;
   {
@@ -77,12 +77,12 @@ TEST(EffectLibrary, ACopySharesWhatWasThereAndNotWhatComesLater) {
     later.replace(later.find("MINE"), 4, "LATER");
     laws::load_law(later, "later.toml", first);
   }
-  EXPECT_EQ(copy.find("MINE"), shared);  // it lives although the library that read it does not
+  EXPECT_EQ(copy.find("MINE"), shared);  // outlives the library that read it
   EXPECT_EQ(shared->default_parameters(), std::vector<double>{2.0});
   EXPECT_EQ(copy.find("LATER"), nullptr);
 }
 
-TEST(EffectLibrary, ATakenNameIsRefused) {
+TEST(EffectLibrary, RefusesDuplicateNames) {
   EffectLibrary library;
   library.add(laws::make_law(law(2.0), "law.toml"));
   try {
@@ -98,7 +98,7 @@ TEST(EffectLibrary, ATakenNameIsRefused) {
   EXPECT_EQ(library.all().size(), compiled_effects().size() + 1);
 }
 
-TEST(EffectLibrary, ThreadsThatReadLawsOfOneNameGetEachTheirOwn) {
+TEST(EffectLibrary, ThreadsReadingEqualNamesGetTheirOwnEffects) {
   constexpr int kThreads = 4, kRounds = 50;
   std::vector<int> own(kThreads);
   {

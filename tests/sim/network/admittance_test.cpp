@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Gauss elimination with row pivoting, nothing shared with the code under test.
+/// Gaussian elimination with row pivoting; shares nothing with the code under test.
 std::vector<Complex> solve(std::vector<std::vector<Complex>> a, std::vector<Complex> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -45,8 +45,8 @@ class Reduction : public ::testing::Test {
   PowerFlow flow = solve_power_flow(network);
   std::vector<int> kept;
 
-  /// Currents at the kept buses when they have voltages `v`, from the full matrix: every other bus carries no
-  /// injection, bolted buses have V = 0.
+  /// Currents at the kept buses for voltages `v`, from the full matrix: all other buses have no injection,
+  /// and bolted buses have V = 0.
   [[nodiscard]] Eigen::VectorXcd by_hand(const Topology& topology, const Eigen::VectorXcd& v) const {
     const auto y = dynamic_admittance(network, flow, topology);
     const auto n = network.buses.size();
@@ -92,7 +92,7 @@ TEST_F(Reduction, EqualsTheFullSolution) {
   }
 }
 
-TEST_F(Reduction, AtThePowerFlowGivesTheGeneratorsCurrents) {
+TEST_F(Reduction, GivesTheGeneratorCurrentsOfThePowerFlow) {
   const auto reduced = reduce(network, flow, {}, kept);
   Eigen::VectorXcd v(static_cast<Eigen::Index>(kept.size()));
   for (std::size_t k = 0; k < kept.size(); ++k)
@@ -113,7 +113,7 @@ TEST_F(Reduction, ABoltedGeneratorBusIsGrounded) {
   auto v = some_voltages();
   v[3] = 0.0;
   Eigen::VectorXcd expected = by_hand(t, v);
-  expected[3] = 0.0;  // what flows into the fault is not asked for
+  expected[3] = 0.0;  // the current into the fault is not compared
   EXPECT_LT((reduced.y * v - expected).cwiseAbs().maxCoeff(), kRounding);
 }
 
@@ -125,13 +125,13 @@ TEST_F(Reduction, AFaultImpedanceConvergesLinearlyToTheBoltedFault) {
   for (const double x : reactances)
     gap.push_back((reduce(network, flow, {{{bus, {0.0, x}}}, {}}, kept).y - solid).cwiseAbs().maxCoeff());
   for (std::size_t k = 1; k < gap.size(); ++k)
-    // The next order is x times the admittance seen from the faulted bus, about 110 pu.
+    // The next order is x times the driving-point admittance of the faulted bus, about 110 pu.
     EXPECT_NEAR(gap[k - 1] / gap[k], 10.0, 10.0 * 150.0 * reactances[k - 1]);
   EXPECT_LT(gap.back(), 1e-4);
 }
 
-TEST_F(Reduction, PartsLeftWithoutGeneratorAreGrounded) {
-  // Buses 7 and 8 hang on 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
+TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
+  // Buses 7 and 8 are connected by 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
   const std::vector<std::pair<int, int>> lines = {{6, 7}, {5, 8}, {8, 9}};
   Topology t;
   for (const auto& [a, b] : lines) t.open.push_back(network.branch_index(a, b, "1"));
@@ -147,20 +147,20 @@ TEST_F(Reduction, PartsLeftWithoutGeneratorAreGrounded) {
               HasSubstr("with what is tripped no generator is left"));
 }
 
-TEST_F(Reduction, APartWithAGeneratorRunsOnAlone) {
+TEST_F(Reduction, IslandWithAGeneratorContinues) {
   const Topology t{{}, {network.branch_index(2, 30, "1")}};  // generator 30 loses its only branch
   const auto reduced = reduce(network, flow, t, kept);
   EXPECT_LT(reduced.y.row(0).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST_F(Reduction, AnIsolatedBusDoesNotDisturb) {
+TEST_F(Reduction, IsolatedBusHasNoInfluence) {
   const auto before = reduce(network, flow, {}, kept).y;
   network.buses.push_back({99, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   flow.voltage.push_back(0.0);
   EXPECT_LT((reduce(network, flow, {}, kept).y - before).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(BusAdmittance, OfATapPhaseShiftAndLineShunts) {
+TEST(BusAdmittance, IncludesTapPhaseShiftAndLineShunts) {
   formats::RawCase c;
   c.branches = "101,103,'1',0.01,0.1,0.2,1,1,1,0.001,0.002,0.003,0.004\n102,103,'1',0,0.12\n";
   c.transformers = "101,102,0,'1',1,1,1,0.005,-0.006,2,'',1\n0.02,0.2\n1.1,0,30\n1.0,0\n";

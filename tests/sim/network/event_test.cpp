@@ -29,7 +29,7 @@ TEST_F(Segments, NoEventIsOneSegment) {
 TEST_F(Segments, FaultTripAndReclosingInOrder) {
   const Complex z(0.01, 0.02);
   const auto s = segments({{{2, 2.0, 2.1, {}}, {0, 1.0, 3.0, z}}, {{1, 2.1, 2.6}}}, network);
-  ASSERT_EQ(s.size(), 6u);  // at 2.1 s one switching clears and trips
+  ASSERT_EQ(s.size(), 6u);  // at 2.1 s one switching both clears the fault and trips the line
   EXPECT_THAT(s[0].topology.faults, IsEmpty());
   EXPECT_EQ(s[1].start, 1.0);
   EXPECT_THAT(s[1].topology.faults, ElementsAre(Pair(0, z)));
@@ -58,7 +58,7 @@ TEST_F(Segments, ALastingTripHasNoEndAndTouchingFaultsAreOne) {
   EXPECT_EQ(s[2].start, 1.2);
 }
 
-TEST_F(Segments, EveryFaultOfAnEventIsReported) {
+TEST_F(Segments, ReportsEveryErrorOfAnEvent) {
   network.branches[1].in_service = false;
   network.buses.push_back({200, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();

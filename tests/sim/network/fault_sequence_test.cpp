@@ -1,4 +1,4 @@
-// Unbalanced faults: against the phases solved directly, and against a ladder calculated by hand.
+// Unbalanced faults against a direct solution of the phases, and against a ladder network calculated by hand.
 #include "sim/network/fault_sequence.hpp"
 
 #include <gmock/gmock.h>
@@ -37,7 +37,7 @@ Complex phase_domain_current(FaultType type, Complex z0, Complex z1, Complex z2,
   return (shape.inverse() * i)[1];
 }
 
-TEST(FaultSequence, TheSequenceEquivalentDrawsThePositiveSequenceCurrentOfThePhases) {
+TEST(FaultSequence, EquivalentDrawsThePhasesPositiveSequenceCurrent) {
   const Complex z0(0.03, 0.4), z1(0.01, 0.2), z2(0.02, 0.25), zf(0.05, 0.01);
   for (const FaultType type :
        {FaultType::line_to_ground, FaultType::two_phase, FaultType::two_phase_to_ground}) {
@@ -52,8 +52,8 @@ std::vector<SequenceSource> sources_of_two_machines() {
   return {{0, 0, 1.0 / Complex(0.0, 1e-4)}, {2, 1, 1.5 / Complex(0.0, 0.2)}};
 }
 
-/// A line's far side in parallel with what stands there, seen through `lines` parallel lines; its charging at
-/// the near side included [pu].
+/// Admittance seen through `lines` parallel lines, with the equipment at their far end and the charging at
+/// both ends [pu].
 Complex seen_through(Complex far, double lines) {
   const Complex series = lines / Complex(0.01, 0.12), charging(0.0, lines * 0.01);
   return charging + 1.0 / (1.0 / (far + charging) + 1.0 / series);
@@ -66,7 +66,7 @@ TEST(FaultSequence, NegativeSequenceImpedanceOfTheTwoMachinesByHand) {
   const auto impedance = [&](const Topology& topology) {
     return negative_sequence_impedance(grid.network, grid.flow, topology, sources_of_two_machines(), 1);
   };
-  // Rounding; 1e4 pu of admittance at bus 1 costs four digits.
+  // Rounding; the admittance of 1e4 pu at bus 1 loses four digits.
   EXPECT_LT(std::abs(impedance({}) - 1.0 / (load + seen_through(left, 2) + seen_through(right, 2))), 1e-11);
   Topology open;
   open.open = {2};

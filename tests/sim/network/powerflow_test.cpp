@@ -32,14 +32,15 @@ double imbalance(const Network& n, const std::vector<Complex>& voltage,
 
 struct Solved {
   const char* name;
-  double voltage, power;  ///< how far the reference solution in the file is from balance, hence from ours
+  double voltage,
+      power;  ///< tolerances: mismatch of the file's reference solution
 };
 class PowerFlowNetworks : public ::testing::TestWithParam<Solved> {};
 TEST_P(PowerFlowNetworks, ReproducesTheReferenceSolution) {
   const Network n = committed(GetParam().name);
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_LE(flow.mismatch, 1e-12);
-  // Rounding of powers of order 10 that meet at a bus: 100 units in the last place.
+  // Rounding of the sum of powers of order 10 at a bus: 100 units in the last place.
   EXPECT_LE(imbalance(n, flow.voltage, flow.generation), 1e-12);
   for (std::size_t i = 0; i < n.buses.size(); ++i) {
     EXPECT_NEAR(std::abs(flow.voltage[i]), n.buses[i].vm, GetParam().voltage) << n.buses[i].number;
@@ -57,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Committed, PowerFlowNetworks,
                                            Solved{"ieee39_dataset_genrou", 1e-6, 1e-5},
                                            Solved{"ieee14_genrou", 1e-7, 5e-7}));
 
-TEST(PowerFlow, TheReferenceSolutionIsLessBalancedThanOurs) {
+TEST(PowerFlow, MismatchIsBelowThatOfTheReferenceSolution) {
   for (const auto& [name, least, most] :
        {std::tuple{"ieee39_genrou", 2.0e-5, 3.0e-5}, {"ieee14_genrou", 3e-7, 5e-7}}) {
     const Network n = committed(name);
@@ -70,7 +71,8 @@ TEST(PowerFlow, TheReferenceSolutionIsLessBalancedThanOurs) {
   }
 }
 
-TEST(PowerFlow, Figures) {  // from the reference JSON, so that file and reader cannot err together
+TEST(PowerFlow, MatchesReferenceValues) {
+  // Values from the reference JSON, independent of the case file and its reader.
   const Network n = committed("ieee39_genrou");
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[static_cast<std::size_t>(n.bus_index(1))]), 1.0393836154040808, 1e-6);
@@ -79,7 +81,7 @@ TEST(PowerFlow, Figures) {  // from the reference JSON, so that file and reader 
   EXPECT_NEAR(flow.generation[1].imag(), 2.215747327179679, 1e-5);
 }
 
-/// Slack of 1 pu, a reactance and one load, solved by hand.
+/// Slack bus of 1 pu, a reactance and one load; solved by hand.
 Network two_buses(Complex power, Complex current, Complex admittance) {
   formats::RawCase c;
   c.buses = "1,'A',100,3,1,1,1,1.0,0\n2,'B',100,1,1,1,1,1.0,0\n";
@@ -103,7 +105,7 @@ TEST(PowerFlow, EachLoadPartMatchesItsClosedForm) {
   EXPECT_NEAR(solve_power_flow(two_buses({}, {0, 0.8}, {})).voltage[1].real(), 1.0 - 0.08, rounding);
 }
 
-TEST(PowerFlow, APoorStartIsMendedByAFlatOne) {
+TEST(PowerFlow, RestartsFlatAfterAPoorStart) {
   Network n = committed("ieee39_genrou");
   const PowerFlow good = solve_power_flow(n);
   for (std::size_t i = 0; i < n.buses.size(); ++i)
@@ -132,13 +134,13 @@ TEST(PowerFlow, MachinesAtOneBusShareByRating) {
   EXPECT_NEAR(two.generation[g - 1].real(), 0.75 * one.generation[1].real(), 1e-11);
 }
 
-TEST(PowerFlow, MachinesAtOneBusShareAsInTheFileWhereTheSolutionIsTheFiles) {
+TEST(PowerFlow, MachinesAtOneBusKeepTheFilesShares_WhenTheSolutionMatches) {
   Network n = committed("ieee39_genrou");
   const double q = solve_power_flow(n).generation[0].imag();
   Generator second = n.generators[0], idle = second;
   second.id = "2";
   idle.id = "3";
-  second.p = idle.p = idle.q = idle.q_min = 0.0;  // one that delivers nothing stands at its limit
+  second.p = idle.p = idle.q = idle.q_min = 0.0;  // a machine without output is at its limit
   second.mva = 3 * n.generators[0].mva;
   n.generators[0].q = 0.6 * q;
   second.q = 0.4 * q + 1e-4;
@@ -171,7 +173,7 @@ TEST(PowerFlow, IslandsAreNamed) {
   EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(n); }), HasSubstr("bus 8 is islanded"));
 }
 
-TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
+TEST(PowerFlow, OmitsIsolatedBuses) {
   Network n = committed("ieee14_genrou");
   n.buses.push_back({99, "ISOLATED", 1.0, BusType::isolated, 1.0, 0.0});
   const PowerFlow flow = solve_power_flow(n);
@@ -179,11 +181,11 @@ TEST(PowerFlow, AnIsolatedBusIsLeftOut) {
   EXPECT_LE(flow.mismatch, 1e-12);
 }
 
-TEST(PowerFlow, ASlackBusIsNeeded) {
+TEST(PowerFlow, RequiresASlackBus) {
   Network none = committed("ieee14_genrou"), two = none, idle = none;
   none.buses[0].type = BusType::generator;
   EXPECT_THAT(formats::sentences_of([&] { solve_power_flow(none); }), HasSubstr("no slack bus"));
-  two.buses[1].type = BusType::slack;  // both hold angle and voltage
+  two.buses[1].type = BusType::slack;  // both fix angle and voltage
   const PowerFlow flow = solve_power_flow(two);
   EXPECT_NEAR(std::arg(flow.voltage[1]), two.buses[1].va, 1e-14);
   idle.generators[0].in_service = false;

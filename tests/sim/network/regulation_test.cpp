@@ -1,4 +1,4 @@
-// Reactive limits, remote regulation, the file's own voltages.
+// Reactive limits, remote regulation, and the voltages of the file.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Network four_buses(const std::string& second, const std::string& third) {
 const char* const kSecond = "2,'1',40,0,90,-90,1.03,0,100,0,0.3\n";
 const char* const kThird = "3,'1',30,0,90,-90,1.01,0,50,0,0.3\n";
 
-TEST(Regulation, ABusAtItsLimitLetsTheVoltageGo) {
+TEST(Regulation, BusAtItsLimitReleasesTheVoltage) {
   const Network free = four_buses(kSecond, kThird);
   const PowerFlow wide = solve_power_flow(free);
   EXPECT_TRUE(wide.at_limit.empty());
@@ -39,8 +39,8 @@ TEST(Regulation, ABusAtItsLimitLetsTheVoltageGo) {
   EXPECT_NEAR(std::abs(solve_power_flow(tight, off).voltage[1]), 1.03, 1e-12);
 }
 
-TEST(Regulation, ABusReturnsFromItsLimitWhenTheVoltageLetsIt) {
-  // Bus 3 drives bus 2 to its lower limit at first; once bus 3 is held back by its own, bus 2 holds again.
+TEST(Regulation, BusReturnsFromItsLimitWithTheVoltage) {
+  // Bus 3 first drives bus 2 to its lower limit; once bus 3 reaches its own limit, bus 2 regulates again.
   const Network n = four_buses("2,'1',40,0,90,0,1.0,0,100,0,0.3\n", "3,'1',30,0,20,-90,1.2,0,50,0,0.3\n");
   PowerFlowOptions off;
   off.reactive_limits = false;
@@ -51,19 +51,19 @@ TEST(Regulation, ABusReturnsFromItsLimitWhenTheVoltageLetsIt) {
   EXPECT_GE(flow.generation[1].imag(), 0.0);
 }
 
-TEST(Regulation, SeveralHoldOneBusByTheirShares) {
+TEST(Regulation, SeveralGeneratorsShareTheRegulationOfABus) {
   const Network n = four_buses("2,'1',40,0,90,-90,1.0,4,100,0,0.3,0,0,1,1,75\n",
                                "3,'1',30,0,90,-90,1.0,4,50,0,0.3,0,0,1,1,25\n");
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[3]), 1.0, 1e-12);
   EXPECT_NEAR(flow.generation[1].imag(), 3.0 * flow.generation[2].imag(), 1e-11);
-  // One of them at its limit: the other holds the bus alone.
+  // One of them is at its limit: the other regulates the bus alone.
   const Network tight = four_buses("2,'1',40,0,5,-90,1.0,4,100,0,0.3,0,0,1,1,75\n",
                                    "3,'1',30,0,90,-90,1.0,4,50,0,0.3,0,0,1,1,25\n");
   const PowerFlow one = solve_power_flow(tight);
   EXPECT_NEAR(std::abs(one.voltage[3]), 1.0, 1e-12);
   EXPECT_NEAR(one.generation[1].imag(), 0.05, 1e-12);
-  // A bus that holds itself leads those that hold it from afar.
+  // Local regulation of a bus takes precedence over remote regulation.
   const Network joined = four_buses(kSecond, "3,'1',30,0,90,-90,1.03,2,50,0,0.3,0,0,1,1,50\n");
   const PowerFlow both = solve_power_flow(joined);
   EXPECT_NEAR(std::abs(both.voltage[1]), 1.03, 1e-12);
@@ -78,7 +78,7 @@ TEST(Regulation, UnitsOfABusStayWithinTheirOwnLimits) {
   EXPECT_NEAR(flow.generation[1].imag() + flow.generation[2].imag(), wide.generation[1].imag(), 1e-11);
 }
 
-TEST(Regulation, TheFilesVoltagesStandWithWhatTheyLeaveOver) {
+TEST(Regulation, FileVoltagesAreKeptWithTheirMismatchAsLoads) {
   Network n = four_buses(kSecond, kThird);
   n.buses[3].vm = 0.97;  // no solution
   n.buses[3].va = -0.05;
@@ -92,8 +92,8 @@ TEST(Regulation, TheFilesVoltagesStandWithWhatTheyLeaveOver) {
   for (const Complex& left : imbalance_of_file(n)) EXPECT_NEAR(std::abs(left), 0.0, 1e-12);
 }
 
-/// A file has five digits of its voltages: across a tie of 1e-6 pu they would make 10 pu.
-TEST(Regulation, TheFilesVoltagesStandAcrossATie) {
+/// A file has five digits of each voltage; across a tie of 1e-6 pu their rounding would cause 10 pu of power.
+TEST(Regulation, FileVoltagesAreKeptAcrossATie) {
   Network n = four_buses(kSecond, kThird);
   const PowerFlow solved = solve_power_flow(n);
   for (std::size_t i = 0; i < n.buses.size(); ++i)

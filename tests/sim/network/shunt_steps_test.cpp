@@ -1,4 +1,4 @@
-// Switched shunts that step in the power flow: into the band, at a remote bus, to their end, back and forth.
+// Switched shunts that step in the power flow: into the band, at a remote bus, to the last step, oscillating.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ PowerFlow stepped(const Network& n) {
   return solve_power_flow(n, options);
 }
 
-TEST(ShuntSteps, StandStillUnlessAsked) {
+TEST(ShuntSteps, StayFixedUnlessRequested) {
   Network n = two_lines();
   n.switched = {bank(0.99, 1.01)};
   const PowerFlow flow = solve_power_flow(n);
@@ -50,7 +50,7 @@ TEST(ShuntSteps, TakeTheFirstStepInTheBand) {
   const double b = flow.stepped[0].susceptance;
   EXPECT_TRUE(flow.stepped[0].in_band);
   EXPECT_GE(std::abs(flow.voltage[1]), 0.96);
-  // One step less would not do, and the solution is that of the fixed shunt.
+  // One step less would not suffice, and the solution equals that with a fixed shunt.
   for (const double fixed : {b - 0.1, b}) {
     Network with = two_lines();
     with.shunts = {{1, "1", {0.0, fixed}}};
@@ -62,7 +62,7 @@ TEST(ShuntSteps, TakeTheFirstStepInTheBand) {
   }
 }
 
-TEST(ShuntSteps, HoldARemoteBusAndSwitchReactorsIn) {
+TEST(ShuntSteps, RegulateARemoteBusAndSwitchReactorsIn) {
   Network n = two_lines();
   n.shunts = {{2, "1", {0.0, 1.0}}};  // high voltage at bus 3
   SwitchedShunt s = bank(0.9, 1.05);
@@ -78,7 +78,7 @@ TEST(ShuntSteps, HoldARemoteBusAndSwitchReactorsIn) {
   EXPECT_LE(std::abs(flow.voltage[1]), 1.05);
 }
 
-TEST(ShuntSteps, EndAtTheLastStepAndSayIt) {
+TEST(ShuntSteps, StopAtTheLastStepAndReportIt) {
   Network n = two_lines();
   n.switched = {bank(1.2, 1.3)};
   const PowerFlow flow = stepped(n);
@@ -87,13 +87,13 @@ TEST(ShuntSteps, EndAtTheLastStepAndSayIt) {
   EXPECT_FALSE(flow.stepped[0].in_band);
 }
 
-TEST(ShuntSteps, ABandNarrowerThanAStepEndsTheSearch) {
+TEST(ShuntSteps, StopWhenTheBandIsNarrowerThanAStep) {
   Network n = two_lines();
   n.switched = {bank(0.9701, 0.9702)};
   const PowerFlow flow = stepped(n);
   ASSERT_EQ(flow.stepped.size(), 1u);
   EXPECT_FALSE(flow.stepped[0].in_band);
-  EXPECT_NEAR(std::abs(flow.voltage[1]), 0.97, 0.025);  // the step beside the band
+  EXPECT_NEAR(std::abs(flow.voltage[1]), 0.97, 0.025);  // the step next to the band
 }
 
 }  // namespace

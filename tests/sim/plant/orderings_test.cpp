@@ -9,7 +9,7 @@
 namespace swingbank::sim::plant {
 namespace {
 
-/// Values about the standard ones, by up to a factor of four either way.
+/// Values within a factor of four of the defaults.
 Block drawn(const Effect& effect, std::mt19937& random) {
   std::uniform_real_distribution<double> factor(-1.4, 1.4);
   Block block{&effect, effect.default_parameters()};
@@ -17,7 +17,7 @@ Block drawn(const Effect& effect, std::mt19937& random) {
   return block;
 }
 
-TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
+TEST(Orderings, MatchTheChecksOfEveryMachine) {
   std::mt19937 random(7);
   int machines = 0, sound = 0;
   for (const Effect& effect : library::compiled_effects()) {
@@ -33,10 +33,10 @@ TEST(Orderings, AreThoseThatEveryMachineCallsUnphysical) {
     }
   }
   EXPECT_GE(machines, 6);
-  EXPECT_GT(sound, 100);  // both answers were seen
+  EXPECT_GT(sound, 100);  // both outcomes occurred
 }
 
-TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
+TEST(Orderings, NameBothParametersAndIgnoreZeros) {
   const Effect& round = *library::compiled().find("GENROU");
   Block block{&round, round.default_parameters()};
   const auto set = [&](const char* name, double value) {
@@ -52,7 +52,7 @@ TEST(Orderings, NameBothParametersAndLeaveZerosAlone) {
   set("Xdp", 0.3);
   set("Xd", 1.8);
   set("Xdpp", 0.2);
-  set("Xl", 0.224);  // X''d stands for X''q too: said once
+  set("Xl", 0.224);  // X''d is also X''q: reported once
   EXPECT_EQ(violated(block).size(), 1u);
 }
 

@@ -23,7 +23,7 @@ ParameterId id_of(int block, const char* effect_name, const char* parameter) {
   return {block, effect(effect_name).parameter_index(parameter)};
 }
 
-/// GENROU behind a STEPUP, with TGOV1 and SEXS, seen through a CTERROR.
+/// GENROU behind a STEPUP, with TGOV1 and SEXS, measured through a CTERROR.
 Plant full_plant() {
   Plant plant;
   plant.name = "30";
@@ -74,7 +74,7 @@ TEST(BlockOrder, EndsWithTheLastMeasurement) {
     EXPECT_THROW((void)block_at(plant, -1), std::out_of_range);
   }
 }
-TEST(BlockOrder, IsKeptByWhatIsInserted) {
+TEST(BlockOrder, InsertionKeepsTheOrder) {
   Plant plant = full_plant();
   EXPECT_EQ(insert_block(plant, standard("IEEEST")), 3);  // between governor and exciter
   EXPECT_EQ(&block_effect(plant, 3), &effect("IEEEST"));
@@ -87,7 +87,7 @@ TEST(BlockOrder, IsKeptByWhatIsInserted) {
   EXPECT_EQ(&block_effect(plant, 1), &effect("STEPUP"));
 }
 
-TEST(ParameterId, GoesFromItsTextAndBack) {
+TEST(ParameterId, RoundTripsThroughText) {
   const Plant plant = full_plant();
   EXPECT_THAT(found(plant, {"GENROU.Tdop"}), ElementsAre(id_of(0, "GENROU", "Tdop")));
   EXPECT_THAT(found(plant, {"STEPUP.X"}), ElementsAre(id_of(1, "STEPUP", "X")));
@@ -103,7 +103,7 @@ TEST(ParameterId, GoesFromItsTextAndBack) {
     EXPECT_EQ(name.text(), text);
   }
 }
-TEST(ParameterId, WithoutAnEffectMeansEveryBlockThatHasTheName) {
+TEST(ParameterId, WithoutEffectMatchesEveryBlockWithTheName) {
   const Plant plant = full_plant();
   EXPECT_THAT(found(plant, {"K"}), ElementsAre(id_of(3, "SEXS", "K")));
   EXPECT_THAT(found(plant, {"R", "K"}),
@@ -111,7 +111,7 @@ TEST(ParameterId, WithoutAnEffectMeansEveryBlockThatHasTheName) {
   EXPECT_EQ(read_parameter_name("K").text(), "K");
   EXPECT_THAT(read_parameter_name("K").effect, IsEmpty());
 }
-TEST(ParameterId, OfAnUnknownNameIsRefusedWithTheNamesThereAre) {
+TEST(ParameterId, RefusalOfAnUnknownNameListsTheKnownNames) {
   const Plant plant = full_plant();
   const std::vector<ParameterId> among = {id_of(0, "GENROU", "H"), id_of(3, "SEXS", "K")};
   Problems problems;
@@ -121,7 +121,7 @@ TEST(ParameterId, OfAnUnknownNameIsRefusedWithTheNamesThereAre) {
   ASSERT_THAT(problems.list(), SizeIs(2));
   EXPECT_EQ(problems.list()[0].sentence(),
             "parameter 'TGOV1.R' at --fix (it cannot be fixed): use one of GENROU.H, SEXS.K");
-  EXPECT_EQ(problems.list()[1].what, "parameter 'K'");  // taken by the text before it
+  EXPECT_EQ(problems.list()[1].what, "parameter 'K'");  // already used by the preceding text
 }
 TEST(ParameterId, LeadsToItsValueAndRecord) {
   Plant plant = full_plant();

@@ -21,7 +21,7 @@ Block tgov1() {
   return {effect, effect->default_parameters()};
 }
 
-TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
+TEST(Usual, NamesValuesOutsideTheirRange) {
   Block block = tgov1();
   EXPECT_TRUE(unusual(block).empty());
   block.p[static_cast<std::size_t>(block.effect->parameter_index("VMIN"))] = -1.5;
@@ -31,12 +31,12 @@ TEST(Usual, ValuesOutsideTheirRangeAreNamedWithIt) {
   EXPECT_TRUE(unusual(block).empty()) << "none";
 }
 
-TEST(Usual, StandardValuesOfEveryEffectAreUsual) {
+TEST(Usual, DefaultsOfEveryEffectAreWithinTheirRange) {
   for (const Effect& e : library::compiled_effects())
     EXPECT_THAT(unusual({&e, e.default_parameters()}), ElementsAre()) << e.name;
 }
 
-TEST(Usual, ASearchMayMoveBeyondAValueThatIsOutsideTheRange) {
+TEST(Usual, SearchRangeIncludesAValueOutsideTheUsualRange) {
   Parameter p{};
   p.low = 0.05;
   p.high = 5.0;
@@ -53,17 +53,17 @@ TEST(Usual, ASearchMayMoveBeyondAValueThatIsOutsideTheRange) {
   EXPECT_EQ(range(-1.5), std::pair(-3.5, 1.0));
 }
 
-/// Leads: a negative one is a zero in the right half-plane, which the equations take.
+/// Lead time constants: a negative one is a zero in the right half-plane, which the equations allow.
 bool is_lead(const std::string& name) {
   constexpr std::array leads = {"TC",        "TC1",       "TJ",        "TK",        "TU1",       "TU3",
                                 "IEEEST.T1", "IEEEST.T3", "IEEEST.T5", "ST2CUT.T5", "ST2CUT.T7", "ST2CUT.T9"};
   const std::string own = name.substr(name.find('.') + 1);
   const bool of_pss2 = name.starts_with("PSS2") && std::ranges::count(kPss2Leads, own) > 0;
-  const bool of_tgov3 = name.starts_with("TGOV3");  // whose TC is no lead
+  const bool of_tgov3 = name.starts_with("TGOV3");  // its TC is no lead
   return of_pss2 ||
          (!of_tgov3 && (std::ranges::count(leads, own) > 0 || std::ranges::count(leads, name) > 0));
 }
-/// What files have and no equation reads here.
+/// Parameters of the files that no equation uses.
 bool is_unread(const std::string& name) {
   constexpr std::array unread = {"Switch", "IB",   "REMBUS1", "REMBUS2", "RemoteBus", "FromBus",
                                  "ToBus",  "BUSR", "BUSR2",   "Circuit", "Accel",     "Tcomp"};
@@ -73,9 +73,8 @@ bool is_unread(const std::string& name) {
          name == "PMUFILTER.reports";
 }
 
-/// What a range no longer refuses, the check of the effect must: a time that runs backwards, and a code that
-/// is none.
-TEST(Usual, ChecksRefuseNegativeTimesAndCodesThatAreNone) {
+/// Ranges only warn. The effect's own check must refuse negative times and unknown codes.
+TEST(Usual, RefusesNegativeTimesAndUnknownCodes) {
   for (const Effect& e : library::compiled_effects())
     for (std::size_t i = 0; i < e.parameters.size(); ++i) {
       const Parameter& record = e.parameters[i];

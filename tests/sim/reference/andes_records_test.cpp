@@ -1,4 +1,4 @@
-// The reference integrator against records of ANDES (tests/reference/README.md says how they were made).
+// The reference integrator against records of ANDES (origin: tests/reference/README.md).
 
 #include "base/json.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -6,10 +6,10 @@
 namespace swingbank::sim::reference {
 namespace {
 
-/// What the comparison allows per channel [rad, pu, pu on 100 MVA, pu on 100 MVA, pu, rad, pu]. ANDES's own
-/// error is up to 3e-6 rad and 3e-5 pu; delta, P, Q and V are the limits asked for, the rest follows from
-/// them: speed is the slope of an angle known to 1e-4 rad at swings of 10 rad/s over 377 rad/s; theta as
-/// delta; Ifd as Q.
+/// Tolerance per channel [rad, pu, pu on 100 MVA, pu on 100 MVA, pu, rad, pu]. ANDES's own error is up to
+/// 3e-6 rad and 3e-5 pu. The limits of delta, P, Q and V are required. The others follow: speed is the
+/// derivative of an angle accurate to 1e-4 rad at swings of 10 rad/s over 377 rad/s; theta as delta; Ifd as
+/// Q.
 struct Limit {
   const char* name;
   Channel channel;
@@ -32,7 +32,7 @@ class AndesRecord {
   test::Table table;
 };
 
-/// Our value of a channel in ANDES's units: speed about 1, powers on 100 MVA.
+/// Swingbank's value of a channel in ANDES's units: speed about 1, powers on 100 MVA.
 double in_their_units(Channel channel, double value, double mva) {
   if (channel == Channel::speed) return 1.0 + value;
   return channel == Channel::P || channel == Channel::Q ? value * mva / 100.0 : value;

@@ -10,7 +10,7 @@ int row_of(const Trajectory& run, Channel channel) {
   return static_cast<int>(std::ranges::find(run.channels, channel) - run.channels.begin());
 }
 
-/// Runs the event in both integrators and returns the lanes' run.
+/// Runs the event in both integrators and returns the run of the SIMD kernel.
 Trajectory compared(const grid::Grid& grid, const network::Event& event,
                     double t_end = ReferenceOptions{}.t_end) {
   ReferenceOptions exact;
@@ -30,13 +30,13 @@ Trajectory compared(const grid::Grid& grid, const network::Event& event,
       [&](const lanes::Job&, const Trajectory& run) {
         kept = run;
         EXPECT_EQ(run.outcome, Outcome::stable);
-        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // the bound asked for
+        EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // required bound
       });
   EXPECT_TRUE(given);
   return kept;
 }
 
-TEST(Events, ATrippedMachineDeliversNothingAndTheOthersSlowDown) {
+TEST(Events, TrippedMachineDeliversNoPowerAndTheOthersSlowDown) {
   const grid::Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
   const auto lost = std::ranges::find(grid.plants, "30", &plant::Plant::name);
   ASSERT_NE(lost, grid.plants.end());
@@ -46,7 +46,7 @@ TEST(Events, ATrippedMachineDeliversNothingAndTheOthersSlowDown) {
   const int plant = static_cast<int>(lost - grid.plants.begin()), last = run.samples - 1;
   EXPECT_EQ(run.at(plant, row_of(run, Channel::P))[last], 0.0);
   EXPECT_EQ(run.at(plant, row_of(run, Channel::Q))[last], 0.0);
-  EXPECT_EQ(run.at(plant, row_of(run, Channel::speed))[last], 0.0);  // stands still
+  EXPECT_EQ(run.at(plant, row_of(run, Channel::speed))[last], 0.0);  // zero speed deviation
   for (int p = 0; p < static_cast<int>(grid.plants.size()); ++p)
     if (p != plant) {
       EXPECT_LT(run.at(p, row_of(run, Channel::speed))[240], 0.0) << grid.plants[p].name;
@@ -57,7 +57,7 @@ double inertia(const plant::Plant& plant) {  // 2 H S [s pu of the network's bas
   const plant::Block& m = plant.machine;
   return 2 * m.p[static_cast<std::size_t>(m.effect->parameter_index("H"))] * plant.mva / 100.0;
 }
-/// Mean slope of the remaining machines' speed, weighed by 2 H S, between two samples [1/s].
+/// Mean acceleration of the remaining machines, weighted by 2 H S, between two samples [1/s].
 double frequency_slope(const grid::Grid& grid, const Trajectory& run, int lost, int from, int to) {
   double sum = 0.0, weight = 0.0;
   for (int p = 0; p < static_cast<int>(grid.plants.size()); ++p) {
@@ -69,9 +69,9 @@ double frequency_slope(const grid::Grid& grid, const Trajectory& run, int lost, 
   return sum / weight * run.rate / (to - from);
 }
 
-/// All the other machines together are one with M = sum 2 H S, short of the power P that the lost one gave:
-/// dw/dt = -P/M from the first instant on.
-TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
+/// The remaining machines form an aggregate with M = sum 2 H S that lacks the power P of the lost machine:
+/// dw/dt = -P/M immediately after the trip.
+TEST(Events, InitialFrequencyDeclineFollowsTheAggregateSwingEquation) {
   for (const char* name : {"30", "34", "37"}) {
     grid::Grid grid = test::configured_grid("ieee39_genrou", Conventions::psse());
     network::Event event;
@@ -92,17 +92,17 @@ TEST(Events, FrequencyBeginsToFallAsTheAggregateSwingEquationSays) {
     const Trajectory hard = compared(grid, event, 1.5);
     const int at = static_cast<int>(std::lround(1.0 * hard.rate)),
               later = at + static_cast<int>(hard.rate / 10);
-    // Loads that keep their power leave only the change of the lines' losses: 4, 0.2 and 3 MW of 250 to 540.
+    // With constant-power loads only the line losses change: 4, 0.2 and 3 MW of 250 to 540.
     EXPECT_NEAR(frequency_slope(grid, hard, index, at, later) / expected, 1.0, 0.02) << name;
-    // Impedances give way with the voltage: the frequency falls more slowly, yet it falls.
+    // Constant-impedance loads fall with the voltage: the frequency declines more slowly.
     const double gentle = frequency_slope(grid, soft, index, at, later) / expected;
     EXPECT_GT(gentle, 0.3) << name;
     EXPECT_LT(gentle, 0.97) << name;
   }
 }
 
-/// A plant of two units is one plant whose units are split: losing 40 % of it is losing the second unit.
-TEST(Events, APartialTripIsTheTripOfThatUnit) {
+/// A plant of two units equals one aggregated plant: losing 40 % of it equals losing the second unit.
+TEST(Events, PartialTripEqualsTheTripOfThatUnit) {
   const std::filesystem::path folder = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   const auto models = formats::read_dyr(folder / "ieee39_genrou.dyr");
   const network::Network whole = formats::read_raw(folder / "ieee39_genrou.raw");
@@ -134,9 +134,9 @@ TEST(Events, APartialTripIsTheTripOfThatUnit) {
   const int last = a.samples - 1;
   for (std::size_t i = 0; i < one.plants.size(); ++i) {
     const int p = static_cast<int>(i), speed = row_of(a, Channel::speed), power = row_of(a, Channel::P);
-    // Two runs of the lanes at 1e-6 per step.
+    // Two runs of the SIMD kernel at 1e-6 per step.
     EXPECT_NEAR(a.at(p, speed)[last], b.at(p, speed)[last], 1e-6) << one.plants[i].name;
-    // Per unit of the whole plant: what is left of it gives 0.6 of what a unit gives.
+    // Per unit of the whole plant: the remaining part delivers 0.6 of a unit's per-unit power.
     const double left = one.plants[i].bus == bus ? 0.6 : 1.0;
     EXPECT_NEAR(a.at(p, power)[last], left * b.at(p, power)[last], 1e-5) << one.plants[i].name;
   }
@@ -154,12 +154,12 @@ TEST(Events, PartsOfAGeneratorAddUp) {
   event.generator_trips.push_back({1, 3.0});  // the rest
   EXPECT_EQ(network::segments(event, grid.network).back().topology.connected(1), 0.0);
   for (const double part : {0.0, -0.1, 1.1, 0.2}) {
-    event.generator_trips = {{1, 1.0, 0.8}, {1, 2.0, part}};  // the last leaves nothing
+    event.generator_trips = {{1, 1.0, 0.8}, {1, 2.0, part}};  // the last trip removes the remainder
     EXPECT_THROW(network::segments(event, grid.network), InputError) << part;
   }
 }
 
-TEST(Events, ALoadStepTakesThePowerItNamesAtTheVoltageBefore) {
+TEST(Events, LoadStepDrawsItsPowerAtThePreStepVoltage) {
   const grid::Grid grid = test::two_machine_grid(Conventions::psse());
   network::Event event;
   event.load_steps = {{1, {0.05, 0.02}, 1.0, 2.0}};
@@ -167,7 +167,7 @@ TEST(Events, ALoadStepTakesThePowerItNamesAtTheVoltageBefore) {
   const int p = row_of(run, Channel::P);
   const double before = run.at(0, p)[120] + run.at(1, p)[120] * 1.5,
                after = run.at(0, p)[121] + run.at(1, p)[121] * 1.5;
-  // Bases 100 and 150 MVA. What the voltage gives way takes a few per cent of the step, of the loads too.
+  // Bases 100 and 150 MVA. The voltage drop reduces the step and the loads by a few per cent.
   EXPECT_NEAR(after - before, 0.05, 0.005);
 }
 

@@ -1,6 +1,6 @@
-// One machine with its controls against the curves that OpenIPSL's models of PSS/E's models gave in
-// OpenModelica: a bolted fault close by, a load at constant current that falls to 0.2 pu. The files belong to
-// others (psse_folder.hpp); the parameters are those of the tests that the curves were published with.
+// One machine with its controls against curves of OpenIPSL's PSS/E models, computed by OpenModelica: a bolted
+// fault nearby, and a load with constant current at voltages down to 0.2 pu. The files are not part of the
+// repository (psse_folder.hpp); the parameters are those of the tests published with the curves.
 #include <unistd.h>
 
 #include <algorithm>
@@ -51,10 +51,10 @@ std::string beside(const std::string& name) {
 struct Column {
   Channel channel;
   std::string name;  ///< in their file
-  double limit;      ///< of the swing; of delta in degrees, of V in pu
+  double limit;      ///< relative to the swing; delta in degrees, V in pu
 };
 
-/// Both runs at every 0.02 s but the switching instants themselves, where a file has both sides.
+/// Both runs every 0.02 s, except at the switching times, for which a file has two samples.
 void expect_agreement(const std::string& name, const std::string& dynamics,
                       const std::vector<Column>& columns, const std::string& file = "modelica_results.csv") {
   const grid::Grid grid = grid_of(dynamics);
@@ -115,8 +115,8 @@ TEST(OpenipslRecords, MachinesAlone) {
                    {{Channel::V, "gENCLS1.V", 1e-4}, {Channel::P, "gENCLS1.P", 2e-3}});
 }
 
-// The angle and the voltage miss what is asked for by 0.047 degrees and 2.2e-4 pu: around the clearing, when
-// the ceiling, which goes with the voltage, jumps. The field voltage agrees at every other instant.
+// Angle and voltage exceed the required limit by 0.047 degrees and 2.2e-4 pu near the clearing, where the
+// voltage-dependent ceiling steps. The field voltage agrees at all other times.
 TEST(OpenipslRecords, Exst1) {
   auto columns = with(machine("gENROE"), {Channel::Efd, "eXST1.EFD", 2e-3});
   columns[0].limit = 0.06;
@@ -146,12 +146,12 @@ TEST(OpenipslRecords, HygovWithScrx) {
       "1 'GENSAL' '1' 6.7 0.028 0.0358 4.41 0 1.22 0.76 0.297 0.2 0.12 0.186 0.802 /\n"
       "1 'SCRX' '1' 0.1 10 100 0.05 0 5 0 0 /\n"
       "1 'HYGOV' '1' 0.05 0.3 5 0.05 0.5 0.02 0.415 0 1.25 1.2 0.2 0.08 /\n",
-      // Asked for are 2e-3 of the power as well; the curve is off its own equations by more than that
-      // (HygovsCurveIsOffItsOwnEquations).
+      // The required 2e-3 of the power is not applicable: the curve violates its own equations by more than
+      // that (HygovsCurveIsOffItsOwnEquations).
       with(with(machine("gENSAL"), {Channel::Efd, "sCRX.EFD", 2e-3}), {Channel::Tm, "hYGOV.PMECH", 3e-3}));
 }
-/// A curve between its samples: the cubic through four of them, none from beyond a switching, where a file
-/// has two samples at one time.
+/// Cubic interpolation of a curve through four samples, none from beyond a switching time, where a file has
+/// two samples.
 class Between {
  public:
   Between(std::vector<double> t, std::vector<double> y) : t_(std::move(t)), y_(std::move(y)) {}
@@ -182,7 +182,7 @@ class Between {
   std::vector<double> t_, y_;
 };
 
-/// OpenIPSL's HYGOV as its blocks stand, with the values of HygovWithScrx.
+/// OpenIPSL's HYGOV, block by block, with the values of HygovWithScrx.
 struct OpenipslsHygov {
   double e, c, g, q, nref;
   static constexpr double R = 0.05, r = 0.3, Tr = 5, Tf = 0.05, Tg = 0.5, VELM = 0.02, GMAX = 0.415,
@@ -209,9 +209,9 @@ struct OpenipslsHygov {
   }
 };
 
-// OpenIPSL's own equations, and ours, driven by the curve's own speed: both miss the curve's power by the
-// same 0.277 % of its swing, at 6.7 s. So what HygovWithScrx misses is how the curve was integrated; its gate
-// is off where the velocity limit sets in and ends, in every half swing.
+// With the curve's speed as input, the equations of OpenIPSL and of Swingbank differ from the curve's power
+// by the same 0.277 % of its swing, at 6.7 s. The error in HygovWithScrx is therefore that of the curve's
+// integration: its gate is wrong at the start and end of each velocity limit, in every half swing.
 TEST(OpenipslRecords, HygovsCurveIsOffItsOwnEquations) {
   test::Table record = test::read_table(folder() / "HYGOV/modelica_results.csv", true);
   for (std::string& column : record.names) std::erase(column, '"');

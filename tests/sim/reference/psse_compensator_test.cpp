@@ -11,8 +11,8 @@
 namespace swingbank::sim::reference {
 namespace {
 
-/// The record's case has no unit at bus 3: the program that published it put the compensator there itself
-/// (its test 49), 500 MVA and 60 Mvar of capacitor, which is where these values come from.
+/// The record's case has no unit at bus 3. The program that published it adds the compensator in its test 49,
+/// with 500 MVA and a capacitor of 60 Mvar; these values come from there.
 grid::Grid with_compensator(const std::filesystem::path& folder) {
   const auto scratch = std::filesystem::temp_directory_path() / ("swingbank-svc-" + std::to_string(getpid()));
   std::filesystem::create_directories(scratch);
@@ -50,7 +50,7 @@ TEST(PsseRecords, Csvgn1) {
   int seen = 0;
   for (const auto& row : record.rows) {
     const auto k = static_cast<std::size_t>(std::lround(row[0] * options.rate));
-    if (k == 50 || k >= static_cast<std::size_t>(run.samples)) continue;  // the switching
+    if (k == 50 || k >= static_cast<std::size_t>(run.samples)) continue;  // switching time
     ++seen;
     for (int plant = 0; plant < 2; ++plant)
       worst = std::max(worst, std::abs(run.at(plant, 0)[k] - row[columns[plant]]));

@@ -1,5 +1,5 @@
-// More of PSS/E's own records (psse_folder.hpp): exciters, governors and loads after a line has opened at 1
-// s, our equations integrated as PSS/E integrates its own (psse_stepper.hpp).
+// Further PSS/E records (psse_folder.hpp): exciters, governors and loads after a line opens at 1 s.
+// Swingbank's equations are integrated by PSS/E's method (psse_stepper.hpp).
 #include <unistd.h>
 
 #include <complex>
@@ -16,7 +16,7 @@ namespace swingbank::sim::reference::psse_controls {
 namespace {
 
 constexpr double kSwitching = 1.0, kStep = 0.005, kEnd = 20.0;  // [s]
-/// What is asked for: V in pu, the rotor angle in degrees, of all else the share of its swing.
+/// Required limits: V in pu, rotor angle in degrees, other channels relative to their swing.
 constexpr double kVoltage = 1e-4, kAngle = 0.01, kShare = 2e-3;
 constexpr int kInnerSteps = 10;  ///< of an exciter with several states in a row: psse_excitation_test.cpp
 
@@ -62,7 +62,7 @@ struct Run {
   double step = kStep, end = kEnd;
 };
 
-/// `see` gives the record's columns. The switching instant itself, which has two sides, is left out.
+/// `see` returns the record's columns. The switching time, with two samples, is excluded.
 template <class See>
 void expect_agreement(const std::filesystem::path& file, const Run& run, const std::vector<Column>& columns,
                       const See& see) {
@@ -98,8 +98,7 @@ void expect_agreement(const std::filesystem::path& file, const Run& run, const s
 
 TEST(PsseRecords, Esst1aWithGensalAndHygov) {
   const auto folder = folder_of("ESST1A");
-  // The .dyr beside it has an EXST1 that the record is not of; these are the values of the test it belongs
-  // to.
+  // The EXST1 of the .dyr beside the record is another one; these are the values of the record's test.
   const grid::Grid grid = grid_with(
       folder / "TVC_System_32.raw",
       "1 'GENCLS' 1 0 0 /\n2 'GENSAL' 1 8.0 999 999 3.5 4.0 2.1 2.1 0.4 0.4 0.10 0.0 0.0/\n"
@@ -178,10 +177,10 @@ TEST(PsseRecords, GastWithEsac1a) {
                    });
 }
 
-// PowerWorld's curves, not PSS/E's, so with exact integration. An undamped swing that the governor makes
-// grow: ours grows faster, by 9.4 % of it at 5 s (with the delay 2.2 %: its polynomials are exact only to
-// s TD = 3j and meet 6.5j). 5.1 % are a droop that the curves hold (DegovsCurvesHoldADroop), the rest is
-// PSS/E's classical machine, (Pm - D w - Pe)/(1 + w).
+// PowerWorld's curves, not PSS/E's, hence exact integration. The governor makes an undamped swing grow:
+// Swingbank's grows faster, by 9.4 % at 5 s (with the delay 2.2 %: its polynomials are exact to s TD = 3j,
+// and 6.5j occurs). 5.1 % are due to a droop in the curves (DegovCurvesContainADroop), the rest to PSS/E's
+// classical machine, (Pm - D w - Pe)/(1 + w).
 TEST(PsseRecords, DegovWithAndWithoutDelay) {
   constexpr double kRate = 240.0, kDegovEnd = 5.0;
   for (const std::string delay : {"nodelay", "delay"}) {
@@ -209,7 +208,7 @@ TEST(PsseRecords, DegovWithAndWithoutDelay) {
 
 /// Speed of the machine 102 of DEGOV's case, a sample every 1/240 s: a classical machine as PowerWorld
 /// integrates it, 2H dw/dt = (Pm - D w)/(1 + w) - Te with Pm = (1 + w) exp(-s delay) throttle, the network
-/// solved by hand, our DEGOV1 with this droop.
+/// solved in closed form, with Swingbank's DEGOV1 and this droop.
 std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double delay) {
   using C = std::complex<double>;
   constexpr int kSteps = 10, kSamples = 1201;
@@ -254,7 +253,7 @@ std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double
     const auto from = static_cast<std::ptrdiff_t>(throttle.size()) - 1 - late;
     const double torque = from < 0 ? P : throttle[static_cast<std::size_t>(from)];
     const bool open = k >= std::lround(kSwitching / h);
-    // Leapfrog: the speed stands half a step, 0.2 ms, off the angle, 0.06 % of the swing.
+    // Leapfrog: speed and angle are half a step, 0.2 ms, apart, which is 0.06 % of the swing.
     w += h / (2.0 * H) * (torque - D * w - electrical(delta, open));
     delta += h * 2.0 * std::numbers::pi * 60.0 * w;
     governor.in.speed = w;
@@ -265,8 +264,8 @@ std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double
 
 // Inferred, not documented: with a droop of 0.0565 pu of the throttle, fitted to the first curve, the
 // differences fall from 5.1 and 3.3 % of the swing to 0.04 % in both (the delay is this test's, exact). DEGOV
-// has no such parameter; which model or setting of PowerWorld made the curves is not known.
-TEST(PsseRecords, DegovsCurvesHoldADroop) {
+// has no such parameter; the model or setting of PowerWorld behind the curves is unknown.
+TEST(PsseRecords, DegovCurvesContainADroop) {
   for (const auto& [name, delay, without] :
        {std::tuple{"nodelay", 0.0, 0.04}, std::tuple{"delay", 1.0, 0.03}}) {
     const auto folder = folder_of("DEGOV");

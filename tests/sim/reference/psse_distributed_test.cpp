@@ -1,5 +1,5 @@
-// DERA1 against PSS/E's own record (psse_folder.hpp): behind one of two lines to an infinite bus, the other
-// tripped, beside a load that draws constant active current and is a constant reactive admittance.
+// DERA1 against PSS/E's record (psse_folder.hpp): two lines to an infinite bus, one of which trips, and a
+// load of constant active current and constant reactive admittance.
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kStepOfRecord = 0.005;  ///< [s]
 constexpr double kTrip = 2.0;            ///< [s]
-constexpr double kSettled = 2.15;        ///< from then on PSS/E's steps make no difference [s]
+constexpr double kSettled = 2.15;        ///< from then on PSS/E's step size has no influence [s]
 constexpr double kEndOfRecord = 4.0;     ///< [s]
 
 std::filesystem::path dera_folder() { return test::record_folder("psse_powersimulationsdynamics") / "DERA"; }
 
-/// The record's folder lacks DERA1's parameters: they stand in the project's test 42, and fl to tfh nowhere,
-/// so that frequency trips nothing here. `freq_flag`: PSS/E's two records are the same to the last digit.
+/// The record's folder lacks DERA1's parameters. They are from test 42 of the publishing project; fl to tfh
+/// are not published, so no frequency trips here. `freq_flag`: PSS/E's two records agree to the last digit.
 grid::Grid distributed_grid(int freq_flag) {
   const auto dyr = std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + "_dera.dyr");
   std::ofstream(dyr) << "101 'GENCLS' 1 0.0 0.0 /\n"

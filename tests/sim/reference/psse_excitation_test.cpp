@@ -1,5 +1,6 @@
-// Excitation systems against PSS/E's own records (psse_folder.hpp): one of two parallel lines opens at 1 s.
-// Our equations are integrated as PSS/E integrates its own (psse_stepper.hpp), so what is left is modelling.
+// Excitation systems against PSS/E's records (psse_folder.hpp): one of two parallel lines opens at 1 s.
+// Swingbank's equations are integrated by PSS/E's method (psse_stepper.hpp), so differences are due to
+// modelling.
 #include <numbers>
 
 #include "tests/sim/reference/psse_folder.hpp"
@@ -9,7 +10,7 @@
 namespace swingbank::sim::reference {
 namespace {
 
-/// The limit asked for: 0.2 % of each channel's swing.
+/// Required limit: 0.2 % of each channel's swing.
 constexpr double kExcitationLimit = 2e-3;
 
 grid::Grid grid_of(const std::string& name) {
@@ -24,7 +25,7 @@ network::Event line_trip(const grid::Grid& grid) {
   return event;
 }
 
-/// Power into line a-b at a [MW, Mvar]; `v`: bus voltages as the stepper gives them.
+/// Power into line a-b at a [MW, Mvar]; `v`: bus voltages from the stepper.
 Complex line_power(const network::Network& net, const double* v, int a, int b) {
   const auto& line = net.branches[static_cast<std::size_t>(net.branch_index(a, b, "1"))];
   const auto at = [&](int bus) {
@@ -35,14 +36,14 @@ Complex line_power(const network::Network& net, const double* v, int a, int b) {
 }
 
 using Rows = std::vector<std::vector<double>>;
-/// Steps that PSS/E's EXST1 and ESAC1A take within each of the simulation's: found from the records, where
-/// Efd answers the trip within one step, through three and four states in series. With ten our EXST1, driven
-/// by the recorded voltage, follows the recorded Efd to 3e-6 pu, the print's own last digit, over its first
-/// 80 ms; with eight, nine or exact integration to 3e-4, 1e-4 and 6e-4. SEXS, which has no transducer, takes
-/// the simulation's own steps.
+/// Substeps of PSS/E's EXST1 and ESAC1A within each simulation step, inferred from the records: Efd responds
+/// to the trip within one step, through three and four states in series. With ten substeps and the recorded
+/// voltage, Swingbank's EXST1 follows the recorded Efd to 3e-6 pu, the last printed digit, over the first 80
+/// ms; with eight, nine or exact integration to 3e-4, 1e-4 and 6e-4. SEXS, which has no transducer, uses the
+/// simulation steps.
 constexpr int kInnerSteps = 10;
 
-/// One row per row of the record, from what `see(signals, x, v)` makes of a step.
+/// One row per row of the record, computed by `see(signals, x, v)` at each step.
 template <class See>
 Rows rows_of(const grid::Grid& grid, const See& see, int exciter_steps = 1) {
   Rows rows;
@@ -103,7 +104,7 @@ TEST(PsseRecords, Tgov1WithEsac1a) {
                    {kExcitationLimit, kExcitationLimit});
 }
 
-// GENSAL, EXST1 and HYGOV behind a transformer, line 1-4 circuit 1 opens; bus 1 stands behind its ZSORCE.
+// GENSAL, EXST1 and HYGOV behind a transformer, line 1-4 circuit 1 opens; bus 1 is behind its ZSORCE.
 // Measured: V1 0.034 %, V2 to V4 0.015 to 0.020 %, speed 0.032 %, Efd 0.020 %.
 TEST(PsseRecords, Exst1WithGensalAndHygov) {
   const auto folder = test::psse_folder("EXST1");
@@ -125,13 +126,12 @@ TEST(PsseRecords, Exst1WithGensalAndHygov) {
         ours.push_back(row);
       },
       kInnerSteps);
-  ours.erase(ours.begin() + 201);  // the record has the switching instant once, before the trip
+  ours.erase(ours.begin() + 201);  // the record has the switching time once, before the trip
   expect_agreement(record, ours, {"V1", "V2", "V3", "V4", "speed", "Efd"}, std::vector(6, kExcitationLimit));
 }
 
-/// The same with the reference integrator: Efd within 0.007 %, V within 0.29 %. The test above takes PSS/E's
-/// own 5 ms steps of the same equations and agrees with V to 0.014 %, so the rest is PSS/E's integration
-/// error.
+/// The same with the reference integrator: Efd within 0.007 %, V within 0.29 %. The test above uses PSS/E's 5
+/// ms steps and agrees with V to 0.014 %, so the difference is PSS/E's integration error.
 TEST(PsseRecords, SexsByTheReferenceIntegrator) {
   const grid::Grid grid = grid_of("SEXS");
   const auto record = test::read_table(test::psse_folder("SEXS") / "SEXS_RESULTS.csv", false);
@@ -148,7 +148,7 @@ TEST(PsseRecords, SexsByTheReferenceIntegrator) {
       const double theirs = row[columns[channel]];
       low = std::min(low, theirs);
       high = std::max(high, theirs);
-      // The instant of switching stands twice in the record and once in ours.
+      // The switching time occurs twice in the record and once in Swingbank's run.
       if (std::abs(row[0] - 1.0) > 0.006)
         worst = std::max(worst, std::abs(ours[std::lround(row[0] * 200.0)] - theirs));
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Where records of others lie, PSS/E's own among them. They are not in this repository: they are looked for
-// in $SWINGBANK_REFERENCE, then in ../shared/reference.
+// Location of external records, including those of PSS/E. They are not part of this repository. The tests
+// look in $SWINGBANK_REFERENCE, then in ../shared/reference.
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// HYGOV against PSS/E's record, with PSS/E's own integration of our equations (psse_stepper.hpp). The files
-// belong to others: see psse_records_test.cpp for where they are looked for.
+// HYGOV against PSS/E's record, with Swingbank's equations integrated by PSS/E's method (psse_stepper.hpp).
+// The files are not part of the repository (psse_folder.hpp).
 #include <unistd.h>
 
 #include <cstdlib>
@@ -36,13 +36,13 @@ TEST(PsseRecords, Hygov) {
       low = std::min(low, theirs);
       high = std::max(high, theirs);
     }
-    // The limit asked for; measured 0.032 % of V, 0.061 % of the angle, 0.038 % of the speed.
+    // Required limit; measured 0.032 % of V, 0.061 % of the angle, 0.038 % of the speed.
     EXPECT_LT(worst, 0.002 * (high - low)) << "channel " << channel;
   }
 }
 
-// HYGOV has no column for the dead-band: writing it away in silence would change the plant.
-TEST(PsseGovernor, DeadBandIsNotLostInADyr) {
+// HYGOV has no column for the dead-band: dropping it silently would change the plant.
+TEST(PsseGovernor, DeadBandIsKeptInADyr) {
   const auto configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   grid::Grid grid =
       grid::load_grid(configs / "ieee39_genrou.raw", configs / "ieee39_genrou.dyr", Conventions::psse());

@@ -1,5 +1,5 @@
-// Converters against PSS/E's own records (psse_folder.hpp): REGCA1 with REECB1 and REPCA1, alone against an
-// infinite bus and as two of nine units.
+// Converters against PSS/E's records (psse_folder.hpp): REGCA1 with REECB1 and REPCA1, at an infinite bus and
+// as two of nine units.
 #include <unistd.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double kRecordStep = 0.005;          ///< of the records [s]
 constexpr double kSwitching = 1.0;             ///< [s]
 constexpr double kVoltageLimit = 1e-4;         ///< [pu]
 constexpr double kConverterAngleLimit = 0.01;  ///< [degrees]
-constexpr double kSwingLimit = 2e-3;           ///< of other channels, of their swing
+constexpr double kSwingLimit = 2e-3;           ///< of other channels, relative to their swing
 
 double in_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
@@ -48,8 +48,9 @@ ReferenceRun exact(const grid::Grid& grid, const network::Event& event, double u
   return run_reference(grid, event, options);
 }
 
-/// What PSS/E shows of a converter's P and Q after a switching comes by half of what is missing at each step
-/// where Accel is 0 (at once where it is 0.7, below); the voltage stands at once. `k` counts the steps.
+/// PSS/E's printed P and Q of a converter approach their values after a switching by half of the difference
+/// at each step if Accel is 0 (immediately if it is 0.7, below); the voltage is correct immediately. `k`
+/// counts the steps.
 double half_way(double jump, long k) { return jump * std::ldexp(1.0, static_cast<int>(-k - 1)); }
 
 struct PowerRecord {
@@ -110,7 +111,7 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
   EXPECT_LT(at_once.worst[2], kVoltageLimit);
   EXPECT_LT(at_once.of_swing(0), 0.05);
   EXPECT_LT(at_once.of_swing(1), 0.05);
-  // With FrqFlag the plant's control measures the power that comes half way: 2.8e-5 pu are left.
+  // With FrqFlag the plant control measures this half-updated power: 2.8e-5 pu remain.
   EXPECT_LT(stepped.of_swing(0), GetParam().of_swing);
   EXPECT_LT(stepped.of_swing(1), kSwingLimit);
   EXPECT_LT(stepped.worst[2], kVoltageLimit / 10);
@@ -128,8 +129,8 @@ struct RegulatedRecord {
 };
 class PsseRecordsRegulated : public testing::TestWithParam<RegulatedRecord> {};
 
-/// Largest differences of angle [degrees] and voltage [pu] of bus 103, the record's constant offset of the
-/// angle taken out: its power flow stands 0.0011 degrees beside ours.
+/// Largest differences of angle [degrees] and voltage [pu] of bus 103, without the constant angle offset of
+/// the record: its power flow differs by 0.0011 degrees.
 struct Largest {
   double angle = 0.0, voltage = 0.0;
   void see(const std::vector<double>& row, double theta, double V) {
@@ -142,7 +143,7 @@ struct Largest {
   std::optional<double> first_;
 };
 
-// The plant regulates its voltage with a gain of 25 within 0.1 s: PSS/E's step of 5 ms alone makes 3e-4 pu.
+// The plant regulates its voltage with a gain of 25 within 0.1 s: PSS/E's step of 5 ms alone causes 3e-4 pu.
 // Measured with exact integration: angle 0.0056 and 0.0043 degrees, V 2.9e-4 and 3.1e-4 pu; stepped as PSS/E
 // steps, with its network: V 3.4e-7 and 2.0e-6 pu.
 TEST_P(PsseRecordsRegulated, AngleAndVoltage) {
@@ -226,7 +227,7 @@ struct Swing {
 constexpr std::size_t kColumns[] = {1, 2, 4};  ///< of P, Q and field current
 constexpr const char* kChannels[] = {"P", "Q", "field current"};
 constexpr double kSixDigits = 1e3;          ///< from there on an angle is printed to 0.01 [degrees]
-constexpr double kNetworkTolerance = 1e-3;  ///< of PSS/E's run [pu], the generator's trip tells
+constexpr double kNetworkTolerance = 1e-3;  ///< of PSS/E's run [pu], inferred from the generator trip
 class PsseRecordsManyUnits : public testing::TestWithParam<UnitsRecord> {};
 
 // Measured: V 5.9e-5 pu (line) and 1.2e-4 pu (generator), angles against unit 1 0.07 and 0.18 degrees. Of
@@ -301,7 +302,8 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
 // and 0.04 %, field current by 0.22 and 0.013 %, or by less than two of the last printed digit: the
 // converters' P and Q, all P of 1e-5 pu, and unit 1's field current, which is printed to 1e-4 pu and swings
 // by 0.0023 pu. With double precision the line's Q is off by 0.5 % after 20 s, with the network solved to the
-// end P by 4.7 %. The generator's P is worst late, at angles of thousands of degrees in single precision.
+// end P by 4.7 %. The error of the generator's P is largest late, at angles of thousands of degrees in single
+// precision.
 TEST_P(PsseRecordsManyUnits, InPssesSteps) {
   const grid::Grid grid = many_units();
   const auto record = unpacked(GetParam().csv);

@@ -1,5 +1,5 @@
-// What PSS/E's machines do with speed (Conventions), seen on the rotor angle of one machine after line
-// 101-102 circuit 1 opens at 1 s. The files belong to others (psse_folder.hpp).
+// Treatment of speed in PSS/E's machines (Conventions), by the rotor angle of one machine after line 101-102
+// circuit 1 opens at 1 s. The files are not part of the repository (psse_folder.hpp).
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -16,7 +16,7 @@ constexpr double kEnd = 20.0;    // [s]
 
 struct Record {
   std::string folder, raw, dyr, angles;
-  std::optional<double> damping = {};  ///< D that the record shows, where the .dyr's is another [pu]
+  std::optional<double> damping = {};  ///< D according to the record, if it differs from the .dyr [pu]
   friend void PrintTo(const Record& record, std::ostream* out) {
     *out << record.folder << '/' << record.angles;
   }
@@ -40,8 +40,7 @@ Case case_of(const Record& record, Conventions conventions) {
 }
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-/// Rotor angle [degrees] in PSS/E's integration with steps of h [s]; the instant of switching stands there
-/// twice.
+/// Rotor angle [degrees] by PSS/E's integration with steps of h [s]; the switching time occurs twice.
 std::vector<double> stepped(const Case& c, double h) {
   std::vector<double> angle;
   test::step_as_psse(
@@ -63,7 +62,7 @@ double largest_error(const Record& record, Conventions conventions, double end =
   return worst;
 }
 
-// Measured: 0.00006 degrees, of which the record's last digit makes 0.00005. With (Pm - D w)/(1 + w) - Pe it
+// Measured: 0.00006 degrees, of which 0.00005 are the record's last digit. With (Pm - D w)/(1 + w) - Pe it
 // is 0.115.
 TEST(PsseRecords, DampedClassicalMachine) {
   const double worst = largest_error(kTest01, Conventions::psse());
@@ -72,13 +71,13 @@ TEST(PsseRecords, DampedClassicalMachine) {
 }
 
 // Torque instead of power is off by 0.0005 degrees: little, because speed divides both sides alike.
-TEST(PsseRecords, ClassicalMachineTellsTorqueFromPower) {
+TEST(PsseRecords, ClassicalMachineDistinguishesTorqueFromPower) {
   EXPECT_GT(largest_error(kTest01, Conventions::andes()), 0.0004);
 }
 
-// Integrated exactly, the same equations are off by 0.064 degrees, and that is PSS/E's step: its error falls
-// to a quarter with half the step.
-TEST(PsseRecords, ClassicalMachinesRemainderIsPssesStep) {
+// Integrated exactly, the same equations are off by 0.064 degrees. This is PSS/E's integration error: it
+// falls to a quarter with half the step.
+TEST(PsseRecords, ClassicalMachineErrorIsDueToPssesStep) {
   const Case c = case_of(kTest01, Conventions::psse());
   ReferenceOptions options;
   options.t_end = kEnd;
@@ -105,7 +104,7 @@ TEST(PsseRecords, ClassicalMachinesRemainderIsPssesStep) {
 class PsseRecordsMachines : public testing::TestWithParam<Record> {};
 const std::string kMore = "psse_powersimulationsdynamics/";
 
-// Until 10 s: after it the records of GENSAL and GENSAE stand still 0.001 degrees before ours does. Measured:
+// Until 10 s: later the records of GENSAL and GENSAE settle 0.001 degrees earlier than Swingbank. Measured:
 // 0.0001 to 0.0002 degrees, the records' last digit being 0.0001; with speed voltage 0.0009 (GENSAL) to
 // 0.009, with torque 0.016 to 0.048.
 TEST_P(PsseRecordsMachines, PowerWithoutSpeedVoltage) {
@@ -125,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Record{"psse/GENROU", "ThreeBusMulti.raw", "ThreeBus_GENROU_NO_SAT.dyr", "TEST_GENROU_NO_SAT.csv"},
         Record{kMore + "GENROU_HIGH_SAT", "ThreeBusMulti.raw", "ThreeBus_GENROU_HIGH_SAT.dyr",
                "TEST_GENROU_HIGH_SAT.csv"},
-        // Their .dyr says D = 0.05; with it they miss by 0.0022 degrees.
+        // The .dyr has D = 0.05, which gives an error of 0.0022 degrees.
         Record{kMore + "GENROE", "ThreeBusMulti.raw", "ThreeBus_GENROE.dyr", "TEST_GENROE.csv", 0.0},
         Record{kMore + "GENROE", "ThreeBusMulti.raw", "ThreeBus_GENROE_HIGH_SAT.dyr",
                "TEST_GENROE_HIGH_SAT.csv", 0.0},

@@ -1,9 +1,9 @@
 #pragma once
-// The network as PSS/E solves it, as read off its records. Converters and loads that are no admittances are
-// currents, a converter's beside its source impedance (ZSORCE of the .raw). These currents, and what the
-// source impedance adds to them, are those of the voltage of the solution before; the network beside them is
-// linear. Solutions are repeated until no voltage moves by the run's tolerance. From step to step it mostly
-// moves by less, so that a converter's source lags by a step.
+// PSS/E's network solution, as inferred from its records. Converters and loads other than admittances are
+// current injections, a converter's in parallel with its source impedance (ZSORCE of the .raw). These
+// currents, with the part of the source impedance, use the voltage of the previous solution; the remaining
+// network is linear. Solutions are repeated until no voltage changes by more than the run's tolerance.
+// Between steps it mostly changes by less, so a converter's source lags by one step.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@
 
 namespace swingbank::sim::test {
 
-/// By how much a voltage may move at the last solution, an option of a run of PSS/E [pu]: where its record
-/// shows none, and as read off those of one converter behind two lines.
+/// Largest change of a voltage at the last solution, an option of a PSS/E run [pu]: the value for records
+/// that do not reveal it, and that inferred from one converter behind two lines.
 constexpr double kToTheEnd = 1e-6, kOfOneConverter = 1e-4;
 
 class PsseNetwork {
@@ -33,7 +33,7 @@ class PsseNetwork {
     }
     find_matrix(grid);
   }
-  /// Moves the voltages in y as PSS/E does from the ones it holds.
+  /// Updates the voltages in y by PSS/E's method, starting from the stored ones.
   void solve(double t, std::vector<double>& y) const {
     constexpr int kMost = 100;
     for (int k = 0; k < kMost; ++k)
@@ -42,7 +42,7 @@ class PsseNetwork {
   }
 
  private:
-  /// A unit whose current is given: its base over the network's, its source admittance [pu on base_mva].
+  /// Unit with given current: its base over the network's, its source admittance [pu on base_mva].
   struct Given {
     std::size_t unit;
     double scale;
@@ -61,7 +61,7 @@ class PsseNetwork {
     (void)system_.signals(g.unit, t, y.data(), own);
     return own * g.scale;
   }
-  /// Currents that are missing at every bus where the given units' sources are `from`.
+  /// Current mismatch at every bus for the sources `from` of the given units.
   [[nodiscard]] Eigen::VectorXd missing(double t, const std::vector<double>& y,
                                         const std::vector<Complex>& from) const {
     std::vector<double> f(y.size());
@@ -81,7 +81,7 @@ class PsseNetwork {
     for (const Given& g : given_) from.push_back(current(t, y, g) + g.admittance * voltage(y, g));
     return from;
   }
-  /// The network is linear beside its sources: its matrix, a column per voltage.
+  /// Matrix of the network without its sources, which is linear; one column per voltage.
   void find_matrix(const grid::Grid& grid) {
     constexpr double kMove = 1e-3;
     std::vector<double> y(static_cast<std::size_t>(system_.size()));
@@ -101,7 +101,7 @@ class PsseNetwork {
     }
     matrix_ = matrix.partialPivLu();
   }
-  /// One solution; returns the largest move of a voltage, as a complex number [pu].
+  /// Computes one solution. Returns the largest change of a voltage, as a complex number [pu].
   double once(double t, std::vector<double>& y) const {
     constexpr double kSolved = 1e-12;  // [pu]
     constexpr int kMost = 50;
@@ -122,7 +122,7 @@ class PsseNetwork {
 
   const reference::ReferenceSystem& system_;
   double tolerance_;
-  std::size_t first_;  ///< place of the first voltage
+  std::size_t first_;  ///< index of the first voltage
   std::vector<Given> given_;
   Eigen::PartialPivLU<Eigen::MatrixXd> matrix_;
 };

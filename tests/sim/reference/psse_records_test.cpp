@@ -1,5 +1,5 @@
-// The reference integrator against PSS/E's own records. The files belong to others (psse_folder.hpp).
-// Without them these tests fail;
+// The reference integrator against PSS/E's records. The files are not part of the repository
+// (psse_folder.hpp). Without them these tests fail;
 // `.ci/run --without-psse` leaves the suite out.
 #include <numbers>
 
@@ -22,7 +22,7 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
   options.rate = 200.0;
   options.channels = {Channel::delta};
   const ReferenceRun run = run_reference(grid, event, options);
-  EXPECT_EQ(table.rows.size(), 4002u);  // 20 s at 200/s; the instant of switching stands there twice
+  EXPECT_EQ(table.rows.size(), 4002u);  // 20 s at 200/s; the switching time occurs twice
   const double* delta = run.at(grid.plants[0].name == "102" ? 0 : 1, 0);
   double worst = 0.0;
   for (const auto& row : table.rows) {
@@ -33,9 +33,8 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
   return worst;
 }
 
-/// A tolerance of 0.02 degrees was asked for. Measured 0.0038 and 0.0040, which PSS/E's step of 5 ms makes
-/// (0.0002 with its own integration, decision 07); the former convention, with speed voltage, is off by
-/// 0.009.
+/// Required: 0.02 degrees. Measured: 0.0038 and 0.0040, due to PSS/E's step of 5 ms (0.0002 with its own
+/// integration, decision 07); the former convention, with speed voltage, is off by 0.009.
 constexpr double kAngleLimit = 0.006;
 
 TEST(PsseRecords, SaturatedGenrou) {
@@ -49,9 +48,9 @@ TEST(PsseRecords, UnsaturatedGenrou) {
   RecordProperty("largest_degrees", testing::PrintToString(worst));
   EXPECT_LT(worst, kAngleLimit);
 }
-// The conventions are what makes the difference: with mechanical torque instead of power the same equations
-// are off by 0.045-0.048 degrees.
-TEST(PsseRecords, OtherConventionsAreTold) {
+// Influence of the conventions: with mechanical torque instead of power the same equations are off by
+// 0.045-0.048 degrees.
+TEST(PsseRecords, DetectsOtherConventions) {
   EXPECT_GT(largest_angle_error("ThreeBus_GENROU.dyr", "TEST_GENROU.csv", Conventions::andes()), 0.03);
 }
 

@@ -1,6 +1,5 @@
-// Stabilisers against PSS/E's own records (psse_folder.hpp): a machine at an infinite bus whose exciter's
-// reference is set to another value at 1 s. The parameters of PSS2A to PSS2C are those of the tests that the
-// records belong to.
+// Stabilisers against PSS/E's records (psse_folder.hpp): a machine at an infinite bus, with a step of the
+// exciter's reference at 1 s. The parameters of PSS2A to PSS2C are those of the records' tests.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -15,8 +14,8 @@ namespace swingbank::sim::reference::psse_stabilisers {
 namespace {
 
 constexpr double kStep = 0.005, kChange = 1.0, kEnd = 20.0;  // [s]
-constexpr double kFrequency = 60.0;  ///< [Hz]; STAB1's .raw says 50, with which its record disagrees by 22 %
-constexpr double kShare = 2e-3;      ///< of a channel's swing
+constexpr double kFrequency = 60.0;  ///< [Hz]; STAB1's .raw has 50, which disagrees with its record by 22 %
+constexpr double kShare = 2e-3;      ///< relative to a channel's swing
 constexpr double kP = 0.9, kQ = 0.29993, kXd = 2.2;  ///< of the unit in both cases [pu]
 
 constexpr const char* kMachine = "1 'GENROU' 1 7 999 0.4 999 4 0 2.2 2.2 0.3 0.3 0.3 0.2 0 0 /\n";
@@ -33,7 +32,7 @@ struct Case {
   std::filesystem::path raw, record;
   std::string dynamics;
   double gain;       ///< of the exciter
-  double reference;  ///< what its reference is set to
+  double reference;  ///< new value of its reference
 };
 /// The unit at its infinite bus, with the step of its reference.
 grid::Grid grid_of(const Case& c) {
@@ -53,7 +52,7 @@ grid::Grid grid_of(const Case& c) {
   problems.raise();
   return grid;
 }
-/// `see` gives the record's columns; each must agree to kShare of its swing.
+/// `see` returns the record's columns; each must agree to kShare of its swing.
 template <class See>
 void expect_agreement(const Case& c, const See& see) {
   const grid::Grid grid = grid_of(c);
@@ -109,7 +108,7 @@ TEST(PsseRecords, Pss2a) { expect_dual_input("PSS2A", "0.1 -0.1"); }
 TEST(PsseRecords, Pss2bAtItsInputsLimits) {
   expect_dual_input("PSS2B", "1 1 0.00035 -0.00055 0.915 0.895 0.1 -0.1");
 }
-// Exact integration, for PSS/E's steps of 5 ms are as long as the switching here takes.
+// Exact integration, because PSS/E's steps of 5 ms are as long as the switching here.
 TEST(PsseRecords, Pss2cSwitchedByThePower) {
   const Case c = dual_input("PSS2C", "1 1 0.00035 -0.00055 0.915 0.895 0.1 -0.1 1 1 0.895 0.885 1 1");
   ReferenceOptions options;

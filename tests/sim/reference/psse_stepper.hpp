@@ -1,12 +1,12 @@
 #pragma once
-// Our equations integrated the way PSS/E integrates its own, as read off its records. With it a difference
-// between record and equations is one of modelling.
-//   x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, at a switching instant f is the mean of the derivatives before
+// Integrates Swingbank's equations by PSS/E's method, as inferred from its records. Remaining differences
+// between record and equations are then due to modelling.
+//   x(t + h) = x(t) + h (3 f(t) - f(t - h))/2, at a switching time f is the mean of the derivatives before
 //     and after it;
-//   some exciters take shorter steps of the same kind within each, everything else standing still;
-//   Efd is what the exciter's states at t make of voltage and field current at t - h;
+//   some exciters take substeps of the same kind, with all else constant;
+//   Efd follows from the exciter's states at t, and voltage and field current at t - h;
 //   HYGOV's power, not TGOV1's, is that of t - h;
-//   a state that stands at its limit has no past derivative;
+//   a state at its limit has no past derivative;
 //   states are kept in single precision;
 //   the network is that of psse_network.hpp.
 #include <vector>
@@ -48,7 +48,7 @@ class PsseStepper {
   }
   [[nodiscard]] long switching() const { return std::lround(parts_[1].start / h_); }
 
-  /// Solves the network at t and keeps the states' derivatives; after the switching: their mean.
+  /// Solves the network at t and stores the derivatives of the states; after the switching: their mean.
   void derive(double t) {
     network_->solve(t, y_);
     system_->derivatives(t, y_.data(), f_.data());
@@ -66,7 +66,7 @@ class PsseStepper {
     derive(t);
     for (std::size_t i = 0; i < states_; ++i) f_[i] = 0.5 * (f_[i] + f[i]);
   }
-  /// From t to t + h.
+  /// Integrates from t to t + h.
   void advance(double t) {
     const auto at_t = y_;
     const auto exciters = advanced_exciters(t);
@@ -79,7 +79,7 @@ class PsseStepper {
     for (std::size_t i = 0; i < states_; ++i) y_[i] = static_cast<float>(y_[i]);
     last_ = at_t;
   }
-  /// What PSS/E prints of a plant at t.
+  /// Printed quantities of a plant at t, as in PSS/E.
   [[nodiscard]] Signals<double> printed(std::size_t plant, double t) const {
     auto s = signals(plant, t);
     for (const Exciter& e : exciters_)
@@ -94,12 +94,12 @@ class PsseStepper {
 
  private:
   struct Exciter {
-    std::size_t unit, first, end;  ///< places of its states
-    std::size_t flux;              ///< place of E'q, which Efd drives
-    double time_constant;          ///< over this T'do [s]
+    std::size_t unit, first, end;  ///< indices of its states
+    std::size_t flux;              ///< index of E'q, whose input is Efd
+    double time_constant;          ///< the T'do of its equation [s]
   };
   struct Governor {
-    std::size_t unit, speed;  ///< place of the speed deviation
+    std::size_t unit, speed;  ///< index of the speed deviation
     double inertia;           ///< H [s]
     double last, now;         ///< power at t - h and t [pu]
   };
@@ -137,14 +137,14 @@ class PsseStepper {
     Complex current;
     return system_->signals(e.unit, t, mixed.data(), current).Efd;
   }
-  /// Takes states back to their limits; one that stands there has no past derivative.
+  /// Clamps states at their limits; a clamped state has no past derivative.
   void clamp(std::vector<double>& y, std::vector<double>& f_before) const {
     const auto free = y;
     (void)system_->clamp_states(y.data());
     for (std::size_t i = 0; i < states_; ++i)
       if (y[i] != free[i]) f_before[i] = 0.0;
   }
-  /// All states, with the exciters' at t + h.
+  /// All states, with those of the exciters at t + h.
   std::vector<double> advanced_exciters(double t) {
     auto fine = y_, f = f_;
     for (int k = 0; k < exciter_steps_; ++k) {
@@ -174,9 +174,9 @@ class PsseStepper {
 };
 
 /// Calls see(time, signals, states) of plant `plant` every h seconds until `end` [s], twice at the switching
-/// instant, the only one until then (of the event or of a plant's effects) and a multiple of h. A fourth
-/// argument of `see`, if it takes one, is the real and imaginary voltage of every bus [pu]. `exciter_steps`:
-/// how many the exciters take within h; `tolerance`: of the network [pu].
+/// time. There must be only one switching time (of the event or of a plant's effects), a multiple of h. An
+/// optional fourth argument of `see` is the real and imaginary voltage of every bus [pu]. `exciter_steps`:
+/// substeps of the exciters within h; `tolerance`: of the network [pu].
 template <class See>
 void step_as_psse(const grid::Grid& grid, const network::Event& event, std::size_t plant, double h,
                   double end, const See& see, int exciter_steps = 1, double tolerance = kToTheEnd) {

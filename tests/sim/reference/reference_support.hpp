@@ -1,5 +1,5 @@
 #pragma once
-// Grids and comparisons shared by the tests of the reference integrator.
+// Grids and comparisons used by the tests of the reference integrator.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -28,7 +28,7 @@ network::Event trip(const grid::Grid& grid, int from, int to, const std::string&
   return event;
 }
 
-/// Largest distance of any channel from its first value.
+/// Largest deviation of any channel from its first value.
 double drift(const Trajectory& run) {
   double worst = 0.0;
   for (int row = 0; row < run.rows(); ++row) {
@@ -38,13 +38,13 @@ double drift(const Trajectory& run) {
   return worst;
 }
 
-TEST(Reference, StaysPutWithoutAFault) {
+TEST(Reference, IsSteadyWithoutAFault) {
   for (const char* name : {"ieee39_genrou", "ieee39_gencls", "ieee14_genrou"}) {
     const grid::Grid grid = configured_grid(name, Conventions::psse());
     const ReferenceRun run = run_reference(grid, {}, {});
     EXPECT_EQ(run.outcome, Outcome::stable);
     EXPECT_EQ(run.samples, 1801);
-    EXPECT_LT(drift(run), 1e-9) << name;  // asked for: drift < 1e-9 over 15 s
+    EXPECT_LT(drift(run), 1e-9) << name;  // required: drift < 1e-9 over 15 s
   }
 }
 
@@ -59,7 +59,7 @@ TEST(Reference, JacobianEqualsCentralDifferences) {
   std::vector<double> y(n, 0.0), yp(n, 0.0), low(n), high(n);
   for (const auto& unit : plants.units())
     std::copy(unit.operating.x.begin(), unit.operating.x.end(), y.begin() + unit.first);
-  std::mt19937_64 random(1);  // away from steady state, so that no term is zero by chance
+  std::mt19937_64 random(1);  // not in steady state, so that no term is zero by chance
   for (auto& value : y) value += 1e-3 * (static_cast<double>(random() % 2001) / 1000.0 - 1.0);
   system.solve_voltages(0.0, y.data());
   const double a = 7.0;
@@ -96,7 +96,7 @@ TEST(Reference, SolvedVoltagesSatisfyTheEquations) {
     system.solve_voltages(0.0, y.data());
     system.derivatives(0.0, y.data(), yp.data());
     system.residual(0.0, y.data(), yp.data(), f.data());
-    // currents of 1e2 pu through admittances of 1e6 pu leave 1e6 * 1e-16 * a few
+    // rounding of currents of 1e2 pu through admittances of 1e6 pu: a few times 1e6 * 1e-16
     for (double value : f) EXPECT_LT(std::abs(value), 1e-8);
   }
 }
@@ -109,21 +109,21 @@ TEST(Reference, BoltedFaultIsTheLimitOfFaultsThroughAnImpedance) {
   double last = 1e300;
   for (double x : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const ReferenceRun run = run_reference(grid, fault(grid, 2, 0.5, 0.6, {0.0, x}), options);
-    // Only what is continuous there: the voltage angle at V = 0 is held, through an impedance it is not.
+    // Only continuous channels: the voltage angle is kept at V = 0, but not behind an impedance.
     double worst = 0.0;
     for (int p = 0; p < 2; ++p)
       for (int c : {0, 1, 2, 3, 4})
         for (int k = 0; k < run.samples; ++k)
           worst = std::max(worst, std::abs(run.at(p, c)[k] - bolted.at(p, c)[k]));
     EXPECT_LT(worst, last / 5) << "x = "
-                               << x;  // first order in x: a tenth each time, with room for curvature
+                               << x;  // first order in x: a tenth each time, with a margin for curvature
     last = worst;
   }
   EXPECT_LT(last, 5e-3);  // fault currents of some 10 pu through 1e-5 pu, seen through 1/X'' on the small
                           // infinite impedance
 }
 
-TEST(Reference, ThetaIsHeldWhileTheTerminalIsBolted) {
+TEST(Reference, ThetaIsKeptDuringABoltedTerminalFault) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
   options.t_end = 1.0;
@@ -136,12 +136,12 @@ TEST(Reference, ThetaIsHeldWhileTheTerminalIsBolted) {
     EXPECT_EQ(run.at(1, 2)[k], 0.0);
     EXPECT_EQ(run.bus_v[run.samples + k], 0.0);
   }
-  EXPECT_GT(run.at(1, 0)[60], 0.9);  // sample 60 is the instant itself: the value before
+  EXPECT_GT(run.at(1, 0)[60], 0.9);  // sample 60 is the switching time: the value before
   EXPECT_GT(run.at(1, 0)[73], 0.5);
   EXPECT_EQ(run.bus_theta[run.samples + 30], run.at(1, 1)[30]);
 }
 
-TEST(Reference, ASwitchingInstantHasTwoLimits) {
+TEST(Reference, SwitchingTimeHasTwoLimits) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
   options.t_end = 1.0;
@@ -158,9 +158,9 @@ TEST(Reference, ASwitchingInstantHasTwoLimits) {
       EXPECT_EQ(before.at(1, 0)[k], 0.0);
       EXPECT_GT(after.at(1, 0)[k], 0.5);
     } else {
-      EXPECT_NEAR(before.at(1, 0)[k], after.at(1, 0)[k], 1e-7);  // the same integration, other stop points
+      EXPECT_NEAR(before.at(1, 0)[k], after.at(1, 0)[k], 1e-7);  // the same integration with other stop times
     }
-    EXPECT_NEAR(before.at(1, 1)[k], after.at(1, 1)[k], 1e-7);  // states do not jump
+    EXPECT_NEAR(before.at(1, 1)[k], after.at(1, 1)[k], 1e-7);  // states are continuous
   }
 }
 
@@ -176,10 +176,10 @@ TEST(Reference, AnEventAtTheStartLeavesTheOperatingPointAsFirstSample) {
   EXPECT_EQ(run_reference(grid, event, options).at(1, 0)[0], 0.0);
 }
 
-TEST(Reference, AReclosedLineEndsWhereItBegan) {
+TEST(Reference, ReclosingRestoresTheOperatingPoint) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   ReferenceOptions options;
-  options.t_end = 60.0;  // the damped swing dies out
+  options.t_end = 60.0;  // the swing decays
   options.rate = 10.0;
   const ReferenceRun reclosed = run_reference(grid, trip(grid, 2, 3, "1", 1.0, 1.4), options);
   const ReferenceRun open = run_reference(grid, trip(grid, 2, 3, "1", 1.0), options);
@@ -192,14 +192,14 @@ TEST(Reference, AReclosedLineEndsWhereItBegan) {
       << "an open line moves the operating point";
 }
 
-TEST(Reference, AnInfiniteBusStaysPut) {
+TEST(Reference, InfiniteBusKeepsItsVoltage) {
   const grid::Grid grid = two_machine_grid(Conventions::psse());
   const ReferenceRun run = run_reference(grid, fault(grid, 2, 0.5, 0.6), {});
   for (int k = 0; k < run.samples; ++k) {
     EXPECT_EQ(run.at(0, 0)[k], run.at(0, 0)[0]);
     EXPECT_EQ(run.at(0, 1)[k], 0.0);
   }
-  EXPECT_GT(run.largest_spread, 0.1);  // while the machine does swing
+  EXPECT_GT(run.largest_spread, 0.1);  // although the machine swings
 }
 
 TEST(Reference, StatorResistanceIsInTheBalance) {
@@ -224,7 +224,7 @@ TEST(Reference, ConvergesWithItsTolerance) {
   options.atol = 1e-12;
   const ReferenceRun fine = run_reference(grid, event, options);
   ASSERT_EQ(usual.outcome, Outcome::stable);
-  // A hundredth of what the lanes are allowed (1e-4), so that the reference does not blur that comparison.
+  // A hundredth of the limit of the SIMD kernel (1e-4), so that the reference's error is negligible there.
   EXPECT_LT(largest_difference(usual, fine), 1e-6);
 }
 
@@ -246,7 +246,7 @@ TEST(Reference, ALossOfSynchronismEndsTheRun) {
 TEST(Reference, RefusesATripThatCutsOffABus) {
   grid::Grid grid = two_machine_grid(Conventions::psse());
   grid.network.branches.erase(grid.network.branches.begin() + 1, grid.network.branches.end());
-  grid.plants.pop_back();  // bus 2 hangs on the infinite bus by one line; bus 3 is not connected at all
+  grid.plants.pop_back();  // bus 2 is connected to the infinite bus by one line; bus 3 is isolated
   try {
     run_reference(grid, {}, {});
     FAIL() << "a bus without connection was accepted";

@@ -23,11 +23,11 @@ TEST(Downsample, TakesChannelsWindowAndEveryNthSample) {
   std::iota(record.begin(), record.end(), 100.0f);
   std::vector<float> out(s.values());
   s.apply(record.data(), 20, out.data());
-  EXPECT_EQ(out, (std::vector<float>{5.0f, 9.0f, 13.0f}));  // samples 5, 9, 13 of Q, less its sample 0
+  EXPECT_EQ(out, (std::vector<float>{5.0f, 9.0f, 13.0f}));  // samples 5, 9, 13 of Q, minus its sample 0
   EXPECT_DOUBLE_EQ(s.rate, 2.5);
 }
 
-TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
+TEST(Downsample, RelativeFormIsIndependentOfTheAmplitude) {
   mpi::store::DatasetHeader header;
   header.rate = 1.0;
   header.samples = 4;
@@ -53,7 +53,7 @@ TEST(Downsample, RelativeFormDoesNotSeeTheAmplitude) {
   EXPECT_NEAR(both[13], 3.0f * r, 1e-6);
 }
 
-TEST(Downsample, NamesEveryProblemAtOnce) {
+TEST(Downsample, ReportsAllProblemsAtOnce) {
   mpi::store::DatasetHeader header;
   header.rate = 10.0;
   header.samples = 20;
@@ -110,7 +110,7 @@ std::string refusal(const mpi::store::Dataset& dataset, const StreamOptions& opt
   }
 }
 
-/// Changes shard 1 behind the journal's back; its length is journalled as it is then.
+/// Changes shard 1 without its journal entry; only its length is journalled anew.
 mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
                                          const std::function<void(mpi::store::ShardData&)>& change) {
   const auto file = dataset.shards[1].path;
@@ -126,7 +126,7 @@ mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
   return mpi::store::open_dataset(dataset.path);
 }
 
-TEST(ShardStream, RefusesWhatIsNotAsItWasJournalledUnlessTrusted) {
+TEST(ShardStream, RefusesDataThatContradictTheJournalUnlessTrusted) {
   test::Folder folder("altered");
   const mpi::store::Dataset altered =
       with_shard_1_changed(test::make_dataset(folder.path), [](mpi::store::ShardData& d) {
@@ -158,7 +158,7 @@ TEST(ShardStream, RefusesOtherShapesTrustedOrNot) {
     }
 }
 
-TEST(ShardStream, TrustChangesNothingThatIsRead) {
+TEST(ShardStream, TrustDoesNotChangeTheData) {
   test::Folder folder("trust");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   const ShardStream checked(dataset, test::whole_record()),
@@ -181,14 +181,14 @@ TEST(EpochOrder, DependsOnSeedAndEpochOnly) {
   auto sorted = order;
   std::sort(sorted.begin(), sorted.end());
   EXPECT_EQ(sorted, rows);
-  // Displacements of a uniform shuffle average a third of the length; blocks in shuffled windows come close
-  // to that.
+  // The mean displacement of a uniform shuffle is a third of the length; blocks in shuffled windows are close
+  // to it.
   double displacement = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) displacement += std::abs(double(order[i]) - double(i));
   EXPECT_GT(displacement / 40000.0 / 40000.0, 0.25);
 }
 
-TEST(BatchReader, StartsInTheMiddleAsIfItHadReadTheBeginning) {
+TEST(BatchReader, StartsInTheMiddleWithTheSameBatches) {
   test::Folder folder("middle");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{1} << 30}) {
@@ -249,7 +249,7 @@ TEST(Split, KeepsRowsOfAnEventTogether) {
   EXPECT_EQ(seen.size(), 40u);
 }
 
-/// 400 rows that are judged and 170 of another dataset that only train.
+/// 400 rows for training and test, and 170 training rows of another dataset.
 struct TwoDatasets {
   test::Folder folder, other;
   mpi::store::Dataset dataset = test::make_dataset(folder.path), more;
@@ -277,7 +277,7 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   EXPECT_EQ(split.validation.size(), 36u);
   EXPECT_EQ(split.train.size(), 324u + 153u);
   for (const auto r : split.train) EXPECT_NE(labels.generator[r], 33);
-  // A row of the second dataset, wherever the series are kept.
+  // A row of the second dataset, for series in memory and on disk.
   const ShardStream own(two.more, test::whole_record()),
       disk(two.dataset, test::whole_record(), {.memory_limit = 0}, two.more);
   std::vector<float> a(two.stream.selection().values()), b = a, c = a;
@@ -337,7 +337,8 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
     for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
   EXPECT_EQ(generators(labels).size(), 10u);
   EXPECT_THROW((void)leave_one_out(labels, {99, 0.1, 1}), InputError);
-  const RowSplit nested = leave_one_out(labels, {33, 0.1, 1, 34});  // 33 takes no part, 34 is judged
+  const RowSplit nested =
+      leave_one_out(labels, {33, 0.1, 1, 34});  // 33 is excluded, 34 is the test generator
   EXPECT_EQ(nested.test.size(), 40u);
   EXPECT_EQ(nested.train.size() + nested.validation.size(), 320u);
   for (const auto* part : {&nested.train, &nested.validation, &nested.test})
@@ -346,7 +347,7 @@ TEST(Split, LeavesOutEveryRowOfTheGenerator) {
     for (const auto r : *part) EXPECT_NE(labels.generator[r], 33);
 }
 
-TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
+TEST(Split, PartialDataAreTheFirstRowsOfBothDatasets) {
   const TwoDatasets two("share");
   const ShardStream& stream = two.stream;
   const RowSplit whole = leave_one_out(stream.labels(), {33, 0.1, 1});
@@ -359,11 +360,11 @@ TEST(Split, AShareIsTheFirstRowsOfBothDatasets) {
   EXPECT_THROW(keep_share(half, stream.labels(), 1e-6), InputError);
 }
 
-TEST(Features, SeeTheTrainingRowsOnly) {
+TEST(Features, AreFittedToTrainingRowsOnly) {
   test::Folder folder("fit"), spoilt("spoilt");
   test::Plan plan;
   const mpi::store::Dataset dataset = test::make_dataset(folder.path, plan);
-  plan.shift_generator = 33;  // the left-out generator's records are moved far away
+  plan.shift_generator = 33;  // the records of the left-out generator are shifted far away
   const mpi::store::Dataset moved = test::make_dataset(spoilt.path, plan);
   const ShardStream a(dataset, test::whole_record()), b(moved, test::whole_record());
   const RowSplit split = leave_one_out(a.labels(), {33, 0.1, 1});
@@ -373,7 +374,7 @@ TEST(Features, SeeTheTrainingRowsOnly) {
     EXPECT_EQ(fa.scale().mean, fb.scale().mean);
     EXPECT_EQ(fa.scale().deviation, fb.scale().deviation);
     const Features all = Features::fit(b, test::all_rows(b.labels().rows), components);
-    EXPECT_NE(all.scale().mean, fb.scale().mean);  // the shift would show if those rows were seen
+    EXPECT_NE(all.scale().mean, fb.scale().mean);  // the shift would be visible if those rows were used
   }
 }
 
@@ -394,7 +395,7 @@ TEST(Features, GiveZeroMeanAndUnitVariance) {
   }
 }
 
-TEST(Pca, ReconstructsWhatItSaysItDoes) {
+TEST(Pca, ReconstructionErrorMatchesItsReport) {
   test::Folder folder("pca");
   const ShardStream stream(test::make_dataset(folder.path), test::whole_record());
   const auto rows = test::all_rows(400);
@@ -428,10 +429,10 @@ TEST(Pca, ReconstructsWhatItSaysItDoes) {
     EXPECT_LE(worst, last + 1e-9);
     last = worst;
   }
-  EXPECT_LT(last, 1e-9);  // 20 components of 20 samples keep all
+  EXPECT_LT(last, 1e-9);  // 20 components of 20 samples are complete
 }
 
-TEST(Pca, RefusesPartsOfASecond) {
+TEST(Pca, RefusesFractionsOfASecond) {
   test::Folder folder("second");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path);
   auto recipe = test::whole_record();

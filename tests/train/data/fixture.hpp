@@ -1,6 +1,5 @@
 #pragma once
-// Small made-up data sets for the tests of train/: written through the real shard writer, into a folder of
-// their own.
+// Small synthetic datasets for the tests of train/, written by the shard writer into a separate folder.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -32,13 +31,13 @@ struct Plan {
   double rate = 20.0;
   int rows_per_point = 1;                ///< neighbouring rows with the same parameters
   std::optional<std::size_t> spoil_row;  ///< gets a value that is not a number
-  int shift_generator = 0;               ///< its records are moved by 100
+  int shift_generator = 0;               ///< its records are shifted by 100
   bool electrical = false;               ///< also Q and V, and an event after a quarter of the samples
   std::uint64_t seed = 11;
 };
 
 /// Channels "P" and "speed": a damped swing whose frequency and decay follow from H and D (uniform 1-10 and
-/// 1-8), with an amplitude and a level that tell nothing. X is a constant parameter. Row i belongs to
+/// 1-8), with an uninformative amplitude and level. X is a constant parameter. Row i belongs to
 /// generator 30 + i % 10.
 inline mpi::store::Dataset make_dataset(const std::filesystem::path& folder, const Plan& plan = {}) {
   make_folder(folder / "shards");

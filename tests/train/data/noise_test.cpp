@@ -1,4 +1,4 @@
-// Noise of records: what it depends on, and how large it is.
+// Noise of records: its dependencies and its standard deviation.
 #include "train/data/noise.hpp"
 
 #include <cmath>
@@ -20,7 +20,7 @@ mpi::store::DatasetHeader header(std::vector<std::string> channels) {
   h.config = "record.frequency = [0.1, 0.02]\n";
   return h;
 }
-/// What is added to a record of constant value.
+/// Noise added to a record of constant value.
 std::vector<double> added(const std::vector<std::string>& channels, const NoiseRecipe& recipe,
                           std::uint64_t row, float value = 0) {
   std::vector<float> record(channels.size() * kSamples, value);
@@ -38,7 +38,7 @@ std::span<const double> channel(const std::vector<double>& record, std::size_t c
   return {record.data() + c * kSamples, kSamples};
 }
 
-TEST(Noise, DependsOnSeedRowAndQuantityAlone) {
+TEST(Noise, DependsOnSeedRowAndQuantityOnly) {
   const auto P = added({"P"}, {0.001, 1}, 5);
   const auto both = added({"V", "P"}, {0.001, 1}, 5);
   EXPECT_TRUE(std::ranges::equal(P, channel(both, 1)));
@@ -47,22 +47,22 @@ TEST(Noise, DependsOnSeedRowAndQuantityAlone) {
   EXPECT_NE(P, added({"P"}, {0.001, 2}, 5));
 }
 
-TEST(Noise, HasEachQuantitysSize) {
-  constexpr double kLevel = 0.005, kLoose = 0.04;  // 4000 samples tell a deviation to 1.1 %
+TEST(Noise, HasTheScaleOfEachQuantity) {
+  constexpr double kLevel = 0.005, kLoose = 0.04;  // 4000 samples determine a standard deviation to 1.1 %
   const auto noise = added({"P", "Q", "V", "theta", "Ifd", "speed"}, {kLevel, 1}, 0, 2.0f);
   for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(deviation(channel(noise, c)) / kLevel, 1, kLoose);
   EXPECT_NEAR(deviation(channel(noise, 4)) / kLevel, 2, 2 * kLoose);
   EXPECT_NEAR(deviation(channel(noise, 5)) / kLevel, 0.05, 0.05 * kLoose);
 }
 
-TEST(Noise, OfFrequencyIsThetasBehindItsFilter) {
+TEST(Noise, OfFrequencyIsFilteredNoiseOfTheta) {
   const auto frequency = added({"frequency"}, {0.001, 1}, 3), theta = added({"theta"}, {0.001, 1}, 3);
   std::vector<double> angle(kSamples);
   sim::terminal_angle(frequency.data(), kSamples, 120, 60, {0.1, 0.02}, angle.data());
   for (std::size_t k = 0; k < kSamples; ++k) EXPECT_NEAR(angle[k], theta[k] - theta[0], 1e-6);
 }
 
-TEST(Noise, NamesChannelsThatNoInstrumentShows) {
+TEST(Noise, NamesChannelsThatNoInstrumentMeasures) {
   try {
     RecordNoise(header({"P", "delta", "Tm"}), {0.001, 1});
     FAIL() << "went on";
@@ -92,7 +92,7 @@ TEST(Noise, IsTheSameInMemoryAndFromTheDiskAndInAnyOrder) {
 
 constexpr NoiseLevels kLevels = {1e-4, 5e-3, 0.25};
 
-TEST(Noise, LevelsOfTrainingAreDrawnForRowAndDraw) {
+TEST(Noise, TrainingLevelsAreDrawnPerRowAndDraw) {
   const RecordNoise noise(header({"P"}), {0.001, 1, kLevels});
   constexpr int kRows = 4000;
   int zero = 0, low = 0, moved = 0;
@@ -110,7 +110,7 @@ TEST(Noise, LevelsOfTrainingAreDrawnForRowAndDraw) {
   EXPECT_GT(moved, kRows * 9 / 10);
 }
 
-TEST(Noise, OfTrainingHasItsLevelsSizeAndDiffersFromDrawToDraw) {
+TEST(Noise, TrainingNoiseFollowsItsLevelAndDiffersBetweenDraws) {
   const RecordNoise noise(header({"P", "speed"}), {0.001, 1, kLevels});
   int noisy = 0;
   for (std::uint64_t row = 0; row < 40; ++row) {
@@ -129,12 +129,12 @@ TEST(Noise, OfTrainingHasItsLevelsSizeAndDiffersFromDrawToDraw) {
     double product = 0;
     for (std::size_t k = 0; k < kSamples; ++k) product += drawn[k] * drawn[kSamples + k];
     EXPECT_LT(std::abs(product) / kSamples / (0.05 * level * level),
-              0.08);  // channels have nothing in common
+              0.08);  // channels are uncorrelated
   }
   EXPECT_GT(noisy, 10);
 }
 
-TEST(Noise, OfTrainingIsTheSameInMemoryAndFromTheDisk) {
+TEST(Noise, TrainingNoiseIsTheSameInMemoryAndFromTheDisk) {
   const test::Folder folder("noise-training");
   test::Plan plan;
   plan.electrical = true;

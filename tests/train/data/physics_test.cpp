@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string> kNames = {"speed", "P", "Q", "V", "Ifd", "frequency"};
 
-/// Steady until 1 s, then simple functions of the time behind it.
+/// Steady until 1 s, then simple functions of the time after it.
 std::vector<float> record(double rate, std::size_t samples) {
   std::vector<float> r(kNames.size() * samples);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -24,7 +24,7 @@ std::vector<float> record(double rate, std::size_t samples) {
   return r;
 }
 
-TEST(Physics, IsWhatTheMachinesEquationsAreWrittenIn) {
+TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
   constexpr double rate = 120, X = 0.3;
   constexpr std::size_t samples = 720;
   const Physics physics(kNames, {rate, 0.5, 6.0, 1.0, X});
@@ -32,15 +32,16 @@ TEST(Physics, IsWhatTheMachinesEquationsAreWrittenIn) {
   std::vector<float> out(physics.channels() * physics.cells() + physics.levels());
   const auto in = record(rate, samples);
   physics.apply(in.data(), samples, out.data());
-  // the cell that begins at 2.0 s is one of 1/30 s; the one before it a single sample
+  // the bin that begins at 2.0 s has 1/30 s; the one before it a single sample
   const std::size_t at = 180;
   const auto value = [&](std::size_t channel, std::size_t cell) {
     return out[channel * physics.cells() + cell];
   };
-  const double t = 1.0 + 1.5 / rate;  // middle of the four samples, behind the event
+  const double t = 1.0 + 1.5 / rate;  // middle of the four samples, after the event
   const double P = 0.8 + 0.3 * t, V = 1.0 - 0.1 * t, Q = 0.2;
   const double E = std::hypot(V + X * Q / V, X * P / V), E0 = std::hypot(1.06, 0.24);
-  constexpr double kCurved = 2e-5;  // a mean over four samples against the value in their middle
+  constexpr double kCurved =
+      2e-5;  // difference between the mean of four samples and the value in their middle
   EXPECT_NEAR(value(0, at), P / V - 0.8, kCurved);
   EXPECT_NEAR(value(1, at), Q / V - 0.2, kCurved);
   EXPECT_NEAR(value(2, at), V - 1.0, kCurved);
@@ -58,14 +59,14 @@ TEST(Physics, IsWhatTheMachinesEquationsAreWrittenIn) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(levels[i], steady[i], 1e-6) << i;
 }
 
-TEST(Physics, CoarsensBehindTheEventAndEndsInsideTheWindow) {
+TEST(Physics, CoarsensAfterTheEventAndEndsInsideTheWindow) {
   const Physics physics(kNames, {120, 0.5, 10.0, 1.0, 0.3});
   // 0.5 to 2 s sample by sample, to 6 s in thirtieths, to 10 s in fifteenths
   EXPECT_EQ(physics.cells(), 180u + 120u + 60u);
   EXPECT_EQ(physics.samples(), 1200u);
 }
 
-TEST(Physics, ShowsWhatThereIs) {
+TEST(Physics, UsesTheAvailableChannels) {
   EXPECT_EQ(Physics({"P", "Q", "V"}, {60, 0, 2, 1, 0.3}).channels(), 6u);
   EXPECT_EQ(Physics({"P", "Q", "V", "frequency"}, {60, 0, 2, 1, 0.3}).channels(), 6u);
   EXPECT_EQ(Physics({"P", "Q", "V", "Ifd"}, {60, 0, 2, 1, 0.3}).levels(), 6u);
@@ -77,7 +78,7 @@ TEST(Physics, ShowsWhatThereIs) {
   }
 }
 
-TEST(Whitening, MakesUncorrelatedNumbersOfOneSizeAndComesBackFromAFile) {
+TEST(Whitening, DecorrelatesAndNormalisesAndIsRestoredFromAFile) {
   test::Folder folder("white");
   test::Plan plan;
   plan.electrical = true;
@@ -102,7 +103,7 @@ TEST(Whitening, MakesUncorrelatedNumbersOfOneSizeAndComesBackFromAFile) {
       for (std::size_t k = 0; k <= i; ++k) product[i * kept + k] += x(r, i) * x(r, k) / 2000;
     }
   for (std::size_t i = 0; i < kept; ++i) {
-    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // directions of 1e-9 of the variance in single precision
+    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // components with 1e-9 of the variance, in single precision
     for (std::size_t k = 0; k <= i; ++k)
       EXPECT_NEAR(product[i * kept + k], i == k ? 1.0 : 0.0, 0.05) << i << ", " << k;
   }
@@ -110,7 +111,7 @@ TEST(Whitening, MakesUncorrelatedNumbersOfOneSizeAndComesBackFromAFile) {
   EXPECT_EQ(out, again);
 }
 
-/// Physical series of a made-up data set whose rows draw their noise.
+/// Physical series of a synthetic dataset whose rows draw their noise.
 struct NoisyWorld {
   test::Folder folder{"white-noise"};
   mpi::store::Dataset dataset = made(folder.path);
@@ -136,7 +137,7 @@ struct NoisyWorld {
   }
 };
 
-TEST(Whitening, ShrinksWhatNoiseBuriesAndTellsTheLevel) {
+TEST(Whitening, ShrinksNoisyComponentsAndIncludesTheLevel) {
   const NoisyWorld w;
   const Features f = Features::fit(w.stream, test::all_rows(w.dataset.rows), 5);
   EXPECT_EQ(f.sizes().noisy, 1u);
@@ -150,7 +151,7 @@ TEST(Whitening, ShrinksWhatNoiseBuriesAndTellsTheLevel) {
   std::size_t shrunk = 0;
   for (std::size_t i = 0; i < kept; ++i) {
     EXPECT_NEAR(mean_square(clean, i), 1.0, 0.1) << i;
-    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, behind Wiener's factor
+    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, after the Wiener factor
     shrunk += mean_square(noisy, i) < 0.5;
   }
   EXPECT_GT(shrunk, 0u);

@@ -10,7 +10,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Where the coefficient of `of` stands that belongs to the pair `a` < `b`; the first of two.
+/// Index of the first of two coefficients of `of` for the pair `a` < `b`.
 std::size_t place_of(std::size_t signals, std::size_t of, std::size_t a, std::size_t b) {
   std::size_t at = 0;
   for (std::size_t y = 0; y < signals; ++y)
@@ -23,7 +23,7 @@ std::size_t place_of(std::size_t signals, std::size_t of, std::size_t a, std::si
   return at;
 }
 
-TEST(Regressions, FindWhatIsConstantWhateverLevelAndSizeTheSignalsHave) {
+TEST(Regressions, FindConstantRelationsAtAnyOffsetAndScale) {
   constexpr std::size_t kSignals = 4, kInstants = 90;
   std::vector<float> weights(kInstants), series(kSignals * kInstants), found(regression_count(kSignals));
   for (const float size : {1.0f, 1e-3f}) {
@@ -45,7 +45,7 @@ TEST(Regressions, FindWhatIsConstantWhateverLevelAndSizeTheSignalsHave) {
   }
 }
 
-TEST(Regressions, OfSignalsThatAreOneOrDoNotMoveAreFinite) {
+TEST(Regressions, AreFiniteForIdenticalOrConstantSignals) {
   const std::vector<float> weights(5, 1.0f), series = {1, 2, 3, 4, 9, 1, 2, 3, 4, 9, 5, 5, 5, 5, 5};
   std::vector<float> found(regression_count(3));
   ASSERT_EQ(found.size(), 6u);
@@ -53,7 +53,7 @@ TEST(Regressions, OfSignalsThatAreOneOrDoNotMoveAreFinite) {
   for (const float c : found) EXPECT_TRUE(std::isfinite(c));
 }
 
-TEST(Regressions, StandBehindTheWhitenedNumbersAndComeBackFromAFile) {
+TEST(Regressions, FollowTheWhitenedFeaturesAndAreRestoredFromAFile) {
   test::Folder folder("regressed");
   test::Plan plan;
   plan.electrical = true;
@@ -83,7 +83,7 @@ TEST(Regressions, StandBehindTheWhitenedNumbersAndComeBackFromAFile) {
   }
 }
 
-TEST(Features, OfSecondsAsStepsAreTheSameNumbersInTheOrderOfTime) {
+TEST(Features, SecondsAsStepsReorderTheSameFeaturesInTime) {
   test::Folder folder("steps");
   test::Plan plan;
   plan.samples = 60;
@@ -113,13 +113,13 @@ TEST(Features, OfSecondsAsStepsAreTheSameNumbersInTheOrderOfTime) {
                     out[1][r * size + (c * kComponents + k) * kSeconds + s]);
 }
 
-TEST(Split, AcrossDatasetsJudgesOneWholeAndTrainsOnTheOther) {
+TEST(Split, AcrossDatasetsTrainsOnOneAndJudgesTheOther) {
   Labels labels;
   labels.rows = 50;
   labels.parameters = 1;
   labels.judged = 20;
   for (std::size_t i = 0; i < labels.rows; ++i) {
-    labels.values.push_back(static_cast<double>(i / 2));  // two rows a point
+    labels.values.push_back(static_cast<double>(i / 2));  // two rows per databank point
     labels.sample_id.push_back(i);
     labels.generator.push_back(30);
   }

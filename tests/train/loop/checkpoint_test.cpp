@@ -1,4 +1,4 @@
-// Checkpoints: every byte that has changed is found.
+// Checkpoints: every changed byte is detected.
 #include "train/loop/detail/checkpoint.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace swingbank::train::loop {
 namespace {
 
-TEST(Checkpoint, EveryFlippedByteIsFound) {
+TEST(Checkpoint, DetectsEveryFlippedByte) {
   const auto folder = std::filesystem::temp_directory_path() / ("checkpoint-" + std::to_string(::getpid()));
   make_folder(folder);
   const auto file = folder / "run.checkpoint";

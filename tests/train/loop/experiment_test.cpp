@@ -1,4 +1,4 @@
-// What an experiment says of rows that only train, and of the runs of a preset.
+// Training rows of an experiment, and the runs of a preset.
 #include "train/loop/experiment.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 namespace swingbank::train::loop {
 namespace {
 
-/// An experiment with further lines at its top, in its preset and behind it.
+/// An experiment with additional lines at its top, in its preset and after it.
 Experiment experiment(const std::string& top, const std::string& in_preset, const std::string& behind) {
   const std::filesystem::path folder = testing::TempDir();
   for (const char* name : {"data.toml", "more.toml"}) std::ofstream(folder / name) << "\n";
@@ -28,7 +28,7 @@ Experiment experiment(const std::string& top, const std::string& in_preset, cons
   return read_experiment(file);
 }
 
-TEST(Experiment, RowsThatOnlyTrainAreOfTheNetworksThatSaySo) {
+TEST(Experiment, TrainingRowsApplyToTheNetworksThatRequestThem) {
   const Experiment e = experiment("training_dataset = \"more.toml\"", "training_draws = 5",
                                   "[preset.quick.mlp]\ntraining_rows = true\n");
   EXPECT_EQ(e.print("quick", "training_rows"), "mlp");
@@ -37,13 +37,13 @@ TEST(Experiment, RowsThatOnlyTrainAreOfTheNetworksThatSaySo) {
   EXPECT_EQ(experiment("", "", "").print("quick", "training_rows"), "none");
 }
 
-TEST(Experiment, RowsThatOnlyTrainNeedADatasetAndEvents) {
+TEST(Experiment, TrainingRowsNeedADatasetAndEvents) {
   const std::string wanted = "[preset.quick.mlp]\ntraining_rows = true\n";
   EXPECT_THROW(experiment("", "", wanted), InputError);
   EXPECT_THROW(experiment("training_dataset = \"more.toml\"", "training_draws = 0", wanted), InputError);
 }
 
-TEST(Experiment, TasksAreNetworkNoiseAndFoldAndAFloorNeedsNoise) {
+TEST(Experiment, TasksCombineNetworkNoiseAndFoldAndAFloorNeedsNoise) {
   const Experiment e = experiment("", "", "[preset.quick.gru]\nnoise = [0.0]\ntest_rows = 7\n");
   EXPECT_EQ(
       e.print("quick", "tasks"),
@@ -52,7 +52,7 @@ TEST(Experiment, TasksAreNetworkNoiseAndFoldAndAFloorNeedsNoise) {
   EXPECT_EQ(e.judging("quick", "mlp").test_rows, 0u);
 }
 
-TEST(Experiment, SharesAreRunsOfTheFirstLevelAndFold) {
+TEST(Experiment, DataFractionsRunAtTheFirstLevelAndFold) {
   const Experiment e = experiment("", "", "[preset.quick.gru]\nshares = [0.25, 0.5]\n");
   EXPECT_THAT(e.print("quick", "tasks"),
               testing::HasSubstr("gru 0.001 31\ngru 0 30 0.25\ngru 0 30 0.5\nmlp 0 30"));
@@ -62,7 +62,7 @@ TEST(Experiment, SharesAreRunsOfTheFirstLevelAndFold) {
 const std::string kPhysicsAtManyLevels =
     "[preset.quick.mlp]\nform = \"physics\"\ntraining_noise = [0.0001, 0.005]\ntraining_noise_zero = 0.25\n";
 
-TEST(Experiment, NetworksTrainedAtManyLevelsAreToldThem) {
+TEST(Experiment, NetworksTrainedAtManyLevelsReceiveTheLevel) {
   const Experiment e = experiment("", "", kPhysicsAtManyLevels + "posterior_epochs = 2\nset_aside = 1\n");
   const TrainingRecipe& t = e.training("quick", "mlp");
   ASSERT_TRUE(t.noise_levels);
@@ -77,7 +77,7 @@ TEST(Experiment, NetworksTrainedAtManyLevelsAreToldThem) {
       InputError);
 }
 
-TEST(Experiment, NetworksThatCorrectTrainAtTheLevelTheyAreJudgedAt) {
+TEST(Experiment, CorrectingNetworksTrainAtTheirTestLevel) {
   const std::string preset =
       kPhysicsAtManyLevels + "[preset.quick.corrects]\nlike = \"mlp\"\ncorrects = \"closed-form\"\n";
   const Experiment e = experiment("", "networks = [\"mlp\", \"corrects\"]", preset);
@@ -87,7 +87,7 @@ TEST(Experiment, NetworksThatCorrectTrainAtTheLevelTheyAreJudgedAt) {
                InputError);
 }
 
-TEST(Experiment, RegressionsAndSecondsAsStepsNeedTheirForms) {
+TEST(Experiment, RegressionsAndSecondsAsStepsRequireTheirInputForms) {
   const Experiment e = experiment("", "",
                                   "[preset.quick.mlp]\nform = \"physics\"\nregressions = true\n"
                                   "[preset.quick.gru]\npca_components = 3\nseconds_as_steps = true\n");
@@ -98,7 +98,7 @@ TEST(Experiment, RegressionsAndSecondsAsStepsNeedTheirForms) {
   EXPECT_THROW(experiment("", "", "[preset.quick.gru]\nseconds_as_steps = true\n"), InputError);
 }
 
-TEST(Experiment, AcrossDatasetsEveryNetworkTrainsOnTheRowsThatOnlyTrain) {
+TEST(Experiment, AcrossDatasetsEveryNetworkUsesTheTrainingRows) {
   const std::filesystem::path folder = testing::TempDir();
   const auto across = [&](const std::string& rows) {
     (void)experiment("", "", "");  // its datasets

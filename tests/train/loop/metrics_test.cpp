@@ -12,7 +12,7 @@
 namespace swingbank::train::loop {
 namespace {
 
-TEST(Metrics, AgreeWithFiguresWorkedOutByHand) {
+TEST(Metrics, MatchHandCalculatedValues) {
   // Two rows; H true 2 and 4, D true 1 and 1, X constant.
   const std::vector<double> truth = {2.0, 1.0, 0.3, 4.0, 1.0, 0.3},
                             predicted = {3.0, 1.5, 0.3, 4.0, 0.5, 0.3}, mean = {5.0, 2.0, 0.3};
@@ -35,12 +35,12 @@ TEST(Metrics, AgreeWithFiguresWorkedOutByHand) {
   EXPECT_DOUBLE_EQ(*s.H_ratio, 0.1);
 }
 
-TEST(Metrics, HaveNoHWhereThereIsNone) {
+TEST(Metrics, OmitHWhenAbsent) {
   const std::vector<double> v = {1.0, 2.0}, mean = {0.0};
   EXPECT_FALSE(score({v, v, mean, {"K"}, {"pu"}, {0.0}, {3.0}}).H_ratio);
 }
 
-TEST(Experiment, FilesOfTheRepositoryAreSound) {
+TEST(Experiment, FilesOfTheRepositoryAreValid) {
   const std::filesystem::path folder = SWINGBANK_SOURCE "/configs/experiments";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -56,7 +56,7 @@ TEST(Experiment, FilesOfTheRepositoryAreSound) {
   EXPECT_EQ(files, 6);  // Tables IV, V and VI; across grids
 }
 
-TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
+TEST(Experiment, IsNamedAfterItsFile_WithoutAThesisTable) {
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("experiment-test-{}", ::getpid());
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "data.toml") << "draws = 1\n";
@@ -85,7 +85,7 @@ TEST(Experiment, WithoutATableOfTheThesisBearsTheFilesName) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Experiment, ATableOfANetworkChangesWhatItReadsAndHowItIsTrained) {
+TEST(Experiment, NetworkTableSetsInputAndTraining) {
   const auto file = std::filesystem::path(SWINGBANK_SOURCE) / "configs/experiments/ieee39_genrou.toml";
   const Experiment e = read_experiment(file);
   EXPECT_EQ(e.input("quick", "cnn").recipe.form, data::InputForm::both);
@@ -98,7 +98,7 @@ TEST(Experiment, ATableOfANetworkChangesWhatItReadsAndHowItIsTrained) {
   EXPECT_THROW((void)e.input("quick", "absent"), InputError);
 }
 
-TEST(Experiment, NamesEveryProblemWithItsLine) {
+TEST(Experiment, ReportsEveryProblemWithItsLine) {
   const auto file = std::filesystem::temp_directory_path() / "swingbank-experiment-test.toml";
   std::ofstream(file)
       << "table = \"IX\"\ntitle = 5\ndataset = \"absent.toml\"\nsplit = \"by-databank-point\"\n"

@@ -43,7 +43,7 @@ TEST(Networks, GiveOneOutputPerParameterStartedAtTheMean) {
   }
 }
 
-TEST(Networks, OutputOfTheThesissIsNeverNegative) {
+TEST(Networks, OutputOfTheThesisNetworksIsNonNegative) {
   for (const char* name : {"cnn", "gru", "lstm"}) {
     auto s = shape(3, 40, 2);
     s.output_bias = {-5.0f, 5.0f};
@@ -69,15 +69,15 @@ TEST(NetworksFull, MlpLearnsASquare) {
     last = loss.item<double>();
     if (step == 0) first = last;
   }
-  EXPECT_LT(last, 0.01 * first);  // a linear map leaves all but the mean
+  EXPECT_LT(last, 0.01 * first);  // a linear map explains only the mean
 }
 
-TEST(Networks, HaveTheThesisCounts) {
+TEST(Networks, ParameterCountsMatchTheThesis) {
   // kernel 112, lengths 450 -> 112 -> 56
   const std::int64_t conv = 6 * 112 * 256 + 256 + 256 * 112 * 512 + 512;
   const std::int64_t dense = 56 * 512 * 1024 + 1024 + 1024 * 256 + 256 + 256 * 14 + 14;
   EXPECT_EQ(parameter_count(*make_network("cnn", shape(6, 450, 14))), conv + dense);
-  EXPECT_NEAR(static_cast<double>(conv + dense), 44.5e6, 0.05e6);  // the figure of the thesis's layers
+  EXPECT_NEAR(static_cast<double>(conv + dense), 44.5e6, 0.05e6);  // number for the thesis's layers
   const std::int64_t out = 512 * 14 + 14;
   EXPECT_EQ(parameter_count(*make_network("lstm", shape(6, 450, 14))), 4 * 512 * (6 + 512 + 2) + out);
   EXPECT_EQ(parameter_count(*make_network("gru", shape(6, 450, 14))), 3 * 512 * (6 + 512 + 2) + out);
@@ -112,7 +112,7 @@ TEST(Adam, EqualsTorchAdam) {
     reference.step();
   }
   EXPECT_GT((ours - start).abs().max().item<double>(), 0.5);
-  // 200 steps of 1e-2, each rounded to 2^-24 relative, in another order of operations.
+  // Rounding of 200 steps of 1e-2, each to 2^-24 relative, with another order of operations.
   EXPECT_LT((ours - theirs).abs().max().item<double>(), 2e-5);
 }
 
@@ -141,7 +141,7 @@ TEST(Adam, DecaysMatricesAndShortensGradientsAsTorchDoes) {
     for (auto& w : theirs) w.mutable_grad() /= std::max(1.0, std::sqrt(square));
     reference.step();
   }
-  // 100 steps of 1e-2, each rounded to 2^-24 relative, in another order of operations
+  // rounding of 100 steps of 1e-2, each to 2^-24 relative, with another order of operations
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LT((ours[i] - theirs[i]).abs().max().item<double>(), 2e-5);
 }
 
@@ -151,7 +151,7 @@ TEST(Adam, LeavesParametersWithoutGradientAndClearsGradients) {
   used.sum().backward();
   adam.step(0.1);
   EXPECT_FALSE(used.grad().defined());
-  EXPECT_NEAR(used[0].item<double>(), 0.9, 1e-6);  // Adam's first step is the rate itself
+  EXPECT_NEAR(used[0].item<double>(), 0.9, 1e-6);  // Adam's first step equals the learning rate
   EXPECT_EQ(unused[0].item<double>(), 1.0);
 }
 

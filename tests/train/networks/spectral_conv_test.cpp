@@ -18,7 +18,7 @@ struct Shape {
 };
 class SpectralConv : public testing::TestWithParam<Shape> {};
 
-// at::conv1d in double is the reference: the same operator as torch::nn::Conv1d's.
+// The reference is at::conv1d in double, the operator of torch::nn::Conv1d.
 TEST_P(SpectralConv, EqualsConv1dWithItsGradients) {
   const Shape s = GetParam();
   at::manual_seed(3);
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Shape{7, 14, 2, 3, 2}, Shape{9, 1, 4, 4, 3}, Shape{1, 1, 2, 2, 1}, Shape{1, 6, 2, 2, 1},
                     Shape{2, 2, 1, 1, 1}));
 
-TEST(SpectralConv, LeavesOutTheGradientNobodyAskedFor) {
+TEST(SpectralConv, OmitsUnusedGradients) {
   const SpectralPlan plan(12, 3);
   const Tensor x = at::randn({12, 2, 3}), w = at::randn({3, 3, 4}).requires_grad_(true);
   spectral_conv(x, w, plan).sum().backward();
@@ -65,7 +65,7 @@ TEST(SpectralConv, RefusesOtherShapes) {
 
 TEST(PoolRelu, EqualsBiasReluAndMaxPoolWithGradients) {
   at::manual_seed(4);
-  for (const std::int64_t pool : {2, 4}) {  // 11 leaves a remainder of both
+  for (const std::int64_t pool : {2, 4}) {  // 11 is a multiple of neither
     const Tensor x = at::randn({11, 3, 5}).requires_grad_(true), bias = at::randn({5}).requires_grad_(true);
     const Tensor gradient = at::randn({11 / pool, 3, 5});
     const Tensor y = pool_relu(x, bias, pool);
@@ -76,7 +76,7 @@ TEST(PoolRelu, EqualsBiasReluAndMaxPoolWithGradients) {
     yr.backward(gradient.permute({1, 2, 0}));
     EXPECT_TRUE(at::equal(y.permute({1, 2, 0}), yr));  // the same operations on the same numbers
     EXPECT_TRUE(at::equal(x.grad(), xr.grad()));
-    EXPECT_LT((bias.grad() - br.grad()).abs().max().item<double>(), 1e-5);  // a sum in another order
+    EXPECT_LT((bias.grad() - br.grad()).abs().max().item<double>(), 1e-5);  // another order of summation
   }
 }
 

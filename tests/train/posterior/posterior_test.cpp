@@ -1,5 +1,5 @@
-// Beliefs: the head learns a distribution that is known, coverage and ranks tell honest beliefs from others,
-// and recalibration makes the others honest.
+// Posteriors: the head learns a known distribution, coverage and ranks detect overconfident posteriors, and
+// recalibration corrects them.
 #include <ATen/ATen.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(Mixture, QuantileIsTheInverse) {
 }
 
 TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
-  // two normal beliefs of the logit: their product lies between them, nearer to the surer one
+  // two normal posteriors of the logit: their product is between them, nearer to the one of smaller variance
   Mixture vague, sure;
   vague.weight = sure.weight = {1.0, 0.0, 0.0, 0.0};
   vague.deviation = {0.4, 1.0, 1.0, 1.0};
@@ -45,15 +45,15 @@ TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
   sure.mean = {-0.2, 0.0, 0.0, 0.0};
   const Posteriors posteriors{3, 1, {vague, sure, sure}, std::vector<double>(3 * kFactors, 0.0)};
   const auto of = [&](std::vector<std::size_t> rows) { return together(posteriors, rows).front(); };
-  EXPECT_NEAR(of({0}), place_of_logit(0.5), 0.01);  // the logistic is nearly straight there
+  EXPECT_NEAR(of({0}), place_of_logit(0.5), 0.01);  // the logistic function is nearly linear there
   EXPECT_NEAR(of({1}), place_of_logit(-0.2), 0.002);
   const double both = (0.5 / 0.16 - 0.2 / 0.01) / (1 / 0.16 + 1 / 0.01);
   EXPECT_NEAR(of({0, 1}), place_of_logit(both), 0.002);
   EXPECT_LT(of({0, 1, 2}), of({0, 1}));
 }
 
-/// Beliefs about truths that are drawn from them, with their scores' deviation `too_sure` times what is
-/// stated.
+/// Posteriors and true values drawn from them. The standard deviation of the scores is `too_sure` times the
+/// stated one.
 struct World {
   Posteriors posteriors;
   std::vector<double> places;
@@ -79,7 +79,7 @@ struct World {
   }
 };
 
-TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
+TEST(CoverageFull, OfCalibratedPosteriorsIsNominal) {
   const World w(4000, 1.0, 0.8, 3);
   const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
   EXPECT_NEAR(c.mean(&ParameterCoverage::within_50), 0.5, 0.025);
@@ -93,7 +93,7 @@ TEST(CoverageFull, OfHonestBeliefsIsWhatTheyState) {
   EXPECT_LT(c.tarp.largest_distance(), 0.03);
 }
 
-TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
+TEST(CoverageFull, OfOverconfidentPosteriorsIsNominalAfterRecalibration) {
   const World known(4000, 1.6, 0.8, 4), other(4000, 1.6, 0.8, 5);
   const std::vector<Recalibration> none(2);
   const Coverage proud = coverage(other.posteriors, none, other.places, 1);
@@ -114,7 +114,7 @@ TEST(CoverageFull, OfProudBeliefsFallsShortUntilTheyAreSetRight) {
   EXPECT_GT(honest.tarp.by_chance(), 1e-4);
 }
 
-TEST(CoverageFull, TarpSeesCorrelationsThatTheMarginsDoNot) {
+TEST(CoverageFull, TarpDetectsCorrelationsMissedByMarginals) {
   World w(4000, 1.0, 0.95, 6);
   std::ranges::fill(w.posteriors.factor, 0.0);
   const Coverage c = coverage(w.posteriors, std::vector<Recalibration>(2), w.places, 1);
@@ -122,7 +122,7 @@ TEST(CoverageFull, TarpSeesCorrelationsThatTheMarginsDoNot) {
   EXPECT_LT(c.tarp.by_chance(), 1e-6);
 }
 
-/// Knows nothing of a row but what it is shown: one number, and two outputs that are it.
+/// Network with one input number per row, which is both its features and its two outputs.
 class Shown final : public networks::Network {
  public:
   at::Tensor forward(const at::Tensor& x, bool) override { return x.reshape({-1, 1}).expand({-1, 2}); }
@@ -130,7 +130,7 @@ class Shown final : public networks::Network {
   std::vector<at::Tensor> parameters() override { return {at::zeros({2})}; }
 };
 
-TEST(HeadFull, LearnsASpreadThatGrowsWithTheInputAndACorrelation) {
+TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
   auto generator = at::globalContext().defaultGenerator(at::kCPU);
   generator.set_current_seed(1);
   Shown shown;

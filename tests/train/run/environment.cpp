@@ -1,4 +1,4 @@
-// One thread per test process: the tests run side by side.
+// One thread per test process, because tests run in parallel.
 #include <gtest/gtest.h>
 
 #include "train/runtime/runtime.hpp"

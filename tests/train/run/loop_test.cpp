@@ -1,5 +1,5 @@
-// Training on a made-up data set: it learns, shuffled labels teach nothing, and a resumed run equals an
-// unbroken one.
+// Training on a synthetic dataset: it learns from true labels and not from shuffled ones, and a resumed run
+// equals an uninterrupted one.
 #include "train/loop/loop.hpp"
 
 #include <fstream>
@@ -37,7 +37,7 @@ struct World {
 
 loop::TrainingRecipe recipe(std::size_t epochs) { return {epochs, 32, 1e-3, "cosine", 100, 0.1}; }
 
-/// An experiment of one preset and network, without a file.
+/// Experiment with one preset and network, without a file.
 RunRequest request(const World& world, const std::string& network, std::size_t epochs) {
   RunRequest r;
   r.experiment.table = "V";
@@ -64,7 +64,7 @@ json result_of(const RunRequest& r) {
   return json::parse(in);
 }
 
-/// A world's rows without generator 33, as train_network takes them.
+/// Rows of a world without generator 33, as input of train_network.
 struct Prepared {
   explicit Prepared(const World& world)
       : split(data::leave_one_out(world.stream.labels(), {33, 0.1, 1})),
@@ -109,7 +109,7 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
     loop::LoopReport whole, broken;
     const auto expected = train(name + "-a", {}, whole);
     const auto got =
-        train(name + "-b", {8, 3}, broken);  // 4 batches an epoch: after 2 epochs, then within one
+        train(name + "-b", {8, 3}, broken);  // 4 batches per epoch: stops after 2 epochs, then within one
     EXPECT_EQ(got, expected) << name;
     EXPECT_EQ(broken.epochs, 4u);
     EXPECT_EQ(broken.best_epoch, whole.best_epoch);
@@ -117,12 +117,12 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
   }
 }
 
-TEST(Training, AKillCostsNoMoreThanTheEpochAtHand) {
+TEST(Training, KillLosesAtMostTheCurrentEpoch) {
   const World world("killed", 150);
   const Prepared p(world);
   const json run = {{"test", 1}};
-  constexpr int kBatches = 4;  // of an epoch
-  // Batches begun until the end, or until it dies at one of them.
+  constexpr int kBatches = 4;  // per epoch
+  // Number of batches begun until the end, or until the process is killed.
   const auto batches = [&](int dies_at) {
     const auto network = networks::make_network("cnn", {2, 16, 3, {2.0f, 2.0f, 1.0f}});
     int begun = 0;
@@ -178,7 +178,7 @@ TEST(Training, RefusesADamagedOrForeignCheckpoint) {
   EXPECT_THROW((void)train(run, 2), InputError);
 }
 
-TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
+TEST(Training, LearnsFromTrueLabelsOnly) {
   const World world("learn", 800);
   RunRequest r = request(world, "cnn", 4);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -188,7 +188,7 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   EXPECT_EQ(learnt["generator"], 33);
   EXPECT_EQ(learnt["test_rows"], 80);
   EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 720);
-  // The constant third parameter is learnt exactly and flatters the mean over all.
+  // The constant third parameter is learnt exactly and lowers the mean over all.
   EXPECT_NEAR(learnt["mse_varied_only"].get<double>() / learnt["mse"].get<double>(), 1.5, 1e-3);
   EXPECT_TRUE(learnt["per_parameter"][2]["relative"].is_null());
   EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);
@@ -197,13 +197,13 @@ TEST(Training, LearnsAndShuffledLabelsTeachNothing) {
   r.shuffle_labels = true;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const json shuffled = result_of(r);
-  // Test rows keep their labels, so nothing can be known of them; 80 rows scatter the quotient by some
-  // percent, and what little was learnt by heart costs some more.
+  // Test rows keep their labels, so they are unpredictable. The quotient scatters by some per cent for 80
+  // rows, and slight overfitting raises it further.
   EXPECT_GT(shuffled["ratio"], 0.9);
   EXPECT_LT(shuffled["ratio"], 1.25);
 }
 
-TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
+TEST(Training, NoiseIsNamedInRunResultAndFeatures) {
   const World world("noisy");
   const data::ShardStream noisy(world.dataset, test::whole_record(World::plan(300, 16)),
                                 {.noise = {0.001, 1}});
@@ -219,7 +219,7 @@ TEST(Training, NoiseStandsInTheNameTheResultAndTheFeatures) {
   EXPECT_EQ(result["test_rows"], 15);
 }
 
-TEST(Training, AShareOfTheRowsTrainsAndTheSameOnesAreJudged) {
+TEST(Training, FractionOfTheRowsTrainsAndTheTestRowsStayTheSame) {
   const World world("share", 400);
   RunRequest r = request(world, "cnn", 1);
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -247,7 +247,8 @@ TEST(Training, DistinguishesResultsOfOtherVersions) {
     std::ofstream(r.out / (run_name(r) + ".json")) << changed.dump();
   };
   write("kernels");
-  EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);  // a finished result may be of another processor
+  EXPECT_EQ(run(world.stream, r),
+            RunOutcome::already_done);  // a finished result may come from another processor
   write("software");
   try {
     (void)run(world.stream, r);
@@ -290,7 +291,7 @@ TEST(TrainingFull, RecurrentNetworksLearn) {
   }
 }
 
-TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
+TEST(Training, LeftOutGeneratorDoesNotAffectTheWeights) {
   // The same run on two data sets that differ in the left-out generator's records only.
   const World world("trace");
   test::Folder folder("moved");
@@ -312,7 +313,8 @@ TEST(Training, TheLeftOutGeneratorLeavesNoTraceInTheWeights) {
     return loop::predict(*network, stream, features, split.train);
   };
   EXPECT_EQ(outputs(world.stream, 33), outputs(other, 33));
-  EXPECT_NE(outputs(world.stream, 34), outputs(other, 34));  // where it is seen, it shows
+  EXPECT_NE(outputs(world.stream, 34),
+            outputs(other, 34));  // with the generator in training, the outputs differ
 }
 
 TEST(Training, RefusesAResultOfOtherData) {
@@ -323,7 +325,7 @@ TEST(Training, RefusesAResultOfOtherData) {
   EXPECT_THROW((void)run(world.stream, r), InputError);
 }
 
-TEST(Training, SaysWhereItDiverged) {
+TEST(Training, ReportsWhereItDiverged) {
   const World world("diverge");
   RunRequest r = request(world, "cnn", 3);
   r.experiment.presets["quick"].training["cnn"].learning_rate = 1e30;

@@ -1,4 +1,4 @@
-// A saved network gives the very output that the trained one gave.
+// A saved network returns the output of the trained one.
 #include "train/run/saved_network.hpp"
 
 #include <fstream>
@@ -60,7 +60,7 @@ struct SavedWorld {
   }
 };
 
-/// Row of the dataset as an estimate wants it: channels speed, P.
+/// Row of the dataset as input of an estimate: channels speed, P.
 std::vector<float> record_of(const SavedWorld& world, std::uint64_t row, std::size_t samples) {
   const mpi::store::ShardInfo& shard = world.dataset.shards[row / world.plan.rows_per_shard];
   mpi::store::RowBlock block;
@@ -79,7 +79,7 @@ json saved_result_of(const RunRequest& r) {
   return json::parse(in);
 }
 
-TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
+TEST(SavedNetwork, EqualsTheTrainedNetwork) {
   for (const auto& [network, pca] :
        {std::pair{"cnn", std::size_t{0}}, {"cnn", std::size_t{5}}, {"gru", std::size_t{0}}}) {
     const SavedWorld world(std::string("saved-") + network + std::to_string(pca), data::InputForm::both);
@@ -90,7 +90,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
     EXPECT_EQ(info.channels, (std::vector<std::string>{"speed", "P"}));
     EXPECT_EQ(info.left_out, 33);
     EXPECT_EQ(info.rate, 16.0);
-    EXPECT_FALSE(info.fault_start);  // made-up data do not say
+    EXPECT_FALSE(info.fault_start);  // absent in synthetic data
     // The result's errors on the test rows are those of the saved network, row by row.
     const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
     std::vector<double> square(3, 0.0);
@@ -110,7 +110,7 @@ TEST(SavedNetwork, EstimatesWhatTheTrainedNetworkDid) {
   }
 }
 
-TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
+TEST(SavedNetwork, EqualsTheTrainedNetworkOnPhysicalChannels) {
   const SavedWorld world("saved-physics", data::InputForm::physics);
   RunRequest r = world.request("mlp", 6);
   auto& recipe = r.experiment.presets["quick"].training["mlp"];
@@ -133,7 +133,7 @@ TEST(SavedNetwork, EstimatesFromPhysicalChannelsWhatTheTrainedNetworkDid) {
   EXPECT_NEAR(square, result["per_parameter"][0]["mse"].get<double>(), 1e-3 * square);
 }
 
-/// The world's data, whose rows draw a level of noise when they train.
+/// Data of the world, whose training rows draw a noise level.
 struct NoisyRuns {
   SavedWorld world;
   RunRequest request;
@@ -152,7 +152,7 @@ struct NoisyRuns {
   }
 };
 
-TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
+TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
   NoisyRuns w("saved-levels");
   ASSERT_EQ(run(w.stream(0.0), w.request), RunOutcome::done);
   const auto file = w.request.out / "V-mlp-quick-seed1-gen33.network";
@@ -168,11 +168,11 @@ TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
   const json& believed = with["posterior"];
   EXPECT_EQ(believed["set_aside"].size(), 2u);
   EXPECT_EQ(believed["test"]["rows"], 30);
-  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is held
+  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is constant
   EXPECT_GT(believed["test"]["coverage_90"].get<double>(), 0.5);
   EXPECT_LT(believed["test"]["coverage_50"].get<double>(), believed["test"]["coverage_90"].get<double>());
 
-  // what was saved believes what was judged
+  // the saved network has the posterior that was tested
   const SavedNetwork saved = SavedNetwork::load(file);
   EXPECT_TRUE(saved.info().told_noise);
   const data::ShardStream stream = w.stream(0.0);
@@ -195,7 +195,7 @@ TEST(SavedNetwork, OneNetworkServesAllLevelsOfNoiseAndSaysWhatItBelieves) {
 TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   NoisyRuns whole("levels-whole"), broken("levels-broken");
   ASSERT_EQ(run(whole.stream(0.001), whole.request), RunOutcome::done);
-  // ended by a signal in the network's epochs, and again in those of the posterior
+  // stopped by a signal in the epochs of the network, and again in those of the posterior
   const data::ShardStream stream = broken.stream(0.001);
   std::size_t asked = 0;
   for (const std::size_t stop : {std::size_t{9}, std::size_t{13}}) {
@@ -211,7 +211,7 @@ TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   EXPECT_EQ(a["validation_mse"], b["validation_mse"]);
 }
 
-TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
+TEST(SavedNetwork, SpreadIsTheErrorOnTheLeftOutGenerator) {
   const SavedWorld world("spread");
   const RunRequest r = world.request("cnn");
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
@@ -238,7 +238,7 @@ TEST(SavedNetwork, SpreadIsThatOfTheGeneratorLeftOut) {
   EXPECT_GT(h.spread, 0.01);
 }
 
-TEST(SavedNetwork, RefusesWhatIsNone) {
+TEST(SavedNetwork, RefusesOtherFiles) {
   const SavedWorld world("none");
   RunRequest r = world.request("cnn");
   const auto refusal = [](const std::filesystem::path& path) {
@@ -272,9 +272,8 @@ TEST(SavedNetwork, RefusesWhatIsNone) {
   EXPECT_TRUE(has(refusal(file), "network file cannot be used"));
 }
 
-/// Flips one bit of every byte up to the end of the header, and of one in a thousand behind it, each in its
-/// place.
-TEST(SavedNetworkFull, FlippedBytesAreFound) {
+/// Flips one bit of every byte of the header, and of every thousandth byte after it, one at a time.
+TEST(SavedNetworkFull, DetectsFlippedBytes) {
   const SavedWorld world("flipped");
   RunRequest r = world.request("gru");
   r.save_network = true;
@@ -301,13 +300,13 @@ TEST(SavedNetworkFull, FlippedBytesAreFound) {
   RecordProperty("flipped", flipped);
 }
 
-TEST(TargetScale, ABoxBelowZeroIsLiftedToZero) {
+TEST(TargetScale, ShiftsANegativeRangeToZero) {
   const std::vector<double> values = {-4, 1, -2, 2, -3, 3};
   const std::vector<std::uint64_t> rows = {0, 1, 2};
   const std::vector<double> low = {-5, 0.5};
   const data::TargetScale scale = data::TargetScale::fit(values, 2, rows, low);
   EXPECT_EQ(scale.origin, (std::vector<double>{-5, 0}));
-  EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // a ReLU can say it
+  EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // representable by a ReLU
   EXPECT_NEAR(scale.raw(scale.scaled(-3.7, 0), 0), -3.7, 1e-15);  // rounding
   EXPECT_EQ(scale.scaled(2.0, 1), 2.0 / scale.unit[1]);
 }

@@ -1,4 +1,4 @@
-// Test rows of one plant taken together.
+// Combined test rows of one plant.
 #include "train/run/detail/several.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ data::Labels labels() {
 }
 const std::vector<std::uint64_t> kAll = {0, 1, 2, 3, 4, 5, 6, 7, 8};
 
-TEST(Several, RowsOfOnePlantAreThoseOfOneGeneratorWithTheSameParameters) {
+TEST(Several, GroupsRowsByGeneratorAndParameters) {
   const auto plants = plants_of(labels(), kAll);
   ASSERT_EQ(plants.size(), 2u);
   EXPECT_EQ(plants[0], (std::vector<std::size_t>{0, 2, 4, 8}));
@@ -37,7 +37,7 @@ TEST(Several, RowsOfOnePlantAreThoseOfOneGeneratorWithTheSameParameters) {
   EXPECT_TRUE(plants_of(labels(), std::vector<std::uint64_t>{0, 1, 2, 5}).empty());
 }
 
-TEST(Several, ErrorsOfOppositeSignLeaveTheirMean) {
+TEST(Several, ErrorsOfOppositeSignAverageOut) {
   // plant 1 of #30: errors 3, 0, -3, 4 of the first parameter; of #31: 0, 0, 0
   const std::vector<double> errors = {3, 0, 0, 0, -3, 0, 0, 0, 4};
   std::vector<double> estimates = labels().values;

@@ -1,5 +1,5 @@
-// The choice of BLAS kernels. What no test here can do, a processor that the library does not know, is done
-// by blas_kernels_full.sh with the whole program.
+// Choice of BLAS kernels. A processor unknown to the library is tested by blas_kernels_full.sh with the whole
+// program.
 #include <gmock/gmock.h>
 
 #include "base/problem.hpp"
@@ -20,7 +20,7 @@ std::string restart_with(const Processor& p, const std::string& core) {
   return choice.restart_with;
 }
 
-TEST(BlasKernels, AProcessorThatTheLibraryDoesNotKnowGetsTheWidestThatItCanRun) {
+TEST(BlasKernels, UnknownProcessorGetsTheWidestSupportedKernels) {
   for (const char* core : {"Prescott", "Nehalem", "Core2", "Barcelona", "Opteron_SSE3"}) {
     EXPECT_EQ(restart_with(kAvx512, core), "SKYLAKEX") << core;
     EXPECT_EQ(restart_with(kAvx2, core), "HASWELL") << core;
@@ -29,7 +29,7 @@ TEST(BlasKernels, AProcessorThatTheLibraryDoesNotKnowGetsTheWidestThatItCanRun) 
   }
 }
 
-TEST(BlasKernels, HalfOfTheWidthIsNotEnough) {
+TEST(BlasKernels, ReplacesKernelsOfHalfTheWidth) {
   EXPECT_EQ(restart_with(kAvx512, "Haswell"), "SKYLAKEX");
   EXPECT_EQ(restart_with(kAvx512, "Zen"), "SKYLAKEX");
   EXPECT_EQ(restart_with(kAvx2, "Sandybridge"), "HASWELL");
@@ -44,7 +44,7 @@ TEST(BlasKernels, KeepsAGoodChoiceOfTheLibrary) {
       << "what is not known is measured, not changed";
 }
 
-TEST(BlasKernels, TheUsersWishIsRespectedAndWarnedAbout) {
+TEST(BlasKernels, KeepsTheUsersChoiceWithAWarning) {
   for (const auto& [core, asked] : {std::pair{"Prescott", "PRESCOTT"}, std::pair{"Haswell", "haswell"}}) {
     const BlasChoice choice = choose_blas_kernels(kAvx512, {core, asked, ""});
     EXPECT_EQ(choice.restart_with, "");
@@ -55,7 +55,7 @@ TEST(BlasKernels, TheUsersWishIsRespectedAndWarnedAbout) {
   EXPECT_EQ(good.restart_with + good.warning, "");
 }
 
-TEST(BlasKernels, TheProgramStartsAgainOnceOnly) {
+TEST(BlasKernels, RestartsTheProgramOnceOnly) {
   const BlasChoice choice = choose_blas_kernels(kAvx512, {"Prescott", "SKYLAKEX", "Prescott"});
   EXPECT_EQ(choice.restart_with, "");
   EXPECT_THAT(choice.warning, AllOf(HasSubstr("Prescott"), HasSubstr("SKYLAKEX was asked for")));
@@ -69,15 +69,15 @@ TEST(BlasKernels, RefusesUnsupportedInstructionSets) {
   EXPECT_NO_THROW(choose_blas_kernels(kExcavator, {"Excavator", "EXCAVATOR", ""}));
 }
 
-TEST(BlasKernels, AnotherLibraryIsToldAndNotTouched) {
+TEST(BlasKernels, ReportsOtherLibrariesWithoutAChange) {
   const BlasChoice choice = choose_blas_kernels(kAvx512, {});
   EXPECT_EQ(choice.restart_with, "");
   EXPECT_THAT(choice.warning, HasSubstr("libopenblas0-openmp"));
 }
 
-TEST(BlasCheck, TheLibraryOfThisMachineMultipliesRightly) { require_right_products(BlasFound::here()); }
+TEST(BlasCheck, InstalledLibraryMultipliesCorrectly) { require_right_products(BlasFound::here()); }
 
-TEST(BlasCheck, ProductsOfTheLibraryStayBelowTheProcessorsOwnMultiplyAdds) {
+TEST(BlasCheck, LibraryRateIsBelowTheProcessorsMultiplyAddRate) {
   const BlasRate& rate = blas_rate();
   EXPECT_GT(rate.product, 0.1);
   EXPECT_GT(rate.multiply_adds, 1.0);
@@ -85,7 +85,7 @@ TEST(BlasCheck, ProductsOfTheLibraryStayBelowTheProcessorsOwnMultiplyAdds) {
       << "a bound that products exceed says nothing; the clock may move by this much";
 }
 
-TEST(BlasCheck, SlowIsSaid) {
+TEST(BlasCheck, WarnsOfASlowLibrary) {
   const BlasRate prescott{44.0, 190.0}, skylake{172.0, 190.0};
   EXPECT_THAT(prescott.warning(),
               AllOf(HasSubstr("44 GFLOP/s"), HasSubstr("190 GFLOP/s"), HasSubstr("slow")));

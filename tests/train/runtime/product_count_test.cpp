@@ -34,27 +34,26 @@ TEST(ProductCount, CountsEveryKindOnce) {
             }),
             3 * one);
   EXPECT_EQ(counted([&] { (void)(a[0] + a[1]); }), 0.0);
-  // Large enough that no library treats it as a special case.
+  // Large enough to avoid special cases of the library.
   const at::Tensor large = at::randn({2, 64, 64});
   EXPECT_EQ(counted([&] { (void)at::bmm(large, large); }), 2 * 2.0 * 64 * 64 * 64);
 }
 
-TEST(ProductCount, AStepOfTheGruIsWhatItsLayersSay) {
+TEST(ProductCount, StepOfTheGruMatchesItsLayers) {
   constexpr double batch = 8, channels = 3, samples = 20, outputs = 2, units = 512;
   const double input = 2 * samples * batch * channels * 3 * units, output = 2 * batch * units * outputs;
   const double hidden = 2 * samples * batch * units * 3 * units;
-  // Forwards once; backwards the weights' gradient, and the gradient of the states, of which the first has
-  // none.
+  // One forward pass; backward the gradients of the weights and of the states, except for the first state.
   const double expected = 2 * input + 3 * output + 2 * hidden + hidden * (samples - 1) / samples;
   EXPECT_EQ(of_a_step("gru", {3, 20, 2, {1.0f, 1.0f}}, 8), expected);
 }
 
-TEST(ProductCount, TwiceTheRowsAreTwiceTheProductsOfTheCnnsLayers) {
+TEST(ProductCount, ProductsOfTheCnnGrowLinearlyWithTheRows) {
   const networks::NetworkShape shape{2, 48, 3, {1.0f, 1.0f, 1.0f}};
   const double small = of_a_step("cnn", shape, 8), middle = of_a_step("cnn", shape, 16),
                large = of_a_step("cnn", shape, 24);
   EXPECT_EQ(large - middle, middle - small);
-  // Its dense layers alone: lengths 48 -> 12 -> 6, forwards and backwards.
+  // Dense layers only: lengths 48 -> 12 -> 6, forwards and backwards.
   EXPECT_GT(middle - small, 6.0 * 8 * (6 * 512 * 1024 + 1024 * 256));
 }
 
