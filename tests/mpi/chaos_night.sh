@@ -1,13 +1,7 @@
 #!/usr/bin/env bash
-<<<<<<< HEAD
-# Kills spread evenly over a run, from its first millisecond to its end: of one process, of mpirun, of one rank, of a rank
-# that was stopped before, of one part of three. One more run ends each with the same hash and the same bytes.
-#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
-=======
 # Kills spread evenly over a run, from its first millisecond to its end: of one process, mpirun, one rank, a stopped rank,
 # or one part of three. After each, one more run completes with the same hash and bytes.
-#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/faults.md has figures)
->>>>>>> 4a9caa8b656077bca57e84fb52af7a5d9cb9f4e8
+#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"
 kills=${SWINGBANK_KILLS:-60}

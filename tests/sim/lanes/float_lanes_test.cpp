@@ -1,10 +1,5 @@
-<<<<<<< HEAD
-// Sixteen lanes in float (decision 02) against eight in double: whatever switches, jumps or is out; the same
-// bits in any company; and what they refuse. all_effects_against_reference_test.cpp compares them with the
-=======
-// Sixteen lanes in float (decision 46) against eight in double: switching, steps and outages; bits that do
+// Sixteen lanes in float (decision 02) against eight in double: switching, steps and outages; bits that do
 // not depend on the other lanes; refusals. all_effects_against_reference_test.cpp compares them with the
->>>>>>> 4a9caa8b656077bca57e84fb52af7a5d9cb9f4e8
 // reference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
