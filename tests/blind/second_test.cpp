@@ -89,7 +89,7 @@ void put(sim::plant::Plant& p, sim::plant::Block b) {
 
 TEST(SecondWriting, MachineAgrees) { EXPECT_LT(largest_difference(base(), plant(base())), kTolerance); }
 
-TEST(SecondWriting, StaysAtRestWithoutAnEvent) {
+TEST(SecondWriting, StaysAtRest_WithoutAnEvent) {
   second::Setup s = base();
   s.machine.S10 = 0.1, s.machine.S12 = 0.5;
   s.exciter = second::Sexs{};
@@ -188,7 +188,7 @@ TEST(SecondWriting, CurrentTransformerErrorAgrees) {
   }
 }
 
-TEST(SecondWriting, SawtoothIsWhatItSays) {
+TEST(SecondWriting, Sawtooth_HasTheStatedValues) {
   second::Setup s = base();
   s.unlisted = second::sawtooth(0.05, 0.5, 1.9, 8.0);
   const auto out = second::simulate(s, 8.0, 240.0);

@@ -37,7 +37,7 @@ AddOptions power_only() {
   return options;
 }
 
-TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
+TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   const plant::PlantModel model = example(false);
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
@@ -54,7 +54,7 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
   EXPECT_THAT(a.sentence, HasSubstr("TB = "));
 }
 
-TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
+TEST(Add, VerdictOmitsManyValues) {
   const plant::PlantModel model = example(false);
   const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
   ASSERT_GT(a.own, 6);
@@ -64,7 +64,7 @@ TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
 
 // Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
 // intervals all hold the truth in 42 % of such records, all but one in 79 %.
-TEST(Add, IntervalsHoldTheTruth) {
+TEST(Add, IntervalsContainTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"4"};
@@ -123,7 +123,7 @@ TEST(Add, FreesARateFeedbackThatTheDefaultValuesLeaveOff) {
   EXPECT_NEAR(p->value, kKF, 3 * p->error);
 }
 
-TEST(Add, FreesNothingThatTheRecordsDoNotAskFor) {
+TEST(Add, FreesNothingWithoutEvidence) {
   const plant::PlantModel model = example(false);
   const auto exst1 = find_hypothesis(model, "EXST1");
   const Addition a = add_effect(model, exst1, with_rate_feedback(model, 0.0), power_only());
@@ -146,7 +146,7 @@ TEST(Add, NamesAnEffectThatWasRemoved) {
   EXPECT_TRUE(r.model.plant.controls.empty());
 }
 
-TEST(Add, AnInstrumentThatIsMissingIsFound) {
+TEST(Add, FindsMissingInstrument) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   plant::PlantModel model = example.truth;
   model.plant.measurements.clear();
@@ -161,7 +161,7 @@ TEST(Add, AnInstrumentThatIsMissingIsFound) {
   EXPECT_LT(a.parameters[1].error, 0.01);
 }
 
-TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
+TEST(Add, ScreensEffectsThroughTheInstruments) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   plant::PlantModel model = example.truth;
   model.plant.controls.clear();
@@ -172,7 +172,7 @@ TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
 
-TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {
+TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   const plant::PlantModel model = example(true);
   EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12").name, "GENROU:S10,S12");
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch"); }),

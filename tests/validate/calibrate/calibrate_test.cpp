@@ -105,7 +105,7 @@ std::vector<double> bounds_of(const sim::plant::Plant& truth, const Calibration&
   return test::cramer_rao({truth, sim::Conventions::psse()}, c.prepared, used, fitted);
 }
 
-TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
+TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   plant::PlantModel model = example();
   model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, as --spread believes
   CalibrateOptions options;
@@ -146,7 +146,7 @@ TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
   EXPECT_EQ(json["parameters"].size(), c.parameters.size());
 }
 
-TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
+TEST(Calibrate, ReportsMissingExciterAfterTheRefit) {
   const plant::PlantModel model = example();
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -158,7 +158,7 @@ TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
   EXPECT_GT(c.after, 2 * c.limit);
 }
 
-TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
+TEST(Calibrate, SkipsDraws_WhenTheClosedFormReachesTheNoise) {
   const Simulation s = simulate_three(false);
   plant::PlantModel model = wrong(s.plant);
   const auto records = noisy(s.records, 1e-6, 1e-7, 1);
@@ -184,7 +184,7 @@ TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
   EXPECT_EQ(drawn.adequacy, straight.adequacy);
 }
 
-TEST(Calibrate, RefusesWhatCannotBeFitted) {
+TEST(Calibrate, RefusesInvalidInput) {
   const plant::PlantModel model = example();
   const auto records = example_records(model, 2);
   CalibrateOptions options;
@@ -202,7 +202,7 @@ TEST(Calibrate, RefusesWhatCannotBeFitted) {
   EXPECT_THAT(test::messages([&] { calibrate(model, {}, options); }), ElementsAre(HasSubstr("no record")));
 }
 
-TEST(Calibrate, FixedParametersStay) {
+TEST(Calibrate, KeepsFixedParameters) {
   const plant::PlantModel model = example();
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -220,7 +220,7 @@ TEST(Calibrate, FixedParametersStay) {
 }
 
 // Public cases have machines with X''d below Xl, and their intervals must hold the truth as others' do.
-TEST(Calibrate, NoiseOfTheVoltageIsTakenBackWithXdppBelowXl) {
+TEST(Calibrate, CorrectsForVoltageNoiseWithXdppBelowXl) {
   const Simulation s = simulate_three(true, 0.38);
   plant::PlantModel model;
   model.name = "right";
@@ -237,7 +237,7 @@ TEST(Calibrate, NoiseOfTheVoltageIsTakenBackWithXdppBelowXl) {
 }
 
 /// Errors three times too wide are caught as those three times too narrow.
-TEST(Calibrate, StandardErrors_AreThoseOfTheCramerRaoBound) {
+TEST(Calibrate, StandardErrors_EqualTheCramerRaoBound) {
   const Simulation s = simulate_three();
   plant::PlantModel model;
   model.plant = s.plant;
@@ -325,10 +325,10 @@ void expect_two_sided(const Coverage& c, double most_within_half = 0.70) {
   EXPECT_LT(c.half_share(), most_within_half);
   EXPECT_GE(c.adequate, 19);  // the limit is one in a thousand per event
 }
-TEST(CalibrateFull, IntervalsHoldTheTruthUnderUsualNoise) { expect_two_sided(coverage(2e-3, 2e-4, 20)); }
+TEST(CalibrateFull, IntervalsContainTheTruthUnderUsualNoise) { expect_two_sided(coverage(2e-3, 2e-4, 20)); }
 // Here the intervals are too wide: 113 of 158 values (72 %) lie in the middle half, as if the errors were 1.6
 // times the right ones; without widening 96.9 % of the intervals hold the truth.
-TEST(CalibrateFull, IntervalsHoldTheTruthWhereTheVoltageIsAsNoisyAsThePower) {
+TEST(CalibrateFull, IntervalsContainTheTruth_WhenTheVoltageIsAsNoisyAsThePower) {
   expect_two_sided(coverage(2e-3, 2e-3, 20), 0.80);
 }
 

@@ -35,7 +35,7 @@ void expect_found(const std::vector<std::string>& controls, Component component,
   test::expect_found(event::component_model(std::move(model), component), std::move(records), parameter, 1.4);
 }
 
-TEST(CalibrateComponentTest, WrongParametersAreFoundWithinTheirIntervals) {
+TEST(CalibrateComponentTest, FindsWrongParametersWithinTheirIntervals) {
   const struct {
     std::vector<std::string> controls;
     Component component;

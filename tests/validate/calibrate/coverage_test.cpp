@@ -127,7 +127,7 @@ CalibrateOptions from_one_start() {
   return options;
 }
 
-TEST(CoverageFull, ARightModelIsNotCalledIncompleteForNoiseOfTheAngle) {
+TEST(CoverageFull, AcceptsRightModelWithNoiseOfTheAngle) {
   // until the noise is measured through the fit and whitened, this copy leaves 1.54 per value
   const Filtered events;
   const Calibration c =
@@ -138,7 +138,7 @@ TEST(CoverageFull, ARightModelIsNotCalledIncompleteForNoiseOfTheAngle) {
 
 class CoverageNight : public ::testing::TestWithParam<Cell> {};
 
-TEST_P(CoverageNight, TheIntervalsHoldTheTruth) {
+TEST_P(CoverageNight, IntervalsContainTheTruth) {
   static const Filtered events;
   const CalibrateOptions options = from_one_start();
   std::vector<Calibration> all(kCopies);

@@ -43,7 +43,7 @@ struct Scratch {
 };
 
 // Switched half-way between samples, no noise: all that the baseline takes for granted holds.
-TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
+TEST(CurveFit, FindsTheTruth_WhenItsAssumptionsHold) {
   plant::PlantModel truth;
   std::vector<record::Record> records;
   for (const auto& [bus, seconds] : {std::pair{5, 0.1}, {4, 0.15}, {9, 0.2}}) {
@@ -83,7 +83,7 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
   EXPECT_LT(f.events[2].after, 0.05 * f.events[2].before);
 }
 
-TEST(CurveFit, StandsBehindCalibrateOnTheExample) {
+TEST(CurveFit, IsLessAccurateThanCalibrateOnTheExample) {
   plant::PlantModel truth = example(), model = truth;
   truth.plant.controls.push_back(sexs(0.1, 100, 10, 0.05));
   model = off(truth);
@@ -118,7 +118,7 @@ TEST(CurveFit, StandsBehindCalibrateOnTheExample) {
   EXPECT_EQ(leaves_no_trace->value, -4.0);
 }
 
-TEST(CurveFit, RefusesWhatCannotBeFitted) {
+TEST(CurveFit, RefusesInvalidInput) {
   const plant::PlantModel model = example();
   const auto records = example_records(model, 1);
   CurveFitOptions options;
@@ -131,7 +131,7 @@ TEST(CurveFit, RefusesWhatCannotBeFitted) {
               ElementsAre(HasSubstr("GENROU.Xdp")));
 }
 
-TEST(Truth, IsReadFromPlantFilesAndBlindTruths) {
+TEST(Truth, ReadsPlantFilesAndBlindTruths) {
   const plant::PlantModel model = example();
   plant::PlantModel other = model;
   other.plant.mva = 250;

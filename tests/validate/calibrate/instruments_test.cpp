@@ -35,7 +35,7 @@ struct Wrong {
 
 class SeenThrough : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
+TEST_P(SeenThrough, IntervalsContainTheTruth) {
   const test::InstrumentExample example({test::instrument(GetParam())});
   const Wrong wrong(example.truth);
   CalibrateOptions options;
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
                          });
 
 // A filter's window is known; it is never fitted.
-TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
+TEST(CalibrateSeenThrough, SimulatesTheFilterWithoutFittingIt) {
   plant::PlantModel model;
   model.plant.machine = {sim::library::compiled().find("GENROU"),
                          sim::library::compiled().find("GENROU")->default_parameters()};
@@ -89,7 +89,7 @@ TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
                                   [&](const fit::FreeParameter& f) { return f.id.block == last; }));
 }
 
-TEST(CurveFitSeenThrough, TheInstrumentsBelongToTheModel) {
+TEST(CurveFitSeenThrough, SimulatesTheInstruments) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   const Wrong wrong(example.truth);
   CurveFitOptions options;

@@ -57,7 +57,7 @@ double value(const sim::plant::Plant& plant, const std::string& name) {
   return plant.machine.p[static_cast<std::size_t>(plant.machine.effect->parameter_index(name))];
 }
 
-TEST(NetworkStart, TakesWhatWasLearntWithinPhysicalBounds) {
+TEST(NetworkStart, ClampsEstimatesToPhysicalBounds) {
   const plant::PlantModel model = example();
   const EstimateFile file(Parameters{estimate_json("H", 7.0, 1, 10), estimate_json("Xdpp", 0.3, 0.3, 0.3),
                                      estimate_json("Xl", -0.5, 0.01, 0.25)});
@@ -71,7 +71,7 @@ TEST(NetworkStart, TakesWhatWasLearntWithinPhysicalBounds) {
   EXPECT_EQ(value(plant, "Xq"), value(model.plant, "Xq"));
 }
 
-TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
+TEST(NetworkStart, RefusesNetworksOfOtherPlants) {
   const plant::PlantModel model = example();
   const auto refused = [&](const EstimateFile& file) {
     return test::messages([&] { estimated_plant(file.read(), model, 0.2); });
@@ -89,7 +89,7 @@ TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
               ElementsAre(HasSubstr("holds it at 40")));
 }
 
-TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
+TEST(NetworkStart, IsAStartAndIsReportedWithTheFit) {
   plant::PlantModel model = example();
   model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
   const EstimateFile file(Parameters{estimate_json("H", 8.0, 1, 10), estimate_json("Tdop", 5.0, 2, 10)});
@@ -116,7 +116,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
   EXPECT_GT(way.events[0].after, c.events[0].after);
 }
 
-TEST(NetworkStart, RefusesEventsHeldOutAndOtherFiles) {
+TEST(NetworkStart, RefusesHeldOutEventsAndOtherFiles) {
   const plant::PlantModel model = example();
   const std::vector<record::Record> records = {example_record(model, 1), example_record(model, 2)};
   const EstimateFile file(Parameters{estimate_json("H", 7, 1, 10)}, "GENROU", records[1].sha256);

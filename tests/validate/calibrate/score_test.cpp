@@ -10,7 +10,7 @@ namespace {
 
 // Three parameters with errors of very different weight move 200 values with noise of one. A normal
 // distribution's 3.09 is exceeded by one in a thousand; a form of few squares has a longer tail.
-TEST(UnseenAllowance, IsSeldomExceededAndNotIdle) {
+TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
   constexpr int kValues = 200, kParameters = 3, kDraws = 20000;
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
@@ -34,7 +34,7 @@ TEST(UnseenAllowance, IsSeldomExceededAndNotIdle) {
   EXPECT_GT(allowed, 2 * mean);
 }
 
-TEST(UnseenAllowance, IsNothingWhereTheParametersAreKnown) {
+TEST(UnseenAllowance, IsZero_WhenTheParametersAreKnown) {
   const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(4, 4);
   EXPECT_EQ(unseen_allowance(information, Eigen::MatrixXd::Zero(4, 4), 100), 0);
 }

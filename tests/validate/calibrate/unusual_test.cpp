@@ -41,7 +41,7 @@ void expect_found(const Parameter& p, double expected, double within) {
   EXPECT_FALSE(p.at_bound);
 }
 
-TEST(CalibrateUnusual, AValueBeyondItsRangeIsMovedFurther) {
+TEST(CalibrateUnusual, MovesValueFurtherBeyondItsRange) {
   const Quarter q;
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -52,7 +52,7 @@ TEST(CalibrateUnusual, AValueBeyondItsRangeIsMovedFurther) {
   expect_found(c.parameters[0].fit, q.H, 0.02);
 }
 
-TEST(CurveFitUnusual, AValueBeyondItsRangeIsMovedFurther) {
+TEST(CurveFitUnusual, MovesValueFurtherBeyondItsRange) {
   const Quarter q;
   CurveFitOptions options;
   options.fixed = q.all_but_inertia();

@@ -59,7 +59,7 @@ class Copies {
   std::vector<fit::FreeParameter> free_;
 };
 
-TEST(VoltagePull, TheScoresAtTheTruthAreThoseExpectedOfNoiseThatPAndQCarryToo) {
+TEST(VoltagePull, MeanScoreMatchesPredictionForNoiseSharedWithPAndQ) {
   constexpr int kCount = 24;
   const Copies copies;
   std::vector<Eigen::VectorXd> scores(kCount);
@@ -77,7 +77,7 @@ TEST(VoltagePull, TheScoresAtTheTruthAreThoseExpectedOfNoiseThatPAndQCarryToo) {
   EXPECT_GT(std::abs(apart[0] - mean[0]), 5 * error[0]);  // and not those of noise of V alone
 }
 
-TEST(Secants, AStepThatOvershootsIsCorrected) {
+TEST(Secants, CorrectOvershootingSteps) {
   Eigen::Vector2d x(1, -2);
   Secants secants(2);
   for (int round = 0; round < 6; ++round) {  // the curvature is 2.5 times the expected one along the diagonal

@@ -130,7 +130,7 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
 
-TEST(RecordCheckTest, LostSamplesAsZerosAreBridged) {
+TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
   for (int i = 1; i <= 4; ++i) {
     Written w;
     w.edit = [](std::vector<double>& x) {
@@ -189,7 +189,7 @@ TEST(RecordCheckTest, VoltsUnderTheHeadingOfKilovolts_NameTheUnit) {
               ::testing::HasSubstr("a voltage in V taken as kV"));
 }
 
-TEST(RecordCheckTest, ASlowRecordIsSaid) {
+TEST(RecordCheckTest, ReportsSlowRecord) {
   const record::Record r = example(1);
   const auto every = [&](std::size_t stride) {
     record::Record thin = r;
@@ -205,14 +205,14 @@ TEST(RecordCheckTest, ASlowRecordIsSaid) {
   EXPECT_THAT(every(4), ::testing::HasSubstr("warn slow_rate: 15 samples/s"));
 }
 
-TEST(RecordCheckTest, OnlyAMachinesCurrentMustJumpAsItsReactanceSays) {
+TEST(RecordCheckTest, ChecksStepOfCurrentForMachinesOnly) {
   Written turned;
   turned.edit = [](std::vector<double>& x) { x[4] = -x[4]; };
   const record::Record r = rewritten(example(1), turned);
   EXPECT_THROW(raise_refusals(check_record(r, {100, 60})), InputError);
   EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60, false})));
 }
-TEST(RecordCheckTest, ANegativeMagnitudeIsRefusedOnReading) {
+TEST(RecordCheckTest, RefusesNegativeMagnitude) {
   const Written w{.edit = [](auto& x) { std::swap(x[1], x[2]); }};
   EXPECT_THAT(test::messages([&] { rewritten(example(1), w); }),
               ::testing::ElementsAre(::testing::HasSubstr("are their columns swapped?")));
@@ -221,7 +221,7 @@ bool warned(const std::vector<Finding>& findings, const std::string& kind) {
   return std::ranges::any_of(
       findings, [&](const Finding& f) { return f.severity == Severity::warn && f.kind == kind; });
 }
-TEST(RecordCheckTest, AFifthOfASecondBeforeTheEventIsAWarning) {
+TEST(RecordCheckTest, WarnsOfPreEventOfAFifthOfASecond) {
   const auto findings = check_record(record::stretch(example(1), 1.79, 1e9), {100, 60});
   EXPECT_TRUE(warned(findings, "short_pre_event")) << told(findings);
   EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
@@ -242,7 +242,7 @@ record::Record dip(double noise, double step) {
   }
   return r;
 }
-TEST(RecordCheckTest, EventsWithoutSwitchingAreTaken) {
+TEST(RecordCheckTest, AcceptsEventsWithoutSwitching) {
   for (const double noise : {0.0, 1e-5, 1e-3}) {
     const auto findings = check_record(dip(noise, 0), {100, 60});
     EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
@@ -257,7 +257,7 @@ TEST(RecordCheckTest, EventsWithoutSwitchingAreTaken) {
   const std::string of_voltage = told(check_record(coarse, {100, 60}));
   EXPECT_THAT(of_voltage, testing::HasSubstr("what that does behind a regulator is slow"));
 }
-TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
+TEST(RecordCheckTest, DoesNotCheckIntegratedAngle) {
   record::Record r = example(1);
   r.theta_as_written.clear();
   r.angle = record::AngleSource::integrated;
@@ -266,7 +266,7 @@ TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
     r.theta[k] = r.theta[k - 1] + 2 * std::numbers::pi * 60 * r.step() * (r.f[k] + r.f[k - 1]) / 2;
   EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60})));
 }
-TEST(RecordCheckTest, RadiansThatWereNeverWrappedAreTaken) {
+TEST(RecordCheckTest, AcceptsUnwrappedRadians) {
   for (int i = 1; i <= 4; ++i)
     for (const bool with_frequency : {true, false}) {
       const Written w{.edit = [](auto& x) { x[2] += 5 * 2 * std::numbers::pi; },
@@ -278,7 +278,7 @@ TEST(RecordCheckTest, RadiansThatWereNeverWrappedAreTaken) {
         EXPECT_EQ(told(findings), "") << "event " << i;
     }
 }
-TEST(RecordCheckTest, TheExamplePasses) {
+TEST(RecordCheckTest, AcceptsTheExample) {
   for (int i = 1; i <= 4; ++i) {
     const record::Record r = example(i);
     EXPECT_EQ(told(check_record(r, {100, 60})), "") << r.name;

@@ -39,7 +39,7 @@ struct ReadingsTest : ::testing::Test {
   }
 };
 
-TEST_F(ReadingsTest, SoundRecordIsTakenAsItIs) { EXPECT_EQ(kind(sound), ""); }
+TEST_F(ReadingsTest, AcceptsSoundRecord) { EXPECT_EQ(kind(sound), ""); }
 TEST_F(ReadingsTest, MirroredAngleIsReported) {
   record::Record r = sound;
   for (double& a : r.theta) a = -a;
@@ -100,7 +100,7 @@ struct DispatchTest : ReadingsTest {
     return {};
   }
 };
-TEST_F(DispatchTest, SameOperatingPointIsNoFinding) { EXPECT_EQ(told(sound), ""); }
+TEST_F(DispatchTest, AcceptsSameOperatingPoint) { EXPECT_EQ(told(sound), ""); }
 TEST_F(DispatchTest, RatioAndItsLikelyCauseAreReported) {
   EXPECT_THAT(told(scaled(1.0 / 3)), AllOf(HasSubstr("0.33 times the case's"), HasSubstr("one phase")));
   EXPECT_THAT(told(scaled(1 / std::numbers::sqrt3)), AllOf(HasSubstr("0.58 times"), HasSubstr("sqrt(3)")));
@@ -130,7 +130,7 @@ TEST(WrongMachineBase, RemedyNamesTheMachinesMva) {
       AllOf(HasSubstr("times base_mva = 100"), HasSubstr("base_mva in [plant] is probably the system's base"),
             HasSubstr("write the machine's MVA")));
 }
-TEST(ShortRecord, IsAWarningThatNamesWhatCanBeJudged) {
+TEST(ShortRecord, WarningNamesTheJudgedPart) {
   const record::Record r =
       record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), {});
   const auto findings = check_record(record::stretch(r, 1.7, 3.58), {100, 60});

@@ -22,7 +22,7 @@ TEST_F(RecordSets, KeepTheOrderGiven) {
   EXPECT_EQ(set.records.front().name, "avr_ev2.csv");
   EXPECT_EQ(set.warnings.size(), 2U);
 }
-TEST_F(RecordSets, TellEveryProblemOfEveryFileAtOnce) {
+TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
   model.plant.mva = 1;  // the records' power is then forty times what the machine can give
   try {
     read_records({kFirst, "none.csv", kFirst}, model);
@@ -34,14 +34,14 @@ TEST_F(RecordSets, TellEveryProblemOfEveryFileAtOnce) {
     EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record besides
   }
 }
-TEST_F(RecordSets, JoinTheProblemsThatAreKnownAlready) {
+TEST_F(RecordSets, AppendToKnownProblems) {
   Problems problems;
   problems.add("a plant", "plants.csv", "it has no name", "give it one");
   const RecordSet set = read_records({kFirst, "none.csv"}, model, problems);
   EXPECT_EQ(set.records.size(), 1U);
   EXPECT_THROW(problems.raise(), InputError);
 }
-TEST_F(RecordSets, AreNotCheckedAgainstAModelThatWasNotRead) {
+TEST_F(RecordSets, SkipTheCheckWithoutAModel) {
   Problems problems;
   EXPECT_EQ(read_records({kFirst}, plant::PlantModel{}, problems).records.size(), 1U);
   EXPECT_TRUE(problems.empty());

@@ -113,7 +113,7 @@ TEST(RecordSoundTest, FrequencyEvents) {
   expect_all_sound(frequency_event("ieee14_genrou", 1), "generator lost", 1);
 }
 /// A lost generator makes a jump that is small; six samples at 30/s before it are enough to see it.
-TEST(RecordSoundTest, ASmallJumpSoonAfterTheBeginningIsNoReasonToRefuse) {
+TEST(RecordSoundTest, AcceptsEarlySmallStep) {
   constexpr std::size_t kLost = 2;
   const test::Simulated s = frequency_event("ieee39_genrou", kLost);
   for (std::size_t p = 0; p < s.grid.plants.size(); ++p) {
@@ -149,7 +149,7 @@ record::Record late_current(const record::Record& fine, std::size_t late) {
   }
   return r;
 }
-TEST(RecordSoundTest, ACurrentUpToASampleLateIsNotedNotRefused) {
+TEST(RecordSoundTest, NotesCurrentUpToOneSampleLate) {
   for (const double cleared : {2.1083, 2.0541}) {  // the shorter one: three intervals from jump to jump
     const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, cleared);
     int noted = 0;

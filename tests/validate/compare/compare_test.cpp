@@ -53,7 +53,7 @@ struct RightModel {
   }
 };
 
-TEST(CompareTest, ARightModelLeavesTheNoise) {
+TEST(CompareTest, RightModelLeavesOnlyNoise) {
   const RightModel right;
   const EventComparison e = compare_event(right.model, right.record);
   EXPECT_TRUE(e.detected);
@@ -65,7 +65,7 @@ TEST(CompareTest, ARightModelLeavesTheNoise) {
     EXPECT_GT(c.whole.in_noise, 0.8);
   }
 }
-TEST(CompareTest, ARightModelIsAdequate) {
+TEST(CompareTest, RightModelIsAdequate) {
   const RightModel right;
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   const Adequacy a = judge(events);
@@ -83,7 +83,7 @@ struct WithoutNoise : RightModel {
       for (double& value : *power) value *= scale;
   }
 };
-TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
+TEST(CompareTest, JudgesRightAndWrongModel_WithoutNoise) {
   WithoutNoise exact;
   std::vector<EventComparison> events = {compare_event(exact.model, exact.record)};
   EXPECT_TRUE(events[0].fitted);
@@ -109,7 +109,7 @@ TEST(CompareTest, AllowsForQuantisation) {
   events = {compare_event(coarse.model, coarse.record)};
   EXPECT_FALSE(judge(events).adequate);
 }
-TEST(CompareTest, FramesThatWereLostAreNotCompared) {
+TEST(CompareTest, ExcludesLostFrames) {
   RightModel right;
   for (const std::size_t k : {std::size_t{60}, std::size_t{300}, std::size_t{301}}) {
     right.record.lost.resize(right.record.t.size(), 0);
@@ -121,7 +121,7 @@ TEST(CompareTest, FramesThatWereLostAreNotCompared) {
   EXPECT_TRUE(a.adequate) << a.sentence;
   EXPECT_EQ(std::ranges::count(events[0].left_out, 1), 3);
 }
-TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
+TEST(CompareTest, PlaysInPower_WithoutAngleAndFrequency) {
   RightModel right;
   right.record.theta.assign(right.record.t.size(), 0.0);
   right.record.angle = record::AngleSource::none;
@@ -155,7 +155,7 @@ TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
   auto wrong = events();
   EXPECT_FALSE(judge(wrong).adequate);
 }
-TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
+TEST(CompareTest, PlaysInAngleIntegratedFromFrequency) {
   RightModel right;
   const record::Record whole = test::record_of(right.s, 3, 8);
   const auto jump = [&](double at) {  // of the voltage's angle, over the sample interval
@@ -181,7 +181,7 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
 }
 /// A converter that regulates Q has the voltage's noise behind two integrals, which moves Q by several times
 /// its own noise and says nothing of when the fault began: taken for white it puts the fault 5 ms too late.
-TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
+TEST(CompareTest, SlowNoiseDoesNotMoveTheSwitchingTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9", "Vdip=0.88,Kqi=0.09");
   };
@@ -198,7 +198,7 @@ TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_NEAR(events[0].switchings[0].time, s.t_on, 5e-4);
 }
-TEST(CompareTest, AWrongModelDoesNotMoveTheStart) {
+TEST(CompareTest, WrongModelDoesNotMoveTheStart) {
   RightModel right;
   auto& machine = right.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xd"))] *= 1.3;
@@ -212,14 +212,14 @@ TEST(CompareTest, AWrongModelDoesNotMoveTheStart) {
   EXPECT_NEAR(e.playback.start.P, mean(right.record.P), 1e-9);
   EXPECT_NEAR(e.playback.start.Q, mean(right.record.Q), 1e-9);
 }
-TEST(CompareTest, AFifthOfASecondBeforeTheEventIsEnough) {
+TEST(CompareTest, AcceptsPreEventOfAFifthOfASecond) {
   RightModel right;
   right.record = record::stretch(right.record, 1.8, 1e9);
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
-TEST(CompareTest, TheBeginningIsToldInUtc) {
+TEST(CompareTest, ReportsTheBeginningInUtc) {
   EventComparison e = example_event();
   EXPECT_THAT(csv_playback(e).substr(0, 200), ::testing::Not(HasSubstr("utc")));
   e.record.epoch = 1714607940.5;
@@ -253,7 +253,7 @@ record::Record filtered(const record::Record& fine, double noise) {
   }
   return r;
 }
-TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
+TEST(CompareTest, JudgesRightAndWrongModel_BehindAFilter) {
   RightModel right;
   const record::Record record = filtered(test::record_of(right.s, 3, 1), 0.001);
   std::vector<EventComparison> events = {compare_event(right.model, record)};
@@ -267,7 +267,7 @@ TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
   EXPECT_FALSE(judge(off).adequate);
 }
 /// Behind a regulator what noise of V leaves is slow, and larger than the channels' own noise.
-TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
+TEST(CompareTest, AllowsForVoltageNoiseBehindARegulator) {
   plant::PlantModel model = example_model();
   const sim::Effect* sexs = sim::library::compiled().find("SEXS");
   model.plant.controls.push_back({sexs, {0.1, 10, 100, 0.05, -4.0, 5.0}});  // as the records were made
@@ -292,7 +292,7 @@ TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
   EXPECT_THAT(e.notes.front(), HasSubstr("the fit within these intervals failed"));
   EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
 }
-TEST(CompareTest, AnInadequateModelIsCalledSo) {
+TEST(CompareTest, ReportsInadequateModel) {
   std::vector<EventComparison> events = {example_event({2.0, 2.1})};
   const Adequacy a = judge(events);
   EXPECT_FALSE(a.adequate);
@@ -301,7 +301,7 @@ TEST(CompareTest, AnInadequateModelIsCalledSo) {
   EXPECT_THAT(a.sentence, HasSubstr("Efd"));
   EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
 }
-TEST(CompareTest, OfAModelThatRunsAwayNothingIsTold) {
+TEST(CompareTest, GivesNoVerdictOnUnstableModel) {
   WithoutNoise unstable;
   auto& machine = unstable.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("D"))] = -60;
@@ -312,14 +312,14 @@ TEST(CompareTest, OfAModelThatRunsAwayNothingIsTold) {
   EXPECT_THAT(a.sentence, HasSubstr("Cannot be told"));
   EXPECT_THAT(a.sentence, HasSubstr("by more than 10 times its size"));
 }
-TEST(CompareTest, ComparesWhatIsRecorded) {
+TEST(CompareTest, ComparesRecordedChannels) {
   const EventComparison e = example_event({2.0, 2.1});
   std::vector<std::string> channels;
   for (const auto& c : e.channels) channels.push_back(c.name);
   EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
   EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // as made; 121 samples: 3 s.e. are 19 %
 }
-TEST(CompareTest, PowerDrivesTheModelToo) {
+TEST(CompareTest, PlaysInPower_OnRequest) {
   const RightModel right;
   CompareOptions options;
   options.drive = DriveBy::power;
@@ -338,14 +338,14 @@ TEST(CompareTest, PowerDrivesTheModelToo) {
   std::vector<EventComparison> off = {compare_event(wrong.model, wrong.record, options)};
   EXPECT_FALSE(judge(off).adequate);
 }
-TEST(CompareTest, UntilLeavesOutTheRest) {
+TEST(CompareTest, UntilTruncatesTheRecord) {
   const EventComparison e = example_event({2.0, 2.1}, {.play_in = {.until = 6.0}});
   EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
   EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
   EXPECT_THAT(test::messages([] { example_event({}, {.play_in = {.until = 0.3}}); }),
               ElementsAre(HasSubstr("a later --until")));
 }
-TEST(CompareTest, AWrongParameterShowsWhereverTheInstantsLie) {
+TEST(CompareTest, DetectsWrongParameter_WithFittedSwitchingTimes) {
   RightModel wrong;
   wrong.model.plant.machine
       .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
@@ -360,7 +360,7 @@ TEST(CompareTest, AWrongParameterShowsWhereverTheInstantsLie) {
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     EXPECT_NEAR(e.channels[c].noise, middle.channels[c].noise, 0.01 * middle.channels[c].noise);
 }
-TEST(CompareTest, AMissingExciterShowsInQ) {
+TEST(CompareTest, MissingExciterAppearsInQ) {
   // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
   const EventComparison e = example_event({2.0, 2.1});
   const auto& p = e.channels[0];
@@ -424,7 +424,7 @@ TEST(ErrorTable, PrintedRatio_IsThePrintedRmsOverThePrintedNoise) {
               HasSubstr(report::padded(error_table({{"", events, fitness}}))));
 }
 
-TEST(CompareReportTest, JsonHoldsTheNumbers) {
+TEST(CompareReportTest, JsonContainsTheNumbers) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const auto j = nlohmann::json::parse(
@@ -440,7 +440,7 @@ TEST(CompareReportTest, JsonHoldsTheNumbers) {
   EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s hold nothing below 0.1 Hz
   EXPECT_EQ(j["adequate"], false);
 }
-TEST(CompareReportTest, PageAsksForNothing) {
+TEST(CompareReportTest, PageLoadsNothingExternal) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const std::string html = html_report(example_model(), events, adequacy, fitness_of(events),
@@ -458,7 +458,7 @@ TEST(CompareReportTest, PageAsksForNothing) {
   EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map stands under the verdict
   EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare tries none
 }
-TEST(CompareReportTest, TerminalReportCarriesUnits) {
+TEST(CompareReportTest, TerminalReportHasUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), true);
@@ -476,7 +476,7 @@ TEST(CompareReportTest, TerminalReport_PrintsVerdictFirstAndEachNoteOnce) {
   EXPECT_THAT(text, HasSubstr("note (all events): a note of both\nnote (other.csv): a note of one\n"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("In units of noise")));
 }
-TEST(CompareReportTest, PlaybackHasOneLineASample) {
+TEST(CompareReportTest, PlaybackHasOneLinePerSample) {
   const EventComparison e = example_event();
   const std::string text = csv_playback(e);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), e.record.samples() + 1);

@@ -43,7 +43,7 @@ struct Tried {
   }
 };
 
-TEST(CompareComponentTest, ARightExciterIsAdequateAndAWrongGainIsNot) {
+TEST(CompareComponentTest, JudgesRightExciterAndWrongGain) {
   Tried t({"IEEET1", "STAB1"}, Component::exciter);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -55,14 +55,14 @@ TEST(CompareComponentTest, ARightExciterIsAdequateAndAWrongGainIsNot) {
   EXPECT_FALSE(wrong.adequate) << wrong.sentence;
 }
 
-TEST(CompareComponentTest, AnExciterWithoutItsStabiliserIsNotAdequate) {
+TEST(CompareComponentTest, ExciterWithoutItsStabiliserIsInadequate) {
   Tried t({"IEEET1", "STAB1"}, Component::exciter);
   std::erase_if(t.model.plant.controls,
                 [](const auto& b) { return b.effect->slot == sim::Slot::stabiliser; });
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
-TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
+TEST(CompareComponentTest, JudgesRightGovernorAndWrongDroop) {
   Tried t({"TGOV1"}, Component::governor);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -72,7 +72,7 @@ TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
-TEST(CompareComponentTest, ThatAFrequencyStandsForTheSpeedIsSaid) {
+TEST(CompareComponentTest, NotesThatFrequencyReplacesSpeed) {
   Tried t({"TGOV1"}, Component::governor);
   const auto notes = [&] { return compare_event(t.model, t.record).notes; };
   EXPECT_THAT(notes(), ::testing::Not(::testing::Contains(HasSubstr("has no speed"))));
@@ -80,7 +80,7 @@ TEST(CompareComponentTest, ThatAFrequencyStandsForTheSpeedIsSaid) {
   EXPECT_THAT(notes(), ::testing::Contains(HasSubstr("has no speed")));
 }
 
-TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
+TEST(CompareComponentTest, JudgesRightMachineAndWrongReactance) {
   Tried t({"SEXS", "TGOV1"}, Component::machine);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -105,7 +105,7 @@ std::string excitation_recorder(const test::ComponentCase& c) {
   return text;
 }
 
-TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
+TEST(CompareComponentTest, ReadsExcitationRecorderAt208HzWithoutAngle) {
   const auto simulated = test::simulated_component(std::vector<std::string>{"ESAC1A"},
                                                    {.on = 2.0062, .off = 2.1131, .end = 10, .rate = 208});
   plant::PlantModel model;

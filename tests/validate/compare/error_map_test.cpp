@@ -39,7 +39,7 @@ std::vector<double> noise(double sigma, double a, unsigned seed, std::size_t n =
   return x;
 }
 
-TEST(ErrorMapTest, CellsHoldWhatTheirWindowCanShow) {
+TEST(ErrorMapTest, BinsContainResolvableFrequencies) {
   const auto t = times();
   const ErrorMap map = error_map(t, noise(1, 0, 1), windows(), white_noise(1));
   const std::vector<std::vector<bool>> holds = {{false, true, true, true},
@@ -87,11 +87,11 @@ void expect_unit(double colour, bool estimated) {
             << i << " " << b;
       }
 }
-TEST(ErrorMapTest, WhiteNoiseIsOneEverywhere) { expect_unit(0, false); }
-TEST(ErrorMapTest, ColouredNoiseIsOneEverywhere) { expect_unit(0.8, false); }
+TEST(ErrorMapTest, NormalisesWhiteNoiseToOne) { expect_unit(0, false); }
+TEST(ErrorMapTest, NormalisesColouredNoiseToOne) { expect_unit(0.8, false); }
 TEST(ErrorMapTest, NoiseIsEstimatedBeforeTheEvent) { expect_unit(0, true); }
 
-TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
+TEST(ErrorMapTest, SineAppearsInItsBandAndWindow) {
   const auto t = times();
   const auto w = windows();
   const struct {
@@ -118,7 +118,7 @@ TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
   }
 }
 
-TEST(ErrorMapTest, AnOffsetOfAShortWindowShowsInAll) {
+TEST(ErrorMapTest, OffsetOfAShortWindowAppearsInTheTotal) {
   const auto t = times();
   auto x = noise(1, 0, 6);
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -131,7 +131,7 @@ TEST(ErrorMapTest, AnOffsetOfAShortWindowShowsInAll) {
   EXPECT_NEAR(map.rows[3].all.rms, std::sqrt(10.0), 0.2);  // 240 samples: 3 s.e. of the rms
 }
 
-TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
+TEST(ErrorMapTest, IncludesErrorOfTheStartInTheNoise) {
   // An offset of one standard error of the mean of 121 samples, 11 sigma of the mean of 774.
   const auto t = times();
   std::vector<double> x(t.size(), 1.0 / 11);
@@ -142,7 +142,7 @@ TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
   EXPECT_NEAR(started, std::sqrt(774.0 / 121 / 3 / (1 + 774.0 / 121)), 0.01);
 }
 
-TEST(NoiseModelTest, EstimatesSpreadAndColour) {
+TEST(NoiseModelTest, EstimatesDeviationAndColour) {
   const auto x = noise(0.002, 0.7, 3, 4000);
   const ChannelNoise model = estimate_noise(x, 1e-5);
   EXPECT_NEAR(model.sigma, 0.002, 0.0002);  // 4000 samples correlated over 3: 3 s.e. are 8 %
@@ -181,7 +181,7 @@ TEST(NoiseBoundTest, NoiseAloneStaysBelowAllBounds) {
   EXPECT_GT(above, 0);
 }
 
-TEST(MapSentenceTest, NamesTheWindowAndBandThatAreFurthestOff) {
+TEST(MapSentenceTest, NamesTheWindowAndBandOfTheLargestError) {
   const auto t = times();
   const auto w = windows();
   std::vector<double> off = noise(1, 0, 5), also = noise(1, 0, 6), quiet = noise(1, 0, 7);

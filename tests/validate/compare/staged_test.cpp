@@ -34,7 +34,7 @@ TEST(CompareStagedTest, LoadRejection) {
                          test::staged_record(c, {{Staged::load_rejection, 2.0}}, 0, 2e-4, 0.005));
 }
 
-TEST(CompareStagedTest, StepInAnOpenCircuit) {
+TEST(CompareStagedTest, StepInOpenCircuit) {
   const sim::plant::Plant plant = test::unloaded_plant();
   const sim::Conventions conventions = sim::Conventions::psse();
   expect_right_and_wrong({plant, conventions}, test::open_circuit_record(0.05, 2e-4, 0.005));

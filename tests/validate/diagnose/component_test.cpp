@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::Contains;
 
-TEST(ComponentHypotheses, OnlyBlocksOfTheComponentJoin) {
+TEST(ComponentHypotheses, ContainOnlyBlocksOfTheComponent) {
   plant::PlantModel model;
   model.plant.machine = test::default_block("GENROU");
   model.conventions = sim::Conventions::psse();
@@ -31,7 +31,7 @@ TEST(ComponentHypotheses, OnlyBlocksOfTheComponentJoin) {
   }
 }
 
-TEST(DiagnoseComponentFull, TheMissingStabiliserIsNamed) {
+TEST(DiagnoseComponentFull, NamesMissingStabiliser) {
   std::vector<record::Record> records;
   plant::PlantModel model;
   unsigned seed = 1;

@@ -22,7 +22,7 @@ std::vector<record::Record> example_records(const plant::PlantModel& model) {
   return records;
 }
 
-TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
+TEST(Hypotheses, IncludeEveryFittingEffectAndNullGroup) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   std::vector<std::string> names;
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) names.push_back(h.name);
@@ -36,14 +36,14 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"GENROU:D", "GENROU:S10,S12", "GENROU:Ra", "speed-voltage"}));
 }
-TEST(Hypotheses, NoneFillsAnOccupiedSlot) {
+TEST(Hypotheses, LeaveOccupiedSlotsUnchanged) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const auto* sexs = sim::library::compiled().find("SEXS");
   model.plant.controls.push_back({sexs, sexs->default_parameters()});
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
     EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
 }
-TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
+TEST(FindSwitchings, FindsAndMarksFilteredSteps) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   record::Record r = example_records(model).front();
   std::vector<char> smeared;
@@ -63,7 +63,7 @@ TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
     EXPECT_LE(std::abs(found[k].time - sharp[k].time), found[k].uncertainty);
 }
 
-TEST(DiagnoseFull, TheMissingExciterIsNamed) {
+TEST(DiagnoseFull, NamesMissingExciter) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;
@@ -120,7 +120,7 @@ std::vector<record::Record> records_with_exst1(
   }
   return records;
 }
-TEST(DiagnoseNight, AnExciterWithARateFeedbackIsNotLost) {
+TEST(DiagnoseNight, FindsExciterWithRateFeedback) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;

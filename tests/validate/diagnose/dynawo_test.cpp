@@ -81,7 +81,7 @@ std::pair<double, double> left(const plant::PlantModel& model) {
   return {rms(0), rms(1)};
 }
 
-TEST(DynawoRecords, ThreeFilesOfDifferentInstantsAreOneRecord) {
+TEST(DynawoRecords, JoinsThreeFilesWithDifferentTimes) {
   const record::Record r = dynawo_record();
   EXPECT_NEAR(r.P.front(), 4.751, 1e-3);
   EXPECT_NEAR(r.Q.front(), 1.562, 1e-3);
@@ -92,7 +92,7 @@ TEST(DynawoRecords, ThreeFilesOfDifferentInstantsAreOneRecord) {
 }
 
 // Efd runs from 1.9 pu into its ceiling within 4 ms of the fault, at 600 pu/s.
-TEST(DynawoRecords, TheBelievedModelMissesAndARightInertiaNearlyMeetsIt) {
+TEST(DynawoRecords, RightInertiaReducesTheErrorOfTheSubmittedModel) {
   plant::PlantModel model = believed();
   const auto [P, Q] = left(model);
   inertia(model) = 4.03;
@@ -107,12 +107,12 @@ TEST(DynawoRecords, TheBelievedModelMissesAndARightInertiaNearlyMeetsIt) {
   EXPECT_LT(right_Q, 2.5);
 }
 
-TEST(DynawoRecords, OneEventIsTooFewForADiagnosis) {
+TEST(DynawoRecords, RefusesDiagnosisOfOneEvent) {
   EXPECT_THAT(test::messages([] { diagnose(believed(), {dynawo_record()}); }),
               ElementsAre(HasSubstr("two events or more")));
 }
 
-TEST(DynawoRecordsFull, TheWrongInertiaIsFound) {
+TEST(DynawoRecordsFull, FindsWrongInertia) {
   const calibrate::Calibration c = calibrate::calibrate(believed(), {dynawo_record()}, {});
   const auto& H = std::ranges::find(c.parameters, "H", [](const auto& p) { return p.fit.name; })->fit;
   EXPECT_GT(H.low, 3.8);

@@ -16,7 +16,7 @@ double& current_limit(sim::plant::Plant& plant) {
 }
 
 /// A converter whose current is limited at 0.9 pu, where its model says 1.3 pu.
-TEST(BetterStart, ALimitThatIsNeverMetIsTried) {
+TEST(BetterStart, TriesLimitThatTheModelNeverReaches) {
   const auto converter = [](sim::grid::Grid& grid) {
     sim::plant::Plant& plant = grid.plants[3];
     plant.machine = test::block("REGCA1", "Tg=0.04");

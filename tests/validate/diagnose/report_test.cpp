@@ -104,7 +104,7 @@ std::string cell_text(const nlohmann::json& cell) {
 }
 
 /// An inferred input has a time series with limits, and no fitted parameters.
-TEST(DiagnosisReportTest, AnInferredInputHasLimitsAndNoTableOfParameters) {
+TEST(DiagnosisReportTest, InferredInputHasLimitsAndNoParameterTable) {
   Diagnosis d = example().d;
   d.verdict = Verdict::unexplained;
   for (hypothesis::Judgement& j : d.ranked) j.accepted = false;
@@ -165,13 +165,13 @@ TEST(DiagnosisReportTest, ErrorFallsWithTheAddedEffect) {
   const auto j = figures();  // an exciter, even fitted in haste, is nearer to the truth than none
   EXPECT_LT(j["after"]["normalised_rms"], j["before"]["normalised_rms"]);
 }
-TEST(DiagnosisReportTest, TheVerdictComesFirst) {
+TEST(DiagnosisReportTest, VerdictIsFirst) {
   const auto verdict = page().find("The exciter &lt;SEXS&gt; is missing.");
   ASSERT_NE(verdict, std::string::npos);
   EXPECT_LT(verdict, page().find("<table"));
   EXPECT_LT(verdict, page().find("<h2"));
 }
-TEST(DiagnosisReportTest, AnAdequateModelNeedsNothingAdded) {
+TEST(DiagnosisReportTest, AdequateModelNeedsNoEffect) {
   Diagnosis d = example().d;
   d.verdict = Verdict::adequate;
   d.sentence = "The model is adequate.";
@@ -221,7 +221,7 @@ Diagnosis with_laws() {
   return d;
 }
 
-TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
+TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
   const Diagnosis d = with_laws();
   const std::string html = diagnosis_html(example().model, d, {});
   const auto section = html.find("A law for it");
@@ -250,12 +250,12 @@ TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
   EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
 }
-TEST(DiagnosisReportTest, WithoutASearchForLawsThePageIsSilent) {
+TEST(DiagnosisReportTest, PageOmitsLaws_WithoutASearch) {
   EXPECT_THAT(page(), testing::Not(HasSubstr("A law for it")));
   EXPECT_TRUE(figures()["laws"].is_null());
 }
 
-TEST(DiagnosisPageTest, ABrowserShowsIt) {
+TEST(DiagnosisPageTest, RendersInABrowser) {
   // A drag from 30 % to 60 % of the first chart's width, as a person would zoom.
   const std::string zoom = R"js(<script>
     const box=[...document.getElementById("chart0").querySelectorAll("canvas")].pop(), r=box.getBoundingClientRect();
@@ -280,7 +280,7 @@ TEST(DiagnosisPageTest, ABrowserShowsIt) {
     EXPECT_EQ(range, result["zoomed"][0]);     // the event's charts follow
   EXPECT_LE(result["wide"], result["inner"]);  // on a telephone nothing needs scrolling sideways but tables
 }
-TEST(DiagnosisPageTest, ABrowsersComplaintsAreSeen) {
+TEST(DiagnosisPageTest, DetectsBrowserErrors) {
   EXPECT_THAT(
       test::show("<!doctype html><body>", "<script>document.body.dataset.result='1';nothing.there()</script>")
           .complaints,

@@ -35,13 +35,13 @@ std::vector<playin::Switching> switchings_of(const record::Record& r) {
   return find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
 }
 
-TEST(FindSwitchings, AFastSwingIsNone) {
+TEST(FindSwitchings, IgnoresFastSwing) {
   // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from those two further by 0.016 pu
   const record::Record r = record_of([](double) { return 1.0; },
                                      [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
   for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
 }
-TEST(FindSwitchings, TheEndOfARampIsNone) {
+TEST(FindSwitchings, IgnoresEndOfRamp) {
   // a converter's active power comes back at its ramp rate: the angle turns by 0.05 rad from sample to sample
   // for 70 ms, and the steps die out within three
   const auto theta = [](double t) {
@@ -53,12 +53,12 @@ TEST(FindSwitchings, TheEndOfARampIsNone) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 120, 0.51 / 120);
 }
-TEST(FindSwitchings, ASmallJumpIsOne) {
+TEST(FindSwitchings, FindsSmallStep) {
   const auto found = switchings_of(record_of([](double t) { return t <= 3.0 ? 1.0 : 0.985; }));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 60, 0.51 / 60);  // within its sample interval
 }
-TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
+TEST(FindSwitchings, FindsStepDuringSwing) {
   const auto found = switchings_of(
       record_of([](double t) { return (t <= 5.0 ? 1.0 : 0.8) + 0.05 * std::sin(2 * std::numbers::pi * t); }));
   ASSERT_EQ(found.size(), 1U);
@@ -85,7 +85,7 @@ record::Record filtered(record::Record r) {
   return r;
 }
 
-TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
+TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   const record::Record r = near_loss();
   std::vector<char> smeared;
   const auto either = find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
@@ -139,11 +139,11 @@ TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
               Jumps::sharp)
         << phase;
 }
-TEST(FindSwitchings, ASmallJumpTellsThatNoneIsSmeared) {
+TEST(FindSwitchings, SharpSmallStepExcludesFilter) {
   EXPECT_EQ(jumps_of({near_loss(0.85)}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({filtered(near_loss(0.85))}, playin::kJumpThreshold), Jumps::spread);
 }
-TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
+TEST(FindSwitchings, TreatsAllRecordsAsFilteredOrSharp) {
   const record::Record quiet = record_of([](double) { return 1.0; });
   EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
@@ -164,7 +164,7 @@ record::Record subtransient(double on, double cycles, double tau) {
   };
   return record_of(V, theta, 30);
 }
-TEST(FindSwitchings, ADecayBehindASharpJumpIsNoFilters) {
+TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
   for (const double tau : {0.02, 0.025, 0.03})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const record::Record r = subtransient(on, 6, tau);
@@ -178,7 +178,7 @@ TEST(FindSwitchings, ADecayBehindASharpJumpIsNoFilters) {
 }
 /// The same jumps without a decay behind a triangular window of two cycles, at 30/s and 60/s: what a filter
 /// leaves on one side only is not taken for a decay.
-TEST(FindSwitchings, AFilterIsStillOne) {
+TEST(FindSwitchings, RecognisesTriangularFilter) {
   for (const double rate : {30.0, 60.0})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const auto at = [=](double t) { return t <= 3 + on / rate || t > 3.15 + on / rate ? 1.0 : 0.5; };
@@ -194,10 +194,10 @@ TEST(FindSwitchings, AFilterIsStillOne) {
           << on << " at " << rate;
     }
 }
-TEST(FindSwitchings, NoiseIsNone) {
+TEST(FindSwitchings, IgnoresNoise) {
   EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
 }
-TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
+TEST(PrepareEvents, FindsEndOfFaultWithDecay) {
   record::Record r = subtransient(0.5, 6, 0.025);
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -207,7 +207,7 @@ TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
   EXPECT_TRUE(e.smeared.empty());
   EXPECT_NEAR(e.switchings[1].time, 3.1 + 0.5 / 30, 0.51 / 30);
 }
-TEST(PrepareEvents, TheWindowBeforeAnEventEndsWherePAndQJump) {
+TEST(PrepareEvents, PreEventWindowEndsAtTheStepOfPAndQ) {
   record::Record r = record_of([](double) { return 1.0; });
   std::mt19937_64 random(6);
   std::normal_distribution<double> noise(0, 1e-4);
@@ -221,7 +221,7 @@ TEST(PrepareEvents, TheWindowBeforeAnEventEndsWherePAndQJump) {
   EXPECT_EQ(e.start.samples, 13);  // up to 0.2 s at 60/s
 }
 /// Two samples of fault at 30/s tell no decay from a filter: the person does.
-TEST(PrepareEvents, ToldInstantsAreTaken) {
+TEST(PrepareEvents, UsesGivenSwitchingTimes) {
   record::Record r = subtransient(0.5, 4, 0.025);
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -236,7 +236,7 @@ TEST(PrepareEvents, ToldInstantsAreTaken) {
   EXPECT_TRUE(e.smeared.empty());
   EXPECT_EQ(e.start.samples, 91);
 }
-TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
+TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -250,7 +250,7 @@ TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
 }
 /// A fault near the terminal behind a triangular window of two cycles, stamps with six decimals: the window
 /// reaches one interval more at its end than at its begin.
-TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
+TEST(PrepareEvents, AcceptsFaultEndOneIntervalWider) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3 + 0.5 / 60;
   for (const double end : {5.05, 5.25, 5.75}) {
@@ -272,7 +272,7 @@ TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
   }
 }
 /// A subtransient of 30 ms behind the fault's end makes that jump wider than its begin.
-TEST(PrepareEvents, BehindAFilterTheEndOfAFaultMayDecay) {
+TEST(PrepareEvents, AcceptsDecayAtFilteredFaultEnd) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3.005, off = on + 0.06;
   const FitEvent e = prepare_events(model, {behind(kOneCycle, on, off - on, 0.95, 0.12, 0.0)}).front();
@@ -281,7 +281,7 @@ TEST(PrepareEvents, BehindAFilterTheEndOfAFaultMayDecay) {
   EXPECT_NEAR(e.switchings[1].time, off, kOneCycle / 2);
 }
 /// The filter smears every jump over as many samples, the swing is wider.
-TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {
+TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);

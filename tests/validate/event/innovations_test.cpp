@@ -34,7 +34,7 @@ Eigen::MatrixXd covariance_of(const SlowNoise& s, const std::vector<char>& left_
   return whole(rows, rows);
 }
 
-TEST(Innovations, EqualTheCholeskyFactorOfTheWholeCovariance) {
+TEST(Innovations, EqualCholeskyWhitening) {
   SlowNoise s;
   s.A = (Eigen::MatrixXd(2, 2) << 0.98, 0.05, -0.02, 0.9).finished();
   s.C = (Eigen::MatrixXd(2, 2) << 1.0, 0.3, -0.4, 0.8).finished();
@@ -121,7 +121,7 @@ struct Quiet {
   }
 };
 
-TEST(RememberNoise, WhitensWhatARegulatorMakesOfTheVoltagesNoise) {
+TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
   Quiet quiet("SEXS");
   quiet.answer();
   EXPECT_GT(quiet.slow_power(), 3.0);  // or there is nothing to whiten

@@ -36,7 +36,7 @@ Played with_exciter(const char* name) {
 /// Measured 2026-11-25: 1.0 to 2.6 steps and 1.1e-5 to 7.5e-4 of the variance. With one tolerance for all
 /// states EXST1 took 5.1, EXAC1 5.7 and ESAC1A 7.9 steps.
 class LenientPlay : public ::testing::TestWithParam<const char*> {};
-TEST_P(LenientPlay, TakesFewStepsAndStaysBelowAHundredthOfTheNoise) {
+TEST_P(LenientPlay, TakesFewStepsWithErrorBelowOnePerCentOfNoise) {
   const Played p = with_exciter(GetParam());
   EXPECT_LT(p.steps, 3.2);
   EXPECT_LT(p.mean_square, 2e-3);

@@ -15,7 +15,7 @@ namespace far = sim::grid::far_control;
 
 const std::vector<Collector> kCable = {{.R = 0.002, .X = 0.06, .B = 0.05, .ratio = 1, .mva = 100}};
 
-TEST(PointControl, TheTwoPortIsTheWayBackFromBehindTheCollector) {
+TEST(PointControl, TwoPortInvertsTheCollector) {
   const std::vector<Collector> sections = {{.R = 0.01, .X = 0.05, .B = 0.02, .ratio = 0.97, .mva = 150},
                                            {.R = 0.002, .X = 0.06, .B = 0.1, .ratio = 1.03, .mva = 80}};
   record::Record at_point;
@@ -65,7 +65,7 @@ struct Plant : ::testing::Test {
   }
 };
 
-TEST_F(Plant, ItsControlSeesThePoint) {
+TEST_F(Plant, ControlMeasuresAtThePointOfCommonCoupling) {
   sim::plant::Plant plant = model();
   EXPECT_GT(missed(plant), 1e-3);  // as if it measured at the plant's own bus
   MeasuredPoint point;
@@ -74,7 +74,7 @@ TEST_F(Plant, ItsControlSeesThePoint) {
   EXPECT_LT(missed(at_point(point)), 1e-4);
 }
 
-TEST_F(Plant, OthersAtThePointNeedAShare) {
+TEST_F(Plant, RequiresAShareOfOtherUnits) {
   MeasuredPoint point;
   point.file = "point.toml";
   point.collector = kCable;

@@ -74,7 +74,7 @@ struct TwoUnits : ::testing::Test {
   }
 };
 
-TEST_F(TwoUnits, TheTriedOneIsLeft) {
+TEST_F(TwoUnits, RecoversTheTestedUnit) {
   const record::Record at_point = seen();
   ASSERT_GT(std::abs(at_point.P[10] - alone.P[10]), 0.1);
   const MeasuredPoint point{.file = "point.toml",
@@ -88,7 +88,7 @@ TEST_F(TwoUnits, TheTriedOneIsLeft) {
                     Contains(HasSubstr("unit 6 does by its model was taken off; it began at 30 MW"))));
 }
 
-TEST_F(TwoUnits, AnAngleOfTheFrequencyTurnsForAllOfThem) {
+TEST_F(TwoUnits, IntegratedAngleGetsTurnsForAllUnits) {
   const MeasuredPoint point{.file = "point.toml",
                             .collector = collector,
                             .tried = tried,
@@ -99,7 +99,7 @@ TEST_F(TwoUnits, AnAngleOfTheFrequencyTurnsForAllOfThem) {
     worst = std::max({worst, std::abs(left.P[k] - alone.P[k]), std::abs(left.Q[k] - alone.Q[k])});
   EXPECT_LT(worst, 1e-5);  // without turns the machines cannot follow
 }
-TEST_F(TwoUnits, ASharesDispatchIsOfTheWhole) {
+TEST_F(TwoUnits, ShareDefinesTheDispatch) {
   const record::Record inner = behind_collector(seen(), collector);
   const double share = kP / inner.base.mva / inner.P[0];
   record::Record all = inner;
@@ -115,7 +115,7 @@ TEST_F(TwoUnits, ASharesDispatchIsOfTheWhole) {
   }
 }
 
-TEST_F(TwoUnits, PointFiles) {
+TEST_F(TwoUnits, ReadsPointFiles) {
   const auto folder =
       std::filesystem::path(::testing::TempDir()) / fmt::format("swingbank-point-{}", ::getpid());
   std::filesystem::create_directories(folder);

@@ -36,13 +36,13 @@ struct Turns : ::testing::Test {
   }
 };
 
-TEST_F(Turns, ArePutWhereTheFrequencyLacksThem) {
+TEST_F(Turns, AreAdded_WhenTheFrequencyLacksTheSteps) {
   const auto events = prepare_events(model, {test::by_frequency(whole, {s.t_on, s.t_off})});
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_GT(std::abs(events[0].switchings[0].turn), 0.05);
   EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
 }
-TEST_F(Turns, APeakOfAMeterIsDropped) {
+TEST_F(Turns, MeterPeakIsDropped) {
   record::Record r = whole;  // f: what the angle turns by from one sample before to one after
   const double nominal = constants::turn * r.base.frequency;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
@@ -56,7 +56,7 @@ TEST_F(Turns, APeakOfAMeterIsDropped) {
   EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
   EXPECT_FALSE(events[0].record.notes.empty());
 }
-TEST_F(Turns, ASwitchingThatOnlyThePowerShowsIsFound) {
+TEST_F(Turns, FindsSwitchingInPowerAlone) {
   record::Record r;
   r.base = whole.base;
   for (int k = 0; k < 300; ++k) {

@@ -69,7 +69,7 @@ double worst_within(const FitEvent& e, const Fault& fault = {}) {
   return worst;
 }
 
-TEST(Unsmear, ShortFaultComesBack) {
+TEST(Unsmear, RestoresShortFault) {
   std::vector<FitEvent> events = {event(0.0)};
   const double before = worst_within(events.front());
   const FilterWindow window = unsmear(events);
@@ -83,7 +83,7 @@ TEST(Unsmear, ShortFaultComesBack) {
   EXPECT_LT(worst_within(events.front()), 2e-3);
   EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
 }
-TEST(Unsmear, NoiseMovesItLittle) {
+TEST(Unsmear, IsInsensitiveToNoise) {
   std::vector<FitEvent> events = {event(2e-4)};
   unsmear(events);
   // one smeared sample tells an instant to 2e-4 pu / (0.25 pu / 17 ms); slopes of the fault to a few times
@@ -94,7 +94,7 @@ TEST(Unsmear, NoiseMovesItLittle) {
 }
 /// Both jumps of a fault of three samples share the samples between them, and the probability of the instants
 /// has many peaks.
-TEST(Unsmear, InstantsOfAShortFaultAreFoundWhereverItLies) {
+TEST(Unsmear, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {
       const Fault fault = {.off = kOn + length, .V = 0.85};
@@ -106,7 +106,7 @@ TEST(Unsmear, InstantsOfAShortFaultAreFoundWhereverItLies) {
     }
 }
 /// The knots of what was brought back lie nearer to an instant than it is known.
-TEST(Unsmear, KnotsStayInTheirSegmentWhileTheInstantsMove) {
+TEST(Unsmear, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
   std::vector<FitEvent> events = {event(1e-4, {.off = kOn + 0.055})};
   unsmear(events);
   const FitEvent& e = events.front();
@@ -123,7 +123,7 @@ TEST(Unsmear, KnotsStayInTheirSegmentWhileTheInstantsMove) {
 }
 /// Class M reaches far: at 30 reports a second 0.16 s to either side of a fault of 0.1 s, in which no sample
 /// is clean.
-TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {
+TEST(Unsmear, RestoresFaultShorterThanClassMWindow) {
   for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
     const Fault deep = {.off = kOn + 0.1, .V = 0.3};
     std::vector<FitEvent> events = {event(1e-4, deep, kClassM30, 30, phase / 30)};
@@ -137,7 +137,7 @@ TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {
     EXPECT_LT(worst_within(e, deep), 4e-3);  // measured: 1.5e-3, instants to 9e-5 s
   }
 }
-TEST(Unsmear, BehindALagThatIsNoWindowTheFaultKeepsItsVoltage) {
+TEST(Unsmear, KeepsFaultVoltageBehindALag) {
   const Fault deep = {.off = 1.92, .V = 0.3};
   std::vector<FitEvent> events = {event(1e-4, deep, kLag)};
   FitEvent& e = events.front();

@@ -11,7 +11,7 @@ namespace {
 /// A converter that regulates Q through two integrals and the voltage behind them: what half a sample of
 /// the fault does to Q grows for eight seconds. From the middle of the sample intervals the search ended at
 /// 1,800.
-TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
+TEST(EarlyStates, FitConverges_WhenTheResponseDivergesFromWrongTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1", "Vdip=0.75,Kqi=0.1");
   };

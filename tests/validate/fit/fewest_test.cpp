@@ -45,16 +45,16 @@ struct Known {
   }
 };
 
-TEST(SparseSelection, NamesTheParameterThatIsWrong) {
+TEST(SparseSelection, SelectsTheWrongParameter) {
   EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
 }
 /// One per cent off has an evidence of its own here, which is named only where right means exactly.
-TEST(SparseSelection, AValueThatIsOffByAPercentIsRight) {
+TEST(SparseSelection, AcceptsErrorOfOnePerCent) {
   const Known known({{"GENROU.H", 1.3}, {"GENROU.Xdp", 1.01}}, 2);
   EXPECT_EQ(known.named(), std::vector<std::string>{"GENROU.H"});
   EXPECT_EQ(known.named({.right = 1e-6}), (std::vector<std::string>{"GENROU.H", "GENROU.Xdp"}));
 }
-TEST(SparseSelection, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
+TEST(SparseSelection, SelectsNothing_WhenAllValuesAreRight) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
 /// Unit 2 of IEEE 14 as `change` has it, and the record of one fault.
 std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
@@ -74,7 +74,7 @@ std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
 
 /// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
 /// by the same factor: the gain behind them does what they do.
-TEST(SparseSelection, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
+TEST(SparseSelection, ReportsThatTwoParametersReplaceOne) {
   const auto exciter = [](sim::grid::Grid& grid) {
     const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
     sim::plant::Block block{&esst4b, esst4b.default_parameters()};
@@ -98,7 +98,7 @@ TEST(SparseSelection, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
 }
 
 /// A ceiling that is believed a fifth too high is not met there, and costs no more than one that just is not.
-TEST(SparseSelection, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
+TEST(SparseSelection, SelectsLimitThatThePriorMeanNeverReaches) {
   const sim::Effect& sexs = *sim::library::compiled().find("SEXS");
   const auto exciter = [&](sim::grid::Grid& grid) {
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
@@ -115,7 +115,7 @@ TEST(SparseSelection, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
   EXPECT_EQ(found.wrong[0].fit.full_name(), "SEXS.EMAX");
 }
 
-TEST(SparseSelectionFull, NamesThreeThatAreWrong) {
+TEST(SparseSelectionFull, SelectsThreeWrongParameters) {
   for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
            {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
            {{"GENROU.Tdop", 1.3}, {"GENROU.Xq", 0.7}, {"SEXS.TB", 1.3}},

@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kSpread = 0.2;
 
-TEST(FitEvidence, AParameterThatTheRecordsDoNotDecideAddsNothing) {
+TEST(FitEvidence, UndeterminedParameterAddsNothing) {
   const Fit f = ExciterExample(kSpread).fitted({"EMIN"});
   ASSERT_EQ(f.parameters.size(), 1U);
   EXPECT_LT(f.parameters.front().decided, 1e-9);  // the records never meet that limit
   EXPECT_NEAR(f.occam, 0.0, 1e-9);
 }
-TEST(FitEvidence, AParameterDecidedToSigmaAddsTheLogOfWhatWasBelieved) {
+TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
   const Fit f = ExciterExample(kSpread).fitted({"H"});
   ASSERT_EQ(f.parameters.size(), 1U);
   const auto& H = f.parameters.front();
@@ -28,14 +28,14 @@ TEST(FitEvidence, AParameterDecidedToSigmaAddsTheLogOfWhatWasBelieved) {
   EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
   EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }
-TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
+TEST(FitEvidence, UnobservableStructureHasNoPenalty) {
   const ExciterExample example(kSpread);
   const Fit without = example.fitted({"H"}), with = example.fitted({"H", "EMIN"});
   ASSERT_EQ(with.parameters.size(), 2U);
   // two searches end within 1e-5 of chi2, some 2000
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
 }
-TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
+TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
   const auto from = [](double start) { return Axis{{}, start, 0.1, 1e3, true, 1.0}; };
   for (const double bound : {0.1, 0.2, 0.3, 0.7, 5.0})
     for (const double start : {15.0, 30.0, 60.0, 7.3}) {
@@ -44,7 +44,7 @@ TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
     }
 }
 /// The plant on a quarter of its base: H is beyond what is usual, and the search goes on from there.
-TEST(FitAxis, AValueBeyondItsRangeIsMovedFurtherWhereTheRecordsAskForIt) {
+TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   ExciterExample example(kSpread);
   sim::plant::Block& machine = example.model.plant.machine;
   const auto at = [&](const char* name) -> double& {
@@ -61,7 +61,7 @@ TEST(FitAxis, AValueBeyondItsRangeIsMovedFurtherWhereTheRecordsAskForIt) {
   EXPECT_FALSE(f.parameters.front().at_bound);
 }
 /// The machine without its exciter: parameters would be bent beyond what any machine is.
-TEST(FitOrderings, BoundEveryFit) {
+TEST(FitOrderings, ConstrainEveryFit) {
   ExciterExample example(0.5);
   example.model.plant.controls.clear();
   const Fit f = fit(example.model.under_test(), example.events, free_parameters(example.model.plant, 0.5));
@@ -82,7 +82,7 @@ TEST(FitOrderings, BoundEveryFit) {
   };
   EXPECT_GT(value("Xd"), 0.99 * value("Xdp"));
 }
-TEST(FitEvidence, AFailedFitIsTheWorst) {
+TEST(FitEvidence, FailedFitRanksLast) {
   Fit f;
   f.failed = "it cannot be run";
   EXPECT_EQ(criterion(f), std::numeric_limits<double>::infinity());

@@ -54,7 +54,7 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
   return c;
 }
 
-TEST(Lines, AWaveBelowWhatChi2ShowsIsFoundAtItsFrequency) {
+TEST(Lines, FindsOscillationBelowTheChi2Limit) {
   const Residuals c = with_wave(0.2, 0.37, 1);
   EXPECT_LT(c.reduced_chi2(), thresholds::adequacy.reduced_chi2);
   const Line line = strongest_line(c.fit, c.events);
@@ -62,7 +62,7 @@ TEST(Lines, AWaveBelowWhatChi2ShowsIsFoundAtItsFrequency) {
   EXPECT_NEAR(line.frequency, 0.37, 0.02);  // half of 1 / 20 s is resolved
   EXPECT_GT(line.explains, thresholds::adequacy.line);
 }
-TEST(Lines, NoiseHoldsNone) {
+TEST(Lines, FindsNoneInNoise) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const Residuals c = with_wave(0.0, 0.37, seed);
     // a sum of ten squares reaches 52, which is 20 beyond its price, at one of 400 places in 40 residuals

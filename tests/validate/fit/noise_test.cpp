@@ -48,7 +48,7 @@ Case make(double colour, double assumed) {
   return c;
 }
 
-TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
+TEST(SharpenNoise, EstimatesWhiteNoiseWithinFivePerCent) {
   Case c = make(1.0, 1.0);
   // as prepare_events would: the spread of 450 samples before the events
   double quiet = 0;
@@ -66,7 +66,7 @@ TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
   EXPECT_NEAR(sharp.of(0).deviation[0], kSigma, 0.05 * kSigma);
   EXPECT_NEAR(sharp.of(0).whitening(0, 0) * sharp.of(0).deviation[0], 1.0, 1e-12);
 }
-TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
+TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   for (const double slow : {0.0, 0.25}) {  // a quarter of the noise, over seconds
@@ -91,7 +91,7 @@ TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
     }
   }
 }
-TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
+TEST(SharpenNoise, DoesNotChangeColouredNoise) {
   Case c = make(0.3, 1.0);
   const event::NoiseModel sharp = sharpen_noise(c.fit, c.events);
   EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
@@ -137,7 +137,7 @@ Case moving(double carried, bool real, Samples samples = {}) {
   return c;
 }
 
-TEST(VoltageNoise, IsSeenInPAndQThatWereMadeOfThePhasors) {
+TEST(VoltageNoise, IsDetectedInPAndQComputedFromPhasors) {
   for (const double carried : {0.0, 1.0}) {
     const Case c = moving(carried, false);
     const VoltageNoise found = voltage_noise(c.fit, c.events);
@@ -147,13 +147,13 @@ TEST(VoltageNoise, IsSeenInPAndQThatWereMadeOfThePhasors) {
     EXPECT_NEAR(found.own[static_cast<int>(playin::Output::Q)], 0.04, 0.3 * 0.04);
   }
 }
-TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {
+TEST(VoltageNoise, IsEstimatedOnTheWholeRecordWithoutSwings) {
   const VoltageNoise found = voltage_noise(moving(1, false).fit, moving(1, false).events);
   EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the stretches before the events alone tell it to 0.3
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
-TEST(VoltageNoise, AfterAFifthOfASecondTheCalmPartsTellIt) {
+TEST(VoltageNoise, UsesCalmSegments_WhenThePreEventIsShort) {
   const Case c = moving(1, false, {.before = 6});
   const VoltageNoise found = voltage_noise(c.fit, c.events);
   EXPECT_LT(found.doubt[1], 0.05);  // six lines alone tell it to 0.6

@@ -23,7 +23,7 @@ event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::
   return {{e}, example.events.noise_model()};
 }
 
-TEST(Sign, IsOpenWhereTheRangeSaysSo) {
+TEST(Sign, IsFree_WhenTheRangeAllowsIt) {
   const auto open = [](std::string_view of, std::string_view name) {
     const sim::Effect& e = effect(of);
     return may_change_sign(e.parameters[static_cast<std::size_t>(e.parameter_index(name))]);
@@ -37,7 +37,7 @@ TEST(Sign, IsOpenWhereTheRangeSaysSo) {
 /// DC exciters that feed themselves have a KE just below zero in most public cases; the standard value is 1.
 class SelfExcited : public ::testing::TestWithParam<bool> {};
 
-TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
+TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   ExciterExample example(0.2);
   example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").default_parameters()};
   sim::plant::Plant truth = example.model.plant;
@@ -60,7 +60,7 @@ TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
 INSTANTIATE_TEST_SUITE_P(Steps, SelfExcited, ::testing::Values(false, true),
                          [](const auto& lenient) { return lenient.param ? "lenient" : "exact"; });
 /// Public cases have machines with X''d below Xl. A record of such a machine keeps it.
-TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
+TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   ExciterExample example(0.2);
   sim::plant::Block& machine = example.model.plant.machine;
   parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
@@ -84,7 +84,7 @@ struct BelowLeakage {
     return fit(example.model.under_test(), events, example.free({"Xdpp"}), options);
   }
 };
-TEST(FitOrderings, XdppReturnsBelowXl_WhereTheModelHasItBelow) {
+TEST(FitOrderings, XdppReturnsBelowXl_WhenTheModelHasItBelow) {
   const BelowLeakage below;
   const double Xl = parameter(below.machine, "Xl");
   const Fit f = below.fitted({.values = {1.2 * Xl}});
@@ -93,7 +93,7 @@ TEST(FitOrderings, XdppReturnsBelowXl_WhereTheModelHasItBelow) {
   EXPECT_FALSE(f.parameters.front().at_bound);
   EXPECT_EQ(bounds_text(f.parameters), "");
 }
-TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
+TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
   BelowLeakage below;
   const double Xl = parameter(below.machine, "Xl");
   parameter(below.machine, "Xdpp") = 1.2 * Xl;
@@ -106,7 +106,7 @@ TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
 }
 /// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits: these
 /// values are where a search ended in a public case, before it was dropped for them.
-TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {
+TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};
   for (const auto& [name, value] : {std::pair("TR", 6.5606997582993224e-4),

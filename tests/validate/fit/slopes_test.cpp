@@ -38,7 +38,7 @@ struct Slopes : ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(Slopes, ResidualIsThatOfTheFit) {
+TEST_P(Slopes, ResidualEqualsThatOfTheFit) {
   const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
   EXPECT_LT(f.reduced_chi2(), 1.2);  // the plant and its instruments are the true ones
@@ -46,7 +46,7 @@ TEST_P(Slopes, ResidualIsThatOfTheFit) {
   EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
 }
 
-TEST_P(Slopes, AreThoseOfDifferences) {
+TEST_P(Slopes, AgreeWithCentralDifferences) {
   const int last = block_count(model.plant) - 1;
   std::vector<FreeParameter> free = {{{0, model.plant.machine.effect->parameter_index("H")}, 0.2},
                                      {{0, model.plant.machine.effect->parameter_index("Xdp")}, 0.2},

@@ -73,7 +73,7 @@ FleetRow named() {
   return r;
 }
 
-TEST_F(FleetFiles, CommonOptionsHoldWhereAPlantSaysNothing) {
+TEST_F(FleetFiles, CommonOptionsApply_WhenAPlantSetsNone) {
   const Fleet fleet = load_fleet(write("fleet.toml", R"(
 [options]
 power_only = true
@@ -98,7 +98,7 @@ spread = 0.1
   EXPECT_EQ(fleet.plants[1].records, (std::vector<std::string>{"e1.csv", "e*.csv"}));
 }
 
-TEST_F(FleetFiles, EveryFaultIsToldAtOnce) {
+TEST_F(FleetFiles, ReportsEveryFaultAtOnce) {
   const std::string said = problems(R"(
 [options]
 spread = -1
@@ -116,7 +116,7 @@ colour = "red"
   EXPECT_THROW(load_fleet(folder / "nowhere.toml"), InputError);
 }
 
-TEST_F(FleetFiles, APlantThatCannotBeReadIsARowWithAllItsProblems) {
+TEST_F(FleetFiles, UnreadablePlantIsARowWithAllItsProblems) {
   const Fleet fleet = load_fleet(write("fleet.toml", R"(
 [plant.a]
 model = "no-model.toml"
@@ -143,7 +143,7 @@ TEST_F(FleetFiles, KeepsForeignFiles) {
   EXPECT_FALSE(fs::exists(folder / "out/a/plant.json"));
 }
 
-TEST(FleetRows, AreReadBackAsWritten) {
+TEST(FleetRows, ReadBackAsWritten) {
   const FleetRow a = named(), b = read_row(row_json(a).dump(), "here");
   EXPECT_EQ(row_json(a), row_json(b));
   EXPECT_EQ(b.evidence, a.evidence);
@@ -154,7 +154,7 @@ TEST(FleetRows, AreReadBackAsWritten) {
   EXPECT_THROW(read_row("{\"format\": ", "here"), InputError);
 }
 
-TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
+TEST(FleetTables, ReportFindingsAndExitCodes) {
   const Fleet fleet{"f.toml", "", {}};
   const std::vector<FleetRow> sound = {row("a", "adequate")}, found = {row("a", "adequate"), named()},
                               broken = {row("a", "adequate"), named(),
@@ -180,7 +180,7 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
   EXPECT_TRUE(j["plants"][2]["evidence"].is_null());
 }
 
-TEST(FleetChance, IsThatOfTheChiSquareDistribution) {
+TEST(FleetChance, FollowsTheChiSquareDistribution) {
   // Tables of the distribution: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4
   // digits).
   const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};

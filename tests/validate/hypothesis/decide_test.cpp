@@ -37,7 +37,7 @@ class Decide : public ::testing::Test {
       {.measured_states = false});
 };
 
-TEST_F(Decide, TheFieldTellsExcitersApart) {
+TEST_F(Decide, FieldQuantitiesDistinguishExciters) {
   const Decision d = between({fitted("SEXS"), fitted("IEEET1")});
   EXPECT_EQ(d.now, 2);
   ASSERT_FALSE(d.next.empty());
@@ -51,14 +51,14 @@ TEST_F(Decide, TheFieldTellsExcitersApart) {
   EXPECT_TRUE(std::ranges::is_sorted(d.next, {}, &NextRecord::expected));
   EXPECT_THAT(decide_sentence(d), testing::HasSubstr("would decide: set of 2 -> 1."));
 }
-TEST_F(Decide, NothingTellsAnExciterFromItself) {
+TEST_F(Decide, NothingDistinguishesAnExciterFromItself) {
   const Judgement sexs = fitted("SEXS");
   const Decision d = between({sexs, sexs});
   ASSERT_FALSE(d.next.empty());
   for (const NextRecord& n : d.next) EXPECT_NEAR(n.expected, 2, 1e-9) << n.what;
   EXPECT_THAT(decide_sentence(d), testing::HasSubstr("Nothing that was tried would decide"));
 }
-TEST_F(Decide, OneAloneNeedsNoDecision) {
+TEST_F(Decide, SingleHypothesisNeedsNoDecision) {
   const Decision d = between({fitted("SEXS")});
   EXPECT_TRUE(d.next.empty());
   EXPECT_EQ(decide_sentence(d), "");

@@ -24,7 +24,7 @@ std::vector<Hypothesis> hypotheses() {
   return all_hypotheses(model.under_test(), model.library);
 }
 
-TEST(Hypotheses, EveryStartIsSound) {
+TEST(Hypotheses, EveryStartCanRun) {
   std::set<std::string> drawn;
   for (const Hypothesis& h : hypotheses()) {
     if (h.drawn) drawn.insert(h.name);
@@ -33,7 +33,7 @@ TEST(Hypotheses, EveryStartIsSound) {
   EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
   EXPECT_TRUE(drawn.contains("TGOV1"));
 }
-TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
+TEST(Hypotheses, StartsAreDefaultsThenDraws) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;
     EXPECT_EQ(h.starts.size(), 40U) << h.name;
@@ -41,7 +41,7 @@ TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
     EXPECT_EQ(std::set(h.starts.begin(), h.starts.end()).size(), h.starts.size()) << h.name;
   }
 }
-TEST(Hypotheses, AnAddedTransformersRatioIsFreeWithinItsTaps) {
+TEST(Hypotheses, RatioOfAddedTransformerIsFreeWithinItsTaps) {
   for (const Hypothesis& h : hypotheses()) {
     if (h.name != "STEPUP") continue;
     std::vector<std::string_view> names;
@@ -57,7 +57,7 @@ TEST(Hypotheses, AnAddedTransformersRatioIsFreeWithinItsTaps) {
   }
   FAIL() << "no transformer is tried";
 }
-TEST(Hypotheses, FurtherDrawsAreOthers) {
+TEST(Hypotheses, FurtherDrawsDiffer) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;
     const std::set known(h.starts.begin(), h.starts.end());
@@ -67,7 +67,7 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
   }
 }
 /// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters are no draws.
-TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
+TEST(Hypotheses, FreesInactivePartsInGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   for (const Hypothesis& h : all_hypotheses(model.under_test(), model.library)) {
@@ -89,7 +89,7 @@ TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
   EXPECT_FALSE(names.contains("CTERROR"));
   EXPECT_FALSE(names.contains("GENROU:S10,S12"));
 }
-TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
+TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
   const auto all = all_replacements(model.under_test(), model.library);
   std::size_t exciters = 0;
@@ -106,7 +106,7 @@ TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
   }
 }
 /// Of whatever block of a converter has one: a source that is its own control among them.
-TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
+TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
   const auto names = [](const char* source, const std::vector<const char*>& controls) {
     sim::plant::Plant plant;
     const auto standard = [](const char* name) {
@@ -128,7 +128,7 @@ TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
                                    "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
 }
 /// Its edges lie to either side of the neutral 0, and a start wider than all that moves has no slope.
-TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
+TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
   const auto standard = [](const char* name) {
     const sim::Effect* effect = sim::library::compiled().find(name);
     return sim::plant::Block{effect, effect->default_parameters()};
@@ -147,7 +147,7 @@ TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
   }
   EXPECT_EQ(bands, 2);
 }
-TEST(Triangle, HasTheProductsOfTheColumns) {
+TEST(Triangle, ReproducesTheProductsOfTheColumns) {
   event::RowMatrix e = event::RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
   const event::RowMatrix r = fit::fitting::triangle_of(e);

@@ -41,7 +41,7 @@ class IdentifiedExciter : public ::testing::Test {
                               .fit = base_};
 };
 
-TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
+TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   const auto all = found({"SEXS", "ESST4B"});
   ASSERT_EQ(all.size(), 2U);
   const Judgement& best = all.front();
@@ -63,7 +63,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
 
 /// A phase error of an instrument transformer is found beside the exciter, and nothing where they are right.
 /// That of the voltage and that of the current turn the power alike.
-TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
+TEST_F(IdentifiedExciter, FindsTheMissingCompanionToo) {
   EXPECT_EQ(found({"SEXS"}).front().companion, "");
   auto wrong = records(model_);
   for (record::Record& r : wrong)
@@ -86,7 +86,7 @@ TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
   }
 }
 
-TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
+TEST_F(IdentifiedExciter, IsNotFitted_WhenTheBaseModelReachesTheNoise) {
   const Judgement first = found({"SEXS"}).front();
   const BaseModel then = after(base_model_, first);
   auto all = all_hypotheses(then.under_test(), then.library);

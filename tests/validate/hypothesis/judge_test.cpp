@@ -25,13 +25,13 @@ HeldOut event(const std::string& name, double before, double after) {
   return h;
 }
 
-TEST(Objection, NoneToWhatPredictsEveryEvent) {
+TEST(Objection, NoneWhenEveryEventIsPredicted) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.2, 1.01)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventThatIsUntouchedMayScatter) {
+TEST(Objection, AllowsScatterOfAnUnaffectedEvent) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.01)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventMayNotPayForTheOthers) {
+TEST(Objection, RefusesImprovementAtTheCostOfAnEvent) {
   EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
   // 30 of chi2: above 20, and above a tenth of this evidence
   EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
@@ -39,16 +39,16 @@ TEST(Objection, AnEventMayNotPayForTheOthers) {
   // ... and below a tenth of this one, still as good as noise
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventThatWasBadMayNotBecomeWorse) {
+TEST(Objection, RefusesDeteriorationOfABadEvent) {
   EXPECT_THAT(objection({event("a", 30.0, 1.0), event("b", 2.0, 2.1)}, 29000, kAdequate),
               HasSubstr("improve b"));
 }
-TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
+TEST(Objection, EventIsNotPredicted_WhenTheFitWithoutItFails) {
   HeldOut none = event("b", 1.0, 1.0);
   none.cost_after = std::numeric_limits<double>::infinity();
   EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("b when"));
 }
-TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
+TEST(HeldOutEvents, FailedFitPredictsNothing) {
   fit::ExciterExample example(0.2);
   example.events = example.events.only({0, 0});
   const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
@@ -62,7 +62,7 @@ TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
     sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // Efd stands above it
   EXPECT_GT(hold(impossible).front().cost_after, 1e300);
 }
-TEST(Objection, AnEventMustBePredictedNotOnlyImproved) {
+TEST(Objection, RequiresPredictionNotOnlyImprovement) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),
               HasSubstr("predict b"));
   // a tenth of what it was will do: the plain misfit is judged apart

@@ -17,7 +17,7 @@ using testing::Not;
 using WholeFit = HiddenExciter;
 
 /// An armature resistance that the model lacks. A load compensator without an exciter changes nothing.
-TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
+TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   Hypothesis truth = named("GENROU:Ra");
   constexpr double kRa = 0.03;
   sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
@@ -33,7 +33,7 @@ TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
 }
 
 /// An ordinary fit that begins at KF = 0 does not find a fast rate feedback.
-TEST_F(WholeFit, FindsARateFeedbackThatDefaultValuesLeaveOff) {
+TEST_F(WholeFit, FindsRateFeedbackInactiveByDefault) {
   constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback acts as a lead-lag does
   const Hypothesis exst1 = named("EXST1");
   Hypothesis truth = exst1;
@@ -98,7 +98,7 @@ class Exchange : public ::testing::Test {
                               .fit = base_};
 };
 
-TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
+TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   const auto competitors = exchanges(base_model_, pair, {});
   EXPECT_THAT(names(competitors),
@@ -132,7 +132,7 @@ TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const fit::FreeParameter& f = found->hypothesis.free.front();
   EXPECT_EQ(sim::plant::parameter_value(found->fit.plant, f.id), 0.01);
 }
-TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
+TEST_F(Exchange, DropsEffectsWithoutTheirPrerequisite) {
   Judgement pair = beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001);
   EXPECT_THAT(exchanges(base_model_, pair, {}), IsEmpty());
 }
@@ -163,17 +163,17 @@ TEST_F(Crossing, AddsReductionsOfTwoEffects) {
   EXPECT_EQ(next->joins + " joins " + next->stays, "IEEET1 joins HYGOV");
   EXPECT_EQ(next->expected, 130 + 60 - 75);
 }
-TEST_F(Crossing, NothingIsExpectedOfEffectsWhosePartnersWereNeverTogether) {
+TEST_F(Crossing, ExpectsNothing_WhenThePartnersWereNeverPaired) {
   EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("EXAC1", "IEEEG1", 75)}));
   EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("GGOV1", "EXAC1", 75)}));
 }
-TEST_F(Crossing, APairThatCannotBeFittedIsNotTriedAgain) {
+TEST_F(Crossing, DoesNotRetryFailedPair) {
   std::vector<Judgement> pairs = {pair("GGOV1", "IEEET1", 100), pair("EXAC1", "GGOV1", 80),
                                   pair("EXAC1", "IEEEG1", 75), pair("IEEEG1", "IEEET1", 0)};
   pairs.back().fit.failed = "too steep";
   EXPECT_FALSE(best_cross(pairs));
 }
-TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
+TEST_F(Crossing, StartsEachEffectFromItsPair) {
   const std::vector<Judgement> pairs = {beside(alone("STEPUP", 0.07), "IEEEG1", 0.08),
                                         beside(alone("TGOV1", 0.06), "CTERROR", 0.01)};
   const Judgement j = crossed(base_model_, {"IEEEG1", &pairs[0], "CTERROR", &pairs[1], 0});
@@ -184,7 +184,7 @@ TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
   EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, id), 0.01);
   EXPECT_NE(std::ranges::find(j.hypothesis.free, id, &fit::FreeParameter::id), j.hypothesis.free.end());
 }
-TEST_F(Crossing, NothingIsFittedWhereAnEffectNeedsAnother) {
+TEST_F(Crossing, FitsNothing_WhenAnEffectRequiresAnother) {
   const std::vector<Judgement> pairs = {beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001),
                                         beside(alone("CTERROR", 0.01), "STEPUP", 0.07)};
   Judgement j = crossed(base_model_, {"STEPUP", &pairs[1], "TGOV1:db", &pairs[0], 0});

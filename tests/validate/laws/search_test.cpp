@@ -51,7 +51,7 @@ double value_of(const LawCandidate& law, const std::string& name) {
 }
 constexpr double kLevel = 0.1;
 
-TEST(LawCandidates, ALimitedLawOfTheSpeedLeads) {
+TEST(LawCandidates, LimitedSpeedLawRanksFirst) {
   const auto traces = traces_with(
       [](const LawTrace&, double speed, double) { return -0.02 * std::clamp(speed / 0.001, -1.0, 1.0); });
   const auto ranked = law_candidates(fit::InputKind::torque, traces, kLevel);
@@ -66,7 +66,7 @@ TEST(LawCandidates, ALimitedLawOfTheSpeedLeads) {
   EXPECT_NEAR(value_of(*limited, "L"), -0.02, 0.003);
   EXPECT_NEAR(std::log2(value_of(*limited, "w") / 0.001), 0.0, 1.0);
 }
-TEST(LawCandidates, AnOscillationIsFoundWithItsFrequency) {
+TEST(LawCandidates, FindsOscillationWithItsFrequency) {
   const auto traces = traces_with([](const LawTrace&, double, double t) {
     return t < 4 ? 0.0 : 0.01 * std::sin(6.283185307 * 0.47 * t + 0.3);
   });
@@ -77,7 +77,7 @@ TEST(LawCandidates, AnOscillationIsFoundWithItsFrequency) {
   EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // a tenth: the edge of the beginning is not on the grid
   EXPECT_NEAR(value_of(best, "start"), 4.0, 0.25);  // half the grid's step
 }
-TEST(LawCandidates, APulseThatTheEventSetsOffIsCountedFromIt) {
+TEST(LawCandidates, PulseDelayCountsFromTheEvent) {
   const auto traces = traces_with([](const LawTrace& e, double, double t) {
     const double tau = t - e.trigger;
     return tau > 1.0 && tau < 2.5 ? 0.05 : 0.0;
@@ -90,14 +90,14 @@ TEST(LawCandidates, APulseThatTheEventSetsOffIsCountedFromIt) {
   EXPECT_NEAR(value_of(best, "length"), 1.5, 0.1);
   EXPECT_NEAR(value_of(best, "A"), 0.05, 0.005);
 }
-TEST(LawCandidates, WithoutAVoltageThatMovesNoneIsSetOffByIt) {
+TEST(LawCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
   const auto traces = traces_with([](const LawTrace&, double speed, double) { return -5 * speed; });
   for (const auto& law : law_candidates(fit::InputKind::torque, traces, 0.0))
     EXPECT_NE(law.signal, "time since the voltage moved") << law.family;
 }
 
 /// Every law's file is read, rests at the operating point, and puts out what the ranking took it for.
-TEST(LawText, EveryFileDoesWhatWasRanked) {
+TEST(LawText, EveryFileReproducesTheRankedTimeSeries) {
   const auto traces = traces_with([](const LawTrace& e, double speed, double t) {
     return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t) : 0.0);  // something for every law to fit
   });
@@ -131,7 +131,7 @@ TEST(LawText, EveryFileDoesWhatWasRanked) {
     }
   }
 }
-TEST(LawText, NumbersComeWithUnitAndInterval) {
+TEST(LawText, NumbersHaveUnitAndInterval) {
   LawCandidate law;
   law.words = "{K} × the speed deviation (lagged by {T})";
   law.parameters = {{"K", "pu", -7.5, -10, 10, true, "gain"}, {"T", "s", 0.25, 0, 10, false, "lag"}};
@@ -200,7 +200,7 @@ sim::Effect torque_law(const std::string& value) {
       "truth.toml");
 }
 
-TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
+TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
   const sim::Effect law = torque_law("-0.02 * clamp(speed / 0.001, -1, 1)");
   Case c({1, 3}, &law, [](int, playin::Drive&) {});
   ASSERT_GT(c.base.reduced_chi2(), 5);
@@ -235,7 +235,7 @@ TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
     EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.law.parameters[i].value) << read.parameters[i].name;
 }
 
-TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
+TEST(LawSearchFull, FindsPulseAtARecordTime) {
   const sim::Effect law = torque_law("0.02 * (clamp((t - 3) / 0.05, 0, 1) - clamp((t - 4.5) / 0.05, 0, 1))");
   const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
   ASSERT_NE(s.found(), nullptr);
@@ -243,7 +243,7 @@ TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
   for (const auto& h : s.found()->judgement.held_out)
     EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value) << h.record;
 }
-TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
+TEST(LawSearchFull, FindsOscillation) {
   const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
   const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
   ASSERT_NE(s.found(), nullptr);
@@ -254,7 +254,7 @@ TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
     }
 }
 /// A torque that differs from event to event follows no law.
-TEST(LawSearchFull, ARandomTorqueGivesNoLaw) {
+TEST(LawSearchFull, RejectsRandomTorque) {
   Case c({1, 2, 3}, nullptr, [](int event, playin::Drive& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
     std::normal_distribution<double> normal;

@@ -126,7 +126,7 @@ std::string fault_of_export(const PlantModel& model) {
 
 class EveryUnitFull : public ::testing::TestWithParam<Case> {};
 
-TEST_P(EveryUnitFull, IsTakenOutAndStands) {
+TEST_P(EveryUnitFull, IsExtractedAndInitialised) {
   Loaded l = load(GetParam());
   const auto before = l.grid.plants;
   sim::grid::settle_limits(l.grid, true);
@@ -169,7 +169,7 @@ struct Replay {
 std::ostream& operator<<(std::ostream& out, const Replay& r) { return out << kCases[r.which].name; }
 class ReplayFull : public ::testing::TestWithParam<Replay> {};
 
-TEST_P(ReplayFull, TheUnitTakenOutAnswersAsItRan) {
+TEST_P(ReplayFull, ExtractedUnitReproducesTheSimulation) {
   const Case& c = kCases[GetParam().which];
   Loaded l = load(c);
   const auto before = l.grid.plants;

@@ -40,7 +40,7 @@ class PlantFileTest : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("swingbank_plant_file_" + std::to_string(::getpid()));
 };
 
-TEST_F(PlantFileTest, EveryEffectReadsBackToTheLastBit) {
+TEST_F(PlantFileTest, EveryEffectReadsBackExactly) {
   for (const auto* effect : sim::library::compiled().all()) {
     PlantModel m = example();
     const sim::plant::Block block{effect, awkward(*effect)};
@@ -107,7 +107,7 @@ TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
   m.reading.columns = {{"V", "NORTH.BUS1.VPM [kV]"}, {"P", "-LINE \"1\" [MW]"}};
   EXPECT_EQ(again(m).reading.columns, m.reading.columns);
 }
-TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
+TEST_F(PlantFileTest, CopiesLawFilesToItsFolder) {
   PlantModel m = example();
   const auto law = test::source("configs/laws/torque_voltage_dip.toml");
   std::filesystem::create_directories(folder_);
@@ -124,7 +124,7 @@ TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
   EXPECT_EQ(difference(m, load_plant_model(folder_ / "other" / "model.toml")), "");
 }
 
-TEST_F(PlantFileTest, RefusesWhatWouldNotReadBackAndWritesNothing) {
+TEST_F(PlantFileTest, RefusesValuesThatDoNotReadBack) {
   PlantModel m = example();
   m.plant.machine.p[static_cast<std::size_t>(m.plant.machine.effect->parameter_index("H"))] = -5;
   EXPECT_THAT(test::messages([&] { write_plant_file(folder_ / "model.toml", m, {}); }),
@@ -132,7 +132,7 @@ TEST_F(PlantFileTest, RefusesWhatWouldNotReadBackAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_));
 }
 
-TEST_F(PlantFileTest, SharedSlotsNameWhatIsWrong) {
+TEST_F(PlantFileTest, ReportsErrorsOfSharedSlots) {
   PlantModel m = example();
   const std::string text = plant_text(m, {}) + "\n[[shaft]]\neffect = \"FASTVALVE\"\nnonsense = 1.0\n";
   const auto all = test::messages([&] { parse_plant_model(text, "plant.toml"); });

@@ -36,7 +36,7 @@ TEST(StagedPlantTest, EventsAreReadAndWritten) {
   EXPECT_EQ(difference(model, again), "");
 }
 
-TEST(StagedPlantTest, FaultsAreToldTogether) {
+TEST(StagedPlantTest, ReportsAllFaultsTogether) {
   try {
     parse_plant_model(
         with("\n[[event]]\nkind = \"vref_step\"\ntime = 2\nsise = 1\n[[event]]\nkind = \"trip\"\n"),

@@ -27,7 +27,7 @@ LinearPlant plant() {
   return p;
 }
 
-TEST(Allowances, AreWhatTheComparedChannelsShow) {
+TEST(Allowances, FollowTheSensitivityOfTheComparedChannels) {
   const auto all = allowances(plant(), std::vector{Output::P}, kInterval);
   ASSERT_EQ(all.size(), 5U);
   EXPECT_EQ(all[0], 1.0);
@@ -37,12 +37,12 @@ TEST(Allowances, AreWhatTheComparedChannelsShow) {
   EXPECT_EQ(all[3], 1.0) << "what is not seen about the start may act behind a limit";
   EXPECT_EQ(all[4], kMostAllowance);
 }
-TEST(Allowances, AreLeastWhereTheStateItselfIsCompared) {
+TEST(Allowances, AreSmallestForAComparedState) {
   const auto all = allowances(plant(), std::vector{Output::P, Output::Efd}, kInterval);
   EXPECT_EQ(all[1], 1.0);
   EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
 }
-TEST(Allowances, AreNoneWhereNothingIsKnown) {
+TEST(Allowances, AreOne_WhenTheLinearPlantIsUnknown) {
   LinearPlant unknown = plant();
   unknown.A(0, 0) = std::nan("");
   EXPECT_EQ(allowances(unknown, std::vector{Output::P}, kInterval), std::vector(5, 1.0));

@@ -57,7 +57,7 @@ TEST(ComponentTest, ExciterFedByTheFieldCurrentGivesTheSimulatedFieldVoltage) {
   EXPECT_GT(worst(c, r, Output::Efd), 1e-2);
 }
 
-TEST(ComponentTest, RecordedStabiliserStandsForTheModelledOne) {
+TEST(ComponentTest, RecordedStabiliserReplacesTheModelledOne) {
   Case c = test::simulated_component(Words{"SEXS", "STAB1"});
   record::Record r = test::component_record(c, Component::exciter);
   // STAB1 by itself, through an exciter without dynamics: Efd = K (Vref - V + Vs)
@@ -93,7 +93,7 @@ TEST(ComponentTest, MachineGivesTheSimulatedPowerAndFieldCurrent) {
   EXPECT_GT(worst(c, still, Output::Q), 2e-2);
 }
 
-TEST(ComponentTest, SlopesAreThoseOfDifferences) {
+TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   const Case c = test::simulated_component(Words{"ESAC1A", "STAB1"});
   const record::Record r = test::component_record(c, Component::exciter);
   const VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
@@ -150,7 +150,7 @@ Words needed(const std::vector<std::string>& controls, Component component) {
   return all;
 }
 
-TEST(ComponentTest, BlocksSayWhatTheyNeed) {
+TEST(ComponentTest, BlocksDetermineRequiredColumns) {
   EXPECT_THAT(needed({"SEXS", "TGOV1"}, Component::exciter), ElementsAre("V", "Efd"));
   EXPECT_THAT(needed({"SEXS", "STAB1"}, Component::exciter), ElementsAre("V", "Efd", "speed|f"));
   EXPECT_THAT(needed({"ESAC1A"}, Component::exciter), UnorderedElementsAre("V", "Efd", "Ifd"));
@@ -159,7 +159,7 @@ TEST(ComponentTest, BlocksSayWhatTheyNeed) {
   EXPECT_THAT(needed({"GGOV1"}, Component::governor), ElementsAre("speed|f", "Pm|gate", "Pm|P", "P"));
 }
 
-TEST(ComponentTest, GoesBackWhereItCameFrom) {
+TEST(ComponentTest, PutBackRestoresTheWholePlant) {
   sim::plant::Plant plant;
   plant.machine = default_block("GENROU");
   for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(plant, default_block(name));

@@ -133,7 +133,7 @@ class DrivenPlantTest : public ::testing::Test {
   std::vector<double> knots_, zeros_;
 };
 
-TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
+TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
   std::vector<Direction> directions;
   const auto blocks = sim::plant::block_parameters(model_.plant);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -150,7 +150,7 @@ TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
   EXPECT_GT(directions.size(), 15u);
   expect_slopes(directions);
 }
-TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
+TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
   expect_slopes({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
                  {.kind = Kind::switching, .index = 1, .scale = 1e-5},
                  {.kind = Kind::turn, .index = 0, .scale = 1e-5},
@@ -161,7 +161,7 @@ TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
                  {.kind = Kind::speed, .scale = 1e-6}});
 }
 /// A frequency that lacks the jumps of the angle, and the same voltage with them.
-TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
+TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
   const double lacks[] = {0.3, -0.5};  // [rad]
   record::Record turned = record_;
   auto turning = switchings_;
@@ -190,7 +190,7 @@ TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
   EXPECT_GT(least, 0.1);
 }
 /// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
-TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
+TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -206,15 +206,15 @@ TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
   }
   expect_slopes(directions);
 }
-TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
+TEST_F(DrivenPlantTest, SensitivitiesToAddedInputs) {
   expect_slopes({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
                  {.kind = Kind::torque, .index = 2, .scale = 1e-4},
                  {.kind = Kind::field, .index = 1, .scale = 1e-4},
                  {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
-TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) { expect_linear(); }
+TEST_F(DrivenPlantTest, LinearPlantMatchesSmallStepResponse) { expect_linear(); }
 /// At rest the errors of a converter's regulators are zero, where their integrals' limits have a corner.
-TEST_F(DrivenPlantTest, LinearConverterAnswersASmallStep) {
+TEST_F(DrivenPlantTest, LinearConverterMatchesSmallStepResponse) {
   model_.plant.controls.clear();
   model_.plant.machine = test::block("REGCA1", "");
   model_.plant.controls = {

@@ -80,7 +80,7 @@ TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
               ElementsAre(HasSubstr("no terminal voltage for P = ")));
 }
 
-TEST(DrivenByPowerTest, SeesAWrongReactance) {
+TEST(DrivenByPowerTest, DetectsWrongReactance) {
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 120);
   const record::Record r = test::record_of(s, 2, 1);
   sim::plant::Plant wrong = s.grid.plants[2];

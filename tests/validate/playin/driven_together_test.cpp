@@ -48,7 +48,7 @@ class DrivenTogether : public ::testing::Test {
 };
 
 /// At a tolerance of 1e-5 per step the two ways were 1.9e-4 apart at most.
-TEST_F(DrivenTogether, AnswersAsEachByItself) {
+TEST_F(DrivenTogether, AgreesWithSinglePlants) {
   const auto all = plants(11);  // more than a pack has lanes
   std::vector<Drive> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
@@ -78,7 +78,7 @@ TEST_F(DrivenTogether, ReturnsNothingForInfeasibleOperatingPoints) {
   }
   for (const auto& answer : drive_together(runs)) EXPECT_FALSE(answer.has_value());
 }
-TEST_F(DrivenTogether, OneThatCannotStandLeavesTheOthers) {
+TEST_F(DrivenTogether, InfeasiblePlantDoesNotAffectTheOthers) {
   auto all = plants(4);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
   for (const std::size_t k : {std::size_t{0}, std::size_t{2}})

@@ -57,7 +57,7 @@ class InstrumentsTest : public ::testing::Test {
   std::vector<Switching> switchings_;
 };
 
-TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
+TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) {
   const std::vector<sim::plant::Block> chain = {instrument("PTERROR:gain=0.02,phase=0.03"),
                                                 instrument("CTERROR:gain=-0.01,phase=-0.02")};
   record::Record seen = seen_through(chain);
@@ -81,7 +81,7 @@ TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
   }
 }
 
-TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
+TEST_F(InstrumentsTest, SkewShowsOnlyAtTheStep) {
   sim::plant::Plant plant = model_.plant;
   const VoltageCurve curve(record_, switchings_);
   const Response plain = drive(run_with(plant, record_, curve));
@@ -99,7 +99,7 @@ TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
   EXPECT_LE(moved, 4);
 }
 
-TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
+TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::Plant plant = model_.plant;
   plant.measurements = {instrument("PTERROR:gain=0.02,phase=0.03"), instrument("SKEW:skew=0.004")};
   const int first = sim::plant::first_measurement(plant);
@@ -139,7 +139,7 @@ TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
   }
 }
 
-TEST(Instruments, ChanceStepsAndFiltersCannotBeTakenBack) {
+TEST(Instruments, RandomStepwiseAndFilterEffectsHaveNoInverse) {
   for (const char* name : {"CTERROR", "PTERROR", "SKEW"})
     EXPECT_TRUE(can_be_taken_back(*sim::library::compiled().find(name))) << name;
   for (const char* name : {"NOISE", "GAPS", "QUANTISE", "PMUFILTER"})

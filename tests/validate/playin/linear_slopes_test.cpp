@@ -92,12 +92,12 @@ class LinearSlopesTest : public ::testing::Test {
   std::vector<double> knots_;
 };
 
-TEST_F(LinearSlopesTest, OfTheOutputsThatAreAskedFor) {
+TEST_F(LinearSlopesTest, OfRequestedOutputs) {
   const Response r = answer({{.kind = Kind::P}}, true);
   EXPECT_EQ(r.slopes.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
   EXPECT_TRUE(r.slopes.front().value[static_cast<int>(Output::V)].empty());
 }
-TEST_F(LinearSlopesTest, OfAMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
+TEST_F(LinearSlopesTest, OfMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
 TEST_F(LinearSlopesTest, WithControls) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
   EXPECT_LT(worst(all()), 0.06) << "the ceiling is met somewhere within a step";
@@ -116,7 +116,7 @@ TEST_F(LinearSlopesTest, AgreesForTimeConstantsFarBelowASample) {
 }
 /// A field voltage that stands at its ceiling moves with the ceiling, and what would drive it beyond does
 /// nothing.
-TEST_F(LinearSlopesTest, AtALimit) {
+TEST_F(LinearSlopesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
   const Response r = answer({}, false);
@@ -143,7 +143,7 @@ class Limited : public LinearSlopesTest {
     parameter("MAXEX2", "EFDDES") = 0.95;
   }
 };
-TEST_F(Limited, AnInstantHasSlopes) {
+TEST_F(Limited, LimiterTimeHasSensitivities) {
   const std::vector<Direction> along = all();
   const Response exact = answer(along, false), linear = answer(along, true);
   constexpr double kAside = 1e-4;
@@ -177,7 +177,7 @@ TEST_F(Limited, AnInstantHasSlopes) {
   }
   EXPECT_EQ(limiter_moved, 8) << "it was meant to act";
 }
-TEST_F(LinearSlopesTest, WithASaturatedStatorBehindATransformer) {
+TEST_F(LinearSlopesTest, WithSaturatedStatorBehindTransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};

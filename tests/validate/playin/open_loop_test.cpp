@@ -9,7 +9,7 @@ namespace swingbank::validate::playin {
 namespace {
 
 /// An exciter simulated open loop with its signals in the plant responds as it did there.
-TEST(OpenLoop, AnswersAsThePlantDid) {
+TEST(OpenLoop, ReproducesTheClosedLoopResponse) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
   event::EventState state;

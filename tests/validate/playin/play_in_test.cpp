@@ -63,7 +63,7 @@ void put_fast_exciters(sim::grid::Grid& grid) {
     plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.3, 10.0, 300.0, 0.02, -1.0, 3.5}});
 }
 
-TEST(PlayInTest, AFieldVoltageRunsIntoItsCeiling) {
+TEST(PlayInTest, FieldVoltageReachesItsCeiling) {
   EXPECT_LT(playback_error(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
                                           put_fast_exciters),
                            1, true),
@@ -119,7 +119,7 @@ VoltageError voltage_error(const test::Simulated& s, int stride, int points) {
   return worst_error;
 }
 
-TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
+TEST(PlayInTest, InterpolationErrorFallsWithOrderAndRate) {
   std::printf(
       "samples/s     linear      cubic    quintic     spline   [pu of V, 10 machines, after the fault]\n");
   double before[3] = {};
@@ -147,7 +147,7 @@ TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
   }
 }
 
-TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
+TEST(PlayInTest, ReproducesOtherConventionsAndModels) {
   EXPECT_LT(playback_error(
                 test::simulate("ieee39_genrou", sim::Conventions::andes(), 4, 2.0, 2.15, 480, {0.01, 0.05}),
                 1, true),
@@ -156,7 +156,7 @@ TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
             1e-7);
 }
 
-TEST(PlayInTest, SeesAWrongParameter) {
+TEST(PlayInTest, DetectsWrongParameter) {
   const record::Record r = test::record_of(genrou(), 2, 4);
   sim::plant::Plant wrong = genrou().grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("H"))] *= 1.1;
@@ -166,7 +166,7 @@ TEST(PlayInTest, SeesAWrongParameter) {
             0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
 }
 
-TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
+TEST(PlayInTest, StaysAtRest_WithoutAnEvent) {
   record::Record r;
   for (int k = 0; k <= 900; ++k) {
     r.t.push_back(k / 60.0);
@@ -181,7 +181,7 @@ TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
   EXPECT_LT(worst(back.Q, r.Q), 1e-10);
 }
 
-TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
+TEST(PlayInTest, OffNominalFrequencyRotatesTheFrame) {
   const test::Simulated& s = genrou();
   record::Record r = test::record_of(s, 3, 4);
   const Playback still =
@@ -220,7 +220,7 @@ TEST(PlayInTest, StartsOnTheTrajectoryOfADriftingGrid) {
   EXPECT_NEAR(start.P, 0.8, 1e-5);
   EXPECT_NEAR(start.Q, 0.1, 1e-5);
 }
-TEST(PlayInTest, AnAngleThatTurnsEvenlyOrSwingsIsNoSuchCourse) {
+TEST(PlayInTest, LinearOrSwingingAngleIsNotDrift) {
   for (const auto angle : {+[](double t) { return 0.3 + 0.02 * t; },
                            +[](double t) { return 0.3 + 0.01 * std::sin(2 * std::numbers::pi * 0.7 * t); }}) {
     const OperatingPoint start = pre_event_point(before_an_event(angle), {{10.0, 0.0}}, 1.0);

@@ -58,7 +58,7 @@ TEST(StagedTest, StepOfThePowerReferenceOnTheGrid) {
   EXPECT_LT(e.error, 1e-3 * e.moved);
 }
 
-TEST(StagedTest, LoadRejectionLeavesTheVoltageToTheMachine) {
+TEST(StagedTest, LoadRejectionSimulatesTheVoltage) {
   for (const std::string machine : {"GENROU", "GENTPJ"}) {
     const auto c = test::simulated_staged({"SEXS", "TGOV1"}, {.open = 1.0021, .end = 6, .machine = machine});
     const record::Record r = test::staged_record(c, {{Staged::load_rejection, 1.0021}});
@@ -70,7 +70,7 @@ TEST(StagedTest, LoadRejectionLeavesTheVoltageToTheMachine) {
   }
 }
 
-TEST(StagedTest, StepInAnOpenCircuit) {
+TEST(StagedTest, StepInOpenCircuit) {
   const record::Record r = test::open_circuit_record(0.05);
   const sim::plant::Plant plant = test::unloaded_plant();
   const sim::Conventions conventions = sim::Conventions::psse();
@@ -81,7 +81,7 @@ TEST(StagedTest, StepInAnOpenCircuit) {
   }
 }
 
-TEST(StagedTest, TheJumpNearTheGivenTimeIsTheBreakers) {
+TEST(StagedTest, BreakerTimeIsTheStepNearestToTheGivenTime) {
   record::Record r;
   for (int k = 0; k < 100; ++k) r.t.push_back(0.02 * k);
   r.staged = {{Staged::load_rejection, 1.0}};

@@ -35,7 +35,7 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
     EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
-TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
+TEST(VoltageCurveTest, ShortSegmentsUseLowerOrder) {
   // 1, 2 and 3 points between the jumps: constant, line, parabola.
   for (const int points : {1, 2, 3}) {
     const double off = 1.0 + points / 20.0;
@@ -49,14 +49,14 @@ TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
     EXPECT_NEAR(curve(1, t).real(), points == 1 ? 0.3 : points == 2 ? 0.3 + t : 0.5 + t * t / 20, 1e-12);
   }
 }
-TEST(VoltageCurveTest, OneSidedValuesAreHit) {
+TEST(VoltageCurveTest, PassesThroughOneSidedValues) {
   Switching s{
       .time = 1.02, .has_before = true, .has_after = true, .before = {1.2, 0.1}, .after = {0.4, -0.2}};
   const VoltageCurve curve(stepped(), {s});
   EXPECT_NEAR(std::abs(curve(0, 1.02) - s.before), 0, 1e-14);
   EXPECT_NEAR(std::abs(curve(1, 1.02) - s.after), 0, 1e-14);
 }
-TEST(VoltageCurveTest, MovedInstantsGiveTheCurveThatTheyWouldHaveByThemselves) {
+TEST(VoltageCurveTest, MovedSwitchingTimesGiveTheSameCurveAsNewOnes) {
   const record::Record r = stepped();
   const VoltageCurve first(r, {{.time = 1.01}, {.time = 1.51}});
   for (const double on : {1.02, 0.98}) {  // between the same samples, and beyond one
@@ -94,7 +94,7 @@ TEST(DetectTest, FindsTheFaultsOfTheExampleRecords) {
                 found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
   }
 }
-TEST(DetectTest, FindsAFaultOfOneSampleAndNothingInAQuietRecord) {
+TEST(DetectTest, FindsOneSampleFaultAndNothingInQuietRecord) {
   record::Record r = stepped();
   std::fill(r.V.begin(), r.V.end(), 1.0);
   EXPECT_TRUE(detect_switchings(r).empty());
@@ -116,7 +116,7 @@ record::Record far_loss(double noise) {
   }
   return r;
 }
-TEST(DetectTest, FindsASmallJumpThatStandsAlone) {
+TEST(DetectTest, FindsIsolatedSmallStep) {
   const auto found = detect_switchings(far_loss(0));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].time, 5.01, 0.5 / 30 + 1e-6);

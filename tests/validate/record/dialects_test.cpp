@@ -100,7 +100,7 @@ TEST(RecordDialectTest, TimeStamps) {
     EXPECT_THAT(r.start, HasSubstr("12:00:59.200"));
   }
 }
-TEST(RecordDialectTest, AMissingMillisecondStampIsBridged) {
+TEST(RecordDialectTest, InterpolatesMissingMillisecondStamp) {
   const auto text = table("Timestamp,V_pu,theta_deg,P_pu,Q_pu\n", [&](int k, double t) {
     return fmt::format("12:00:{:06.3f},1.02,10,0.4,0.1", t + (k > 30 ? 1.0 / 60 : 0));
   });
@@ -123,13 +123,13 @@ TEST(RecordDialectTest, OneTerminalOfSeveral) {
   EXPECT_THAT(test::messages([&] { parse_record(text, "r.csv", kTestBase, {.terminal = "G2"}); }),
               Contains(AllOf(HasSubstr("G2"), HasSubstr("G1, G7"))));
 }
-TEST(RecordDialectTest, UnitsThatDoNotFitAreRefused) {
+TEST(RecordDialectTest, RefusesUnsuitableUnits) {
   EXPECT_THAT(faults("t_s,V (MW),theta_deg,P_pu,Q_pu\n0,1,1,1,1\n"), ElementsAre(HasSubstr("'V (MW)'")));
   EXPECT_THAT(faults("Time,VOLTAGE,ANGLE,P,Q\ns,kV,MW,MW,MVAR\n0,1,1,1,1\n"),
               ElementsAre(AllOf(HasSubstr("'ANGLE'"), HasSubstr("r.csv:1-2"))));
   EXPECT_THAT(faults("0,1,1,1,1\n"), ElementsAre(HasSubstr("no header line")));
 }
-TEST(RecordDialectTest, ABurstOfMissingValuesIsOneSentence) {
+TEST(RecordDialectTest, ReportsABurstOfMissingValuesOnce) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", [](int k, double t) {
     const bool bad = k >= 20 && k < 33;
     return fmt::format("{:.7f},{},10,{},{}", t, bad ? "NaN" : "1.02", bad ? "" : "0.4",

@@ -58,7 +58,7 @@ TEST(RecordComtradeTest, WaveformsBecomePhasors) {
   EXPECT_LT(largest_error(r, {}), 1e-5);
   EXPECT_DOUBLE_EQ(waveforms({}).read(kTestBase, {.phasor_rate = 240}).rate(), 240);
 }
-TEST(RecordComtradeTest, HarmonicsAndImbalanceDropOut) {
+TEST(RecordComtradeTest, RejectsHarmonicsAndImbalance) {
   const Machine m{.harmonic = 0.05, .negative = 0.03};
   // A cycle of exactly 80 samples is orthogonal to both.
   EXPECT_LT(largest_error(waveforms(m).read(), m), 1e-5);
@@ -68,7 +68,7 @@ TEST(RecordComtradeTest, OffNominalFrequency) {
   // 1 - sinc(0.5/60) = 1.1e-4 in V, twice that in P.
   EXPECT_LT(largest_error(waveforms(m).read(), m), 3e-4);
 }
-TEST(RecordComtradeTest, ACycleNeedNotHoldAWholeNumberOfSamples) {
+TEST(RecordComtradeTest, AcceptsFractionalSamplesPerCycle) {
   // 3,000/s at 60 Hz: 50; 2,500/s: 41.67, of which the ends count in part; ripple of the order (2 pi/41.67)^2
   // / 24.
   EXPECT_LT(largest_error(waveforms({}, 3000, 3000).read(), {}), 1e-5);
@@ -121,7 +121,7 @@ TEST(RecordComtradeTest, TimesFromStamps) {
   EXPECT_DOUBLE_EQ(r.rate(), 60);
   EXPECT_THAT(r.notes, Contains(HasSubstr("rounded to 1 ms")));
 }
-TEST(RecordComtradeTest, StampsAndRateThatDisagreeAreNoted) {
+TEST(RecordComtradeTest, NotesContradictingStampsAndRate) {
   Writer w = phasors();
   w.edit = [](auto& lines) { lines[9] = "30,90"; };
   EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was taken")));
@@ -215,7 +215,7 @@ TEST(RecordComtradeTest, MarkedSamplesAreMissing) {
   EXPECT_THAT(w.faults(),
               Contains(AllOf(HasSubstr("VA"), HasSubstr("marked missing"), HasSubstr("bytes 1600-"))));
 }
-TEST(RecordComtradeTest, WaveformsThatCannotBeUsed) {
+TEST(RecordComtradeTest, RefusesUnusableWaveforms) {
   Writer w = waveforms({});
   EXPECT_THAT(w.faults({200, 60, 0}), ElementsAre(HasSubstr("base_kv")));
   EXPECT_THAT(w.faults({200, 50, 138}), ElementsAre(AllOf(HasSubstr("60 Hz grid"), HasSubstr("for 50 Hz"))));
@@ -237,7 +237,7 @@ class ComtradeFileTest : public ::testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / fmt::format("comtrade-{}", ::getpid());
 };
-TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
+TEST_F(ComtradeFileTest, AcceptsEitherFileOfThePair) {
   const Writer w = phasors(1999, "BINARY");
   write("e.cfg", w.cfg());
   write("e.dat", w.dat());
@@ -268,7 +268,7 @@ TEST_F(ComtradeFileTest, OneFile) {
               ElementsAre(HasSubstr("e.cff")));
 }
 
-TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
+TEST(RecordComtradeTest, AcceptsSimulatedFaultRecorderWaveforms) {
   // The waveforms that a simulated fault means at a terminal, 64 samples a cycle, between samples linear in V
   // and I.
   const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, 2.1083);

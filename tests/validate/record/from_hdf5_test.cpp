@@ -74,7 +74,7 @@ TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
   EXPECT_THAT(faults(""), ElementsAre(AllOf(HasSubstr("several plants"), HasSubstr("GENROU 1, GENROU 7"))));
   EXPECT_THAT(faults("#GENROU 2"), ElementsAre(HasSubstr("no plant 'GENROU 2'")));
 }
-TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
+TEST_F(RecordHdf5Test, RefusesFilesWithoutARun) {
   write("swingbank-run-2");
   EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("no run")));
   write("swingbank-run-1", 4);
@@ -83,7 +83,7 @@ TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
 }
 
 // 44 TB that are neither in the file nor in any memory.
-TEST_F(RecordHdf5Test, MoreSamplesThanTheFileHoldsAreTold) {
+TEST_F(RecordHdf5Test, RefusesMoreSamplesThanTheFileContains) {
   write("swingbank-run-1");
   std::string bytes = read_bytes(file_);
   const auto text = [](std::uint64_t samples) {
@@ -100,7 +100,7 @@ TEST_F(RecordHdf5Test, MoreSamplesThanTheFileHoldsAreTold) {
 }
 
 // HDF5 crashes on some of these, and on some it does not end.
-TEST_F(RecordHdf5Test, DamagedBytesAreTold) {
+TEST_F(RecordHdf5Test, RefusesDamagedBytes) {
   write("swingbank-run-1");
   const std::string whole = read_bytes(file_);
   ::setenv("SWINGBANK_READER_SECONDS", "1", 1);

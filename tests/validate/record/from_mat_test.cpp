@@ -155,7 +155,7 @@ TEST_P(RecordMatTest, ListsVariablesOfTheFile) {
                                               HasSubstr("comment (1x9)"))));
 }
 
-TEST_P(RecordMatTest, AFileCutShortIsRefused) {
+TEST_P(RecordMatTest, RefusesTruncatedFile) {
   write(vectors());
   const auto whole = std::filesystem::file_size(file_);
   for (const double part : {0.02, 0.5, 0.97}) {

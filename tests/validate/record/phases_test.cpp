@@ -92,7 +92,7 @@ TEST(ThreePhasePhasors, NamesAndUnits) {
               AllOf(Contains(HasSubstr("'Va_mag' names no unit")), Contains(HasSubstr("taken for V.")),
                     Contains(HasSubstr("positive sequence of the phasors Va_mag, Vb_mag, Vc_mag"))));
 }
-TEST(ThreePhasePhasors, UnbalanceDropsOut) { expect_sequence({.unbalance = 0.05}); }
+TEST(ThreePhasePhasors, RejectUnbalance) { expect_sequence({.unbalance = 0.05}); }
 TEST(ThreePhasePhasors, VoltagesBetweenPhases) {
   for (const std::size_t missing : {9U, 2U}) {
     const Streamed s{.v = "V{}_kV",
@@ -109,14 +109,14 @@ TEST(ThreePhasePhasors, VoltagesBetweenPhases) {
     EXPECT_NEAR(r.theta[5], 10 * kDegreeOfPhasor, 1e-6);
   }
 }
-TEST(ThreePhasePhasors, GiveWayToThePositiveSequence) {
+TEST(ThreePhasePhasors, YieldToRecordedPositiveSequence) {
   const Streamed s{.others = ",V_kV,theta_deg,P_MW,Q_Mvar"};
   const Record r = parse_record(text_of(s), "r.csv", kTestBase);
   EXPECT_NEAR(r.V[5], 60.0 / 138, 1e-9);
   EXPECT_NEAR(r.P[5], 0.3, 1e-9);
   EXPECT_THAT(r.ignored, Contains("Vb_mag"));
 }
-TEST(ThreePhasePhasors, FaultsAreNamed) {
+TEST(ThreePhasePhasors, ReportFaults) {
   const auto faults = [](const Streamed& s) {
     return test::messages([&] { parse_record(text_of(s), "r.csv", kTestBase); });
   };

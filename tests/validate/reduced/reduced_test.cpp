@@ -40,12 +40,12 @@ plant::PlantModel* Reduced::model_;
 event::WhitenedEvents* Reduced::events_;
 Reduction* Reduced::reduction_;
 
-TEST_F(Reduced, BothInputsFreeLeaveNothingButNoiseFromTheSubmittedModel) {
+TEST_F(Reduced, BothFreeInputsLeaveOnlyNoise) {
   EXPECT_LE(reduction_->inference().steps, 5);
   EXPECT_LT(reduction_->inference().reduced_chi2(), 1.05);
 }
 
-TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
+TEST_F(Reduced, MissingInputHasTheEvidence) {
   const auto free = fit::free_parameters(model_->plant, 0.3);
   const fit::Fit without = fit::fit(model_->under_test(), *events_, free, {.iterations = 0});
   const auto input = [&](event::InputKind kind) {
@@ -64,7 +64,7 @@ TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
 }
 
 /// Noise alone asks for no input, once the exciter that made the records is there.
-TEST_F(Reduced, AnInputThatTheRecordsDoNotAskForHasNoEvidence) {
+TEST_F(Reduced, UnneededInputHasNoEvidence) {
   auto all = hypothesis::all_hypotheses(model_->under_test(), model_->library);
   auto h = *std::ranges::find(all, "SEXS", &hypothesis::Hypothesis::name);
   for (const auto& [name, value] : {std::pair("K", 100.0), {"TAoverTB", 0.1}, {"TB", 10.0}, {"TE", 0.05}}) {
@@ -82,7 +82,7 @@ TEST_F(Reduced, AnInputThatTheRecordsDoNotAskForHasNoEvidence) {
 }
 
 /// What a reduced plant says of the inferred series itself is what the inference left, and no more.
-TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
+TEST_F(Reduced, CostOfInferredSeriesEqualsItsResidual) {
   const ReducedPlant field(*reduction_, event::InputKind::field);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
   const double inferred = reduction_->inference().chi2,
@@ -94,7 +94,7 @@ TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
 }
 
 /// The gradient of a series's cost is that of its differences, by the gain's number too.
-TEST_F(Reduced, TheBowlIsTheCostsOwn) {
+TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   EXPECT_NEAR(reduction_->gain(event::InputKind::field).exponent, -1, 1e-3);
   EXPECT_NEAR(reduction_->gain(event::InputKind::torque).exponent, -1, 1e-3);
   for (const auto kind : {event::InputKind::field, event::InputKind::torque}) {
@@ -118,7 +118,7 @@ TEST_F(Reduced, TheBowlIsTheCostsOwn) {
 
 /// About a plant that has the exciter, the exciter's own values cost what the plant leaves, and nothing else
 /// does: its own response is what the whole plant makes.
-TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
+TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
     std::vector<event::EventState> states;
@@ -149,7 +149,7 @@ TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
 
 /// A change of the plant that is made freely costs what the parameter costs that it is a change of, and
 /// nothing changes where it is not made.
-TEST_F(Reduced, AFreeChangeIsAParameterMore) {
+TEST_F(Reduced, FreeChangeActsAsAParameter) {
   Inference about = reduction_->inference();
   const auto free = about.free;
   const auto moved = std::ranges::find_if(free, [&](const fit::FreeParameter& f) {
@@ -175,7 +175,7 @@ TEST_F(Reduced, AFreeChangeIsAParameterMore) {
 }
 
 /// The exciter that made the records is identified alone, before anything else is known of it.
-TEST_F(Reduced, TheExciterThatMadeTheRecordsLeads) {
+TEST_F(Reduced, TrueExciterRanksFirst) {
   std::vector<std::pair<double, std::string>> costs;
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS" && h.name != "IEEET1" && h.name != "ESST4B") continue;

@@ -67,7 +67,7 @@ struct Example {
   }
 };
 
-TEST(Retrain, TheSecondDatasetHasTheEffectAndVariesWhatTheRecordsDecide) {
+TEST(Retrain, SecondDatasetContainsTheEffectAndVariesDeterminedParameters) {
   const Example x;
   const Folder folder;
   RetrainOptions options;
@@ -96,7 +96,7 @@ TEST(Retrain, TheSecondDatasetHasTheEffectAndVariesWhatTheRecordsDecide) {
   EXPECT_EQ(experiment.require<double>("preset.retrain.end_s"), 10.0);  // 8 s behind the fault at 2 s
 }
 
-TEST(Retrain, WithoutADatasetThePlantStandsBehindLinesAtTheRecordsPoint) {
+TEST(Retrain, WithoutDatasetPlacesThePlantAtTheRecordsOperatingPoint) {
   const Example x;
   const Folder folder;
   const auto sides = write_retrain_configs(folder.path, x.before, x.added, x.records, {});
@@ -145,7 +145,7 @@ calibrate::NetworkEstimate says(double H_one, double H_two, bool effect) {
   return e;
 }
 
-TEST(Retrain, ErrorsAreInDeviationsOfTheBoxOverUnseenEventsAlone) {
+TEST(Retrain, ErrorsAreScaledByThePriorAndUseUnseenEventsOnly) {
   const Example x;
   const calibrate::Truth truth = {{"GENROU.H", 6.54}, {"SEXS.K", 100.0}};
   const Retrained r = compare_networks({says(2, 3.54, false), says(9, 7.54, true)}, x.before, x.added, truth);
@@ -164,7 +164,7 @@ TEST(Retrain, ErrorsAreInDeviationsOfTheBoxOverUnseenEventsAlone) {
   EXPECT_EQ(retrained_json(r)["parameters"].size(), 2U);
 }
 
-TEST(Retrain, NeedsAnUnseenEventAndASharedParameter) {
+TEST(Retrain, RequiresAnUnseenEventAndASharedParameter) {
   Example x;
   EXPECT_THAT(
       test::messages([&] {

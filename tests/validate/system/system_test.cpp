@@ -170,7 +170,7 @@ record = "bus5.csv"
   fs::path folder;
 };
 
-TEST_F(SystemCompare, TheSameGridIsAdequate) {
+TEST_F(SystemCompare, SameGridIsAdequate) {
   record({.attached = same});
   const SystemCase s = load_system(system());
   const SystemComparison c = compare_system(s);
@@ -193,7 +193,7 @@ TEST_F(SystemCompare, TheSameGridIsAdequate) {
   for (const auto& r : c.ranking) EXPECT_LT(r.worst, 1);
 }
 
-TEST_F(SystemCompare, MetersOfFrequencyWillDo) {
+TEST_F(SystemCompare, FrequencyMetersSuffice) {
   record({.attached = same, .noise = 1e-3, .meters = true});
   EXPECT_THAT(test::messages([&] { load_system(system()); }),
               Contains(HasSubstr("no angle in the record of one")));
@@ -209,7 +209,7 @@ TEST_F(SystemCompare, MetersOfFrequencyWillDo) {
   EXPECT_FALSE(wrong.adequacy.adequate);
   EXPECT_EQ(wrong.terminals[wrong.ranking.front().terminal].record.name, "two");
 }
-TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
+TEST_F(SystemCompare, SameGridIsAdequate_BehindFilters) {
   // what a filter does to fast decays within the fault (0.002 pu of Q) lies below this noise
   record({.attached = same, .t_on = 2.003, .t_off = 2.108, .noise = 1e-3, .window = 7});
   const SystemComparison c = compare_system(load_system(system("4:2.0:2.1", "4:2.003:2.108")));
@@ -223,7 +223,7 @@ TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
 constexpr double kTick = 1.0 / 3840, kOn = 7692.5 * kTick, kOff = 8096.5 * kTick;
 constexpr int kWindow = 63, kFineness = 64;
 
-TEST_F(SystemCompare, BehindDeclaredFiltersTheSameGridIsAdequateAtLittleNoise) {
+TEST_F(SystemCompare, SameGridIsAdequate_BehindDeclaredFiltersAtLowNoise) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto given = fmt::format("4:{:.7f}:{:.7f}", kOn, kOff);
   const SystemComparison undeclared = compare_system(load_system(system("4:2.0:2.1", given)));
@@ -236,9 +236,9 @@ TEST_F(SystemCompare, BehindDeclaredFiltersTheSameGridIsAdequateAtLittleNoise) {
     EXPECT_GE(std::ranges::count(e.left_out, 1), 4) << e.record.name;
     EXPECT_LE(std::ranges::count(e.left_out, 1), 6) << e.record.name;
   }
-  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as TheSameGridIsAdequate
+  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as SameGridIsAdequate
 }
-TEST_F(SystemCompare, DeclaredFiltersTellTheInstants) {
+TEST_F(SystemCompare, DeclaredFiltersGiveSwitchingTimes) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto found = system("[event]", "[event]\ninstants = \"found\"");
   const SystemComparison undeclared = compare_system(load_system(found));
@@ -250,7 +250,7 @@ TEST_F(SystemCompare, DeclaredFiltersTellTheInstants) {
   EXPECT_NEAR(c.instants[0], kOn, 1e-4);
   EXPECT_NEAR(c.instants[1], kOff, 1e-4);
 }
-TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
+TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
   std::vector<std::string> changed = {"1:TGOV1:R=0.05,T1=0.5", "3:TGOV1:R=0.05,T1=0.5",
                                       "6:TGOV1:R=0.05,T1=0.5", "8:TGOV1:R=0.05,T1=0.5",
                                       "2:TGOV1:R=0.02,T1=0.2", "all:SEXS"};
@@ -274,7 +274,7 @@ TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
   EXPECT_THAT(system_html(s, c, {}), HasSubstr("P residual"));
 }
 
-TEST_F(SystemCompare, AnErrorOfTheGridIsNoPlantsFault) {
+TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   record({.attached = same});
   // the simulation has the fault behind an impedance: the records know nothing of it
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
@@ -283,7 +283,7 @@ TEST_F(SystemCompare, AnErrorOfTheGridIsNoPlantsFault) {
   EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
 }
 
-TEST_F(SystemCompare, InstantsAreFoundBetweenTheSamples) {
+TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
   record({.attached = same, .t_on = 2.013, .t_off = 2.107});
   const SystemComparison given = compare_system(load_system(system()));
   EXPECT_FALSE(given.adequacy.adequate);
@@ -294,7 +294,7 @@ TEST_F(SystemCompare, InstantsAreFoundBetweenTheSamples) {
   EXPECT_NEAR(c.instants[1], 2.107, 4e-4);
 }
 
-TEST_F(SystemCompare, AnotherClockIsNoticed) {
+TEST_F(SystemCompare, DetectsClockOffset) {
   record({.attached = same, .t_on = 2.053, .t_off = 2.153});
   const SystemComparison c = compare_system(load_system(system()));
   EXPECT_FALSE(c.adequacy.adequate);
@@ -303,7 +303,7 @@ TEST_F(SystemCompare, AnotherClockIsNoticed) {
   EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
 }
 
-TEST_F(SystemCompare, ASteadyDifferenceIsJudgedOrTakenOff) {
+TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {
   record({.attached = same, .shift_V = 0.003});
   const SystemComparison judged = compare_system(load_system(system()));
   EXPECT_FALSE(judged.adequacy.adequate);
@@ -315,7 +315,7 @@ TEST_F(SystemCompare, ASteadyDifferenceIsJudgedOrTakenOff) {
   EXPECT_TRUE(shifted.adequacy.adequate) << shifted.adequacy.sentence;
 }
 
-TEST_F(SystemCompare, TerminalsMayHaveBeenSampledAtOtherInstants) {
+TEST_F(SystemCompare, AcceptsTerminalsSampledAtOtherTimes) {
   record({.attached = same});
   // every second sample of plant 2, from the third on
   std::ifstream in(folder / "plant2.csv");
@@ -330,7 +330,7 @@ TEST_F(SystemCompare, TerminalsMayHaveBeenSampledAtOtherInstants) {
               Contains(HasSubstr("angles sampled at other instants")));
 }
 
-TEST_F(SystemCompare, BadInputIsNamed) {
+TEST_F(SystemCompare, ReportsBadInput) {
   record({.attached = same});
   const std::pair<std::pair<const char*, const char*>, const char*> cases[] = {
       {{"4:2.0:2.1", "99:2.0:2.1"}, "no bus 99"},

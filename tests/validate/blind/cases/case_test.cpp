@@ -60,7 +60,7 @@ TEST(BlindCase, HidesTheEffectInTheTruthOnly) {
   expect_misled(made, config);
 }
 
-TEST(BlindCase, SizeIsTheOneAskedFor) {
+TEST(BlindCase, ReachesTheRequestedSize) {
   const BlindCase made = make(tiny(), "FORCEDOSC", 6);
   ASSERT_EQ(made.hidden.size(), 1U);
   EXPECT_DOUBLE_EQ(made.hidden[0].wanted, 60.0);
@@ -68,7 +68,7 @@ TEST(BlindCase, SizeIsTheOneAskedFor) {
   EXPECT_GT(made.hidden[0].scale, 0.0);
 }
 
-TEST(BlindCase, NothingHiddenIsWrongParametersOnly) {
+TEST(BlindCase, HasOnlyWrongParameters_WhenNothingIsHidden) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "");
   EXPECT_TRUE(made.hidden.empty());
@@ -76,7 +76,7 @@ TEST(BlindCase, NothingHiddenIsWrongParametersOnly) {
   expect_misled(made, config);
 }
 
-TEST(BlindCase, SameSeedSameBytes) {
+TEST(BlindCase, IsReproducibleFromItsSeed) {
   const BlindConfig config = tiny();
   const BlindCase a = make(config, "sawtooth"), b = make(config, "sawtooth");
   EXPECT_EQ(all_csv(a), all_csv(b));
@@ -84,7 +84,7 @@ TEST(BlindCase, SameSeedSameBytes) {
   EXPECT_NE(all_csv(a), all_csv(make_blind_case(config, other)));
 }
 
-TEST(BlindCase, SwitchingsLieOffTheSamples) {
+TEST(BlindCase, SwitchingsLieBetweenSamples) {
   const BlindCase made = make(tiny(), "");
   ASSERT_EQ(made.events.size(), 3U);
   for (const auto& event : made.events)
@@ -102,7 +102,7 @@ double largest_move(const record::Record& r, double until) {
   return most;
 }
 
-TEST(BlindConditions, RateAndBeginningAreWhatTheySay) {
+TEST(BlindConditions, RateAndPreEventLengthAreAsStated) {
   BlindConfig config = tiny();
   config.conditions.rates = {30.0};
   config.conditions.short_share = 1.0;
@@ -115,7 +115,7 @@ TEST(BlindConditions, RateAndBeginningAreWhatTheySay) {
     EXPECT_GT(before, 0.2 - 1.0 / 30);
   }
 }
-TEST(BlindConditions, LoadsThatMoveShowInTheVoltage) {
+TEST(BlindConditions, AmbientLoadMovesTheVoltage) {
   BlindConfig config = tiny();
   config.noise = {1e-9};  // of which a tenth is on V
   const BlindCase quiet = make(config, "");
@@ -127,7 +127,7 @@ TEST(BlindConditions, LoadsThatMoveShowInTheVoltage) {
     EXPECT_GT(largest_move(moved.records[e], moved.events[e].switchings.front()), 1e-5);
   }
 }
-TEST(BlindConditions, ADipHasNoSwitchingAndLetsTheFrequencyFall) {
+TEST(BlindConditions, FrequencyDipHasNoSwitching) {
   BlindConfig config = tiny();
   config.noise = {1e-9};
   config.controlled_share = config.channels_share = 1.0;
@@ -144,7 +144,7 @@ TEST(BlindConditions, ADipHasNoSwitchingAndLetsTheFrequencyFall) {
   EXPECT_LT(lowest, -3e-4);
   EXPECT_LT(std::abs(dip.speed.back()), -0.5 * lowest);
 }
-TEST(BlindConditions, AnotherMachineTakesTheValuesOfItsNames) {
+TEST(BlindConditions, OtherMachineTakesValuesByParameterName) {
   BlindConfig config = tiny();
   config.conditions.machines = {"GENSAL"};
   const BlindCase made = make(config, "");
@@ -153,7 +153,7 @@ TEST(BlindConditions, AnotherMachineTakesTheValuesOfItsNames) {
   EXPECT_THAT(made.conditions, testing::Contains("GENSAL"));
   expect_misled(made, config);
 }
-TEST(BlindConditions, AShareWithoutWhatItSpeaksOfIsRefused) {
+TEST(BlindConditions, RefusesShareWithoutItsValues) {
   const fs::path file = fs::path(testing::TempDir()) / ("conditions_" + std::to_string(::getpid()) + ".toml");
   std::ifstream in(test::source("configs/blind/tiny.toml"));
   std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -193,7 +193,7 @@ double value(const sim::plant::Plant& plant, const std::string& effect, const ch
   ADD_FAILURE() << "no " << effect;
   return 0;
 }
-TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
+TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
   BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
   config.conditions.rates = {60.0};
   config.faults = config.frequency_events = 1;
@@ -212,20 +212,20 @@ TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
   EXPECT_THAT(wrong.hidden[0].kind->answers, testing::ElementsAre("REPCA1.Ki"));
 }
 /// A plant that feeds in a current has no voltage of its own beside a bolted fault.
-TEST(BlindConverter, AFaultLeavesAVoltageThatHasAnAngle) {
+TEST(BlindConverter, FaultVoltageKeepsAnAngle) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
   const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
   for (const record::Record& record : made.records)
     EXPECT_GT(*std::ranges::min_element(record.V), 0.02 - 1e-3);  // ten times the noise
 }
-TEST(BlindConditions, NoneTakesNoDraw) {
+TEST(BlindConditions, ZeroShareUsesNoRandomNumbers) {
   const BlindConfig config = tiny();
   BlindConfig unused = config;
   unused.conditions.ambient = {0.1, 0.1};  // with a share of 0
   EXPECT_EQ(all_csv(make(config, "sawtooth")), all_csv(make(unused, "sawtooth")));
 }
 
-TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
+TEST(BlindCase, FolderDoesNotRevealTheTruth) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "FORCEDOSC");
   const fs::path folder = fs::path(testing::TempDir()) / ("blind_case_" + std::to_string(::getpid()));
@@ -250,7 +250,7 @@ TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
   fs::remove_all(folder);
 }
 
-TEST(BlindCase, NoiseIsTheStatedOne) {
+TEST(BlindCase, NoiseHasTheStatedDeviation) {
   record::Record record;
   record.P.assign(20'000, 0.0);
   record.Q = record.V = record.theta = record.speed = record.Ifd = record.P;
@@ -307,7 +307,7 @@ TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
   EXPECT_GT(filtered.P[990], 0.5 + 1e-4);
 }
 
-TEST(BlindRecord, FilterOfClassMIsAsLongAsTheStandardSays) {
+TEST(BlindRecord, ClassMFilterHasTheLengthOfTheStandard) {
   const record::Record filtered = step_as_measured({.rate = 60.0, .filter = Filter::class_m});
   // order 164 at 16 samples a cycle: 85.4 ms to either side of the step at 1.0417 s, in samples of 1/60 s
   const auto moved = [&](std::size_t k) { return std::abs(filtered.P[k] - 0.5); };
@@ -316,7 +316,7 @@ TEST(BlindRecord, FilterOfClassMIsAsLongAsTheStandardSays) {
   EXPECT_NEAR(filtered.P[68], 0.7, 1e-12);
 }
 
-TEST(BlindEffects, OddOnesAreInNoList) {
+TEST(BlindEffects, UnlistedEffectsAreInNoList) {
   EXPECT_GE(unlisted_effects().size(), 5U);
   for (const auto& unlisted : unlisted_effects()) {
     EXPECT_EQ(sim::library::compiled().find(unlisted.name), nullptr) << unlisted.name;
@@ -324,7 +324,7 @@ TEST(BlindEffects, OddOnesAreInNoList) {
   }
 }
 
-TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
+TEST(BlindPlan, HasTheMixtureOfTheConfigInRandomOrder) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/cases.toml"));
   const BlindPlan plan = plan_blind(config, {}, 500, 4, 0);
   int none = 0, listed = 0, unlisted = 0, pairs = 0, first_none = 0;
@@ -347,7 +347,7 @@ TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
   for (std::size_t k = 0; k < plan.cases.size(); ++k) EXPECT_EQ(plan.cases[k].hidden, again.cases[k].hidden);
 }
 
-TEST(BlindPlan, UnknownKindsAreNamedTogether) {
+TEST(BlindPlan, ReportsAllUnknownKindsTogether) {
   const BlindConfig config = tiny();
   const auto all = test::messages([&] { plan_blind(config, {"SEX", "FORCED"}, 2, 1, 0); });
   ASSERT_EQ(all.size(), 2U);

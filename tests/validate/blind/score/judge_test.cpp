@@ -22,7 +22,7 @@ double left_by(const cases::BlindCase& made, const fs::path& folder) {
   return fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).reduced_chi2();
 }
 
-TEST(SeenCase, TheUnitThatIsRecordedWithItIsTakenOff) {
+TEST(SeenCase, SubtractsTheSecondRecordedUnit) {
   cases::BlindConfig config = cases::load_blind_config(test::source("configs/blind/tiny.toml"));
   config.conditions.second_unit_share = 1.0;
   config.channels_share = 0.0;
