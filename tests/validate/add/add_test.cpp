@@ -1,4 +1,4 @@
-// An effect added to the model of the committed records, which were made with a SEXS and nothing else.
+// An effect added to the model of the committed records, whose plant has a SEXS.
 #include "validate/add/add.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   ASSERT_EQ(a.events.size(), 2U);
   EXPECT_FALSE(a.events[1].score.seen);
   EXPECT_LT(a.events[1].score.after, a.events[1].score.limit);
-  EXPECT_GT(a.events[1].refitted, 10 * a.events[1].score.after);  // a refit alone does not do it
+  EXPECT_GT(a.events[1].refitted, 10 * a.events[1].score.after);  // a refit alone does not suffice
   ASSERT_EQ(a.model.plant.controls.size(), 1U);
   EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
@@ -62,8 +62,8 @@ TEST(Add, VerdictOmitsManyValues) {
                                 testing::Not(HasSubstr("KA = "))));
 }
 
-// Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
-// intervals all hold the truth in 42 % of such records, all but one in 79 %.
+// If the noise transfer is computed without the exciter, TA/TB lies outside its interval. All of seventeen 95
+// % intervals contain the truth in 42 % of such records, all but one in 79 %.
 TEST(Add, IntervalsContainTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
@@ -83,11 +83,11 @@ TEST(Add, IntervalsContainTheTruth) {
   }
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));
-  EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // pulled by the voltage's noise
+  EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // biased by the voltage's noise
 }
 
-/// The committed records, as a plant with EXST1 and this rate feedback [pu] in place of SEXS would have given
-/// them, with the same noise. TF is short, or a lead-lag does what the feedback does.
+/// The committed records, simulated with EXST1 and this rate feedback [pu] in place of SEXS, with the same
+/// noise. TF is short because a slow feedback is equivalent to a lead-lag.
 std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, double KF) {
   constexpr double kFast = 0.1;  // TF [s]
   const plant::PlantModel sexs = example(true);
@@ -142,7 +142,7 @@ TEST(Add, NamesAnEffectThatWasRemoved) {
   const plant::PlantModel model = example(true);
   const Removal r = try_without(model, 0, records(model), power_only());
   EXPECT_EQ(r.effect, "SEXS");
-  EXPECT_GT(r.evidence, 1000);  // Q is off by fifty times its noise without it
+  EXPECT_GT(r.evidence, 1000);  // without it the error of Q is fifty times its noise
   EXPECT_TRUE(r.model.plant.controls.empty());
 }
 

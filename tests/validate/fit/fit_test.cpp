@@ -1,4 +1,4 @@
-// What a fit says of the structure's evidence: parameters count as far as the records decide them.
+// Evidence of a structure from its fit: a parameter counts as far as the records determine it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double kSpread = 0.2;
 TEST(FitEvidence, UndeterminedParameterAddsNothing) {
   const Fit f = ExciterExample(kSpread).fitted({"EMIN"});
   ASSERT_EQ(f.parameters.size(), 1U);
-  EXPECT_LT(f.parameters.front().decided, 1e-9);  // the records never meet that limit
+  EXPECT_LT(f.parameters.front().decided, 1e-9);  // the response never reaches that limit
   EXPECT_NEAR(f.occam, 0.0, 1e-9);
 }
 TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
@@ -24,7 +24,7 @@ TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
   ASSERT_EQ(f.parameters.size(), 1U);
   const auto& H = f.parameters.front();
   const double sigma = H.error / H.value;  // H is fitted as a logarithm
-  EXPECT_LT(sigma, 0.1 * kSpread);         // or the records decide nothing
+  EXPECT_LT(sigma, 0.1 * kSpread);         // otherwise the records determine nothing
   EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
   EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }
@@ -32,7 +32,7 @@ TEST(FitEvidence, UnobservableStructureHasNoPenalty) {
   const ExciterExample example(kSpread);
   const Fit without = example.fitted({"H"}), with = example.fitted({"H", "EMIN"});
   ASSERT_EQ(with.parameters.size(), 2U);
-  // two searches end within 1e-5 of chi2, some 2000
+  // Two searches agree within 1e-5 of chi2, which is some 2000.
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
 }
 TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
@@ -43,7 +43,7 @@ TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
-/// The plant on a quarter of its base: H is beyond what is usual, and the search goes on from there.
+/// The plant on a quarter of its base: H is beyond its usual range, and the search continues from there.
 TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   ExciterExample example(kSpread);
   sim::plant::Block& machine = example.model.plant.machine;
@@ -60,7 +60,7 @@ TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   EXPECT_NEAR(f.parameters.front().value, expected, 0.02 * expected);
   EXPECT_FALSE(f.parameters.front().at_bound);
 }
-/// The machine without its exciter: parameters would be bent beyond what any machine is.
+/// The machine without its exciter: the parameters would otherwise be biased beyond physical values.
 TEST(FitOrderings, ConstrainEveryFit) {
   ExciterExample example(0.5);
   example.model.plant.controls.clear();
@@ -68,7 +68,7 @@ TEST(FitOrderings, ConstrainEveryFit) {
   ASSERT_EQ(f.failed, "");
   for (const auto& o : sim::plant::violated(f.plant.machine))
     ADD_FAILURE() << sim::plant::violation_text(f.plant.machine, o);
-  // A model that violates one is drawn back to it.
+  // The fit restores an ordering that the model violates.
   sim::plant::Plant biased = example.model.plant;
   const auto at = [&](const char* name) -> double& {
     return biased.machine.p[static_cast<std::size_t>(biased.machine.effect->parameter_index(name))];

@@ -1,4 +1,4 @@
-// Noise is a value: measuring it changes no event, and fits made with different noise are never compared.
+// Noise models are values: measuring changes no event, and fits with different noise are never compared.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -1,4 +1,5 @@
-// Where a fit must be able to get: across zero, below the leakage, past a regulator that chatters.
+// Values that a fit must be able to reach: across zero, below the leakage reactance, past a chattering
+// regulator.
 #include <gtest/gtest.h>
 
 #include "sim/plant/orderings.hpp"
@@ -14,7 +15,7 @@ double& parameter(sim::plant::Block& block, std::string_view name) {
   return block.p[static_cast<std::size_t>(block.effect->parameter_index(name))];
 }
 
-/// The example's first event as `truth` would have answered it, without noise.
+/// Returns the example's first event as `truth` would respond to it, without noise.
 event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::Plant& truth) {
   event::FitEvent e = example.events.front();
   const playin::Response r = answer(e, {}, {truth, example.model.conventions});
@@ -34,7 +35,7 @@ TEST(Sign, IsFree_WhenTheRangeAllowsIt) {
   EXPECT_FALSE(open("IEEET1", "KA"));     // never below
   EXPECT_FALSE(open("STAB1", "KT"));      // a gain, within decades
 }
-/// DC exciters that feed themselves have a KE just below zero in most public cases; the standard value is 1.
+/// Self-excited DC exciters have a KE just below zero in most public cases; the default is 1.
 class SelfExcited : public ::testing::TestWithParam<bool> {};
 
 TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
@@ -55,11 +56,11 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   EXPECT_LT(KE->error, 0.3);
   EXPECT_LT(f.reduced_chi2(), 0.05);
 }
-/// It lies at the end of a curved valley; lenient steps, with slopes linear about each step, come as far in
-/// as many steps more.
+/// The optimum lies at the end of a curved valley. Lenient steps with sensitivities linearised about each
+/// step reach it in twice as many steps.
 INSTANTIATE_TEST_SUITE_P(Steps, SelfExcited, ::testing::Values(false, true),
                          [](const auto& lenient) { return lenient.param ? "lenient" : "exact"; });
-/// Public cases have machines with X''d below Xl. A record of such a machine keeps it.
+/// Some public cases have machines with X''d below Xl. The fit to a record of such a machine keeps that.
 TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   ExciterExample example(0.2);
   sim::plant::Block& machine = example.model.plant.machine;
@@ -104,8 +105,8 @@ TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
   EXPECT_EQ(bounds_text(f.parameters),
             "GENROU.Xdpp (held by X''d > Xl): at a bound, where the 95 % interval is not valid.");
 }
-/// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits: these
-/// values are where a search ended in a public case, before it was dropped for them.
+/// A regulator of gain 2000 behind a lead of eleven times responds to the noise of each sample with its
+/// limits. A search in a public case reached these values and was dropped because of them.
 TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};

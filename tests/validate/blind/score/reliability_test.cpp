@@ -1,4 +1,4 @@
-// Probabilities held against the truth, by hand.
+// Reliability of stated probabilities, computed by hand.
 #include "validate/blind/score/reliability.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ TEST(Reliability, ErrorIsMeanOverconfidence) {
 }
 TEST(Reliability, SetSumsToNinetyFivePerCent) {
   const Reliability r = reliability({forecast(0.97, true), forecast(0.97, false), forecast(0.6, false),
-                                     forecast(0.6, true, false)});  // the last one is none of the list
+                                     forecast(0.6, true, false)});  // the last truth is not in the list
   ASSERT_EQ(r.sets.size(), 1U);
   EXPECT_EQ(r.sets[0].second.holds.n, 3);
   EXPECT_EQ(r.sets[0].second.holds.hits, 2);

@@ -1,4 +1,4 @@
-// Scores of blind runs, from truths and verdicts written by hand.
+// Scores of blind runs from hand-written truths and verdicts.
 #include "validate/blind/score/score.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ class BlindScoring : public testing::Test {
 };
 
 TEST(BlindRate, WilsonInterval) {
-  // Values of the closed form by hand: 10 of 10 gives 1/(1 + z^2/10); 5 of 10 is symmetric about a half.
+  // Closed form by hand: 10 of 10 gives 1/(1 + z^2/10); 5 of 10 is symmetric about a half.
   const Rate all{10, 10}, half{5, 10}, none{};
   EXPECT_NEAR(all.low(), 0.72247, 1e-5);
   EXPECT_DOUBLE_EQ(all.high(), 1.0);
@@ -69,7 +69,7 @@ TEST_F(BlindScoring, CountsEachRate) {
   add({sexs}, {"missing", {"sexs"}, {}, "excitation", 1});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 2});
   add({sexs}, {"confusable", {"EXST1"}, {"EXST1", "SEXS"}, "excitation", 3});
-  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1});  // below 2 limits: not asked
+  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1});  // below 2 limits: excluded
   add({}, {"adequate", {}, {}, "none", 1});
   add({}, {"missing", {"SEXS"}, {}, "excitation", 1});
   add({{"saw", "mechanical", "saw", 5, false}}, {"unexplained", {}, {}, "mechanical", 1});
@@ -101,7 +101,7 @@ TEST_F(BlindScoring, CountsRightVerdictsByCondition) {
       {"30/s"});  // below 2 limits
   add({}, {"adequate", {}, {}, "none", 1}, false, {"30/s"});
   add({unlisted}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
-  add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // as outside the list
+  add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // counts as unlisted
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1});
   const BlindScore s = score();
   ASSERT_EQ(s.by_condition.size(), 2U);
