@@ -177,7 +177,7 @@ TEST(Calibrate, SkipsDraws_WhenTheClosedFormReachesTheNoise) {
   const Calibration straight = calibrate(model, records, options);
   EXPECT_THAT(names(straight), ElementsAre("closed form", "model"));
   EXPECT_NE(straight.adequacy, Adequacy::structure_poor) << straight.sentence;
-  reactance = off;  // keeps the model's X'd, 10 % off: a wrong start, so sets are drawn
+  reactance = off;  // the closed form keeps this X''d, 10 % off: a wrong start
   const Calibration drawn = calibrate(model, records, options);
   EXPECT_THAT(names(drawn), ::testing::Contains(HasSubstr("draw ")));
   EXPECT_EQ(drawn.adequacy, straight.adequacy);

@@ -1,4 +1,4 @@
-// Every mistake a record can come with is made to sound records and recognised; sound ones pass.
+// Sound records are modified by every known mistake and must be recognised; unmodified records pass.
 #include "validate/check/check.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +32,8 @@ record::Record example(int i) {
   return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), {});
 }
 
-/// The record as a file in the units of its name would hold it, with other words in the header or other
-/// figures: the way mistakes really come about.
+/// The record as a file in the units of its name, with a modified header or modified values, as mistakes
+/// occur in practice.
 struct Written {
   std::string V = "V_pu", theta = "theta_rad", P = "P_pu", Q = "Q_pu", f = "f_pu";
   std::function<void(std::vector<double>& row)> edit = [](auto&) {};  ///< t, V, theta, P, Q, f
@@ -71,8 +71,8 @@ std::vector<Mistake> mistakes() {
       {"ends_before_the_event", "no_event", {.to = 1.98}},
       {"power_in_MW", "wrong_base", {.edit = [](Row x) { x[3] *= 100, x[4] *= 100; }}},
       {"power_in_pu_named_MW", "wrong_base", {.P = "P_MW", .Q = "Q_Mvar"}},
-      // The example's machine, six times as large: on its own base the figures stay, on 100 MVA they are
-      // 6-fold.
+      // The example's machine, six times as large: on its own base the numbers are unchanged, on 100 MVA they
+      // are six times as large.
       {"power_on_the_machine_base", "wrong_base", {}, 600},
       {"power_on_the_system_base",
        "wrong_base",
@@ -141,7 +141,7 @@ TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
     EXPECT_FALSE(refused(check_record(r, {100, 60}), "dropout"));
   }
 }
-/// A fault of a third of the record, with noise.
+/// A record of which the fault takes a third, with noise.
 record::Record short_record(int samples, double rate, std::mt19937& random) {
   std::normal_distribution<double> noise(0, 1e-4);
   record::Record r;
@@ -226,7 +226,7 @@ TEST(RecordCheckTest, WarnsOfPreEventOfAFifthOfASecond) {
   EXPECT_TRUE(warned(findings, "short_pre_event")) << told(findings);
   EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
 }
-/// A dip of the frequency over 40 s, P and Q without noise or in steps, moving from the first sample on.
+/// A dip of the frequency over 40 s that starts at the first sample; P and Q without noise or quantised.
 record::Record dip(double noise, double step) {
   record::Record r;
   r.name = "dip";
@@ -272,7 +272,7 @@ TEST(RecordCheckTest, AcceptsUnwrappedRadians) {
       const Written w{.edit = [](auto& x) { x[2] += 5 * 2 * std::numbers::pi; },
                       .with_frequency = with_frequency};
       const auto findings = check_record(rewritten(example(i), w), {100, 60});
-      if (i == 2 && !with_frequency)  // its angle hardly jumps: that would fit degrees too
+      if (i == 2 && !with_frequency)  // its angle hardly steps: degrees would be plausible too
         EXPECT_TRUE(refused(findings, "angle_unit"));
       else
         EXPECT_EQ(told(findings), "") << "event " << i;

@@ -78,7 +78,8 @@ TEST_F(ReadingsTest, SignsAndExchangedColumnsAreReported) {
   std::swap(r.P, r.Q);
   EXPECT_EQ(kind(r), "swapped_channels");
 }
-/// The example's model lacks the exciter of the machine that was recorded: that is no matter of reading.
+/// The example's model lacks the exciter of the recorded machine: a model error, not a wrong reading of the
+/// record.
 TEST(ReadingsOfAWrongModel, AreNotReported) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   for (int i = 1; i <= 4; ++i) {
@@ -108,8 +109,7 @@ TEST_F(DispatchTest, RatioAndItsLikelyCauseAreReported) {
 }
 TEST_F(DispatchTest, PowerFactorAngleIsReported) {
   record::Record r = sound;
-  for (std::size_t k = 0; k < r.t.size();
-       ++k) {  // P + jQ = V I e^j(theta - phi), phi being that of the power
+  for (std::size_t k = 0; k < r.t.size(); ++k) {  // P + jQ = V I e^j(theta - phi), phi: power factor angle
     const Complex s0(sound.P[k], sound.Q[k]);
     const Complex made = std::polar(std::abs(s0), 1.3 - std::arg(s0));
     r.P[k] = made.real(), r.Q[k] = made.imag();

@@ -1,4 +1,4 @@
-// Records of one plant are read, named and checked together, and all that is wrong is told at once.
+// Reading, naming and checking the records of one plant together, with one report of all problems.
 #include "validate/check/record_set.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ TEST_F(RecordSets, KeepTheOrderGiven) {
   EXPECT_EQ(set.warnings.size(), 2U);
 }
 TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
-  model.plant.mva = 1;  // the records' power is then forty times what the machine can give
+  model.plant.mva = 1;  // the records' power is then forty times the machine's rating
   try {
     read_records({kFirst, "none.csv", kFirst}, model);
     FAIL() << "nothing was refused";
@@ -31,7 +31,7 @@ TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
     const std::string told = error.what();
     EXPECT_THAT(told, ::testing::HasSubstr("none.csv"));
     EXPECT_THAT(told, ::testing::HasSubstr("two records named avr_ev1.csv"));
-    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record besides
+    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record as well
   }
 }
 TEST_F(RecordSets, AppendToKnownProblems) {

@@ -1,4 +1,4 @@
-// Errors of IEC 61400-27-2 by window, at their limits and beside them.
+// Errors of IEC 61400-27-2 by window, at their limits and next to them.
 #include "validate/compare/fitness.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using thresholds::Phase;
 
 constexpr double kPerSecond = 100;
 
-/// 0 to 4 s, switched at 1 and 1.5 s, on 50 MVA; what P is off is `error(t)` [pu], Q is right.
+/// 0 to 4 s, switched at 1 and 1.5 s, on 50 MVA; the error of P is `error(t)` [pu], Q is right.
 template <class Error>
 EventComparison event_off_by(Error error) {
   EventComparison e;
@@ -38,7 +38,7 @@ EventComparison event_off_by(Error error) {
   e.channels = {p, q};
   return e;
 }
-/// Limits of 8, 4 and 7 % everywhere, nothing left out.
+/// Limits of 8, 4 and 7 % in all windows, without exclusions.
 thresholds::Acceptance plain_limits() {
   thresholds::Acceptance a = thresholds::read_acceptance("dtr-test");
   for (auto& channel : a.limits) channel.fill({8, 4, 7});
@@ -63,8 +63,8 @@ TEST(Fitness, ErrorsAreInPercentOfMachineMva) {
   EXPECT_TRUE(f.fit);
 }
 
-/// P falls by 3 % of MVA after 1.5 s, as a governor answers to a rise of frequency; the model makes `share`
-/// of it.
+/// P falls by 3 % of MVA after 1.5 s, as a governor responds to a rise of frequency; the model's response is
+/// `share` of it.
 EventComparison governor_event(double share) {
   const auto moved = [](double t) { return t > 1.5 ? -0.03 * std::min(1.0, t - 1.5) : 0.0; };
   EventComparison e = event_off_by([&](double t) { return (share - 1) * moved(t); });
@@ -100,7 +100,7 @@ TEST(Fitness, Movement_IsNotJudged_BelowNoiseOrMinimumSize) {
 
 TEST(Fitness, AcceptsErrorAtTheLimit) {
   const auto by = plain_limits();
-  const auto off = [&](double percent) {  // one sample of the fault; 100 % are 50 MVA
+  const auto off = [&](double percent) {  // error of one sample of the fault; 100 % are 50 MVA
     return judge_fitness({event_off_by([&](double t) { return t == 1.2 ? percent / 100 : 0.0; })}, 50, by);
   };
   const double at = off(8).rows[1].errors.mxe;
@@ -117,7 +117,7 @@ TEST(Fitness, AcceptsErrorAtTheLimit) {
 }
 
 TEST(Fitness, JudgesAbsoluteMeanError) {
-  const auto e = event_off_by([](double t) { return t > 1.5 ? -0.05 : 0.0; });  // -5 %, where 4 % is allowed
+  const auto e = event_off_by([](double t) { return t > 1.5 ? -0.05 : 0.0; });  // -5 % at a limit of 4 %
   const Fitness f = judge_fitness({e}, 50, plain_limits());
   EXPECT_FALSE(f.fit);
   EXPECT_LT(row_of(f, Phase::post_fault).errors.me, 0);

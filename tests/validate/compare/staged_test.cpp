@@ -1,4 +1,5 @@
-// Staged tests compared: the right model leaves the noise, a wrong one does not, nor one that is not told.
+// Comparison of staged tests: the right model leaves only noise; a wrong model or an undeclared test leaves
+// more.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The stabiliser that an exciter's model lacks is named from records of the exciter alone.
+// The diagnosis names the missing stabiliser from records of the exciter alone.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

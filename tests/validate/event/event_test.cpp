@@ -1,4 +1,5 @@
-// Which steps of the voltage are switchings: jumps, small ones too, but not a swing however fast.
+// Detection of switchings among the steps of the voltage: steps, even small ones, but no swings, however
+// fast.
 #include "validate/event/event.hpp"
 
 #include <gtest/gtest.h>
@@ -36,14 +37,14 @@ std::vector<playin::Switching> switchings_of(const record::Record& r) {
 }
 
 TEST(FindSwitchings, IgnoresFastSwing) {
-  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from those two further by 0.016 pu
+  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from the second-next ones by 0.016 pu.
   const record::Record r = record_of([](double) { return 1.0; },
                                      [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
   for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
 }
 TEST(FindSwitchings, IgnoresEndOfRamp) {
-  // a converter's active power comes back at its ramp rate: the angle turns by 0.05 rad from sample to sample
-  // for 70 ms, and the steps die out within three
+  // A converter's active power returns at its ramp rate: the angle turns by 0.05 rad per sample for 70 ms,
+  // then the steps decay within three samples.
   const auto theta = [](double t) {
     const double ramp = std::clamp(t, 3.0, 3.07) - 3.0, after = std::max(0.0, t - 3.07);
     return 6.0 * (ramp + 0.02 * (1 - std::exp(-after / 0.02)));
@@ -64,7 +65,7 @@ TEST(FindSwitchings, FindsStepDuringSwing) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
 }
-/// A fault from 3 s to 3.1 s, then a swing of 3 Hz past the voltage's minimum, as near loss of synchronism.
+/// A fault from 3 s to 3.1 s, then a swing of 3 Hz through a voltage minimum, as near loss of synchronism.
 record::Record near_loss(double fault = 0.35) {
   return record_of(
       [fault](double t) {
@@ -74,7 +75,7 @@ record::Record near_loss(double fault = 0.35) {
       },
       [](double t) { return t <= 3.1 ? 0.1 : 0.5 + 0.6 * std::erf((t - 3.5) / 0.05); });
 }
-/// Each phasor the mean of itself and the next.
+/// Replaces each phasor by the mean of itself and the next.
 record::Record filtered(record::Record r) {
   const auto at = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
@@ -97,9 +98,9 @@ TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
 }
-/// Behind a triangular window that reaches `half` [s] to either side (0: none): a fault at `on` for `length`
-/// [s] that leaves `V`, with subtransients of `fell` pu behind both jumps; the angle jumps by `turn` [rad]
-/// and then turns at 2 rad/s.
+/// A fault at `on` for `length` [s] behind a triangular window of half-width `half` [s] (0: none). The fault
+/// voltage is `V`; a subtransient of `fell` pu follows both steps. The angle steps by `turn` [rad], then
+/// turns at 2 rad/s.
 record::Record behind(double half, double on, double length, double V, double fell, double turn) {
   const double off = on + length;
   const auto since = [](double t, double begin) { return std::exp(-(t - begin) / 0.03); };
@@ -125,8 +126,8 @@ record::Record behind(double half, double on, double length, double V, double fe
   r.Q.assign(r.t.size(), 0.1);
   return r;
 }
-/// One fault that looks sharp does not outweigh another that was plainly smeared, if their samples are more
-/// probable behind a window.
+/// A fault that looks sharp does not outweigh another that is clearly filtered, if the samples of both are
+/// more probable behind a window.
 TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
   const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
@@ -148,8 +149,8 @@ TEST(FindSwitchings, TreatsAllRecordsAsFilteredOrSharp) {
   EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
 }
-/// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of `tau` behind both jumps and a
-/// rotor that swings; `on` is the instant within its sample interval, from 0 to 1.
+/// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of time constant `tau` after both
+/// steps and a swinging rotor. `on`: position of the switching in its sample interval, 0 to 1.
 record::Record subtransient(double on, double cycles, double tau) {
   const double from = 3 + on / 30, to = from + cycles / 60, fell = 0.12;
   const auto since = [](double t, double begin, double time) { return std::exp(-(t - begin) / time); };
@@ -176,8 +177,8 @@ TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
       EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
     }
 }
-/// The same jumps without a decay behind a triangular window of two cycles, at 30/s and 60/s: what a filter
-/// leaves on one side only is not taken for a decay.
+/// The same steps without decay behind a triangular window of two cycles, at 30/s and 60/s: a filtered step
+/// with samples on one side only is not taken for a decay.
 TEST(FindSwitchings, RecognisesTriangularFilter) {
   for (const double rate : {30.0, 60.0})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
@@ -220,7 +221,7 @@ TEST(PrepareEvents, PreEventWindowEndsAtTheStepOfPAndQ) {
   EXPECT_TRUE(e.switchings.empty());
   EXPECT_EQ(e.start.samples, 13);  // up to 0.2 s at 60/s
 }
-/// Two samples of fault at 30/s tell no decay from a filter: the person does.
+/// Two samples of fault at 30/s cannot distinguish a decay from a filter; the given switching times do.
 TEST(PrepareEvents, UsesGivenSwitchingTimes) {
   record::Record r = subtransient(0.5, 4, 0.025);
   r.P.assign(r.t.size(), 0.4);
@@ -248,8 +249,8 @@ TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   EXPECT_EQ(told.start.samples, found.start.samples);
   EXPECT_EQ(told.switchings[1].time, 3.1);
 }
-/// A fault near the terminal behind a triangular window of two cycles, stamps with six decimals: the window
-/// reaches one interval more at its end than at its begin.
+/// A fault near the terminal behind a triangular window of two cycles, time stamps with six decimals: the
+/// filtered fault end is one interval wider than its beginning.
 TEST(PrepareEvents, AcceptsFaultEndOneIntervalWider) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3 + 0.5 / 60;
@@ -271,7 +272,7 @@ TEST(PrepareEvents, AcceptsFaultEndOneIntervalWider) {
     EXPECT_NEAR(e.switchings[1].time, off, e.switchings[1].uncertainty) << end;
   }
 }
-/// A subtransient of 30 ms behind the fault's end makes that jump wider than its begin.
+/// A subtransient of 30 ms makes the step at the fault's end wider than at its beginning.
 TEST(PrepareEvents, AcceptsDecayAtFilteredFaultEnd) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3.005, off = on + 0.06;
@@ -280,7 +281,7 @@ TEST(PrepareEvents, AcceptsDecayAtFilteredFaultEnd) {
   EXPECT_NEAR(e.switchings[0].time, on, kOneCycle / 2);
   EXPECT_NEAR(e.switchings[1].time, off, kOneCycle / 2);
 }
-/// The filter smears every jump over as many samples, the swing is wider.
+/// The filter spreads every step over the same number of samples; the swing is wider.
 TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);

@@ -1,4 +1,4 @@
-// A plant whose control measures at the point, beyond the collector.
+// A plant whose control measures at the point of common coupling, beyond the collector.
 #include <gmock/gmock.h>
 
 #include "tests/sim/grid/far_case.hpp"
@@ -33,7 +33,8 @@ TEST(PointControl, TwoPortInvertsTheCollector) {
   EXPECT_NEAR(std::abs(S - Complex(80, -30)), 0, 1e-9);
 }
 
-/// A fault near the point of a plant whose control stands there, seen at the plant's own bus.
+/// A fault near the point of common coupling, recorded at the plant's own bus; the plant's control measures
+/// at the point.
 struct Plant : ::testing::Test {
   static constexpr double kOn = 2.0, kOff = 2.1;
   test::Simulated run = simulated();
@@ -67,7 +68,7 @@ struct Plant : ::testing::Test {
 
 TEST_F(Plant, ControlMeasuresAtThePointOfCommonCoupling) {
   sim::plant::Plant plant = model();
-  EXPECT_GT(missed(plant), 1e-3);  // as if it measured at the plant's own bus
+  EXPECT_GT(missed(plant), 1e-3);  // as if the control measured at the plant's own bus
   MeasuredPoint point;
   point.collector = kCable;
   point.tried.plant = plant;

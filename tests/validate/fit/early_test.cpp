@@ -8,9 +8,9 @@
 namespace swingbank::validate::fit {
 namespace {
 
-/// A converter that regulates Q through two integrals and the voltage behind them. An error of half a sample
-/// in the fault's end grows in Q for eight seconds. From the middle of the sample intervals the search ended
-/// at a reduced chi-square of 1,800.
+/// A converter that regulates Q through two integrals and the voltage behind them. The effect on Q of half a
+/// sample of fault grows for eight seconds. From the middles of the sample intervals the search ended at
+/// 1,800.
 TEST(EarlyStates, FitConverges_WhenTheResponseDivergesFromWrongTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1", "Vdip=0.75,Kqi=0.1");
