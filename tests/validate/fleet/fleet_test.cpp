@@ -1,4 +1,4 @@
-// Fleets: their files, what a plant leaves behind, the table.
+// Fleets: input files, rows of finished plants, result tables.
 #include "validate/fleet/fleet.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using ::testing::Not;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A folder of one test's own.
+/// A temporary folder for each test.
 class FleetFiles : public ::testing::Test {
  protected:
   FleetFiles() {
@@ -88,7 +88,7 @@ power_only = false
 spread = 0.1
 )"));
   ASSERT_EQ(fleet.plants.size(), 2);
-  EXPECT_EQ(fleet.plants[0].name, "a");  // in order of names
+  EXPECT_EQ(fleet.plants[0].name, "a");  // sorted by name
   EXPECT_EQ(fleet.plants[0].model, "/elsewhere/m.toml");
   EXPECT_FALSE(fleet.plants[0].power_only);
   EXPECT_EQ(fleet.plants[0].spread, 0.1);
@@ -173,7 +173,7 @@ TEST(FleetTables, ReportFindingsAndExitCodes) {
               HasSubstr("b,confusable,SEXS,ESST1A,excitation,412.25,1.01,26.4,1.02,3e-05,3,"));
   const std::string page = fleet_html(fleet, broken);
   EXPECT_THAT(page, HasSubstr("<a href=\"b/report.html\">b</a>"));
-  EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has none
+  EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has no report
   const auto j = nlohmann::json::parse(fleet_json(fleet, broken));
   EXPECT_EQ(j["plants"].size(), 3);
   EXPECT_EQ(j["plants"][1]["evidence"], 412.25);
@@ -181,8 +181,7 @@ TEST(FleetTables, ReportFindingsAndExitCodes) {
 }
 
 TEST(FleetChance, FollowsTheChiSquareDistribution) {
-  // Tables of the distribution: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4
-  // digits).
+  // Quantiles from tables: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4 digits).
   const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
   for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
   EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));

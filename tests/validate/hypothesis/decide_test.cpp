@@ -1,4 +1,4 @@
-// What to record next, for exciters that differ and for one beside itself.
+// The proposed next measurement, for different exciters and for identical ones.
 #include "validate/hypothesis/decide.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-constexpr double kDecideSpread = 0.2;  ///< believed of the machine's parameters
+constexpr double kDecideSpread = 0.2;  ///< prior standard deviation of the machine's parameters, relative
 
 class Decide : public ::testing::Test {
  protected:
@@ -23,7 +23,7 @@ class Decide : public ::testing::Test {
     if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
     return j;
   }
-  /// With the same evidence.
+  /// Decision between competitors of equal evidence.
   [[nodiscard]] Decision between(const std::vector<Judgement>& competitors) const {
     std::vector<Explanation> all;
     for (const Judgement& j : competitors)

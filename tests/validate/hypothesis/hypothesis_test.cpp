@@ -1,4 +1,4 @@
-// What is tried: every start of every hypothesis is a plant that can be.
+// The hypotheses: every start of every hypothesis is a plant that can run.
 #include "validate/hypothesis/hypothesis.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ TEST(Hypotheses, EveryStartCanRun) {
     if (h.drawn) drawn.insert(h.name);
     for (const auto& start : h.starts) EXPECT_TRUE(playin::can_run(started(h, start))) << h.name;
   }
-  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
+  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve; draws keep their order
   EXPECT_TRUE(drawn.contains("TGOV1"));
 }
 TEST(Hypotheses, StartsAreDefaultsThenDraws) {
@@ -66,7 +66,7 @@ TEST(Hypotheses, FurtherDrawsDiffer) {
     for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
   }
 }
-/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters are no draws.
+/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters have no draws.
 TEST(Hypotheses, FreesInactivePartsInGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
@@ -105,7 +105,7 @@ TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
     EXPECT_TRUE(playin::can_run(h.plant)) << h.name;
   }
 }
-/// Of whatever block of a converter has one: a source that is its own control among them.
+/// In any block of a converter that has a switch, also in a source with built-in control.
 TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
   const auto names = [](const char* source, const std::vector<const char*>& controls) {
     sim::plant::Plant plant;
@@ -127,7 +127,7 @@ TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
             (std::set<std::string>{"REGCB1:rateFlag=1", "REGCB1:pqFlag=1", "REECA1:PFFLAG=1",
                                    "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
 }
-/// Its edges lie to either side of the neutral 0, and a start wider than all that moves has no slope.
+/// Its edges lie on either side of the null value 0. A start wider than the signal has no sensitivity.
 TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
   const auto standard = [](const char* name) {
     const sim::Effect* effect = sim::library::compiled().find(name);
@@ -142,16 +142,16 @@ TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
     ++bands;
     ASSERT_GE(h.starts.size(), 4U);
     for (const auto& start : h.starts) EXPECT_DOUBLE_EQ(start[0], -start[1]);
-    EXPECT_LT(h.starts.front()[1], 1e-3);  // a frequency's is some 0.0006 pu
-    EXPECT_GT(h.starts.back()[1], 0.02);   // a voltage's some 0.02 pu
+    EXPECT_LT(h.starts.front()[1], 1e-3);  // a frequency deviation is some 0.0006 pu
+    EXPECT_GT(h.starts.back()[1], 0.02);   // a voltage deviation is some 0.02 pu
   }
   EXPECT_EQ(bands, 2);
 }
 TEST(Triangle, ReproducesTheProductsOfTheColumns) {
   event::RowMatrix e = event::RowMatrix::Random(50, 6);
-  e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
+  e.col(3) = 2 * e.col(0) - e.col(1);  // linearly dependent
   const event::RowMatrix r = fit::fitting::triangle_of(e);
-  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // sums of 50, rounded
+  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // rounding of sums of 50
   EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
   for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);
 }

@@ -1,4 +1,4 @@
-// What events left out of a fit say against an effect.
+// Objections to an effect from events outside the fit.
 #include "validate/hypothesis/judge.hpp"
 
 #include <gmock/gmock.h>
@@ -33,10 +33,10 @@ TEST(Objection, AllowsScatterOfAnUnaffectedEvent) {
 }
 TEST(Objection, RefusesImprovementAtTheCostOfAnEvent) {
   EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
-  // 30 of chi2: above 20, and above a tenth of this evidence
+  // 30 of chi2: above 20, and above 10 % of this evidence.
   EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
               HasSubstr("improve b"));
-  // ... and below a tenth of this one, still as good as noise
+  // Below 10 % of this evidence, and still as good as noise.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
 }
 TEST(Objection, RefusesDeteriorationOfABadEvent) {
@@ -59,13 +59,13 @@ TEST(HeldOutEvents, FailedFitPredictsNothing) {
   EXPECT_LT(hold(whole).front().cost_after, 1e6);
   fit::Fit impossible = whole;
   for (const auto& f : example.free({"EMAX"}))
-    sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // Efd stands above it
+    sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // below the initial Efd
   EXPECT_GT(hold(impossible).front().cost_after, 1e300);
 }
 TEST(Objection, RequiresPredictionNotOnlyImprovement) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),
               HasSubstr("predict b"));
-  // a tenth of what it was will do: the plain misfit is judged apart
+  // A tenth of the former error suffices; the reduced chi-square is judged separately.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 30.0, 1.5)}, 30000, kAdequate), IsEmpty());
 }
 

@@ -1,4 +1,4 @@
-// Probabilities from evidences, by hand.
+// Probabilities from log evidences, computed by hand.
 #include "validate/hypothesis/posterior.hpp"
 
 #include <gmock/gmock.h>

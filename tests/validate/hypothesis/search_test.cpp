@@ -1,4 +1,4 @@
-// What is tried beside a structure, and in the place of a part of it.
+// Effects tried in addition to a structure, and in place of a part of it.
 #include "validate/hypothesis/search.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ using testing::Not;
 
 using WholeFit = HiddenExciter;
 
-/// An armature resistance that the model lacks. A load compensator without an exciter changes nothing.
+/// An armature resistance that the model lacks. A load compensator without an exciter has no effect.
 TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   Hypothesis truth = named("GENROU:Ra");
   constexpr double kRa = 0.03;
@@ -32,9 +32,9 @@ TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   EXPECT_EQ(tried.back().hypothesis.name, "PTERROR");
 }
 
-/// An ordinary fit that begins at KF = 0 does not find a fast rate feedback.
+/// An ordinary fit from KF = 0 does not find a fast rate feedback.
 TEST_F(WholeFit, FindsRateFeedbackInactiveByDefault) {
-  constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback acts as a lead-lag does
+  constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback is equivalent to a lead-lag
   const Hypothesis exst1 = named("EXST1");
   Hypothesis truth = exst1;
   parameter(truth.plant, "KF") = kKF;
@@ -61,7 +61,7 @@ class Exchange : public ::testing::Test {
     if (found == all.end()) throw std::runtime_error("no hypothesis " + name);
     return *found;
   }
-  /// `name` in the model alone, fitted to `value` of its first parameter.
+  /// `name` alone in the model, its first parameter fitted to `value`.
   [[nodiscard]] Judgement alone(const std::string& name, double value) const {
     Judgement j;
     j.hypothesis = named(all_hypotheses(model().under_test(), model().library), name);
@@ -71,7 +71,7 @@ class Exchange : public ::testing::Test {
     sim::plant::parameter_value(j.fit.plant, f.id) = value;
     return j;
   }
-  /// `second` beside what is fitted already.
+  /// `second` in addition to the fitted effect.
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
     const BaseModel then = after(base_model_, first);
     Judgement j;
@@ -106,7 +106,7 @@ TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
                                             "STEPUP + HYGOV", "STEPUP + IEEEG1"));
   for (const Judgement& j : competitors) {
     EXPECT_FALSE(j.fit.failed.empty());
-    // believed to be what it was before any fit, and starting where the pair's fit ended
+    // The prior is that before any fit; the start is the end of the pair's fit.
     const sim::plant::ParameterId own = pair.hypothesis.free.front().id;
     const auto id = sim::plant::same_parameter(j.hypothesis.plant, pair.hypothesis.plant, own).value();
     EXPECT_EQ(sim::plant::block_effect(j.hypothesis.plant, id.block).name, "STEPUP");
@@ -139,7 +139,7 @@ TEST_F(Exchange, DropsEffectsWithoutTheirPrerequisite) {
 
 class Crossing : public Exchange {
  protected:
-  /// A pair of these names and this evidence.
+  /// A pair of these names and this log evidence.
   [[nodiscard]] static Judgement pair(const std::string& with, const std::string& name, double gain) {
     Judgement j;
     j.hypothesis.with = with;
@@ -157,7 +157,7 @@ TEST_F(Crossing, AddsReductionsOfTwoEffects) {
   EXPECT_EQ(best->joins_in, &pairs[0]);
   EXPECT_EQ(best->stays_in, &pairs[2]);
   EXPECT_EQ(best->expected, 95);
-  pairs.push_back(pair("IEEEG1", "IEEET1", 130));  // now the best, and beside it HYGOV's turn
+  pairs.push_back(pair("IEEEG1", "IEEET1", 130));  // now the best pair, so HYGOV is tried beside it
   const auto next = best_cross(pairs);
   ASSERT_TRUE(next);
   EXPECT_EQ(next->joins + " joins " + next->stays, "IEEET1 joins HYGOV");

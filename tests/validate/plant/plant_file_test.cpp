@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 PlantModel example() { return load_plant_model(test::source("configs/plants/ieee14_bus2.toml")); }
 
-/// Values that need all 17 digits, consistent because they hardly differ from the standard ones.
+/// Values that need all 17 digits, consistent because they differ little from the defaults.
 std::vector<double> awkward(const sim::Effect& effect) {
   std::vector<double> p = effect.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -31,7 +31,7 @@ std::vector<double> awkward(const sim::Effect& effect) {
 class PlantFileTest : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  /// What is written and read again.
+  /// Writes a model and reads it back.
   PlantModel again(const PlantModel& model) {
     write_plant_file(folder_ / "model.toml", model, {"written by a test", "two\nlines"});
     return load_plant_model(folder_ / "model.toml");
@@ -73,7 +73,7 @@ TEST_F(PlantFileTest, SeveralEffectsOfASharedSlotStayInOrder) {
     if (sim::is_shared(effect->slot))
       (effect->slot == sim::Slot::measurement ? m.plant.measurements : m.plant.controls)
           .push_back({effect, awkward(*effect)});
-  // twice the same effect, with values of its own
+  // The same effect twice, with different values.
   sim::plant::Block second = m.plant.controls.front();
   second.p.front() = second.effect->parameters.front().high;
   m.plant.controls.insert(m.plant.controls.begin() + 1, second);

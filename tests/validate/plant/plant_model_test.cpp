@@ -72,7 +72,7 @@ TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
   EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example_text()),
               ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
 }
-/// Plants in files of their own folders, each with a law of the same file name and effect.
+/// Plants in different folders, each with a law of the same file name and effect name.
 TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedLaws) {
   const auto folder = file_.parent_path() / file_.stem();
   const auto read = [&](const std::string& depth) {
@@ -178,7 +178,7 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
   EXPECT_EQ(m.plant.machine.p, plain.plant.machine.p);
   EXPECT_EQ(m.defaults.size(), 5u);
   EXPECT_EQ(m.bus, 31);
-  // What stands there already is named, and how it is dropped.
+  // The message names the present block and the option that drops it.
   const std::string dyr =
       "1 'GENROU' 1 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n"
       "1 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n1 'NONE9' 2 1 2 3 /\n";
@@ -204,7 +204,7 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
     text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
     return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
   };
-  const auto warnings = [&](std::string text) {  // reactances in proportion, so that the equations hold
+  const auto warnings = [&](std::string text) {  // proportional reactances satisfy the initial equations
     for (const auto& [name, value] : std::map<std::string, std::string>{{"Xq = 1.7", "Xq = 0.0189"},
                                                                         {"Xdp = 0.4", "Xdp = 0.0044"},
                                                                         {"Xqp = 0.6", "Xqp = 0.0067"},
@@ -221,12 +221,12 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
       load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
       ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr("usually 0.1 to 20 s"), HasSubstr("toml:22"))))
       << "one slip is no other base";
-  // Where a value is unusual a smaller factor tells: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
+  // A smaller factor suffices for unusual values: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
   EXPECT_THAT(
       load(on_system(example_text(), "2.6", "6.7")).warnings,
       Contains(AllOf(HasSubstr("H = 2.6 s and Xd = 6.7 pu"), HasSubstr("one that the file has wrong"))));
   EXPECT_TRUE(load(on_system(example_text(), "2.6", "3.2")).warnings.empty());
-  // Within the bounds it is a warning.
+  // Within the bounds there is only a warning.
   const PlantModel m = load(on_system(example_text(), "19", "0.45"));
   EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:22"))));
   EXPECT_TRUE(load(example_text()).warnings.empty());

@@ -1,4 +1,4 @@
-// [[event]] of a plant file: read, written and read back, and what is refused.
+// [[event]] of a plant file: reading, writing, reading back, and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Staged = record::StagedEvent::Kind;
 
-/// The example's text with more behind it.
+/// The example's text followed by `more`.
 std::string with(const std::string& more) {
   std::ifstream file(std::string(SWINGBANK_SOURCE) + "/configs/plants/ieee14_bus2.toml");
   std::stringstream text;

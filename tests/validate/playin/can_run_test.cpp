@@ -1,4 +1,4 @@
-// One answer to whether a plant can be run, for all of its blocks.
+// One check of whether a plant can run, for all of its blocks.
 #include "validate/playin/can_run.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST_F(CanRun, ChecksEveryControl) {
   refuse();
 }
 TEST_F(CanRun, ChecksEveryInstrument) {
-  value(plant.measurements.back(), "gain") = -2;  // nothing of the current is left
+  value(plant.measurements.back(), "gain") = -2;  // reverses the sign of the current
   refuse();
 }
 TEST_F(CanRun, AcceptsUnusualMachines) {

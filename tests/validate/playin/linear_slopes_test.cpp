@@ -1,4 +1,4 @@
-// Slopes from the plant as it is linear about the ends of each step, against the answer's own.
+// Sensitivities from the plant linearised about the ends of each step, against those of the full response.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,7 +47,8 @@ class LinearSlopesTest : public ::testing::Test {
                     .linear_slopes = linear ? kShown : std::vector<Output>()};
     return drive(run, along);
   }
-  /// Every parameter that a change of one part in a hundred thousand moves, and everything of an event.
+  /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
+  /// an event.
   [[nodiscard]] std::vector<Direction> all() const {
     std::vector<Direction> along;
     const auto blocks = sim::plant::block_parameters(model_.plant);
@@ -69,8 +70,7 @@ class LinearSlopesTest : public ::testing::Test {
     }
     return along;
   }
-  /// The largest difference of any slope of P, Q, speed and Ifd, each by its root mean square, as a share of
-  /// the slope's own.
+  /// Largest RMS error of any sensitivity of P, Q, speed and Ifd, relative to the RMS of the sensitivity.
   [[nodiscard]] double worst(const std::vector<Direction>& along) const {
     const Response exact = answer(along, false), linear = answer(along, true);
     double most = 0;
@@ -114,8 +114,7 @@ TEST_F(LinearSlopesTest, AgreesForTimeConstantsFarBelowASample) {
   parameter("SEXS", "TE") = 2e-4;
   EXPECT_LT(worst(all()), 0.03);
 }
-/// A field voltage that stands at its ceiling moves with the ceiling, and what would drive it beyond does
-/// nothing.
+/// A field voltage at its ceiling moves with the ceiling; inputs that drive it further have no effect.
 TEST_F(LinearSlopesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
@@ -124,14 +123,14 @@ TEST_F(LinearSlopesTest, AtLimit) {
   EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
   EXPECT_LT(worst(all()), 0.05);
 }
-/// A limiter acts from the instant on at which its timer runs out, which every parameter moves.
+/// A limiter acts from the time at which its timer expires; every parameter moves that time.
 class Limited : public LinearSlopesTest {
  protected:
   void SetUp() override {
     LinearSlopesTest::SetUp();
     for (const char* name : {"MAXEX2", "SEXS"}) add(name);
-    // the current is above the pickup in and behind the fault, below it, and above it for seconds from then
-    // on
+    // The current exceeds the pickup during and after the fault, falls below it, and then exceeds it for
+    // seconds.
     parameter("MAXEX2", "EFDRATED") = 1.92;
     parameter("MAXEX2", "EFD1") = 1.165;
     parameter("MAXEX2", "EFD2") = 1.19;
@@ -170,7 +169,7 @@ TEST_F(Limited, LimiterTimeHasSensitivities) {
     }
     if (own < 0.01) continue;
     const std::string_view name = sim::plant::parameter_record(model_.plant, a.parameter).name;
-    // measured: 2.5 and 3.7 % at most
+    // Measured: at most 2.5 and 3.7 %.
     EXPECT_LT(std::sqrt(off / own), 0.03) << name;
     EXPECT_LT(std::sqrt(off_linear / own), 0.04) << name;
     limiter_moved += name.starts_with("EFD") || name.starts_with("TIME") ? 1 : 0;

@@ -36,7 +36,7 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
 TEST(VoltageCurveTest, ShortSegmentsUseLowerOrder) {
-  // 1, 2 and 3 points between the jumps: constant, line, parabola.
+  // 1, 2 and 3 points between the steps: constant, line, parabola.
   for (const int points : {1, 2, 3}) {
     const double off = 1.0 + points / 20.0;
     record::Record r = stepped();
@@ -59,7 +59,7 @@ TEST(VoltageCurveTest, PassesThroughOneSidedValues) {
 TEST(VoltageCurveTest, MovedSwitchingTimesGiveTheSameCurveAsNewOnes) {
   const record::Record r = stepped();
   const VoltageCurve first(r, {{.time = 1.01}, {.time = 1.51}});
-  for (const double on : {1.02, 0.98}) {  // between the same samples, and beyond one
+  for (const double on : {1.02, 0.98}) {  // between the same samples, and across one
     const std::vector<Switching> to = {{.time = on}, {.time = 1.54}};
     const VoltageCurve moved = first.moved(r, to), own(r, to);
     ASSERT_EQ(moved.segments(), 3);
@@ -101,8 +101,7 @@ TEST(DetectTest, FindsOneSampleFaultAndNothingInQuietRecord) {
   r.V[30] = 0.2;
   EXPECT_EQ(detect_switchings(r).size(), 2u);
 }
-/// A generator lost far away: the voltage sinks over seconds, the angle turns, and at once it jumps by 0.002
-/// pu.
+/// A generator lost far away: the voltage falls over seconds, the angle turns, and one step has 0.002 pu.
 record::Record far_loss(double noise) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0, 1);
