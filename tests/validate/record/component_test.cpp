@@ -1,5 +1,4 @@
-// Records of components: which columns they must have, their units and bases, and what is said of missing
-// ones.
+// Records of components: required columns, units and bases, and messages about missing columns.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// 40 rows of time and a row of numbers after it.
+/// A header and 40 rows: the time, followed by `values`.
 std::string table(const std::string& head, const std::string& values) {
   std::string text = "t_s," + head + "\n";
   for (int k = 0; k < 40; ++k) text += std::to_string(0.02 * k) + "," + values + "\n";
@@ -64,7 +63,7 @@ TEST(ComponentRecordTest, FieldQuantitiesHaveTheirOwnBases) {
   const Record r = parse_record(text, "x.csv", base, kExciter);
   EXPECT_NEAR(r.Efd.front(), 2.0, 1e-12);
   EXPECT_NEAR(r.Ifd.front(), 2.0, 1e-12);
-  // per unit of another base
+  // Per unit of another base.
   EXPECT_NEAR(
       parse_record(table("V_pu,Efd_pu,speed_pu,Ifd_pu", "1,340,0,1200"), "x.csv", base, kExciter).Efd[0], 2.0,
       1e-12);

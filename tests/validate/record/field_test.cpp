@@ -1,5 +1,4 @@
-// Records as they come from the field and from simulators: columns by name, lost frames, stamps that are
-// wrong.
+// Records from the field and from simulators: columns by name, lost frames, wrong time stamps.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -69,7 +68,7 @@ TEST(ColumnMapTest, CountsColumnsWithoutHeadings) {
            {"t", "#1 [s]"}, {"V", "#2 [kV]"}, {"f", "#3 [Hz]"}, {"P", "#4 [MW]"}, {"Q", "#5 [Mvar]"}}}));
 }
 
-// ---- names of PDCs and of simulators
+// ---- column names of PDCs and of simulators
 
 TEST(TwoDevicesTest, VoltageOfTheBusAndPowerOfTheLine) {
   const auto text = table(
@@ -111,7 +110,7 @@ TEST(PscadTest, DomainIsTheTime) {
   EXPECT_THAT(r.notes, Contains(HasSubstr("taken for seconds")));
 }
 
-// ---- playback of simulators, joined with what was measured
+// ---- playback files of simulators, joined with measurements
 
 class Files : public ::testing::Test {
  protected:
@@ -132,7 +131,7 @@ std::string meter() {
   return table("t_s,P_MW,Q_Mvar\n", 121, [](int k) { return fmt::format("{:.7f},80,20", k / 60.0); });
 }
 TEST_F(PlaybackTest, PlbWithMeasuredPower) {
-  // Unevenly spaced, and a step at 1 s: the time is there twice.
+  // Unevenly spaced, and a step at 1 s, for which there are two rows.
   std::string plb = "  0.0  140.76  60.00\n 0.5, 140.76, 60.00\n 1.0 140.76 60.0\n 1.0 130.0 60.0\n";
   for (int k = 1; k <= 20; ++k) plb += fmt::format("{} 135 60.06\n", 1.0 + 0.05 * k + (k % 3) * 0.001);
   const auto file = write("event.plb", plb);
@@ -157,7 +156,7 @@ TEST_F(PlaybackTest, PowerWorldSignals) {
   EXPECT_NEAR(r.f[5], 1e-4, 1e-9);
 }
 
-// ---- angle of the frequency
+// ---- angle from the frequency
 
 TEST(FrequencyTest, ReplacesTheMissingAngle) {
   const auto text = table("t_s,V_pu,f_hz,P_pu,Q_pu\n", 121, [](int k) {
@@ -169,7 +168,7 @@ TEST(FrequencyTest, ReplacesTheMissingAngle) {
   EXPECT_NEAR(r.theta[120], 2 * std::numbers::pi * 0.1 * (1 - std::cos(2.0)), 1e-4);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("integrated from the frequency"), HasSubstr("switching"))));
 }
-/// A straight line between samples would miss 5e-3 rad of it.
+/// Linear interpolation between samples would miss 5e-3 rad of it.
 TEST(FrequencyTest, GivesTheAngleOfAFastSwing) {
   constexpr double kSwing = 2 * std::numbers::pi * 1.5;  // [rad/s]
   const auto text = table("t_s,V_pu,f_hz,P_pu,Q_pu\n", 121, [](int k) {
@@ -212,8 +211,8 @@ TEST(LostFramesTest, AreInterpolatedAndMarked) {
   }
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("6 of 900 frames"), HasSubstr("0.2 s"))));
 }
-// A swing as a machine makes it, with an instrument's noise: what stands in the gap is as good as a sample.
-// Straight through the step beside the gap it would be off by 2e-3.
+// A swing of a machine with an instrument's noise: the interpolated values are as accurate as samples. A
+// straight line across the step next to the gap would be off by 2e-3.
 TEST(LostFramesTest, AreInterpolatedWithinTheNoiseDuringASwing) {
   constexpr double kNoise = 1e-4;
   const auto angle = [](double t) { return 0.2 * std::sin(9.0 * t) * std::exp(-0.3 * t); };
@@ -284,7 +283,7 @@ TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   EXPECT_NEAR(ends.Q[0], 0.1, 1e-9) << "held before the first value";
   EXPECT_EQ(std::ranges::count(ends.lost, 1), 2);
   EXPECT_THAT(field_faults(with("", 400, 8)), ElementsAre(AllOf(HasSubstr("Q_pu"), HasSubstr("8 samples"))));
-  // Without an angle f drives the model, and its frames are lost with it.
+  // Without an angle the angle is integrated from f, whose missing values are lost frames too.
   const auto driven = table("t_s,V_pu,f_Hz,P_pu,Q_pu\n", 900, [](int k) {
     return fmt::format("{:.7f},1.02,{},0.4,0.1", k / 30.0, k == 300 ? "" : "60.0");
   });
@@ -301,7 +300,7 @@ TEST(LostFramesTest, LongerGapsAreReported) {
   EXPECT_NEAR(parse_record(text, "r.csv", kTestBase, {.from = 14}).t.front(), 14, 1e-9);
 }
 TEST(LostFramesTest, OutlyingTimeIsReported) {
-  // Steps as a simulation chooses them are joined by straight lines, but not over two days.
+  // Variable steps of a simulation are joined by straight lines, but not over two days.
   const auto text =
       table(kHeader, 90, [](int k) { return row(k, k / 30.0 + 0.01 * (k % 3)); }) + row(90, 1.6e5) + "\n";
   EXPECT_THAT(field_faults(text), Contains(HasSubstr("r.csv:92")));
@@ -395,7 +394,7 @@ TEST(StampTest, KeepsUtc) {
   EXPECT_EQ(beginning(read(epoch)), "2024-05-01T23:59:00.500000Z");
 }
 
-// ---- files that are no CSV
+// ---- files other than CSV
 
 TEST(FormatTest, NamesIgnoredColumns) {
   const auto of = [](const std::string& bytes, const std::string& name) {

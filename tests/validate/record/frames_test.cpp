@@ -1,5 +1,5 @@
-// Frames that are no measurements, words for missing values, marks of thousands, and files that are no
-// record.
+// Frames that are no measurements, words for missing values, thousands separators, and files that are no
+// records.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr const char* kHeading = "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
-/// A frame of a quiet swing.
+/// A frame of a slow swing.
 std::string frame(int k, double t) {
   return fmt::format("{:.7f},{:.7f},0.1,{:.7f},0.1", t, 1.02 + 1e-3 * std::sin(k / 30.0),
                      0.4 + 1e-3 * std::cos(k / 20.0));
@@ -69,7 +69,7 @@ TEST(ZeroFrameTest, LongGapsOfZerosAreRefused) {
 TEST(RepeatedBlockTest, OfOverlappingArchivesIsDropped) {
   const Record r = parse_record(frames([](int k) {
                                   std::string line = frame(k, k / 30.0) + "\n";
-                                  if (k == 199)  // the next archive begins two thirds of a second before
+                                  if (k == 199)  // the next archive starts two thirds of a second earlier
                                     for (int again = 180; again < 200; ++again)
                                       line += frame(again, again / 30.0) + "\n";
                                   return line;

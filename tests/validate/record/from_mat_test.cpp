@@ -1,4 +1,4 @@
-// MATLAB files, written here by libmatio as people export them, read as records.
+// MATLAB files, written here by libmatio in the usual export formats, read as records.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ matvar_t* cells(const char* name, const std::vector<std::string>& texts) {
     Mat_VarSetCell(list, static_cast<int>(k), text_variable(nullptr, texts[k]));
   return list;
 }
-/// One struct with the fields given.
+/// Returns a struct with the given fields.
 matvar_t* structure(const char* name, std::vector<const char*> names, const std::vector<matvar_t*>& fields) {
   std::size_t dims[] = {1, 1};
   matvar_t* s = Mat_VarCreateStruct(name, 2, dims, names.data(), static_cast<unsigned>(names.size()));

@@ -84,7 +84,7 @@ TEST(RecordTest, ReportsEveryFaultWithItsLine) {
   const std::string text = text_of(40, [](int k, std::string& line) {
     if (k == 5) line = "0.08,1.01,0.1,x5,0.2";
     if (k == 9) line = "0.16,1.01,0.1,0.5";
-    if (k == 20) line = "0.36,1.01,0.1,0.5,0.2";  // the time of the line before
+    if (k == 20) line = "0.36,1.01,0.1,0.5,0.2";  // the time of the previous line
     if (k == 30) line = "0.2,1.01,0.1,0.5,0.2";
   });
   const auto all = faults_of(text);
@@ -109,7 +109,7 @@ TEST(RecordTest, RefusesShortOrEmptyRecord) {
 }
 TEST(RecordTest, ShortensLongListsOfFaults) {
   const auto all = faults_of(text_of(200, [](int k, std::string& line) {
-    if (k > 0 && k % 2 == 0) line += ",1";  // neighbours would be one sentence
+    if (k > 0 && k % 2 == 0) line += ",1";  // adjacent lines would share one message
   }));
   EXPECT_THAT(all, SizeIs(51));
   EXPECT_THAT(all.back(), HasSubstr("further faults"));

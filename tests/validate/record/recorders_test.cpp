@@ -1,5 +1,5 @@
-// COMTRADE as recorders write it: what the configuration states wrongly, instrument transformers between
-// phases, several generators in one record.
+// COMTRADE in practice: wrong configuration entries, instrument transformers between phases, several
+// generators in one record.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using ::testing::Not;
 Record read(const std::string& cfg, const std::string& dat) {
   return record_of_comtrade(parse_comtrade(cfg, dat, "e.cfg", "e.dat"), "e.cfg", kTestBase, {});
 }
-/// Largest error of V, theta, P and Q against what phasors() writes.
+/// Largest error of V, theta, P and Q against the values written by phasors().
 double phasor_error(const Record& r) {
   double worst = r.samples() >= 60 ? 0 : 1;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
@@ -110,7 +110,7 @@ TEST(RecorderLeniency, RefusesRateAndStampsInDifferentUnits) {
                                             HasSubstr("in another unit"))));
 }
 
-/// The voltages between phases of waveforms(), in place of those to neutral: ab, bc, ca.
+/// Replaces the phase-to-neutral voltages of waveforms() by those between phases: ab, bc, ca.
 Writer between_phases(const Machine& m, std::vector<int> pairs, bool reversed = false) {
   Writer w = waveforms(m);
   const std::vector<Channel> all = w.channels;

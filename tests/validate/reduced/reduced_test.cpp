@@ -12,7 +12,7 @@
 namespace swingbank::validate::reduced {
 namespace {
 
-/// The example of README: four faults at a plant whose model has no exciter.
+/// The README's example: four faults at a plant whose model has no exciter.
 class Reduced : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -58,12 +58,12 @@ TEST_F(Reduced, MissingInputHasTheEvidence) {
   for (std::size_t e = 0; e < events_->size(); ++e) {
     ASSERT_EQ(field.deviation[e].size(), static_cast<Eigen::Index>(field.of(e).t.size()));
     EXPECT_GT(field.deviation[e].minCoeff(), 0);
-    // the records determine a field voltage of some pu within a fifth
+    // The records determine a field voltage of some pu within 20 %.
     EXPECT_LT(field.deviation[e].mean(), 0.2 * std::abs(*std::ranges::max_element(field.of(e).value)));
   }
 }
 
-/// Noise alone asks for no input, once the exciter that made the records is there.
+/// With the true exciter in the model, noise alone gives no evidence for an input.
 TEST_F(Reduced, UnneededInputHasNoEvidence) {
   auto all = hypothesis::all_hypotheses(model_->under_test(), model_->library);
   auto h = *std::ranges::find(all, "SEXS", &hypothesis::Hypothesis::name);
@@ -81,19 +81,19 @@ TEST_F(Reduced, UnneededInputHasNoEvidence) {
   }
 }
 
-/// What a reduced plant says of the inferred series itself is what the inference left, and no more.
+/// The cost of the inferred series itself equals the residual of the inference.
 TEST_F(Reduced, CostOfInferredSeriesEqualsItsResidual) {
   const ReducedPlant field(*reduction_, event::InputKind::field);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
   const double inferred = reduction_->inference().chi2,
                there = field.costs(reduction_->series(event::InputKind::field), still)[0],
                without = field.costs(none, still)[0];
-  EXPECT_LT(there, 1.01 * inferred);  // the plant follows: a step that the inference did not take
+  EXPECT_LT(there, 1.01 * inferred);  // tolerance: one last step that the inference did not take
   EXPECT_GT(there, 0.9 * inferred);
   EXPECT_GT(without, 3 * there);
 }
 
-/// The gradient of a series's cost is that of its differences, by the gain's number too.
+/// The gradient of the quadratic model equals central differences of the cost, also for the gain.
 TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   EXPECT_NEAR(reduction_->gain(event::InputKind::field).exponent, -1, 1e-3);
   EXPECT_NEAR(reduction_->gain(event::InputKind::torque).exponent, -1, 1e-3);
@@ -116,8 +116,8 @@ TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   }
 }
 
-/// About a plant that has the exciter, the exciter's own values cost what the plant leaves, and nothing else
-/// does: its own response is what the whole plant makes.
+/// Linearised about a plant that has the exciter: the exciter's own response costs the plant's residual, and a
+/// zero series costs several times as much.
 TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
@@ -134,7 +134,7 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
     const Eigen::VectorXd own = about.responses(event::InputKind::field, {h.plant}) -
                                 about.responses(event::InputKind::field, {model_->plant});
     EXPECT_NEAR((own - about.series(event::InputKind::field)).norm(), 0, 1e-9);
-    // the events' states alone may move, and stay near their prior means and within their ranges
+    // Only the events' states are free; they stay near their prior means and within their ranges.
     const double chi2 = about.inference().chi2;
     double freely = chi2;
     for (const EventSlopes& s : about.inference().events)
@@ -147,8 +147,8 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   }
 }
 
-/// A change of the plant that is made freely costs what the parameter costs that it is a change of, and
-/// nothing changes where it is not made.
+/// A freely scaled change of the plant costs as much as the free parameter that it changes; a scale of zero
+/// changes nothing.
 TEST_F(Reduced, FreeChangeActsAsAParameter) {
   Inference about = reduction_->inference();
   const auto free = about.free;
@@ -171,10 +171,10 @@ TEST_F(Reduced, FreeChangeActsAsAParameter) {
                by_change = cost(with, all_held, {0});
   EXPECT_NEAR(fixed, cost(*reduction_, all_held, {}), 1e-6 * fixed);
   EXPECT_LT(by_parameter, fixed - 1000);
-  EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // slopes are that near
+  EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // accuracy of the linearisation
 }
 
-/// The exciter that made the records is identified alone, before anything else is known of it.
+/// The exciter that made the records is identified alone, without other prior knowledge.
 TEST_F(Reduced, TrueExciterRanksFirst) {
   std::vector<std::pair<double, std::string>> costs;
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {

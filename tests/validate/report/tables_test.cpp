@@ -113,8 +113,8 @@ TEST(ThesisTablesTest, AgreesWithTheText) {
   }
   EXPECT_EQ(five_count, 10);
   EXPECT_EQ(six_count, 10);
-  // "the average of MSE is less than 0.05" (4.2) does not hold for its own table: it is 0.0526. Kept as
-  // printed.
+  // "the average of MSE is less than 0.05" (4.2) contradicts the thesis's own table, which gives 0.0526. Kept
+  // as printed.
   EXPECT_NEAR(five / 10, 0.0526, 0.0001);
 }
 
@@ -159,7 +159,7 @@ TEST_F(TablesTest, UserExperimentHasItsTitle) {
   json r = result("ieee14_from_39", "mlp", 0, 0.4);
   r["title"] = "trained on IEEE 39, judged on IEEE 14";
   write("a", r);
-  write("b", result("mine", "mlp", 0, 0.4));  // of a release that did not say
+  write("b", result("mine", "mlp", 0, 0.4));  // of a release without this entry
   EXPECT_THAT(
       make_tables(read(), {}).markdown,
       AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, judged on IEEE 14\n"), HasSubstr("## mine\n")));
@@ -225,9 +225,9 @@ TEST_F(TablesTest, SeparatesControlRunsAndPresets) {
   const auto blocks = group_results(read());
   ASSERT_EQ(blocks.size(), 3u);
   EXPECT_TRUE(blocks[2].shuffled);
-  EXPECT_EQ(row(score_table(blocks[2]), "#30")[2], "–");  // the thesis shuffled nothing
+  EXPECT_EQ(row(score_table(blocks[2]), "#30")[2], "–");  // the thesis has no control runs
   const TablesReport report = make_tables(read(), {});
-  EXPECT_EQ(report.csv.size(), 8u);  // two of each block, one of each task
+  EXPECT_EQ(report.csv.size(), 8u);  // two for each block, one for each task
   EXPECT_THAT(report.markdown, AllOf(HasSubstr("Control runs"), HasSubstr("### Preset nightly, 6000 rows")));
 }
 TEST_F(TablesTest, ParametersShowMedianAndWorst) {
@@ -238,7 +238,8 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
-/// Runs on eighths of the rows whose error falls with their square root, 0.54 with all of them.
+/// Results with training on eighths of the rows; the error falls with their square root and is 0.54 with all
+/// rows.
 void write_sizes(const std::function<void(const std::string&, const json&)>& write) {
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     json r = result("V", "cnn", 30, 0.1 / std::sqrt(share));

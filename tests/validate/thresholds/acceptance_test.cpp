@@ -1,4 +1,4 @@
-// Limits of fitness: presets, files and what is wrong with them, and the exit codes.
+// Limits of fitness: presets, files and their errors, and exit codes.
 #include "validate/thresholds/acceptance.hpp"
 
 #include <gmock/gmock.h>

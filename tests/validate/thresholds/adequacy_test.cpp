@@ -1,4 +1,4 @@
-// Which criterion decides whether a model is adequate, at its limit and beside it.
+// The criterion that decides whether a model is adequate, at its limit and next to it.
 #include "validate/thresholds/adequacy.hpp"
 
 #include <gmock/gmock.h>
