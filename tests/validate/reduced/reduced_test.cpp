@@ -116,8 +116,8 @@ TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   }
 }
 
-/// Linearised about a plant that has the exciter: the exciter's own response costs the plant's residual, and a
-/// zero series costs several times as much.
+/// Linearised about a plant that has the exciter: the exciter's own response costs the plant's residual, and
+/// a zero series costs several times as much.
 TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
