@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of a verdict: what stands on it, names that would break it, and printed as PDF; what is said meanwhile.
+# The page of a verdict: its content, names that would break it, and its PDF; the progress messages.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 # shellcheck disable=SC2154 # what verdict.bash sets
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
