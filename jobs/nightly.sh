@@ -77,7 +77,8 @@ fi
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 
-# with_tries COMMAND...: what failed by accident (a killed rank, a full disk that was cleared) goes on where it stopped
+# with_tries COMMAND...: repeats a command that failed by accident (a killed rank, a full disk that was cleared); it
+# continues where it stopped
 with_tries() {
   local try status
   for ((try = 1; try <= tries; try++)); do
@@ -90,7 +91,7 @@ with_tries() {
   return 1
 }
 
-# part NAME COMMAND...: its time is printed and kept, that of a part that was broken off too.
+# part NAME COMMAND...: prints and records its time, also that of an interrupted part.
 part() {
   local name=$1 begin=$SECONDS status=0
   shift
@@ -100,10 +101,10 @@ part() {
   return "$status"
 }
 used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
-# left SHARE: seconds of the budget that are left, times SHARE
+# left SHARE: remaining seconds of the budget, times SHARE
 left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
 
-# What the tests of the night took where they last came to their end [s].
+# Time of the nightly tests when they last ran to the end [s].
 tests_took() {
   local folder took=$tests_take
   for folder in "$out"/????-??-??; do # in the order of their dates
@@ -114,10 +115,10 @@ tests_took() {
   echo "$took"
 }
 
-# keep NAME...: these variables are the night's
+# keep NAME...: saves these variables for the night
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# The night's sizes are settled once; of what a second start asks for only --tests, --blind and --fuzz count.
+# The night's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
@@ -164,7 +165,8 @@ run_tables() {
   part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
 }
 
-# A part of the blind test (docs/reference/blind-test-results.md); what is made and judged stays when it is broken off.
+# A part of the blind test (docs/reference/blind-test-results.md); finished cases and verdicts stay after an
+# interruption.
 blind_test() {
   local configs=$source_folder/configs/blind run=$night/blind
   run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
@@ -191,7 +193,7 @@ fuzz_seconds() { # of each target, two at a time, from what is left
   echo $((budget < fuzz_least ? 0 : budget))
 }
 
-# report: what the night has so far; written again after each part
+# report: the night's results so far; written again after each part
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
@@ -224,7 +226,7 @@ report() {
   } >"$night/report.md.part" || return 1
   mv "$night/report.md.part" "$night/report.md"
 }
-# stopped STATUS: ends the night where a signal or failure leaves nothing to go on with
+# stopped STATUS: ends the night if a signal or failure prevents its continuation
 stopped() {
   echo "nightly run of $date stopped (exit code $1) after $(used) s; log: $night/log.txt" >&2
   exit "$1"

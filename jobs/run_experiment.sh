@@ -48,7 +48,7 @@ if [[ ! -x $swingbank ]]; then
   exit 1
 fi
 
-# What the experiment says of itself: dataset, draws, table, tasks and the like
+# Properties of the experiment: dataset, draws, table, tasks and the like
 ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
 
 # A dataset belongs to its config and size; experiments with the same two share the folder.
@@ -79,7 +79,7 @@ databank() {
 generate_events() {
   say "events for $1 ($2 draws) on $ranks processes"
   local root=() file
-  # OpenMPI refuses root unless told twice; whoever starts this script as root means it.
+  # OpenMPI refuses root unless two variables allow it; whoever starts this script as root intends it.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
   local command=("${root[@]}")
   # shellcheck disable=SC2206 # the launcher is a list of words

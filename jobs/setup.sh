@@ -65,7 +65,7 @@ install_packages() {
   rm -f "$log"
 }
 
-# A file that includes LibTorch's headers takes the compiler up to 3 GiB.
+# Compiling a file that includes LibTorch's headers takes up to 3 GiB.
 compile_jobs() {
   local cores memory_gib
   cores=$(nproc)
@@ -90,7 +90,7 @@ build_all() {
   cmake --build "build/$preset" -j "$jobs" ${targets[@]+--target "${targets[@]}"}
 }
 
-# build_level NAME: the programs for one instruction set, in a folder beside the common ones
+# build_level NAME: the programs for one instruction set, in a separate folder
 build_level() {
   local folder=build/portable-$1 log=build/portable-$1-configure.log
   if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" 2>&1; then
