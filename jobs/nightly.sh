@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Reproduces the tables in the hours that it is given, keeps a dated report and says what moved since the nights before.
+# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier nights.
 #   bash jobs/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
 #                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
-#     --hours      of the whole night on this machine, default 2: the preset `nightly` is made so large or small that
-#                  the tables take two thirds of them; the tests of the night, the blind test and the fuzz targets get
-#                  what is left
+#     --hours      of the whole night on this machine, default 2: the preset `nightly` is scaled so that the tables
+#                  take two thirds of them; the nightly tests, the blind test and the fuzz targets share the remaining
+#                  time
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
-#     --date       default today; a night that was broken off goes on when started again on its date, in the sizes that
-#                  it began with
-#     --preset     this preset as it is, however long it takes
-#     --seed       of the training; default ten times the day's number, so that every night trains with others: the
-#                  nights then show how much a result moves by itself
-#     --seeds      trains with that many seeds, from --seed on; default 3 where the night has 4 hours or more, else 1
+#     --date       default today; an interrupted night continues when started again on its date, in its original
+#                  sizes
+#     --preset     this preset without scaling, however long it takes
+#     --seed       of the training; default ten times the day's number, so that every night has other seeds: the
+#                  nights then show the random variation of a result
+#     --seeds      trains with that many seeds, from --seed on; default 3 if the night has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
-#     --tests      1 runs the tests that are too long for every change (tests/run.sh --night), 0 leaves them out; default 1
-#                  where 0.7 of what is left is what they took in a night before (in none: an hour and a half)
-#     --fuzz       time of each fuzz target of the readers; default what is left; 0 leaves them out
-#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time is left for;
-#                  0 leaves it out
+#     --tests      1 runs the nightly tier of the tests (tests/run.sh --night), 0 skips it; default 1 if 70 % of the
+#                  remaining time suffices by the last night's measurement (without one: an hour and a half)
+#     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
+#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time permits;
+#                  0 skips it
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail

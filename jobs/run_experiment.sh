@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs one experiment from its config to its tables; what is done already is not done again. The quickstart, the
+# Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
 # nightly run and the Slurm jobs all run this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
@@ -12,7 +12,7 @@
 #     --launcher  starts them (default mpirun)
 #     --build     build folder (default build/release)
 # $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
-# Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to go on).
+# Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to continue).
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -3,7 +3,7 @@
 #   bash jobs/setup.sh [--preset NAME | --any-processor] [--tests] [--target NAME]... [--packages-only]
 #     --preset         one of CMakePresets.json (default release); the build folder is build/<preset>
 #     --any-processor  build/portable, which runs on any x86-64 processor of the last fifteen years, with the same
-#                      programs for AVX2 and AVX-512 beside: swingbank takes what the processor has (three builds)
+#                      programs for AVX2 and AVX-512 in addition: swingbank chooses by processor (three builds)
 #     --tests          also the packages that packages.txt marks "tests:", and the tests themselves
 #     --target         build this only
 #     --packages-only  install, do not build

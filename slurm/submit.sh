@@ -2,13 +2,13 @@
 # Submits an experiment: databank -> generate -> one array task per fold -> tables, each after the one before.
 #   bash slurm/submit.sh EXPERIMENT PRESET [--out FOLDER] [--site FILE]
 #     EXPERIMENT  a file of configs/experiments       PRESET  quick, nightly or thesis
-#     --out       results (default out/<experiment>-<preset>); on a file system that every node sees
-#     --site      partition, ranks, memory, times (default slurm/site.conf); a copy of it as it is now serves all jobs
+#     --out       results (default out/<experiment>-<preset>); on a file system shared by all nodes
+#     --site      partition, ranks, memory, times (default slurm/site.conf); all jobs use a copy made now
 #     --dry-run   checks everything and prints the sbatch commands
-#     --status    what Slurm says of the jobs of this experiment
-#     --cancel    cancels those that wait or run; what is finished stays
-# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again goes on with what is there; while
-# jobs of an earlier submission wait or run, it is refused.
+#     --status    Slurm's state of this experiment's jobs
+#     --cancel    cancels those that wait or run; finished results stay
+# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again continues from existing results;
+# it is refused while jobs of an earlier submission wait or run.
 set -euo pipefail
 
 SWINGBANK_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

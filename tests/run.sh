@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds and runs the tests.
+# Installs missing packages, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change, whether all rooms agree on each type, whether threads
-#                     disturb one another, and the lanes under the sanitizers, one instruction set a night: more than an
-#                     hour (jobs/nightly.sh runs it)
-#     --without-psse  leaves out the tests that read records of others, PSS/E's own among them, which are not part of this repository
+#     --night         only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, and
+#                     the SIMD batches under the sanitizers, one instruction set per night: more than an hour
+#                     (jobs/nightly.sh runs it)
+#     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
-#                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
-#     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
-#                     what computes in packs is compiled for AVX2 whatever the processor, each fuzz target runs for 10 s
-#                     (in the nightly run for minutes), and the tests of the rooms that read files run under both sanitizers
-# PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
+#                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)
+#     --ci            as on the integration machine: warnings are errors, scripts and formatting are checked, SIMD code is
+#                     compiled for AVX2 on any processor, each fuzz target runs for 10 s (in the nightly run for minutes),
+#                     and the tests of the modules that read files run under both sanitizers
+# PSS/E's records are read from $SWINGBANK_REFERENCE, else from ../shared/reference beside the repository.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # what reads what is not part of this repository
+of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # tests that read external files
 fast_only=0 night=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in
