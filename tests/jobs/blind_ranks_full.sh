@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # swingbank blind-test on several ranks: the same cases as on one, each judged once; existing verdicts stay.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 tiny=(--config "$SWINGBANK_SOURCE/configs/blind/tiny.toml" --seed 5 --kinds "SEXS,none" --make 5)

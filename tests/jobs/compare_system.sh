@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # swingbank compare --system: the example, a record of the same grid, output files, and one message for each bad
 # input.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # swingbank diagnose --fleet: one sound plant among bad ones, on two ranks and on one; errors.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A fleet that is killed, stopped or loses one diagnosis ends in the same table as an undisturbed run.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 

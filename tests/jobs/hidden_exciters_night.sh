@@ -3,7 +3,7 @@
 # the noise. It must rank first, be in the 95 % set, or be equivalent to several others; below 1 % it counts as lost,
 # and none may be lost. A selection: SWINGBANK_SIZES="10" (in detection limits of 10). SWINGBANK_KEEP=FOLDER keeps
 # cases and verdicts there and continues from them.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 config=$SWINGBANK_SOURCE/configs/blind/exciters.toml

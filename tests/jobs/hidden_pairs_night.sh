@@ -3,7 +3,7 @@
 # another partner. The true pair must be in the 95 % set (docs/decisions/61-diagnosis-on-a-reduced-plant.md); without
 # the exchange of partners it was in none. SWINGBANK_KEEP=FOLDER keeps cases and diagnoses there and continues from
 # them.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 run=${SWINGBANK_KEEP:-$work/pairs}

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of a verdict: its content, names that would break it, and its PDF; the progress messages.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-# shellcheck disable=SC2154 # what verdict.bash sets
+# shellcheck disable=SC2154 # set by verdict.bash
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
 # every command writes a page; names with invalid UTF-8 or a tag are harmless

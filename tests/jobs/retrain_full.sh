@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # swingbank add --retrain: existing networks are reused; without a dataset a grid is generated.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/retrain.bash"
 

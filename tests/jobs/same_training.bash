@@ -1,5 +1,5 @@
 # To be sourced after lib.bash: the parts that two equivalent trainings have in common.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 
 # A network's header contains the training time; the weights follow, and last the checksum of the file.
 cat >"$work/network.py" <<'PYTHON'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # configs/workflows/Snakefile makes a dataset in parts, equal to that of `swingbank generate`.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export PATH=$SWINGBANK_BIN:$PATH OMP_NUM_THREADS=1 HOME=$work
 config=$SWINGBANK_SOURCE/configs/datasets/ieee14_genrou_bus3.toml

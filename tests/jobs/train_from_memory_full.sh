@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Training directly from memory, without a dataset on a disk: the results equal those from shards to the last digit,
 # and are reproducible.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=2

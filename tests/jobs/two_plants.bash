@@ -1,5 +1,5 @@
 # To be sourced after lib.bash and fleet.bash: a fleet with a short diagnosis, two plants without a missing effect.
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; `fleet_file` is for those who source this
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; `fleet_file` is for those who source this
 fleet_file=$work/fleet.toml
 {
   echo '[options]'
