@@ -109,7 +109,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
   return changed;
 }
 
-TEST(Add, FreesARateFeedbackThatTheDefaultValuesLeaveOff) {
+TEST(Add, FreesRateFeedbackInactiveByDefault) {
   constexpr double kKF = 0.05;
   const plant::PlantModel model = example(false);
   const Addition a =

@@ -27,7 +27,7 @@ record::Record stepped() {
   return r;
 }
 
-TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
+TEST(VoltageCurveTest, IsExactForCubicsUpToTheSteps) {
   const VoltageCurve curve(stepped(), {{.time = 1.0}, {.time = 1.5}});
   ASSERT_EQ(curve.segments(), 3);
   for (const double t : {0.0, 0.013, 0.97, 1.0}) EXPECT_NEAR(curve(0, t).real(), 1 + t * t * t / 10, 1e-13);

@@ -118,7 +118,7 @@ TEST_P(RecordMatTest, NamesWithoutUnitsAreMapped) {
                              {"Q", "Qgen [Mvar]"}}});
 }
 
-TEST_P(RecordMatTest, AMatrixHasItsListOfNames) {
+TEST_P(RecordMatTest, MatrixHasItsListOfNames) {
   std::vector<double> all;
   for (int c = 0; c < 5; ++c)
     for (const double v : column_of(c)) all.push_back(v);
@@ -128,7 +128,7 @@ TEST_P(RecordMatTest, AMatrixHasItsListOfNames) {
   expect_record();
 }
 
-TEST_P(RecordMatTest, AStructOfVectorsIsATerminal) {
+TEST_P(RecordMatTest, StructOfVectorsIsATerminal) {
   write({structure(
       "G1", {"time", "V_kV", "f_Hz", "P_MW", "Q_Mvar"},
       {vector_of("time", column_of(0)), vector_of("V_kV", column_of(1)), vector_of("f_Hz", column_of(2)),
