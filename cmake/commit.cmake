@@ -1,5 +1,5 @@
-# Writes a source file with the version and the commit that a command was built from:
-# cmake -D VERSION=... -D SOURCE=... -D OUT=... -P commit.cmake
+# Writes a source file with the version and the commit of the build: cmake -D VERSION=... -D SOURCE=... -D OUT=... -P
+# commit.cmake
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --match=none
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)

@@ -1,4 +1,4 @@
-# What completes `swingbank`; from_help.sh puts the tables of commands, options and choices before it.
+# Completion of `swingbank`; from_help.sh puts the tables of commands, options and choices before it.
 # shellcheck disable=SC2034,SC2154
 # ---
 _swingbank() {
@@ -12,7 +12,7 @@ _swingbank() {
   elif [[ $word == -* ]]; then
     words=${_swingbank_options["$command"]-}
   fi
-  # Where there are no words, files are completed (-o default).
+  # Without words, files are completed (-o default).
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }
 complete -o default -F _swingbank swingbank

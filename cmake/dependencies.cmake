@@ -1,5 +1,5 @@
-# What the libraries need; everything comes from Debian 12, and packages.txt lists what to install. An installed
-# swingbankConfig.cmake reads this file as well.
+# Dependencies of the libraries, all from Debian 12; packages.txt lists the packages to install. An installed
+# swingbankConfig.cmake also reads this file.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(SUNDIALS 6.4 REQUIRED)
 find_package(spdlog REQUIRED)

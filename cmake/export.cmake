@@ -3,7 +3,7 @@
 #   swingbank::simulation   effects, network and case files, simulators
 #   swingbank::validation   records, playback, estimation, diagnosis, and the effects
 #   swingbank::datasets     simulated datasets
-# Headers are included by the paths that they have here: #include "validate/fit/fit.hpp".
+# Headers are included by their paths in this repository: #include "validate/fit/fit.hpp".
 set(SWINGBANK_INCLUDE ${CMAKE_INSTALL_INCLUDEDIR}/swingbank)
 set(SWINGBANK_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/swingbank)
 
@@ -27,7 +27,7 @@ function(swingbank_export_group name regex)
   install(TARGETS swingbank_${name} EXPORT swingbank)
 endfunction()
 
-# Once all modules are declared.
+# To be called after all modules are declared.
 function(swingbank_install_package)
   swingbank_export_group(simulation "^swingbank_(base|sim_.*)$")
   swingbank_export_group(validation "^swingbank_(base|sim_(core|library|laws|plant|grid)|validate_.*)$")
@@ -36,7 +36,7 @@ function(swingbank_install_package)
     set_target_properties(swingbank_${target} PROPERTIES EXPORT_NAME ${target})
     install(TARGETS swingbank_${target} EXPORT swingbank)
   endforeach()
-  # The building blocks of effects are for effects outside the tree as well.
+  # The building blocks of effects serve effects outside the tree as well.
   install(DIRECTORY sim/effects/detail DESTINATION ${SWINGBANK_INCLUDE}/sim/effects COMPONENT development
     FILES_MATCHING PATTERN *.hpp)
   include(CMakePackageConfigHelpers)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Man pages and bash completion from what the programs say to --help, so that nothing of either is kept by hand.
+# Generates man pages and bash completion from the programs' --help, so that neither is maintained by hand.
 #   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1 and OUT/completion.bash
 set -euo pipefail
 bin=$1 version=$2 out=$3
@@ -15,7 +15,8 @@ mkdir -p "$out/man1" "$out/help"
 commands() { sed -n 's/^  \([a-z][a-z0-9-]*\)  *\(.*\)/\1\t\2/p' "$out/help/all"; }
 [[ -n $(commands) ]] || { echo "no commands at $bin/swingbank --help (its list is empty): build all commands" >&2; exit 1; }
 
-# help2man tells an option from its meaning by two spaces; CLI11 leaves one where the option fills its 30 columns.
+# help2man separates an option from its description by two spaces; CLI11 leaves one if the option fills its 30
+# columns.
 two_spaces() {
   awk '
     function say(line) {
@@ -27,8 +28,8 @@ two_spaces() {
     END { say(held) }' "$1"
 }
 
-# page PROGRAM HELP SUMMARY SEE-ALSO: the options as --help words them. help2man asks a program; here one that repeats
-# what was said already, as some take a second to start.
+# page PROGRAM HELP SUMMARY SEE-ALSO: the options as --help describes them. help2man runs a program; here one that
+# repeats the text obtained before, as some programs take a second to start.
 page() {
   two_spaces "$out/help/$2" >"$out/help/said"
   printf '#!/bin/sh\ncat "%s"\n' "$out/help/said" >"$out/help/$1"

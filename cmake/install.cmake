@@ -1,6 +1,6 @@
 # cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion, and
 # the library (export.cmake).
-# Nothing is built. What is made from the programs' --help comes first, so that nothing is installed where that fails.
+# Nothing is built. Files generated from --help come first, so that nothing is installed if that fails.
 get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS)
 set(made ${PROJECT_BINARY_DIR}/from_help)
 install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_help.sh\" \"$<TARGET_FILE_DIR:swingbank>\"
@@ -8,8 +8,8 @@ install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_he
 install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
 install(FILES ${made}/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME swingbank)
 install(TARGETS swingbank ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-# The same programs for wider instruction sets, where jobs/setup.sh --any-processor has built them: swingbank takes what
-# the processor that it runs on has.
+# The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them: swingbank chooses the
+# one for the processor.
 install(CODE "foreach(level x86-64-v3 x86-64-v4)
   file(GLOB wide \"$<TARGET_FILE_DIR:swingbank>/\${level}/swingbank-*\")
   if(wide)
@@ -18,7 +18,7 @@ install(CODE "foreach(level x86-64-v3 x86-64-v4)
 endforeach()")
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
 
-# README.md's links lead to the same paths beside it.
+# README.md's relative links lead to the same paths in the installation.
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} base/README.md cmake/README.md
@@ -27,6 +27,6 @@ foreach(readme ${readmes})
   cmake_path(GET readme PARENT_PATH folder)
   install(FILES ${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
-# The chart library is part of programs and reports; its licence asks for this notice.
+# The chart library is part of programs and reports; its licence requires this notice.
 install(FILES ${DYGRAPHS_COPYRIGHT} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME dygraphs.copyright)
 swingbank_install_package()

@@ -1,5 +1,5 @@
-# Every room whole in one program: with -flto the linker compares the types behind each name over all of them (the
-# one-definition rule), which no single command links.
+# All modules in one program: with -flto the linker compares the types of each name across them (the one-definition
+# rule). No single command links all of them.
 get_property(rooms GLOBAL PROPERTY SWINGBANK_ROOMS)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/one_of_all_rooms.cpp CONTENT "int main() {}\n")
 add_executable(one_of_all_rooms ${PROJECT_BINARY_DIR}/one_of_all_rooms.cpp)

@@ -1,8 +1,8 @@
-# Headers that most sources read, parsed once per kind of target. A preset without them (SWINGBANK_PRECOMPILE=OFF) shows
-# what a source forgot to include.
+# Headers that most sources include, parsed once per kind of target. A preset without them (SWINGBANK_PRECOMPILE=OFF)
+# reveals missing includes.
 option(SWINGBANK_PRECOMPILE "Parse the headers of the standard library, fmt, Eigen and others once" ON)
 
-# swingbank_precompiled(kind targets... HEADERS <header>...): the targets give include folders and options.
+# swingbank_precompiled(kind targets... HEADERS <header>...): the targets provide include folders and options.
 function(swingbank_precompiled kind)
   cmake_parse_arguments(A "" "" "HEADERS" ${ARGN})
   if(NOT SWINGBANK_PRECOMPILE)

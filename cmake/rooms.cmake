@@ -1,13 +1,13 @@
-# A room is a folder with one purpose. It becomes a target `swingbank_<path with _ for />`, its namespace is its path,
-# its tests lie in tests/<path>.
+# A module is a folder with one purpose. It becomes a target `swingbank_<path with _ for />`; its namespace is its
+# path, and its tests are in tests/<path>.
 #   swingbank_room(validate/fit [INTERNAL] [KIND hot|cold|train] [USES room...] [INSIDE room...] [LINK target...] [SOURCES file...])
-# USES: rooms whose headers this room's public headers include. INSIDE: rooms that only its sources include.
-# KIND: `hot` (default) is optimised as far as the compiler goes; `cold` is not worth it (readers, reports, commands);
-# `train` reads LibTorch's headers.
-# INTERNAL: not part of the installed library (find_package(swingbank)), which has every other module with its public headers.
-# What is in <room>/detail/ is private: nobody else can include it. Each room has two include roots in the build folder,
-# made of links: `public` holds its public headers, `own` the whole room. A target sees its own room and the public
-# headers of the rooms it names, so any other include does not compile.
+# USES: modules whose headers this module's public headers include. INSIDE: modules that only its sources include.
+# KIND: `hot` (default) is fully optimised; `cold` is not (readers, reports, commands); `train` includes LibTorch's
+# headers. INTERNAL: not part of the installed library (find_package(swingbank)), which has every other module with
+# its public headers.
+# Files in <module>/detail/ are private: no other module can include them. Each module has two include roots in the
+# build folder, made of links: `public` has its public headers, `own` the whole module. A target sees its own module
+# and the public headers of the modules that it names; any other include does not compile.
 function(swingbank_room path)
   cmake_parse_arguments(A "INTERNAL" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
   string(REPLACE / _ name ${path})

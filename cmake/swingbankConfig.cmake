@@ -1,4 +1,4 @@
-# find_package(swingbank): see export.cmake for the targets that it defines.
+# find_package(swingbank): the targets are those of export.cmake.
 if(NOT CMAKE_C_COMPILER_LOADED)
   enable_language(C) # for the searches of MPI and HDF5
 endif()

@@ -1,6 +1,6 @@
-# Compiler flags, and how a command is declared.
-# swingbank_options holds what programs that link the installed library need too, because Eigen's alignment and inline
-# functions depend on it. swingbank_build holds the rest.
+# Compiler flags, and the declaration of commands.
+# swingbank_options contains the options that programs linking the installed library need too, because Eigen's
+# alignment and inline functions depend on them. swingbank_build contains the others.
 add_library(swingbank_options INTERFACE)
 add_library(swingbank_build INTERFACE)
 target_link_libraries(swingbank_options INTERFACE $<BUILD_INTERFACE:swingbank_build>)
@@ -8,10 +8,11 @@ target_compile_features(swingbank_options INTERFACE cxx_std_20)
 target_compile_options(swingbank_options INTERFACE -fno-math-errno -fno-trapping-math)
 target_compile_options(swingbank_build INTERFACE -Wall -Wextra -Wshadow
   $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # lets ccache work beside precompiled headers
-# Events, hypotheses and ranks share the cores; Eigen's own threads would spin beside them.
+# Events, hypotheses and ranks share the cores; Eigen's own threads would compete with them.
 target_compile_definitions(swingbank_options INTERFACE EIGEN_DONT_PARALLELIZE)
-# GCC 12 warns falsely of its own headers once they are precompiled: avx512fintrin.h wherever Eigen multiplies matrices
-# (GCC bug 105593), std::string wherever two are joined (bug 105329). clang (tests/fuzz, clang-tidy) looks there too.
+# GCC 12 gives false warnings about its own precompiled headers: avx512fintrin.h wherever Eigen multiplies matrices
+# (GCC bug 105593), std::string wherever two are concatenated (bug 105329). clang (tests/fuzz, clang-tidy) still
+# reports them.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(swingbank_build INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds
     -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
@@ -25,7 +26,8 @@ endif()
 if(SWINGBANK_WERROR)
   target_compile_options(swingbank_build INTERFACE -Werror)
 endif()
-# LLVM's linker where it is there: the same programs in a fifth of the time. It knows nothing of GCC's link-time optimisation.
+# LLVM's linker if available: the same programs in a fifth of the time. It does not support GCC's link-time
+# optimisation.
 find_program(LLD ld.lld)
 if(LLD AND NOT SWINGBANK_ODR)
   target_link_options(swingbank_build INTERFACE -fuse-ld=lld)
@@ -38,9 +40,9 @@ if(SWINGBANK_FUZZ)
   target_compile_options(swingbank_build INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined -Wno-psabi)
 endif()
 
-# Three kinds of sources: `hot` is simulation and fitting; `cold` reads, writes and talks; `train` is LibTorch's. Cold is
-# not below -O2: an inline function stands in the program once, compiled with either kind's options, and below -O2 GCC
-# makes no fused multiply-adds, so that the last bit of a result would depend on which one the linker took.
+# Three kinds of sources: `hot` is simulation and fitting; `cold` is input, output and messages; `train` is LibTorch
+# code. Cold is not below -O2: the program contains each inline function once, compiled with either kind's options,
+# and below -O2 GCC makes no fused multiply-adds. The last bit of a result would then depend on the linker's choice.
 add_library(swingbank_hot INTERFACE)
 target_compile_options(swingbank_hot INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 target_link_libraries(swingbank_hot INTERFACE swingbank_options fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
@@ -53,8 +55,8 @@ target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
 # swingbank_command(name SUMMARY "one line" USES rooms... [GROUP "heading"] [SOURCES files...] [KIND train]):
 # jobs/<name>.cpp becomes bin/swingbank-<name>.
-# The summary stands here only: `swingbank --help` lists it under the heading, the command gets it as SWINGBANK_SUMMARY. A
-# command without a heading is internal and not listed.
+# Only here is the summary defined: `swingbank --help` lists it under the heading, the command gets it as
+# SWINGBANK_SUMMARY. A command without a heading is internal and not listed.
 function(swingbank_command name)
   cmake_parse_arguments(A "" "SUMMARY;KIND;GROUP" "USES;SOURCES" ${ARGN})
   string(REPLACE "-" "_" file ${name})

@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Reproduces the tables in the hours that it is given, keeps a dated report and says what moved since the nights before.
+# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier nights.
 #   bash jobs/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
 #                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
-#     --hours      of the whole night on this machine, default 2: the preset `nightly` is made so large or small that
-#                  the tables take two thirds of them; the tests of the night, the blind test and the fuzz targets get
-#                  what is left
+#     --hours      of the whole night on this machine, default 2: the preset `nightly` is scaled so that the tables
+#                  take two thirds of them; the nightly tests, the blind test and the fuzz targets share the remaining
+#                  time
 #     --out        default out/nightly; one folder per night in it, `latest` points to the last one
-#     --date       default today; a night that was broken off goes on when started again on its date, in the sizes that
-#                  it began with
-#     --preset     this preset as it is, however long it takes
-#     --seed       of the training; default ten times the day's number, so that every night trains with others: the
-#                  nights then show how much a result moves by itself
-#     --seeds      trains with that many seeds, from --seed on; default 3 where the night has 4 hours or more, else 1
+#     --date       default today; an interrupted night continues when started again on its date, in its original
+#                  sizes
+#     --preset     this preset without scaling, however long it takes
+#     --seed       of the training; default ten times the day's number, so that every night has other seeds: the
+#                  nights then show the random variation of a result
+#     --seeds      trains with that many seeds, from --seed on; default 3 if the night has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
-#     --tests      1 runs the tests that are too long for every change (tests/run.sh --night), 0 leaves them out; default 1
-#                  where 0.7 of what is left is what they took in a night before (in none: an hour and a half)
-#     --fuzz       time of each fuzz target of the readers; default what is left; 0 leaves them out
-#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time is left for;
-#                  0 leaves it out
+#     --tests      1 runs the nightly tier of the tests (tests/run.sh --night), 0 skips it; default 1 if 70 % of the
+#                  remaining time suffices by the last night's measurement (without one: an hour and a half)
+#     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
+#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time permits;
+#                  0 skips it
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail
@@ -77,7 +77,8 @@ fi
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 
-# with_tries COMMAND...: what failed by accident (a killed rank, a full disk that was cleared) goes on where it stopped
+# with_tries COMMAND...: repeats a command that failed by accident (a killed rank, a full disk that was cleared); it
+# continues where it stopped
 with_tries() {
   local try status
   for ((try = 1; try <= tries; try++)); do
@@ -90,7 +91,7 @@ with_tries() {
   return 1
 }
 
-# part NAME COMMAND...: its time is printed and kept, that of a part that was broken off too.
+# part NAME COMMAND...: prints and records its time, also that of an interrupted part.
 part() {
   local name=$1 begin=$SECONDS status=0
   shift
@@ -100,10 +101,10 @@ part() {
   return "$status"
 }
 used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
-# left SHARE: seconds of the budget that are left, times SHARE
+# left SHARE: remaining seconds of the budget, times SHARE
 left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
 
-# What the tests of the night took where they last came to their end [s].
+# Time of the nightly tests when they last ran to the end [s].
 tests_took() {
   local folder took=$tests_take
   for folder in "$out"/????-??-??; do # in the order of their dates
@@ -114,10 +115,10 @@ tests_took() {
   echo "$took"
 }
 
-# keep NAME...: these variables are the night's
+# keep NAME...: saves these variables for the night
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# The night's sizes are settled once; of what a second start asks for only --tests, --blind and --fuzz count.
+# The night's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
@@ -164,7 +165,8 @@ run_tables() {
   part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
 }
 
-# A part of the blind test (docs/reference/blind-test-results.md); what is made and judged stays when it is broken off.
+# A part of the blind test (docs/reference/blind-test-results.md); finished cases and verdicts stay after an
+# interruption.
 blind_test() {
   local configs=$source_folder/configs/blind run=$night/blind
   run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
@@ -191,7 +193,7 @@ fuzz_seconds() { # of each target, two at a time, from what is left
   echo $((budget < fuzz_least ? 0 : budget))
 }
 
-# report: what the night has so far; written again after each part
+# report: the night's results so far; written again after each part
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
@@ -224,7 +226,7 @@ report() {
   } >"$night/report.md.part" || return 1
   mv "$night/report.md.part" "$night/report.md"
 }
-# stopped STATUS: ends the night where a signal or failure leaves nothing to go on with
+# stopped STATUS: ends the night if a signal or failure prevents its continuation
 stopped() {
   echo "nightly run of $date stopped (exit code $1) after $(used) s; log: $night/log.txt" >&2
   exit "$1"

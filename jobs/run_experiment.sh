@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs one experiment from its config to its tables; what is done already is not done again. The quickstart, the
+# Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
 # nightly run and the Slurm jobs all run this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
@@ -12,7 +12,7 @@
 #     --launcher  starts them (default mpirun)
 #     --build     build folder (default build/release)
 # $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
-# Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to go on).
+# Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to continue).
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -48,7 +48,7 @@ if [[ ! -x $swingbank ]]; then
   exit 1
 fi
 
-# What the experiment says of itself: dataset, draws, table, tasks and the like
+# Properties of the experiment: dataset, draws, table, tasks and the like
 ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
 
 # A dataset belongs to its config and size; experiments with the same two share the folder.
@@ -79,7 +79,7 @@ databank() {
 generate_events() {
   say "events for $1 ($2 draws) on $ranks processes"
   local root=() file
-  # OpenMPI refuses root unless told twice; whoever starts this script as root means it.
+  # OpenMPI refuses root unless two variables allow it; whoever starts this script as root intends it.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
   local command=("${root[@]}")
   # shellcheck disable=SC2206 # the launcher is a list of words

@@ -1,12 +1,12 @@
-# To be sourced: how scripts run the long programs. Contract of the programs: SIGUSR1 -> save, then exit code 2 =
-# "saved, run me again to go on".
+# To be sourced: running the long programs from scripts. Contract of the programs: SIGUSR1 -> save, then exit code 2 =
+# "saved, run again to continue".
 
 stop_wanted=0
 stop_signal='' # the last one
 child=''
 
-# A signal that arrives between two programs is remembered; Ctrl-C saves too. (bash runs a trap only between commands
-# or in `wait`, hence programs run in the background.)
+# A signal that arrives between two programs is stored; Ctrl-C saves too. (bash runs a trap only between commands or
+# in `wait`, hence programs run in the background.)
 on_stop_signal() {
   stop_wanted=1 stop_signal=$1
   if [[ -n $child ]]; then kill -USR1 "$child" 2>/dev/null || true; fi
@@ -19,8 +19,8 @@ stop_signal=''
 
 launcher_patience=${SWINGBANK_LAUNCHER_PATIENCE:-30} # [s]
 
-# is_lost LAUNCHER: all its processes have ended without its taking notice, or one was stopped, for which others wait.
-# Sets `lost`, which to kill ends the whole: the launcher, or the stopped process.
+# is_lost LAUNCHER: true if all its processes have ended without its noticing, or one was stopped and others wait for
+# it. Sets `lost`, the process to kill to end the whole: the launcher, or the stopped process.
 is_lost() {
   lost=$1
   local process state dead=0 all
@@ -35,7 +35,7 @@ is_lost() {
   ((dead > 0 && dead == ${#all[@]}))
 }
 
-# watch_launcher LAUNCHER: OpenMPI 4.1's may hang where a rank dies while it starts. Nobody else would end it.
+# watch_launcher LAUNCHER: ends OpenMPI 4.1's launcher, which may hang if a rank dies during startup.
 watch_launcher() {
   local seconds=0 lost
   while sleep 1 && kill -0 "$1" 2>/dev/null; do
@@ -49,9 +49,9 @@ watch_launcher() {
   done
 }
 
-# run_saving PROGRAM...: runs it, hands stop signals on as SIGUSR1, returns its exit code.
-# A launcher that a signal meets while it starts dies of it (mpirun: 244); finished shards and checkpoints are on the
-# disk at any time, so that counts as saved too.
+# run_saving PROGRAM...: runs it, forwards stop signals as SIGUSR1, returns its exit code. A launcher that receives a
+# signal during startup dies of it (mpirun: 244); finished shards and checkpoints are on the disk at any time, so that
+# counts as saved too.
 run_saving() {
   local status before stopped=0 watcher
   if ((stop_wanted)); then return 2; fi

@@ -3,7 +3,7 @@
 #   bash jobs/setup.sh [--preset NAME | --any-processor] [--tests] [--target NAME]... [--packages-only]
 #     --preset         one of CMakePresets.json (default release); the build folder is build/<preset>
 #     --any-processor  build/portable, which runs on any x86-64 processor of the last fifteen years, with the same
-#                      programs for AVX2 and AVX-512 beside: swingbank takes what the processor has (three builds)
+#                      programs for AVX2 and AVX-512 in addition: swingbank chooses by processor (three builds)
 #     --tests          also the packages that packages.txt marks "tests:", and the tests themselves
 #     --target         build this only
 #     --packages-only  install, do not build
@@ -65,7 +65,7 @@ install_packages() {
   rm -f "$log"
 }
 
-# A file that includes LibTorch's headers takes the compiler up to 3 GiB.
+# Compiling a file that includes LibTorch's headers takes up to 3 GiB.
 compile_jobs() {
   local cores memory_gib
   cores=$(nproc)
@@ -90,7 +90,7 @@ build_all() {
   cmake --build "build/$preset" -j "$jobs" ${targets[@]+--target "${targets[@]}"}
 }
 
-# build_level NAME: the programs for one instruction set, in a folder beside the common ones
+# build_level NAME: the programs for one instruction set, in a separate folder
 build_level() {
   local folder=build/portable-$1 log=build/portable-$1-configure.log
   if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" 2>&1; then

@@ -4,8 +4,8 @@
 # shellcheck source=jobs/run_saving.bash
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 
-# Exit code 2 puts the job back into the queue, or, where the site does not allow that, submits it anew; so does what a
-# node may be to blame for, on other nodes. Until max_restarts or max_retries is reached.
+# Exit code 2 requeues the job, or submits it anew if the site forbids requeueing. Failures that a node may have
+# caused are submitted again on other nodes. Limits: max_restarts and max_retries.
 finish_or_requeue() {
   local status=$1 restarts=$((${SLURM_RESTART_COUNT:-0} + ${SWINGBANK_SEGMENT:-0}))
   ((status > 2)) && retry_elsewhere "$status"
@@ -27,11 +27,11 @@ finish_or_requeue() {
     SWINGBANK_SEGMENT=$((${SWINGBANK_SEGMENT:-0} + 1)) follow_up
     exit 0
   fi
-  sleep 60 # the requeue ends this script; leaving first would let the job count as finished
+  sleep 60 # the requeue ends this script; an earlier exit would let the job count as finished
   exit 1
 }
 
-# A program that was killed, or crashed: its input is not to blame (that is exit code 1).
+# A program that was killed or crashed: its input is not the cause (that is exit code 1).
 retry_elsewhere() {
   local retries=${SWINGBANK_RETRY:-0} nodes
   if ((retries >= max_retries)); then
@@ -47,7 +47,7 @@ retry_elsewhere() {
   exit 0
 }
 
-# Those of the job's nodes that no longer start a program; of a job on one node, that one.
+# The nodes of the job that no longer start a program; of a job on one node, that node.
 failed_nodes() {
   local nodes node
   mapfile -t nodes < <(scontrol show hostnames "$SLURM_JOB_NODELIST")
@@ -60,7 +60,7 @@ failed_nodes() {
   done
 }
 
-# Submits this job anew, as it was submitted, and lets the jobs behind it wait for the new one.
+# Submits this job anew with the same options, and makes the dependent jobs wait for the new one.
 follow_up() {
   local log=$SWINGBANK_OUT/log stage=${SLURM_JOB_NAME#swingbank-} options id
   export SWINGBANK_SEGMENT SWINGBANK_RETRY
@@ -79,7 +79,7 @@ follow_up() {
   echo "it goes on as job $id"
 }
 
-# The last job of a stage, and all of them: what the jobs behind wait for.
+# The last job of a stage, and all of them: the dependencies of the following jobs.
 newest() { awk -v stage="$1" '$1 == stage {id = $2} END {print id}' "$SWINGBANK_OUT/log/jobs"; }
 all_of() { awk -v stage="$1" '$1 == stage {printf ":%s", $2}' "$SWINGBANK_OUT/log/jobs"; }
 wait_for_the_new_one() {

@@ -2,13 +2,13 @@
 # Submits an experiment: databank -> generate -> one array task per fold -> tables, each after the one before.
 #   bash slurm/submit.sh EXPERIMENT PRESET [--out FOLDER] [--site FILE]
 #     EXPERIMENT  a file of configs/experiments       PRESET  quick, nightly or thesis
-#     --out       results (default out/<experiment>-<preset>); on a file system that every node sees
-#     --site      partition, ranks, memory, times (default slurm/site.conf); a copy of it as it is now serves all jobs
+#     --out       results (default out/<experiment>-<preset>); on a file system shared by all nodes
+#     --site      partition, ranks, memory, times (default slurm/site.conf); all jobs use a copy made now
 #     --dry-run   checks everything and prints the sbatch commands
-#     --status    what Slurm says of the jobs of this experiment
-#     --cancel    cancels those that wait or run; what is finished stays
-# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again goes on with what is there; while
-# jobs of an earlier submission wait or run, it is refused.
+#     --status    Slurm's state of this experiment's jobs
+#     --cancel    cancels those that wait or run; finished results stay
+# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again continues from existing results;
+# it is refused while jobs of an earlier submission wait or run.
 set -euo pipefail
 
 SWINGBANK_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -40,7 +40,7 @@ source "$SWINGBANK_SITE"
 log=$SWINGBANK_OUT/log
 faults=0
 fault() { echo "$1 at $SWINGBANK_SITE ($2): $3" >&2; faults=1; }
-# whole NAME LEAST: a whole number of the site file
+# whole NAME LEAST: checks an integer of the site file
 whole() {
   local value=${!1:-}
   if [[ -z $value ]]; then
@@ -68,8 +68,8 @@ check_site() {
   ((!faults)) || exit 1
 }
 
-# Scripts and programs as they are now, so that a new build or an edit changes no job that waits: links where the disk is
-# the same one (a build puts new files in place of old ones), else copies.
+# Copies scripts and programs, so that a new build or an edit does not change waiting jobs: links on the same disk (a
+# build replaces files by new ones), else copies.
 keep_software() {
   local kept=$log/software build=${SWINGBANK_BUILD:-$SWINGBANK_SOURCE/build/release}
   rm -rf "$kept"
@@ -80,13 +80,13 @@ keep_software() {
   export SWINGBANK_BUILD
 }
 
-# The experiment and every file that it names as they are now, for the same reason.
+# Copies the experiment and every file that it names, for the same reason.
 keep_configs() {
   rm -rf "$log/configs"
   SWINGBANK_EXPERIMENT=$("$SWINGBANK_BUILD/bin/swingbank" train --experiment "$SWINGBANK_EXPERIMENT" --keep "$log/configs")
 }
 
-# Ids of the earlier submission, with commas; nothing where there was none.
+# Job ids of the earlier submission, separated by commas; empty if there was none.
 earlier_jobs() { if [[ -s $log/jobs ]]; then cut -d' ' -f2 "$log/jobs" | paste -sd,; fi; }
 # Those of them that wait or run.
 unfinished_jobs() {
@@ -113,7 +113,7 @@ esac
 check_site
 
 runner=$SWINGBANK_SOURCE/jobs/run_experiment.sh
-bash "$runner" --stage check # bad settings are told now, not by a job in the night
+bash "$runner" --stage check # bad settings are reported now, not by a job at night
 tasks=$(bash "$runner" --stage count-tasks)
 
 common=(--parsable --export=ALL --chdir="$SWINGBANK_OUT" --kill-on-invalid-dep=yes "${sbatch_extra[@]}")
@@ -128,7 +128,7 @@ if [[ -n $(unfinished_jobs) ]]; then
 fi
 if [[ $action == submit ]]; then
   mkdir -p "$log"
-  cp "$SWINGBANK_SITE" "$log/site.conf" # an edit of the original changes no job that waits
+  cp "$SWINGBANK_SITE" "$log/site.conf" # an edit of the original does not change waiting jobs
   SWINGBANK_SITE=$log/site.conf
   keep_software
   keep_configs
@@ -160,7 +160,7 @@ submit() {
   echo "$stage $id" | tee -a "$log/jobs"
 }
 
-# shellcheck disable=SC2154 # these come from the site file, and were looked for above
+# shellcheck disable=SC2154 # these come from the site file and were checked above
 {
   submit databank '' --output="$log/databank.log" --time="$tables_time" --mem="$databank_mem" "${warning[@]}"
   submit generate "afterok:$id" --output="$log/generate.log" --time="$generate_time" "${warning[@]}" \
@@ -168,6 +168,6 @@ submit() {
   generated=afterok:$id
   submit fold "$generated" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
     --cpus-per-task="$fold_cpus" --mem="$fold_mem" --array="0-$((tasks - 1))%$folds_at_once"
-  # A fold that failed does not take the tables of the others with it.
+  # A failed fold leaves the tables of the others.
   submit tables "$generated,afterany:$id" --output="$log/tables.log" --time="$tables_time" --mem="$tables_mem"
 }

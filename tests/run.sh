@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds and runs the tests.
+# Installs missing packages, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only what takes too long for every change, whether all rooms agree on each type, whether threads
-#                     disturb one another, and the lanes under the sanitizers, one instruction set a night: more than an
-#                     hour (jobs/nightly.sh runs it)
-#     --without-psse  leaves out the tests that read records of others, PSS/E's own among them, which are not part of this repository
+#     --night         only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, and
+#                     the SIMD batches under the sanitizers, one instruction set per night: more than an hour
+#                     (jobs/nightly.sh runs it)
+#     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
-#                     takes longer than all the rest: Eigen's sparse solvers are slow to compile with checks)
-#     --ci            as on the integration machine: warnings are errors, the scripts and the formatting are checked,
-#                     what computes in packs is compiled for AVX2 whatever the processor, each fuzz target runs for 10 s
-#                     (in the nightly run for minutes), and the tests of the rooms that read files run under both sanitizers
-# PSS/E's records are looked for in $SWINGBANK_REFERENCE, else in ../shared/reference beside the repository.
+#                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)
+#     --ci            as on the integration machine: warnings are errors, scripts and formatting are checked, SIMD code is
+#                     compiled for AVX2 on any processor, each fuzz target runs for 10 s (in the nightly run for minutes),
+#                     and the tests of the modules that read files run under both sanitizers
+# PSS/E's records are read from $SWINGBANK_REFERENCE, else from ../shared/reference beside the repository.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # what reads what is not part of this repository
+of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # tests that read external files
 fast_only=0 night=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in
@@ -47,7 +47,7 @@ check_reference() {
   export SWINGBANK_REFERENCE
 }
 
-# The build of the fuzz targets also has the tests of the rooms that read a user's files.
+# The build of the fuzz targets also contains the tests of the modules that read a user's files.
 run_readers() {
   local folder=$source_folder/build/fuzz left_out='*Full.*:*Night.*'
   ((with_psse)) || left_out+=":*${of_others//|/*:*}*"
@@ -77,14 +77,16 @@ run_tests() {
   ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout 1500 "${exclude[@]}" "$@" || failed+=("$name")
 }
 
-# One name, one type: all rooms linked with their types, without a word (decision 31; four minutes of two cores).
+# One-definition rule: all modules linked with their types must give no warning (decision 31; four minutes of two
+# cores).
 one_definition() {
   local log=$source_folder/build/odr.log
   cmake --preset odr -S "$source_folder" >"$log" && cmake --build "$source_folder/build/odr" --target one_of_all_rooms >>"$log" 2>&1 &&
     ! grep -m 12 -E 'warning:|error:' "$log" >&2
 }
 
-# Each source names what it uses: a build that groups files otherwise must not fail. Only that it compiles counts.
+# Each source includes what it uses, so that a build with other unity groups does not fail. The objects are not
+# linked.
 each_alone() {
   local folder=$source_folder/build/alone log=$source_folder/build/alone.log
   cmake --preset release -S "$source_folder" -B "$folder" -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
@@ -94,9 +96,9 @@ each_alone() {
   return 1
 }
 
-# Most processors have no AVX-512. What computes in packs must compile for them without a warning wherever the check
-# runs: the packs' own tests and the batched kernel. Where the processor is one of them, the build of the check itself
-# is for AVX2.
+# Most processors lack AVX-512. SIMD code must compile for them without a warning, whatever machine runs the check:
+# the tests of the SIMD types and the batched kernel. On a machine without AVX-512 the build of the check itself is
+# for AVX2.
 for_avx2() {
   if grep -qw avx2 /proc/cpuinfo && ! grep -qw avx512f /proc/cpuinfo; then return; fi
   local folder=$source_folder/build/ci-x86-64-v3
@@ -106,7 +108,7 @@ for_avx2() {
   ! grep -qw avx2 /proc/cpuinfo || "$folder/bin/test_sim_core" --gtest_brief=1
 }
 
-# What starts threads, under the thread sanitizer: seven seconds, or for ever where threads disturb one another.
+# Threaded code under the thread sanitizer: seven seconds; a timeout in case of a deadlock.
 threads() {
   local log=$source_folder/build/tsan.log
   cmake --preset tsan -S "$source_folder" >"$log" && cmake --build "$source_folder/build/tsan" --target test_threads >>"$log" 2>&1 &&
@@ -116,10 +118,10 @@ threads() {
 
 run_sanitized() {
   bash "$source_folder/jobs/setup.sh" --preset sanitize --tests
-  # Not ours: what OpenMPI keeps until the process ends.
+  # Memory that OpenMPI keeps until the process ends.
   export LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0
   export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
-  # Scripts start the commands of the full build; here only the unit tests count.
+  # Scripts start the commands of the full build; only the unit tests run here.
   run_tests sanitize "$source_folder/build/sanitize" -L fast -LE script -j "$(nproc)"
 }
 
@@ -144,8 +146,8 @@ if ((sanitize)); then
   say "fast tier under the sanitizers"
   run_sanitized
 fi
-# tier NAME; scripts of the full tier run one of each folder at a time, those of the night alone. Those of the fast tier wait
-# for processes and disks: with one test more than there are cores, a core idles less.
+# tier NAME. Scripts of the full tier run one of each folder at a time, those of the nightly tier alone. Those of the
+# fast tier wait for processes and disks: one test more than there are cores keeps the cores busy.
 tier() {
   local jobs
   jobs=$(nproc)
@@ -160,7 +162,7 @@ if ((night)); then
   each_alone || failed+=(each_alone)
   say "threads"
   threads || failed+=(threads)
-  # One instruction set a night: where ccache has nothing, its build takes some ten minutes of two cores.
+  # One instruction set per night: without ccache its build takes some ten minutes of two cores.
   levels=(x86-64-v2 x86-64-v3 x86-64-v4)
   level=${levels[10#$(date +%j) % ${#levels[@]}]}
   say "lanes under the sanitizers, $level"

@@ -1,14 +1,14 @@
-# The tests of one program, as ctest takes them in before it runs any. The fast tier has a process for each suite, because
-# starting one costs more than most tests. Suites that end in Full or Night (labels full and night) have long tests: one
-# process each, so that they are spread over the cores.
-# Given: room, program, list (written here where it is older than the program), whole (the fast tier is named already).
+# Registers the tests of one program when ctest starts. The fast tier has one process per suite, because starting a
+# process costs more than most tests. Suites that end in Full or Night (labels full and night) contain long tests:
+# they have one process per test and so are spread over the cores. Input: room, program, list (written here if it is
+# older than the program), whole (the fast tier is registered already).
 function(write_suites)
   execute_process(COMMAND ${program} --gtest_list_tests TIMEOUT 120 OUTPUT_VARIABLE said RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "tests cannot be listed at ${program} (${failed}): run it with --gtest_list_tests\n${said}")
   endif()
   set(text "# Made by tests/suites.cmake.\n")
-  # What a parameter is stands behind a #, and may hold what a list of CMake must not.
+  # The value of a test parameter follows a #; it may contain characters that a CMake list must not.
   string(REGEX REPLACE " +#[^\n]*" "" said "${said}")
   string(REPLACE "\n" ";" lines "${said}")
   foreach(line IN LISTS lines)

@@ -1,7 +1,6 @@
-// blind-optimum: how far the fit of the true structure, as a diagnosis leaves it, lies behind the optimum
-// that a fit reaches which begins at the truth. For cases of `swingbank blind-test` in which nothing or one
-// effect is hidden. A line for each: case, what is hidden, chi2 that the truth as start gains [chi2], chi2
-// per value.
+// blind-optimum: the difference in chi2 between the fit of the true structure by the diagnosis and a fit that
+// starts at the truth. Input: cases of `swingbank blind-test` with no or one hidden effect. Output, one line
+// per case: case, hidden effect, chi2 gained by the start at the truth, chi2 per value.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,16 +17,16 @@ using namespace swingbank;
 using namespace swingbank::validate;
 namespace fs = std::filesystem;
 
-/// A fit from the truth is gone on with in so many rounds at most.
+/// Maximum number of rounds of a fit from the truth.
 constexpr int kTruthRounds = 5;
 
-/// The true structure as the diagnosis fitted it.
+/// The true structure as fitted by the diagnosis.
 struct Ended {
   sim::plant::PlantUnderTest tested;
   std::vector<fit::FreeParameter> free;
   const fit::Fit* fit;
 };
-/// Nothing where the diagnosis did not fit it.
+/// Returns the diagnosis' fit of the true structure; nullopt if the diagnosis did not fit it.
 std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Diagnosis& d,
                               const nlohmann::json& hidden, double spread) {
   if (hidden.empty()) return Ended{model.under_test(), fit::free_parameters(model.plant, spread), &d.base};
@@ -38,7 +37,8 @@ std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Di
   return std::nullopt;
 }
 
-/// The best fit that begins at the truth, with each event's state as `ended` has it and as it was prepared.
+/// Returns the best fit that starts at the truth, from two event states: that of `ended` and the prepared
+/// one.
 fit::Fit from_truth(const Ended& ended, const event::WhitenedEvents& events, const calibrate::Truth& truth) {
   std::vector<double> values = fit::values_of(ended.fit->plant, ended.free);
   for (std::size_t i = 0; i < ended.free.size(); ++i)

@@ -1,5 +1,5 @@
-// blind-second: blind cases from the second writing of machine, controls and drives, one machine against a
-// Thevenin grid, in the folders that `swingbank blind-test --judge --score` takes.
+// blind-second: blind cases of the second simulator (one machine against a Thevenin grid), in the folders
+// that `swingbank blind-test --judge --score` reads.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ second::MachineData draw_machine(blind::cases::BlindDraw& d) {
   return m;
 }
 
-/// A fault on the line to the grid, anywhere from 20 to 90 % of its length.
+/// A fault on the line to the grid, at 20 to 90 % of its length.
 blind::cases::BlindEvent fault(second::Setup& s, blind::cases::BlindDraw& d) {
   const second::Phasor line(d.uniform(0.01, 0.03), d.uniform(0.15, 0.35));
   const second::Phasor zf(d.uniform(0, 0.02), d.uniform(0.005, 0.15));
@@ -52,7 +52,7 @@ blind::cases::BlindEvent frequency_dip(second::Setup& s, blind::cases::BlindDraw
   return {fmt::format("frequency falls by {:.4f} pu from {:.5f} s", -s.dip.depth, s.dip.start), {}, {}};
 }
 
-/// Hides a kind in the setup at a size between 0 and 1 of what is usual.
+/// Hides a kind in the setup. `size`: between 0 and 1 of the usual range.
 void hide(const std::string& kind, double size, second::Setup& s, blind::cases::BlindDraw& d) {
   if (kind == "SEXS") {
     s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 200 * size, .TE = 0.05, .low = -4, .high = 5.5};
@@ -101,7 +101,7 @@ sim::plant::Block block(const std::string& name, const std::map<std::string, dou
     b.p.at(static_cast<std::size_t>(b.effect->parameter_index(key))) = value;
   return b;
 }
-/// What the owner knows, for the model file: parameters right.
+/// The submitted plant model, with the right parameters.
 sim::plant::Plant known_plant(const second::Setup& s) {
   const auto& m = s.machine;
   sim::plant::Plant p;

@@ -1,5 +1,5 @@
-// The product's effects against their second writing: records of the second simulator, played into the
-// product's plant, must give the same P and Q.
+// The product's effects against the independent second simulator: its records, played into the product's
+// plant, must give the same P and Q.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,9 +16,9 @@ namespace {
 namespace second = blind_second;
 using validate::record::Record;
 
-constexpr double kOn = 1.5137, kOff = 1.6219;  ///< of the fault, off the sampling grid [s]
+constexpr double kOn = 1.5137, kOff = 1.6219;  ///< of the fault, between samples [s]
 /// Interpolating V between samples at 240/s costs up to 2e-5 pu (validate/playin/README.md: 1.2e-6 at 120/s
-/// without a controller's gain behind it, 2.6e-5 at 60/s); a wrong coefficient costs a thousand times that.
+/// without controller gain, 2.6e-5 at 60/s). A wrong coefficient costs a thousand times as much.
 constexpr double kTolerance = 2e-4;
 
 second::Setup base() {
@@ -89,7 +89,7 @@ void put(sim::plant::Plant& p, sim::plant::Block b) {
 
 TEST(SecondWriting, MachineAgrees) { EXPECT_LT(largest_difference(base(), plant(base())), kTolerance); }
 
-TEST(SecondWriting, StaysAtRestWithoutAnEvent) {
+TEST(SecondWriting, StaysAtRest_WithoutAnEvent) {
   second::Setup s = base();
   s.machine.S10 = 0.1, s.machine.S12 = 0.5;
   s.exciter = second::Sexs{};
@@ -98,13 +98,14 @@ TEST(SecondWriting, StaysAtRestWithoutAnEvent) {
   s.grid.resize(1);
   s.dip = {};
   const second::Output out = second::simulate(s, 5.0);
-  // Rounding of the initial values, 1e-16, grows along no mode in five seconds.
+  // The rounding of the initial values, 1e-16, grows in no mode within five seconds.
   for (std::size_t k = 0; k < out.t.size(); ++k) ASSERT_NEAR(out.P[k], s.P, 1e-9) << out.t[k];
 }
 
 TEST(SecondWriting, StepSizeDoesNotMatter) {
   const auto coarse = second::simulate(base(), 4.0), fine = second::simulate(base(), 4.0, 60, 1.0 / 9600);
-  // Fourth order: a quarter of the step leaves 1/256 of the error, so the difference is the coarse one's.
+  // Fourth order: a quarter of the step leaves 1/256 of the error. The difference is the error of the coarse
+  // run.
   for (std::size_t k = 0; k < fine.t.size(); ++k) ASSERT_NEAR(coarse.P[k], fine.P[k], 1e-7) << fine.t[k];
 }
 
@@ -183,12 +184,12 @@ TEST(SecondWriting, CurrentTransformerErrorAgrees) {
   ct.effect->measure(ct.p.data(), 0, p);
   for (std::size_t k = 0; k < a.t.size(); ++k) {
     const auto power = p.V[k] * std::conj(p.I[k]);
-    ASSERT_NEAR(power.real(), b.P[k], 1e-12);  // the same product, rounded
+    ASSERT_NEAR(power.real(), b.P[k], 1e-12);  // equal but for rounding
     ASSERT_NEAR(power.imag(), b.Q[k], 1e-12);
   }
 }
 
-TEST(SecondWriting, SawtoothIsWhatItSays) {
+TEST(SecondWriting, Sawtooth_HasTheStatedValues) {
   second::Setup s = base();
   s.unlisted = second::sawtooth(0.05, 0.5, 1.9, 8.0);
   const auto out = second::simulate(s, 8.0, 240.0);

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# docs/how-to/add-an-effect.md followed literally, in a copy of the tree: its files are written, its commands run, and both the
-# law and the header are found by listing, simulator, generator and compare without another edit.
+# Follows docs/how-to/add-an-effect.md literally in a copy of the tree: writes its files and runs its commands. The
+# listing, the simulator, the generator and compare must find both the law and the header without another edit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
 
 build=${SWINGBANK_BIN%/bin}
 tree=$work/tree
-# The copy takes the place of the tree and of the build folder for this script alone: build files hold absolute paths, so
-# that in the same place only what the new header touches is built. What links LibTorch is left out.
+# The copy replaces the tree and the build folder for this script alone: build files contain absolute paths, so in the
+# same place only the targets of the new header are rebuilt. Targets that link LibTorch are excluded.
 copy_tree() {
   mkdir "$tree"
   (cd "$SWINGBANK_SOURCE" && tar -cf - --exclude=./build --exclude=./.git --exclude=./out .) | tar -xf - -C "$tree"
@@ -46,7 +46,7 @@ PYTHON
 commands=("$work"/command*.sh)
 ((${#commands[@]} == 3)) || fail "${#commands[@]} command blocks in the document, 3 expected"
 
-# What is built was named before: nothing in the tree was edited.
+# The targets existed before: no file of the tree was edited.
 built=(swingbank swingbank-effects swingbank-simulate swingbank-generate swingbank-compare test_sim_effects)
 cmake --build "$build" --target "${built[@]}" >"$work/build.log" 2>&1 || fail "the build: $(tail -n 40 "$work/build.log")"
 echo "ok: built after $SECONDS s"
@@ -61,7 +61,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS
 for command in "${commands[@]}"; do
   status=0
   bash -euo pipefail "$command" >"$command.log" 2>&1 </dev/null || status=$?
-  # compare says by 3 or 4 that a plant does not explain its record, as the document tells
+  # compare exits with 3 or 4 if a plant does not explain its record, as the document states
   ((status == 0)) || { ((status == 3 || status == 4)) && grep -q 'swingbank compare' "$command"; } ||
     fail "exit code $status of: $(cat "$command"): $(tail "$command.log")"
 done

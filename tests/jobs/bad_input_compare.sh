@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank compare on inputs that are wrong: a sentence, exit code 1, no report.
+# swingbank compare on bad input: one message, exit code 1, no report.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
 
@@ -38,8 +38,8 @@ leaves_nothing "$out"
 disk "$work/full" 64k
 out=$work/full
 refuses "full disk" "$work/full" compare "$model" "$record"
-# A curve that was complete may stay, with the list by which the next run removes it; the report must not be there, nor
-# anything begun.
+# A complete curve may stay, with the list from which the next run removes it. The report and partial files must be
+# absent.
 left=$(find "$work/full" -type f ! -name 'playback-*.csv' ! -name '.swingbank-compare')
 [[ -z $left ]] || fail "left behind: $left"
 out=$model/report

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# swingbank databank and generate on inputs, disks and datasets that are wrong: a sentence, exit code 1, nothing lost.
+# swingbank databank and generate on bad input, full disks and damaged datasets: one message, exit code 1, no data
+# lost.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 own_mounts
@@ -33,7 +34,7 @@ edit network 's/^raw = .*/raw = "none.raw"/'
 refuses "no such network" 'none.raw' make_data "$work/network.toml" "$data"
 [[ ! -e $data ]] || fail "a refused config left $data"
 
-# No machine stays in step through a fault of two seconds: there is no row, and that is a failure.
+# No machine stays in synchronism through a fault of two seconds: no row, which is a failure.
 edit unstable 's/^buses = .*/buses = [16]/; s/^duration = .*/duration = [2.0, 2.1]/; s/^draws = .*/draws = 20/'
 refuses "dataset without rows" 'a dataset without rows at .*unstable_data .*stable' make_data "$work/unstable.toml" "$work/unstable_data"
 
@@ -54,7 +55,7 @@ refuses "shard of another config" 'shard-000002.h5' "$swingbank" verify "$work/c
 rm "$work/cut/shards/shard-000002.h5"
 refuses "shard that is gone" 'shard-000002.h5' "$swingbank" verify "$work/cut"
 
-# A full disk ends the run; what was finished stays, nothing is half-written, and with room it goes on.
+# A full disk ends the run. Finished shards stay, no partial file remains, and with free space the run continues.
 disk "$work/small" 750k
 refuses "full disk" "$work/small" make_data "$config" "$work/small/data"
 finished=$(wc -l <"$work/small/data/journal.jsonl")
@@ -70,7 +71,7 @@ mount -o remount,ro "$work/small"
 refuses "read-only disk" "$work/small" make_data "$config" "$work/small/more"
 refuses "file in place of a folder" "$config" make_data "$config" "$config/data"
 
-# Killed without warning: what the journal has is whole, the rest is made by the next run.
+# Killed by SIGKILL: everything in the journal is complete; the next run makes the rest.
 "$swingbank" generate "$config" --draws 100000 --out "$work/killed" >/dev/null 2>&1 &
 killed=$!
 for ((i = 0; i < 300; i++)); do

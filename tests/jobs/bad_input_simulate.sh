@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank simulate on inputs that are wrong: a sentence, exit code 1, nothing left behind.
+# swingbank simulate on bad input: one message, exit code 1, no output.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
 
@@ -43,7 +43,7 @@ refuses "word for a number" 'words.dyr:5' simulate "$raw" "$work/words.dyr"
 sed '6s/7.3 /nan /' "$dyr" >"$work/nan.dyr"
 refuses "not a number" 'nan.dyr:6' simulate "$raw" "$work/nan.dyr"
 
-# Buses 20 and 34 hang on the transformer 19-20 alone (four lines of the file).
+# Buses 20 and 34 are connected by transformer 19-20 alone (four lines of the file).
 sed '/^ *19, 20, 0, /,+3d' "$raw" >"$work/part.raw"
 "$swingbank" simulate --raw "$work/part.raw" --dyr "$dyr" --out "$work/part.csv" >"$work/said" 2>&1 || fail "an island of its own is refused"
 grep -q 'islands without a slack bus get that of their largest generator: bus 34 of buses 20, 34' "$work/said" ||

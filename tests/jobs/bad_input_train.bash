@@ -1,4 +1,4 @@
-# To be sourced after lib.bash: a tiny experiment and its dataset, to be given wrongly.
+# To be sourced after lib.bash: a tiny experiment and its dataset, for tests with bad input.
 # shellcheck disable=SC2034,SC2154 # work and swingbank are lib.bash's
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1

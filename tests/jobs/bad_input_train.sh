@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank cross-validate, train and tables on inputs that are wrong: a sentence, exit code 1, no result.
+# swingbank cross-validate, train and tables on bad input: one message, exit code 1, no result.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
 source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank cross-validate, train and tables: the refusals beside those of bad_input_train.sh.
+# swingbank cross-validate, train and tables: further refusals in addition to bad_input_train.sh.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"
 

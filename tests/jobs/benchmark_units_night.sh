@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Two units as industry has them, a steam unit (GENROU, ESST4B, PSS2B, IEEEG1) and a gas unit (GENROU, REXS, PSS2A, GGOV1),
-# each behind its transformer in twelve events at 30/s. The right model leaves nothing but noise, and of five wrong values
-# `calibrate --fewest` names all, near the truth, and at most two more. Gains that act as a product alone may be named by
-# either factor.
+# Two typical units, a steam unit (GENROU, ESST4B, PSS2B, IEEEG1) and a gas unit (GENROU, REXS, PSS2A, GGOV1), each
+# behind its transformer in twelve events at 30/s. The right model leaves only noise. Of five wrong values `calibrate
+# --fewest` names all, close to the truth, and at most two more. Of gains that act as a product either factor may be
+# named.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# Three of the blind test's cases, each with an exciter or a governor that the model lacks: calibrated, the parameters
-# bend to make up for it, and a diagnosis that is given the bent model says the same as one of the model before.
+# Three cases of the blind test, each with an exciter or a governor that the model lacks. Calibration biases the
+# parameters to compensate; a diagnosis of the biased model must give the same verdict as one of the original.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 "$swingbank" blind-test --config "$SWINGBANK_SOURCE/configs/blind/cases.toml" --out "$work/run" --make 3 --seed 16 --size 6 \
   --kinds SEXS,IEEET1,TGOV1 >/dev/null
-# verdict FOLDER: what a diagnosis accepted, and at what it judges each effect
+# verdict FOLDER: the accepted effects of a diagnosis, and its judgement of each effect
 verdict() {
   python3 -c "
 import json, sys
 d = json.load(open(sys.argv[1] + '/diagnosis.json'))
 print(d['verdict'], d['effects'], d['equivalent'], d['sentence'])" "$1"
 }
-# ends_badly COMMAND...: exit code 3 or 4, a model that lacks something
+# ends_badly COMMAND...: exit code 3 or 4, i.e. the model lacks a component
 ends_badly() {
   local code=0
   "$@" >"$work/said" 2>"$work/errors" || code=$?

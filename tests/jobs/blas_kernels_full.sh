@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What trains takes the kernels of its processor, also where OpenBLAS does not know the processor; the user's own
-# choice stays, with a warning.
+# Training commands use the kernels of their processor even if OpenBLAS does not support it; a kernel chosen by the
+# user stays, with a warning.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export OMP_NUM_THREADS=1
 unset OPENBLAS_CORETYPE SWINGBANK_OPENBLAS_ALONE
@@ -11,8 +11,8 @@ if has avx; then best=AVX name=Sandybridge; fi
 if has avx2 && has fma; then best=AVX2 name=Haswell; fi
 if has avx512f && has avx512cd && has avx512bw && has avx512dq && has avx512vl; then best=AVX-512 name=SkylakeX; fi
 
-# starts NAME PATTERN [VARIABLE=VALUE...]: the three commands, up to the dataset or network that is not there.
-# They must say PATTERN once; what else they said stays in $work/said.
+# starts NAME PATTERN [VARIABLE=VALUE...]: runs the three commands up to the missing dataset or network. They must
+# print PATTERN once; all other output is in $work/said.
 starts() {
   local case=$1 pattern=$2 command
   shift 2

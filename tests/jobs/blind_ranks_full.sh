@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank blind-test on several ranks: the same cases as on one, each judged once, what is there stays.
-# shellcheck disable=SC2154 # what lib.bash sets
+# swingbank blind-test on several ranks: the same cases as on one, each judged once; existing verdicts stay.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 tiny=(--config "$SWINGBANK_SOURCE/configs/blind/tiny.toml" --seed 5 --kinds "SEXS,none" --make 5)
@@ -16,7 +16,7 @@ ranks 2 "${tiny[@]}" --out "$work/three" >"$work/text" 2>/dev/null
 grep -q 'made 1 cases .* 4 were there' "$work/text" || fail "said: $(cat "$work/text")"
 diff -r "$work/one" "$work/three" || fail "another case after one was removed"
 
-# every case is judged once, by whoever is free; --part goes with it
+# every case is judged once, by any free rank; --part is allowed
 cat >"$work/judge" <<'JUDGE'
 #!/bin/sh
 echo "$1" >>"$(dirname "$0")/asked"
@@ -29,7 +29,7 @@ ranks 3 --out "$work/three" --judge "$work/judge" >"$work/text" 2>/dev/null
 grep -q 'judged 2 cases, 0 failed' "$work/text" || fail "said: $(cat "$work/text")"
 [[ $(sort "$work/asked" | uniq -d | wc -l) == 0 && $(wc -l <"$work/asked") == 5 ]] || fail "asked: $(cat "$work/asked")"
 
-# a fault of one is the exit code of all
+# a failure of one rank is the exit code of all
 rm "$work/three/verdicts/c0003.json"
 code=0
 ranks 2 --out "$work/three" --judge "$work/nobody" >/dev/null 2>"$work/log" || code=$?

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank calibrate and add as a user starts them: what they write, exit codes, and a sentence for each wrong input.
+# swingbank calibrate and add: output files, exit codes, and one message for each bad input.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
@@ -7,7 +7,7 @@ records=$SWINGBANK_SOURCE/configs/records/record-example
 one=$records/avr_ev1.csv two=$records/avr_ev2.csv
 export OMP_NUM_THREADS=2
 
-# the exciter that the model lacks: added, fitted to one event, tried on the other
+# the missing exciter: added, fitted to one event, tested on the other
 "$swingbank" add SEXS --model "$model" --records "$one" "$two" --hold-out avr_ev2 --power-only --out "$work/added" --json \
   >"$work/printed.json"
 cmp "$work/printed.json" "$work/added/add.json" || fail "--json prints something else than it writes"
@@ -20,7 +20,7 @@ assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, F
 assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
 assert [e["unit"] for e in r["errors"] if e["model"] == "submitted" and e["record"] == "avr_ev2.csv"] == ["MW", "Mvar"]
 PYTHON
-# the errors of the model as it was are those that compare gives
+# the errors of the submitted model equal those of compare
 "$swingbank" compare --model "$model" --records "$one" "$two" --out "$work/before" >/dev/null || (($? == 3 || $? == 4))
 python3 - "$work/added/add.json" "$work/before/compare.json" <<'PYTHON'
 import json, sys
@@ -41,7 +41,7 @@ done
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
 grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the new model does not say where it comes from"
 
-# what was written is a model: it is calibrated again, and holds
+# the output is a model: it can be calibrated again, and its parameters hold
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --power-only --draws 0 --starts 0 --out "$work/again" >"$work/text"
 [[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
 grep -q "^2 'SEXS' '1' " "$work/added/model.dyr" || fail "add wrote no .dyr of the example plant"
@@ -53,12 +53,12 @@ grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "t
 cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 
-# instants that a person knows are taken as they are
+# given switching times are used unchanged
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --switch avr_ev1.csv=2 --switch avr_ev1.csv=2.1 --power-only \
   --draws 0 --starts 0 --out "$work/told" >/dev/null
 holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not say that the instants were given"
 
-# the usual way beside it, with the truth known: tables and JSON agree on who is nearer
+# the usual method for comparison, with known truth: tables and JSON agree on which is closer
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
   --method both --truth "$work/added/model.toml" --out "$work/both" >"$work/text"
 grep -q 'intervals hold the truth' "$work/text" || fail "no comparison with the truth"
@@ -74,7 +74,7 @@ PYTHON
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
 cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"
 
-# without the exciter the structure does not hold: exit code 3, and the files are there all the same
+# without the exciter the structure is inadequate: exit code 3, and the files are written nevertheless
 status=0
 "$swingbank" calibrate --model "$model" --records "$one" --power-only --draws 0 --starts 0 --out "$work/poor" >"$work/text" || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"

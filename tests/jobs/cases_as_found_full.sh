@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Public PSS/E cases as they are found, read where they lie beside $SWINGBANK_REFERENCE: each runs with the options that
-# the messages name, says what was done to it on one screen, and holds still without a fault.
+# Unmodified public PSS/E cases, stored next to $SWINGBANK_REFERENCE. Each runs with the options that the messages
+# name, lists the modifications on one screen, and stays at rest without a fault.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 cases_of_others
 
@@ -10,7 +10,7 @@ holds_still() {
   shift 4
   local run=("$swingbank" simulate --raw "$raw" --dyr "$dyr" "$@" --net-generators --widen-limits --t-end "$seconds"
     --rate 4 --channels 'speed,P,V' --changes "$work/$name.txt" --out "$work/$name.csv")
-  # The models that are not here yet are ignored by the names that the messages give.
+  # Unsupported models are ignored by the names that the messages give.
   if ! "${run[@]}" >"$work/said" 2>"$work/warned"; then
     mapfile -t ignore < <(sed -nE "s/.*--ignore-model ([A-Z0-9_]+).*/--ignore-model\n\1/p" "$work/warned")
     "${run[@]}" "${ignore[@]}" >"$work/said" 2>"$work/warned" || fail "$name: $(head -5 "$work/warned")"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Kills spread evenly over a fleet's diagnosis, from the first millisecond to the end: of the process or mpirun, of one
-# child or rank, of all at once, of one that was stopped before. One more run ends each in the same tables.
+# Kills at times spread evenly over a fleet's diagnosis: of the process or mpirun, of one child or rank, of all at
+# once, of all with one stopped before. One more run of each must end in the same tables.
 #   SWINGBANK_KILLS=100 bash tests/jobs/chaos_fleets_night.sh      (16 by default; tests/mpi/campaign.bash)
-# shellcheck disable=SC2154 # what lib.bash and two_plants.bash set
+# shellcheck disable=SC2154 # set by lib.bash and two_plants.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/kill.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
@@ -34,7 +34,7 @@ for ((i = from; i < kills; i += stride)); do
   at=$((lasts[$ranks] * i / kills))
   begin_and_kill "$way" "$at" "${run[@]}"
   what="kill $i ($way of $ranks ranks at $at ms)"
-  # Without a launcher a fleet outlives its child: that plant fails, the others are done.
+  # Without a launcher a fleet survives its child: that plant fails, the others finish.
   for ((wait = 0; wait < 600; ++wait)); do
     pgrep -f -- "--fleet $fleet_file .*--out $out" >/dev/null || break
     sleep 0.1

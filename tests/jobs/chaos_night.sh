@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Kills spread evenly over databank, train and cross-validate, from the first millisecond to the end: of the process, of
-# one child, of all at once, of one that was stopped before. One more run ends each with the same result and network.
+# Kills at times spread evenly over databank, train and cross-validate: of the process, of one child, of all at once,
+# of all with one stopped before. One more run of each must end with the same result and network.
 #   SWINGBANK_KILLS=200 bash tests/jobs/chaos_night.sh      (40 by default)
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/kill.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
@@ -39,7 +39,7 @@ for ((i = 0; i < kills; ++i)); do
   command "$kind" "$out"
   at=$((lasts[$kind] * i / kills))
   begin_and_kill "$way" "$at" "${run[@]}"
-  for ((wait = 0; wait < 600; ++wait)); do # children save and end, however busy the machine is
+  for ((wait = 0; wait < 600; ++wait)); do # children save and end, even on a busy machine
     pgrep -g $pid >/dev/null || break
     sleep 0.1
   done

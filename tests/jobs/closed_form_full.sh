@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Estimates without training, as rows of a table: exact where the record has no noise, and refused where it cannot be.
+# Estimates without training, as rows of a table: exact for noise-free records, refused where they are impossible.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1
@@ -26,14 +26,14 @@ judge "$work/data" || fail "$(cat "$work/log")"
 /usr/bin/python3 - "$work/out/V-closed-form-quick-seed1-gen30.json" <<'PYTHON'
 import json, sys
 r = json.load(open(sys.argv[1]))
-# the records are in single precision: 1e-7 of P integrated over 3 s, against 2H times a speed of 1e-3
+# records have single precision: 1e-7 of P integrated over 3 s, relative to 2H times a speed of 1e-3
 assert r["mse"] < 1e-5, r["mse"]
 assert r["baseline_mse"] > 0.5 and r["epochs"] == 0 and r["input"] is None and r["test_rows"] > 10, r
 PYTHON
 if judge "$work/data" --shuffle-labels; then fail "a control run of what is not trained was made"; fi
 grep -q -- '--shuffle-labels' "$work/log" || fail "$(cat "$work/log")"
 
-# With noise: refined is no further off than a few times the floor, and the floor is refused without noise.
+# With noise: the error of `refined` is at most a few times the floor; the floor is refused without noise.
 sed -i 's/^networks = .*/networks = ["closed-form", "refined", "floor"]/' "$work/tiny.toml"
 for network in floor refined closed-form; do
   judge "$work/data" --noise 0.001 || fail "$(cat "$work/log")"

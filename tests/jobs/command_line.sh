@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Options: one set for the commands that play records into a plant model, help in groups with an example, and a sentence
-# for each word that is no option.
+# Options: one set for all commands that play records into a plant model, help in groups with an example, and one
+# message for each unknown option.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
-# the same options with the same words in all four commands
+# the same options with the same descriptions in all four commands
 shared='model records columns from until component point power-only law switch jump-threshold pre-event out pdf quiet by accept json verbose threads'
 for command in compare calibrate diagnose add; do
   "$swingbank" "$command" --help >"$work/help"
@@ -27,11 +27,11 @@ done
 for command in inventory plant export simulate effects tables generate databank verify merge; do
   holds -qE "^ +swingbank $command [^-]*.*[a-z]" < <("$swingbank" "$command" --help) || fail "$command --help has no example"
 done
-# a plant file to read has one name everywhere
+# the option for a plant file has the same name everywhere
 "$swingbank" export --dyr plant.toml 2>"$work/words" >&2 && fail "export reads a plant file from --dyr"
 grep -q "unknown option at '--dyr'" "$work/words" || fail "export --dyr: $(cat "$work/words")"
 
-# every unknown word in the order given, with the option that was probably meant
+# every unknown word in the given order, with the most similar option
 status=0
 "$swingbank" add SEXS --model a.toml --records r.csv --thread 1 --jump-treshold=0.1 --xyzzy 3 4 2>"$work/words" >&2 || status=$?
 ((status == 1)) || fail "exit code $status, expected 1"
@@ -45,7 +45,7 @@ diff "$work/expected" "$work/words" || fail "unknown options are reported otherw
 "$swingbank" plant --raw a.raw extra 2>"$work/words" >&2 && fail "a word too many is accepted"
 grep -q "^unexpected word at 'extra'" "$work/words" || fail "a word too many is reported otherwise: $(cat "$work/words")"
 
-# the commands of validation come first, internal ones are not listed
+# the validation commands come first; internal ones are not listed
 "$swingbank" --help >"$work/help"
 awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"
 printf '%s\n' 'Validate a plant:' 'Simulate and generate:' 'Train:' 'Benchmarks:' >"$work/expected"

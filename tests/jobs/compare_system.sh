@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# swingbank compare --system: the example, a record of the same grid, what it writes, and a sentence for each wrong input.
-# shellcheck disable=SC2154 # what lib.bash sets
+# swingbank compare --system: the example, a record of the same grid, output files, and one message for each bad
+# input.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
-# the example: a record with an exciter that the grid does not have
+# the example: a record with an exciter that the grid lacks
 code=0
 "$swingbank" compare --system "$SWINGBANK_SOURCE/configs/systems/ieee14_fault_at_5.toml" --out "$work/example" \
   --json >"$work/printed.json" || code=$?
@@ -20,7 +21,7 @@ start = r["terminals"][0]["initial"]  # the power flow is that of the record; si
 assert abs(start["P_pu"]) < 6e-4 and abs(start["Q_pu"]) < 6e-4 and abs(start["V_pu"]) < 1e-4, start
 PYTHON
 
-# records of the same grid: adequate; one governor changed: its terminal first
+# records of the same grid: adequate; with one modified governor: its terminal first
 simulate() {
   "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --attach all:SEXS --t-end 8 --rate 60 \
     --fault 4:2:2.1 --channels V,theta,P,Q --buses 5 --out "$1.h5" --out "$1.csv" "${@:2}" >/dev/null
@@ -70,7 +71,7 @@ sed '201s/,[^,]*$//' "$work/same.csv" >"$work/cut.csv"
 changed_system() { sed "$1" "$work/same.toml" >"$work/wrong.toml"; }
 changed_system 's|same.csv|cut.csv|'
 refuses "a line that is cut off" 'cut.csv:201' compare --system "$work/wrong.toml"
-# frames that are missing are bridged, said and not compared
+# missing frames are interpolated, reported and not compared
 sed '50,52s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/lost.csv"
 changed_system 's|same.csv|lost.csv|'
 "$swingbank" compare --system "$work/wrong.toml" --out "$work/lost" >"$work/text" || fail "three lost frames: $(tail -3 "$work/text")"

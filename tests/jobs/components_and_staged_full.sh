@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# The examples of docs/how-to/components.md and docs/how-to/staged-tests.md, word for word: what compare and calibrate say of them. And
-# what is said of a component's record without its columns.
+# The examples of docs/how-to/components.md and docs/how-to/staged-tests.md, word for word, with the verdicts of
+# compare and calibrate; and the message about missing columns of a component's record.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export PATH=$SWINGBANK_BIN:$PATH TMPDIR=$work
 
-# example FILE: runs the page's bash lines; what they say stands in `said`
+# example FILE: runs the page's bash lines; their output is in `said`
 example() {
   sed -n '/^```bash$/,/^```$/p' "$SWINGBANK_SOURCE/docs/how-to/$1" | grep -v '```' >"$work/example.sh"
   (cd "$work" && bash example.sh >said 2>said.errors)
 }
-# says PATTERN TIMES: so many lines of what was said match
+# says PATTERN TIMES: this number of output lines matches
 says() {
   [[ $(grep -cE "$1" "$work/said") == "$2" ]] ||
     fail "not $2 × '$1': $(tail -n 40 "$work/said") $(cat "$work/said.errors")"
@@ -41,7 +41,7 @@ swingbank plant --raw "$SWINGBANK_SOURCE/configs/networks/ieee14_genrou.raw" --d
 refuses "a record without V" "no column V_pu" swingbank compare --model unit.toml --record few.csv --component exciter
 refuses "a record without Efd" "no column Efd_pu" swingbank compare --model unit.toml --record few.csv --component exciter
 refuses "a record without speed" "omega_pu, speed_pu or f_pu" swingbank compare --model unit.toml --record few.csv --component exciter
-# A step of a record that is not here is said, since its name may be mistyped.
+# A staged event without its record is reported, since the name may be mistyped.
 { cat unit.toml && printf '\n[[event]]\nkind = "vref_step"\nrecord = "few.txt"\ntime = 1\nsize = 0.03\n'; } >mistyped.toml
 refuses "a mistyped record" "vref_step of few.txt is left out" swingbank compare --model mistyped.toml --record few.csv
 printf '\n[[event]]\nkind = "step"\ntime = 1\n' >>unit.toml

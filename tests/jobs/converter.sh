@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A plant that is a converter, from its .dyr through simulate and plant to compare, calibrate and diagnose's hypotheses.
+# A converter plant, from its .dyr through simulate and plant to compare, calibrate and the hypotheses of diagnose.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -31,8 +31,8 @@ for section in converter electrical_control plant_control; do
   grep -q "^\[$section\]" "$work/plant.toml" || fail "the plant file has no [$section]"
 done
 "$swingbank" export --model "$work/plant.toml" | holds -q "^32 'REGCA1' '1' 1 0.02 10 " || fail "export writes another REGCA1"
-# The run's own values are per unit of the machine's base. A converter answers within 20 ms: 240 samples a second, and the
-# instants as they are.
+# The record is per unit on the machine's base. A converter responds within 20 ms, hence 240 samples a second and the
+# exact switching times.
 sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 843.7/' "$work/plant.toml"
 compare() { "$swingbank" compare --record "$work/run.csv" --switch 1 --switch 1.1 "$@"; }
 compare --model "$work/plant.toml" --out "$work/compared" >"$work/said" ||
@@ -41,7 +41,7 @@ sed 's/^Kvi = .*/Kvi = 5.0/; s/^Kqv = .*/Kqv = 0.5/' "$work/plant.toml" >"$work/
 compare --model "$work/wrong.toml" --out "$work/wrong" >"$work/said" &&
   fail "another gain was not noticed"
 
-# A control beside the wrong kind of source.
+# A control of the wrong kind of source.
 {
   cat "$work/case.dyr"
   echo "32 'SEXS' 1 0.1 10 50 0.1 -4 5 /"
@@ -54,7 +54,7 @@ grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
 refuses "a plant control that measures nowhere" "no bus 999 for REPCA1 of plant 32 at --attach" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
-# A source that is its own control, and one behind a reactance: each explains its own run, and not with another gain.
+# A source with built-in control, and one behind a reactance: each explains its own run, but not with a wrong gain.
 explains_itself() { # NAME VALUES, records on stdin; VALUES: how its record begins
   { grep -v '^32 ' "$networks/ieee39_genrou.dyr"; cat; } >"$work/case.dyr"
   simulate --t-end 6 --rate 240 --fault 12:1:1.1 --out "$work/run.csv" >/dev/null

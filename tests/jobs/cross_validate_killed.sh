@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# cross-validate killed without warning: the processes that train for it save a checkpoint and end, and leave the
-# folder to the next start.
-# shellcheck disable=SC2154 # what lib.bash sets
+# cross-validate killed by SIGKILL: its training processes save a checkpoint and end, and release the folder for the
+# next start.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 TINY_EPOCHS=100000
 source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"

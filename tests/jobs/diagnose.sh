@@ -1,27 +1,28 @@
 #!/usr/bin/env bash
-# swingbank diagnose as a user starts it: what it writes, exit codes, and a sentence for each wrong input.
+# swingbank diagnose: output files, exit codes, and one message for each bad input.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 records=$SWINGBANK_SOURCE/configs/records/record-example
 one=$work/avr_ev1.csv two=$work/avr_ev2.csv
-# Four seconds, every other sample, hold the fault and the first swings, and take a fifth of the whole records' time.
+# Four seconds of every other sample contain the fault and the first swings, and take a fifth of the time of whole
+# records.
 for record in "$one" "$two"; do
   awk -F, '!/^[0-9]/ || (n++ % 2 == 0 && $1 <= 4)' "$records/$(basename "$record")" >"$record"
 done
 
-# the exciter that the model lacks is named, on two events
+# the missing exciter is named from two events
 status=0
 script -qefc "'$swingbank' diagnose --model '$model' --records '$one' '$two' --power-only --threads 1 --out '$work/found' --json \
   >'$work/printed.json'" "$work/terminal" >/dev/null || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
-# what a terminal shows meanwhile: the share done, or that it goes on beyond it, in a person's words
+# progress on a terminal in plain words: the share done, or that the run takes longer than planned
 tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+' >"$work/progress"
 (($(wc -l <"$work/progress") > 20)) || fail "a terminal shows no progress: $(cat "$work/progress")"
 ! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|beyond the usual course: [a-z])' "$work/progress" >"$work/inner" ||
   fail "progress without a share: $(cat "$work/inner")"
 sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the share done goes back"
-# the time left may fall, not rise: seconds of each line that tells it
+# the remaining time falls: seconds of each line that states it
 python3 - "$work/progress" <<'PYTHON'
 import re, sys
 last = None
@@ -35,7 +36,7 @@ for line in open(sys.argv[1]):
 assert last is not None, "no time left is told"
 PYTHON
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
-# the same with another number of threads, but for what the run itself is: command, time, duration
+# the same result with another number of threads, except command, time and duration
 status=0
 "$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 2 --quiet --out "$work/again" >/dev/null || status=$?
 ((status == 3)) || fail "exit code $status with two threads, expected 3"
@@ -51,7 +52,7 @@ shares = {e["name"]: e["probability"] for e in r["probabilities"]}
 assert shares["SEXS"] == max(shares.values()), shares
 PYTHON
 
-# a signal once the first sentence is told: what was fitted until then is reported, with a code of its own
+# a signal after the first sentence: the fits until then are reported, with a separate exit code
 "$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 1 --out "$work/ended" \
   >"$work/ended.txt" 2>"$work/told" &
 diagnosing=$!

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# swingbank <command> finds its commands, names the nearest to a slip, and speaks once under mpirun.
+# swingbank <command> finds its commands, suggests the most similar one for a mistyped name, and prints once under
+# mpirun.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 "$swingbank" --version | holds -qE '^swingbank [0-9]+\.[0-9]+\.[0-9]+$' || fail "--version"
@@ -20,7 +21,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 mpirun --oversubscribe -n 3 "$swingbank" --version >"$work/three" 2>&1
 [[ $(grep -c '^swingbank' "$work/three") == 1 ]] || fail "three ranks, more than one answer: $(cat "$work/three")"
 
-# The program for the widest instruction set that the processor has, unless another is asked for.
+# The program for the widest instruction set of the processor, unless another is requested.
 mkdir -p "$work/bin/x86-64-v3" "$work/bin/x86-64-v4"
 cp "$SWINGBANK_BIN/swingbank" "$work/bin"
 for folder in . x86-64-v3 x86-64-v4; do

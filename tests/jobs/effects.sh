@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank effects: the list, one effect, the same as JSON, law files, and names that do not exist.
+# swingbank effects: the list, one effect, its JSON, law files, and unknown names.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 "$swingbank" effects >"$work/list.txt"
@@ -23,12 +23,12 @@ for line in lines:
         slot = line.split(":")[0]
 everything = json.loads((work / "list.json").read_text())
 assert listed == {e["name"]: e["slot"] for e in everything}
-# Every header is there, under its slot, and nothing else.
+# Every header is listed, under its slot, and nothing else.
 headers = {}
 for header in (source / "sim/effects").glob("*.hpp"):
     text = header.read_text()
     name = re.search(r'name = "(\w+)"', text).group(1)
-    slot = re.search(r"slot = Slot::(\w+)", text)  # one built on another's file has that one's slot
+    slot = re.search(r"slot = Slot::(\w+)", text)  # an effect based on another's file has that one's slot
     headers[name] = slot.group(1) if slot else listed.get(name)
 assert headers == listed, headers.keys() ^ listed.keys()
 for e in everything:
@@ -54,7 +54,7 @@ assert "source: " in two and re.search(r"^  Efd +pu +field voltage$", two, re.M)
 
 law = (work / "law.txt").read_text()
 assert "DIPTORQUE: torque lost in a voltage dip" in law and "recovery" in law
-assert "configs/laws/torque_voltage_dip.toml" in law  # the file is its numbers' source
+assert "configs/laws/torque_voltage_dip.toml" in law  # the source of the values is the file
 assert "DIPTORQUE" in (work / "laws.txt").read_text() and "DIPTORQUE" not in listed
 PYTHON
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# examples/cpp is built in an empty folder against an installation, and its programs agree with the commands; the scripts
-# of examples/python read one file of each format.
+# examples/cpp is built in an empty folder against an installation, and its programs agree with the commands; the
+# scripts of examples/python read one file of each format.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 prefix=$work/prefix build=$(cd "$SWINGBANK_BIN/.." && pwd)
 cmake --install "$build" --prefix "$prefix" >"$work/log" 2>&1 || fail "cmake --install: $(tail -n 5 "$work/log")"
@@ -10,7 +10,7 @@ for program in "$SWINGBANK_SOURCE"/examples/cpp/*.cpp; do
   (($(wc -l <"$program") <= 40)) || fail "$program is too long for an example"
 done
 
-# -Werror: the installed headers give no warning to a program that asks for all of them.
+# -Werror: the installed headers cause no warning with all warnings enabled.
 cp -r "$SWINGBANK_SOURCE/examples/cpp" "$work/cpp"
 cmake -S "$work/cpp" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_FLAGS="-Wall -Wextra -Werror" >"$work/log" 2>&1 || fail "configuring the examples: $(tail -n 5 "$work/log")"

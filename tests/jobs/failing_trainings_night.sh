@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# One call fails in a training, at any place from the first to the last: of its checkpoint, network and result files, of the
-# dataset that it reads, of its memory. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_night.sh  (90 by default)
-# It ends in time, whole with the same result or with the reason that was injected, and one more run ends in the same result.
-# shellcheck disable=SC2154,SC2034 # what lib.bash and failing_calls.bash set; what tiny_experiment reads
+# One call fails in a training, at any position: on its checkpoint, network and result files, on its dataset, or in a
+# memory allocation. The run ends in time, complete with the same result or with the injected error; one more run
+# gives the same result. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_night.sh (90 by default)
+# shellcheck disable=SC2154,SC2034 # set by lib.bash and failing_calls.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
@@ -24,7 +24,7 @@ command() {
   esac
   run+=(--out "$work/out")
 }
-# Allocations before main, and of LibTorch's beginning: there nobody can say a word.
+# Allocations before main, and in LibTorch's initialisation: no message is possible there.
 read -r _ early < <(counts 0 "$work/none" "$SWINGBANK_BIN/swingbank-train" --experiment "$work/split.toml" --print table)
 declare -A calls
 for kind in train fold folds; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Events as they come from the field, each in a record made for it: no switching (a dip and a rise of frequency, ambient
-# load, steps of references and of reactive load), no noise or values in steps, little or restless time before the event,
-# ten minutes. All are read, and a right model is found fit for purpose and statistically complete.
+# Events under field conditions, each in a simulated record: without switching (a dip and a rise of frequency, ambient
+# load, steps of references and of reactive load), without noise or quantised, with a short or disturbed pre-event,
+# ten minutes long. All are read, and a right model is found fit for purpose and statistically complete.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks/ieee39_dataset_genrou
@@ -10,14 +10,14 @@ networks=$SWINGBANK_SOURCE/configs/networks/ieee39_dataset_genrou
   "$swingbank" effects --toml SEXS TGOV1
 } >"$work/plant.toml"
 
-# simulated NAME SECONDS RATE OPTION...: what happens to the unit at bus 32
+# simulated NAME SECONDS RATE OPTION...: events at the unit at bus 32
 simulated() {
   local name=$1 seconds=$2 rate=$3
   shift 3
   "$swingbank" simulate --raw "$networks.raw" --dyr "$networks.dyr" --attach all:SEXS --attach all:TGOV1 --rate "$rate" \
     --t-end "$seconds" --plants 32 --channels P,Q --buses 32 --out "$work/$name.csv" "$@" >/dev/null 2>&1 || fail "simulate $name"
 }
-# load_steps COUNT SECONDS SEED SIZE: loads that come and go all over the grid
+# load_steps COUNT SECONDS SEED SIZE: loads all over the grid that switch on and off
 load_steps() {
   python3 - "$@" <<'PY'
 import random, sys
@@ -60,7 +60,7 @@ right() {
 
 simulated dip 60 30 --trip-generator 38:5:0.4
 seen dip dip60 && right dip60
-# Without noise a jump of 0.002 pu matters, and is found for what it is.
+# Without noise a step of 0.002 pu matters and is found.
 seen dip dip_exact v=0 p=0 && right dip_exact
 seen dip dip_rounded step_v=1e-4 step_p=1 && right dip_rounded
 simulated rise 40 30 --load-step 20:-500:-100:5
@@ -81,7 +81,7 @@ seen fault short from=1.8 && right short
 seen fault exact v=0 p=0 && right exact
 seen fault nearly v=1e-5 p=0.008 && right nearly
 seen fault rounded step_v=1e-4 step_p=1 && right rounded
-# Two such units behind one meter: as one they are more than it can give, with --point it is right.
+# Two such units behind one meter: as one unit their power exceeds its rating; with --point the model is right.
 awk -F, -v OFS=, 'NR > 1 { $4 *= 2; $5 *= 2 } { print }' "$work/fault15.csv" >"$work/both.csv"
 cp "$work/plant.toml" "$work/twin.toml"
 printf '[[unit]]\nmodel = "plant.toml"\n[[unit]]\nmodel = "twin.toml"\nshare = 0.5\n' >"$work/point.toml"
@@ -92,7 +92,7 @@ mapfile -t steps < <(load_steps 300 600 4 4)
 simulated ten 600 30 --trip-generator 38:300:0.3 "${steps[@]}"
 seen ten ten_minutes && right ten_minutes && right ten_minutes --from 290 --until 360
 
-# A record that begins in the middle of a swing shows no state to begin with: it is refused, and says so.
+# A record that begins during a swing has no steady state to start from: it is refused with that reason.
 seen fault swing from=3
 refuses "a start in a swing" "the model starts from the steady state before the event" "$swingbank" compare \
   --model "$work/plant.toml" --records "$work/swing.csv" --out "$work/out"

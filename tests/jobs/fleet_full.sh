@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank diagnose --fleet: one sound plant among bad ones, on two ranks and then alone; what is refused.
-# shellcheck disable=SC2154 # what lib.bash sets
+# swingbank diagnose --fleet: one sound plant among bad ones, on two ranks and on one; errors.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 
@@ -36,7 +36,7 @@ PYTHON
 grep -q '^6/6 plants (100 %' "$work/ranks.log" || fail "progress: $(cat "$work/ranks.log")"
 grep -q 'adequate' "$work/ranks/sound/report.html" || fail "no report of the sound plant"
 
-# again, alone: what is there is not computed again, and the table is the same
+# again, on one rank: existing results are not computed again, and the table is the same
 before=$(stat -c %y "$work/ranks/sound/plant.json")
 expect 1 fleet "$work/fleet.toml" "$work/ranks"
 grep -q 'sound: .* (was there already)' "$work/ranks.log" || fail "computed again: $(cat "$work/ranks.log")"
@@ -44,7 +44,7 @@ grep -q 'sound: .* (was there already)' "$work/ranks.log" || fail "computed agai
 grep -q '5 failed' "$work/table" || fail "table: $(cat "$work/table")"
 [[ -z $(find "$work/ranks" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/ranks")"
 
-# a plant that takes too long is ended, and the others go on
+# a plant that exceeds its time limit is ended, and the others continue
 expect 1 fleet "$work/fleet.toml" "$work/late" 1 --plant-timeout 0.01
 grep -q 'sound: failed: The diagnosis took longer than 0.01 s' "$work/late.log" || fail "no limit: $(cat "$work/late.log")"
 grep -q '6 failed' "$work/table" || fail "table: $(cat "$work/table")"

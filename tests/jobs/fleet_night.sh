@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A fleet whose run is killed, stopped or loses one diagnosis ends in the same table as an unbroken run.
-# shellcheck disable=SC2154 # what lib.bash sets
+# A fleet that is killed, stopped or loses one diagnosis ends in the same table as an undisturbed run.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"
 
@@ -19,10 +19,11 @@ folder = sys.argv[1]
 plants = {p["plant"]: p for p in json.load(open(folder + "/fleet.json"))["plants"]}
 for name in ("p1", "p2", "p3"):
     p = plants[name]
-    # two events of six seconds hardly tell one exciter from another
+    # two events of six seconds hardly distinguish exciters
     assert p["verdict"] in ("missing", "confusable") and p["side"] == "excitation", p
     assert "SEXS" in p["effects"][:1] + p["equivalent"], p
-    # the field without an exciter leaves tens of sigma; with it nothing but noise is left on events not fitted to
+    # without an exciter the residual of the field is tens of sigma; with it only noise remains on events outside the
+    # fit
     assert p["unseen_normalised_rms_before"] > 10 and p["unseen_normalised_rms_after"] < 1.1, p
 rows = {r["plant"]: r for r in csv.DictReader(open(folder + "/fleet.csv"))}
 assert rows["p1"]["effects"].startswith("SEXS"), rows["p1"]
@@ -40,10 +41,10 @@ wait_for() {
   done
   fail "no $2 plants after 25 minutes: $(cat "$1.log")"
 }
-# of_fleet FOLDER: processes that work for it
+# of_fleet FOLDER: its processes
 of_fleet() { pgrep -f -- "--fleet $work/fleet.toml .*--out $1" || true; }
 
-# kill -9 of every process, when one plant is done and another under way
+# kill -9 of every process when one plant is finished and another is running
 fleet "$work/fleet.toml" "$work/killed" 2 >"$work/table" &
 started=$!
 wait_for "$work/killed" 1
@@ -58,7 +59,7 @@ expect 1 fleet "$work/fleet.toml" "$work/killed" 3
 same_table "$work/whole" "$work/killed"
 [[ -z $(find "$work/killed" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/killed")"
 
-# a signal: what is under way is finished, no more is begun, exit code 2
+# a signal: running diagnoses finish, no new one starts, exit code 2
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
 started=$!
 wait_for "$work/soft" 1
@@ -69,7 +70,7 @@ wait "$started" || code=$?
 grep -q 'run the same command again' "$work/table" || fail "after SIGUSR1: $(cat "$work/table")"
 (($(done_in "$work/soft") < 3)) || fail "stopped too late to prove anything"
 
-# one diagnosis is killed: its plant fails with a word about it, the others are done; the next run mends it
+# one diagnosis is killed: its plant fails with a message, the others finish; the next run repairs it
 rm -rf "$work/soft/p3"
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
 started=$!
@@ -88,7 +89,7 @@ grep -q '2 failed' "$work/table" || fail "others failed too: $(cat "$work/table"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
 same_table "$work/whole" "$work/soft"
 
-# other inputs of the same name are diagnosed again, and only they
+# only modified inputs of the same name are diagnosed again
 sed -i 's/^0.05,[^,]*/0.05,1.045/' "$work/records/e4.csv"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
 (($(grep -c 'was there already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Each exciter of the list hidden with values far from its standard ones, at sizes of some 20, 100 and up to 1,000 times the
-# noise. It stands first, or in what makes up 95 %, or beside it where several others do the same; below 1 % it is
-# lost, and none may be. Some: SWINGBANK_SIZES="10" (in detection limits of 10).
-# SWINGBANK_KEEP=FOLDER keeps cases and verdicts there, and goes on with what is there.
-# shellcheck disable=SC2154 # what lib.bash sets
+# Each exciter of the list is hidden with values far from its defaults, at sizes of some 20, 100 and up to 1,000 times
+# the noise. It must rank first, be in the 95 % set, or be equivalent to several others; below 1 % it counts as lost,
+# and none may be lost. A selection: SWINGBANK_SIZES="10" (in detection limits of 10). SWINGBANK_KEEP=FOLDER keeps
+# cases and verdicts there and continues from them.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 config=$SWINGBANK_SOURCE/configs/blind/exciters.toml

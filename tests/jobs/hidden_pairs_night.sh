@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Two effects hidden together, in three cases of a spent seed whose search meets each effect beside another partner first: the true
-# pair is in what makes up 95 % (docs/decisions/61-diagnosis-on-a-reduced-plant.md). It was in none of the sets before partners were exchanged.
-# SWINGBANK_KEEP=FOLDER keeps cases and diagnoses there, and goes on with what is there.
-# shellcheck disable=SC2154 # what lib.bash sets
+# Two effects hidden together, in three cases of a used seed in which the search first combines each effect with
+# another partner. The true pair must be in the 95 % set (docs/decisions/61-diagnosis-on-a-reduced-plant.md); without
+# the exchange of partners it was in none. SWINGBANK_KEEP=FOLDER keeps cases and diagnoses there and continues from
+# them.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 run=${SWINGBANK_KEEP:-$work/pairs}

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# No command destroys an input: an output that is an input is refused before the work, and every input stays as it was.
+# No command destroys an input: an output that equals an input is refused at the start, and every input stays
+# unchanged.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 configs=$SWINGBANK_SOURCE/configs

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# cmake --install into a scratch prefix: from an empty folder the commands, the README's example, the man pages and the
-# completion work there; it builds nothing.
+# cmake --install into a scratch prefix. From an empty folder the commands, the README's example, the man pages and
+# the completion work there; the installation builds nothing.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 prefix=$work/prefix build=$(cd "$SWINGBANK_BIN/.." && pwd)
 
@@ -9,7 +9,7 @@ built >"$work/before"
 cmake --install "$build" --prefix "$prefix" >"$work/log" 2>&1 || fail "cmake --install: $(tail -n 5 "$work/log")"
 built | cmp - "$work/before" || fail "cmake --install built a program again"
 
-# Every command, and nothing of tests and benchmarks.
+# Every command, but no tests or benchmarks.
 programs() { (cd "$1" && find . -maxdepth 1 -name 'swingbank*' -printf '%f\n' | sort); }
 cmp <(programs "$SWINGBANK_BIN") <(programs "$prefix/bin") || fail "the installed programs are not those that were built"
 others=$(find "$prefix/bin" -not -name 'swingbank*' -type f)
@@ -29,19 +29,19 @@ swingbank effects >"$work/effects"
 grep -q '^  SEXS ' "$work/effects" || fail "swingbank effects does not list SEXS"
 [[ $(swingbank configs) == "$(realpath "$prefix")/share/swingbank/configs" ]] || fail "configs: $(swingbank configs)"
 
-# What is not there is told with where it was looked for, and with the example; nothing is written.
+# A missing file is reported with the searched folders and with the example; nothing is written.
 model=configs/plants/ieee14_bus2.toml records=configs/records/record-example/avr_ev1.csv
 refuses "no model" "looked for in $work/empty.*$prefix/share/swingbank/$model" swingbank compare --model $model --records $records
 [[ -z $(ls) ]] || fail "left behind: $(ls)"
 
-# The README's lines: the examples copied, then its own arguments. `compare` takes seconds where `diagnose` takes minutes.
+# The README's lines: copies the examples, then uses its arguments. `compare` takes seconds, `diagnose` minutes.
 copy="cp -r \"\$(swingbank configs)\" ."
 grep -qF "$copy" "$SWINGBANK_SOURCE/README.md" || fail "the README does not say: $copy"
 eval "$copy"
 read -r -a example < <(sed -n 's/^swingbank diagnose \(--model .*\) --power-only --out diagnosis$/\1/p' "$SWINGBANK_SOURCE/README.md")
 ((${#example[@]} == 4)) || fail "the README's example is not found: ${example[*]}"
 status=0
-# shellcheck disable=SC2068 # the pattern becomes the names of the files
+# shellcheck disable=SC2068 # the pattern expands to the files
 swingbank compare ${example[@]} --out report >"$work/compare" 2>&1 || status=$?
 ((status == 3)) || fail "compare: exit code $status: $(tail -n 5 "$work/compare")"
 [[ -s report/report.html ]] || fail "compare wrote no report"
@@ -58,7 +58,7 @@ for command in compare effects; do
   done
 done
 
-# complete WORD...: what TAB offers behind the words, the last of them unfinished
+# complete WORD...: completions after the words, the last of which is unfinished
 complete_after() {
   bash -c '
     source "$1"; shift

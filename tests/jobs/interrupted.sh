@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A stop signal ends calibrate, add, compare and diagnose with exit code 2, whenever it comes; what was reached is written
-# under names that say that it is interrupted, and results of an earlier run stay.
+# A stop signal at any time ends calibrate, add, compare and diagnose with exit code 2. Results so far are written
+# under names that mark them as interrupted; results of an earlier run stay.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
@@ -9,7 +9,7 @@ cd "$work"
 mkdir out
 echo earlier >out/model.toml
 
-# interrupted WORDS COMMAND...: sends SIGINT once stderr holds WORDS (empty: as soon as the program has begun)
+# interrupted WORDS COMMAND...: sends SIGINT once stderr contains WORDS (empty: as soon as the program has started)
 interrupted() {
   local words=$1 status=0 pid
   shift

@@ -1,7 +1,7 @@
-# To be sourced after lib.bash: a run that is killed on its way.
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; `pid` is for those who source this
+# To be sourced after lib.bash: kills a run after a given time.
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; `pid` is for those who source this
 
-# begin_and_kill WAY MS COMMAND...: begins it in the background as a process group of its own, sets `pid`, and after so many
+# begin_and_kill WAY MS COMMAND...: starts it in the background as its own process group, sets `pid`, and after MS
 # milliseconds kills the process, one child, the whole group, or the group with one child stopped before.
 begin_and_kill() {
   local way=$1 at=$2 child

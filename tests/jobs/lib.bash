@@ -17,7 +17,7 @@ fail() {
   exit 1
 }
 
-# cases_of_others: $cases, the folder of public PSS/E cases, which are not part of this repository
+# cases_of_others: sets $cases, the folder of public PSS/E cases, which are not part of this repository
 cases_of_others() {
   local folder=${SWINGBANK_REFERENCE:-$SWINGBANK_SOURCE/../shared/reference}/../cases
   [[ -d $folder ]] || fail "no cases at $folder (they are not part of this repository): set SWINGBANK_REFERENCE to the" \
@@ -26,10 +26,10 @@ cases_of_others() {
   cases=$folder
 }
 
-# | holds -q PATTERN: grep that reads to the end, since a program whose pipe is closed early fails by SIGPIPE
+# | holds -q PATTERN: grep that reads all input, since a program whose pipe is closed early fails by SIGPIPE
 holds() { grep "$@" <<<"$(cat)"; }
 
-# Gives the test its own view of the mounts, so that it can have a full and a read-only disk; they vanish with it.
+# Gives the test its own mount namespace for a full and a read-only disk; the mounts end with the test.
 own_mounts() {
   if [[ -n ${SWINGBANK_OWN_MOUNTS:-} ]]; then return; fi
   export SWINGBANK_OWN_MOUNTS=1
@@ -46,7 +46,7 @@ disk() {
   disks+=("$1")
 }
 
-# leaves_nothing FOLDER: what failed must not leave a file under any name
+# leaves_nothing FOLDER: a failed command must leave no file
 leaves_nothing() {
   local left
   left=$(find "$1" -type f)
@@ -56,10 +56,10 @@ leaves_nothing() {
 # An error message is one sentence: "<what> at <where> (<why>): <what to do>".
 sentence='.+ at .+ \(.+\): .+'
 
-# refuses NAME PATTERN COMMAND...: the command must fail with a sentence that matches PATTERN
+# refuses NAME PATTERN COMMAND...: the command must fail with a message that matches PATTERN
 refuses() { refuses_with 1 "$sentence" "$@"; }
 
-# misused NAME PATTERN COMMAND...: wrong options are told with a pointer to --help
+# misused NAME PATTERN COMMAND...: the message about wrong options refers to --help
 misused() { refuses_with 1 '--help' "$@"; }
 
 refuses_with() {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Bus ties, star points and cut-off buses of a small case, as a user meets them in swingbank simulate and plant.
+# Bus ties, star points and disconnected buses of a small case in swingbank simulate and plant.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
-# case_of NAME BRANCH TRANSFORMER...: $work/NAME.raw, four buses and what is given; bus 4 has the load
+# case_of NAME BRANCH TRANSFORMER...: $work/NAME.raw, four buses and the given branches; bus 4 has the load
 case_of() {
   local name=$1 branch=$2
   shift 2
@@ -45,7 +45,7 @@ for x in 0.0 1e-9 1e-7 1e-6; do
   done
 done
 
-# Three windings: the star point has number 5 inside, which no user has given.
+# Three windings: the star point has the internal number 5, which does not occur in the file.
 case_of three "3,4,'1',0.01,0.08" "2,3,4,'1',1,1,1,0,0,2,'',1" \
   0.01,0.10,100,0.02,0.20,100,0.03,0.30,100,1.0,0.0 1.0 1.025 1.0
 said=$(simulate three "${fault[@]}" 2>&1) || fail "zero star leg: $said"
@@ -57,7 +57,7 @@ simulate three --buses 5 >/dev/null 2>"$work/said" && fail "--buses 5 was taken"
 grep -q 'no bus 5' "$work/said" || fail "--buses 5: $(cat "$work/said")"
 simulate three --trip 2:5:1:1 >/dev/null 2>"$work/said" && fail "--trip 2:5:1:1 was taken"
 grep -q 'no bus 5' "$work/said" || fail "--trip 2:5:1:1: $(cat "$work/said")"
-# The winding at bus 2 carries the unit alone: either way it is cut off, and runs on without load.
+# The winding at bus 2 connects only the unit: either way it is disconnected and runs on without load.
 for trip in 2:3:1:1 2:3:4:1:1 4:3:2:1:1:1.1; do
   said=$(simulate three --trip "$trip" --integrator lanes 2>&1) || fail "--trip $trip: $said"
 done
@@ -65,7 +65,7 @@ simulate three --trip 2:3:1:1 --channels P >/dev/null 2>&1
 p=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "2.P_pu") column = i } NR == 63 { print $column }' "$work/three.csv")
 below "${p#-}" 1e-6 || fail "the unit behind its open winding delivers $p pu"
 
-# A cut-off load is shed and told; what is left runs on.
+# A disconnected load is shed and reported; the rest of the grid runs on.
 case_of radial "3,4,'1',0.01,0.08" "$gsu" 0.003,0.09,100 1.0 1.0
 for integrator in reference lanes; do
   said=$(simulate radial --trip 1:4:1:1 --trip 3:4:1:1 --integrator $integrator 2>&1) || fail "shed load: $said"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank night-plan: what a preset costs, and the preset that some hours allow.
-# shellcheck disable=SC2154 # what lib.bash sets
+# swingbank night-plan: the cost of a preset, and the preset for a given number of hours.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What moved beyond its noise is named, what did not is not, and nothing is claimed from too few nights.
+# Changes beyond the noise are named, others are not, and too few nights give no statement.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 # night DATE MSE-30 MSE-31

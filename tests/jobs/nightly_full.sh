@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# jobs/nightly.sh at tiny size: two nights, a night of some seconds that is broken off and goes on in its sizes, a double
+# jobs/nightly.sh at tiny size: two nights, a short night that is interrupted and continues in its sizes, a double
 # run, a failure.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
@@ -16,7 +16,7 @@ grep -q '| V | mlp | 0 | 31 | quick | .* | new |' "$out/2026-02-01/report.md" ||
 grep -q '^### Table V' "$out/2026-02-01/report.md" || fail "no table in the report: $(cat "$out/2026-02-01/report.md")"
 [[ ! -e $out/2026-02-01/tiny/data && ! -e $out/2026-02-01/tiny/training-data ]] || fail "the events were to be removed"
 
-# Broken off after the events are there, the night goes on and trains with its own seed.
+# Interrupted after the events are complete, the night continues and trains with its own seed.
 bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml" --preset quick --stage generate \
   --out "$out/2026-02-02/tiny" >/dev/null 2>&1
 touch "$work/before"
@@ -27,12 +27,12 @@ grep -q 'no verdict before 3 nights' "$out/2026-02-02/report.md" || fail "report
 first=$(find "$out/2026-02-01" -name '*gru*gen30.json') second=$(find "$out/2026-02-02" -name '*gru*gen30.json')
 [[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
 
-# A night with a blind case: it is made, judged, counted.
+# A night with a blind case: it is made, judged and counted.
 BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "night with a blind case: $(tail "$work/log")"
 grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 
-# A night of a few seconds, of two seeds, is broken off in training and goes on in the sizes that it began with.
-# Nothing is left for tests, blind cases and fuzz targets.
+# A night of a few seconds with two seeds is interrupted in training and continues in its original sizes. No time
+# remains for tests, blind cases and fuzz targets.
 sed 's/preset\.quick/preset.nightly/' "$work/tiny.toml" >"$work/short.toml"
 short() {
   bash "$SWINGBANK_SOURCE/jobs/nightly.sh" --out "$work/short" --hours "$1" --seeds 2 --date 2026-02-05 "$work/short.toml" \
@@ -57,8 +57,8 @@ for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^|
   grep -q "$wanted" "$work/short/2026-02-05/report.md" || fail "no '$wanted' in: $(cat "$work/short/2026-02-05/report.md")"
 done
 
-# Four hours are enough for the tests, but not where a night before says that they took longer. One that was broken off
-# in its tests says nothing.
+# Four hours suffice for the tests, unless an earlier night took longer for them. A night interrupted in its tests
+# does not count.
 for told in '2026-02-06 99999 all passed' '2026-02-07 1 broken off'; do
   read -r date took end <<<"$told"
   mkdir -p "$work/told/$date"

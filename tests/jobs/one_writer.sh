@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two commands do not write into one folder: the second is refused while the first works, and runs once it has ended.
+# Two commands cannot write into one folder: the second is refused while the first runs, and runs afterwards.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 configs=$SWINGBANK_SOURCE/configs

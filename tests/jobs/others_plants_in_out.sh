@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank plant and export: units of public PSS/E cases out of them and back.
+# swingbank plant and export: units of public PSS/E cases, extracted and written back.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 cases_of_others
 
@@ -11,7 +11,7 @@ there_and_back() {
     fail "$name: $(cat "$work/notes")"
   "$swingbank" export --model "$work/$name.toml" --out "$work/$name.dyr" >/dev/null
   local again=()
-  while (($# > 0)); do # nothing is left to drop or replace
+  while (($# > 0)); do # nothing remains to drop or replace
     case $1 in
     --drop | --replace) shift 2 ;;
     *) again+=("$1") && shift ;;

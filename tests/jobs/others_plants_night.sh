@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Plants of public PSS/E cases, with the values that their makers gave them: one control at a time is taken out of the
-# model, three simulated faults with noise are the records, and a diagnosis names what was taken, or the effect that it
-# is a variant of, among what makes up 95 %. SWINGBANK_PLANTS=REGEX runs some of them; no more than one may be
-# missed: bus 31 of griddyn_ieee39 stands at its exciter's limit.
+# Plants of public PSS/E cases with their original values. One control at a time is removed from the model; the
+# records are three simulated faults with noise. The 95 % set of the diagnosis must contain the removed control, or
+# the effect of which it is a variant. SWINGBANK_PLANTS=REGEX selects plants. At most one may be missed: bus 31 of
+# griddyn_ieee39 is at its exciter's limit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 cases_of_others
 
-# as_records FAULT... : $work/event<k>.csv of the unit $plant, as a PMU would write it: noise of 0.02 % on V, of
-# 0.1 % of the unit's MVA on P and Q, of 0.01 degrees on the angle
+# as_records FAULT... : $work/event<k>.csv of the unit $plant, as from a PMU: noise of 0.02 % on V, of 0.1 % of the
+# unit's MVA on P and Q, of 0.01 degrees on the angle
 as_records() {
   local k=0 fault
   for fault in "$@"; do

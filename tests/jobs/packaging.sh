@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# packaging/: the Apptainer definition and the Spack package, as far as that goes without Apptainer and Spack; ranks of
+# packaging/: the Apptainer definition and the Spack package, as far as possible without Apptainer and Spack; ranks of
 # another MPI's launcher are refused.
-# shellcheck disable=SC2154 # what lib.bash sets
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 folder=$SWINGBANK_SOURCE/packaging
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The page of a verdict: what stands on it, names that would break it, and printed as PDF; what is said meanwhile.
+# The page of a verdict: its content, names that would break it, and its PDF; the progress messages.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-# shellcheck disable=SC2154 # what verdict.bash sets
+# shellcheck disable=SC2154 # set by verdict.bash
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
-# every command writes a page; a name that is no UTF-8, or a tag, costs nothing
+# every command writes a page; names with invalid UTF-8 or a tag are harmless
 sed 's|^name = .*|name = "</script><b>"|' "$bent" >"$work/tag.toml"
 cp "$one" "$work/"$'ev\xff<i>.csv'
 gives 3 '^Fit for purpose: no' "$swingbank" compare --model "$work/tag.toml" --records "$work/"$'ev\xff<i>.csv' --by 'A. Engineer'
@@ -23,14 +23,14 @@ for words in 'Glossary' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SH
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
 done
 
-# at a phone's width of 390 px the fitness table, the page's first, is seen whole; on A4 every table is
+# at a phone's width of 390 px the first table (fitness) fits; on A4 every table fits
 if command -v chromium >/dev/null; then
-  # too_wide WIDTH MEDIA: the tables that WIDTH px do not hold, by their place on the page
+  # too_wide WIDTH MEDIA: tables wider than WIDTH px, by their index on the page
   too_wide() {
     python3 - "$work/out/report.html" "$work/measured.html" "$1" "$2" <<'PYTHON'
 import re, sys
 page, width, media = open(sys.argv[1]).read(), sys.argv[3], sys.argv[4]
-page = re.sub(r"(<td class=.cell[^>]*>)[^<]* of [^<]*", r"\1-11.06 of ±5 % *", page)  # as wide as they come
+page = re.sub(r"(<td class=.cell[^>]*>)[^<]* of [^<]*", r"\1-11.06 of ±5 % *", page)  # the widest possible value
 page = page.replace(media, "@media all", 1).replace("</main>", """</main><script>addEventListener('load', () => {
   document.body.style.width = '%spx';
   const room = document.querySelector('main').clientWidth - 2 * parseFloat(getComputedStyle(document.querySelector('main')).paddingLeft);
@@ -43,7 +43,7 @@ PYTHON
   }
   [[ $(too_wide 390 '@media(max-width:600px)') =~ ^over:[^0]*\;$ ]] || fail "the fitness table is wider than a phone: $(too_wide 390 '@media(max-width:600px)')"
   [[ $(too_wide 718 '@media print') =~ ^over:\ *\;$ ]] || fail "wider than A4: $(too_wide 718 '@media print')"
-  # in print a table that a page cannot hold goes on overleaf, a short one stays whole, and a heading stays with what it heads
+  # in print a long table continues on the next page, a short one stays whole, and a heading stays with its content
   python3 - "$work/out/report.html" "$work/printed.html" <<'PYTHON'
 import sys
 page = open(sys.argv[1]).read()
@@ -58,7 +58,7 @@ PYTHON
   [[ $breaks == 'breaks:avoid,auto,avoid;' ]] || fail "a short table, a long one and a heading break in print as $breaks"
 fi
 
-# the page as PDF, printed; --quiet says nothing but the result; progress on a terminal is in a person's words
+# the page as PDF, printed; --quiet prints only the result; progress on a terminal is in plain words
 if command -v chromium >/dev/null; then
   gives 3 '^Fit for purpose: no' compare --model "$bent" --pdf "$work/page #1.pdf" --quiet
   [[ $(head -c 5 "$work/page #1.pdf") == %PDF- && ! -s $work/notes ]] || fail "no PDF, or --quiet told: $(cat "$work/notes")"

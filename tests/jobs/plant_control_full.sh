@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A converter plant behind a cable whose plant control holds the voltage of the point where it joins the grid, where it is
-# recorded: with a point file the model taken from the case is adequate, and it is not where the control is held to
+# A converter plant behind a cable, with a plant control of the voltage at the point of common coupling, where it is
+# recorded. With a point file the model from the case is adequate; it is inadequate if the control is assumed to
 # measure at the converter's own bus.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
@@ -26,7 +26,7 @@ cat >"$work/case.dyr" <<'END_OF_DYR'
 END_OF_DYR
 "$swingbank" simulate --raw "$work/case.raw" --dyr "$work/case.dyr" --fault 103:2:2.1:0:0.3 --rate 60 --t-end 12 --plants 104 \
   --channels P,Q --buses 102,104 --out "$work/run.csv" >"$work/said" 2>&1 || fail "simulate: $(cat "$work/said")"
-# V and angle of the point, and P and Q into it: what comes out of the cable; noise of 0.02 % and 0.1 MW
+# V and angle of the point, and P and Q into it at the end of the cable; noise of 0.02 % and 0.1 MW
 awk -F, 'function noise() { return sqrt(-2 * log(1 - rand())) * cos(6.2831853 * rand()) }
   NR == 1 { srand(1); print "t_s,V_pu,theta_rad,P_MW,Q_Mvar"; next }
   { ar = $4 * cos($5); ai = $4 * sin($5); br = $6 * cos($7); bi = $6 * sin($7)

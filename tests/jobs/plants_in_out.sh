@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# swingbank inventory, plant and export: a unit out of its case and back as records of PSS/E and of PSLF
-# (others_plants_in_out.sh: of cases of others).
+# swingbank inventory, plant and export: a unit extracted from its case and written back as PSS/E and PSLF records
+# (public cases: others_plants_in_out.sh).
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
 raw=$networks/ieee39_genrou.raw dyr=$networks/ieee39_genrou.dyr
 
-# Out, back, out again: the same file.
+# Extracted, exported, extracted again: the same file.
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 --out "$work/plant.toml" >"$work/said"
 grep -q "^wrote $work/plant.toml" "$work/said" || fail "plant says: $(cat "$work/said")"
 "$swingbank" export --model "$work/plant.toml" --out "$work/plant.dyr" >/dev/null
@@ -16,7 +16,7 @@ cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fai
 cmp <("$swingbank" export --model "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
 "$swingbank" export --model "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
 
-# A case without nominal voltages (1 kV at every bus) gives no base of volts, and says so.
+# A case without nominal voltages (1 kV at every bus) gives no voltage base, which is reported.
 sed "s/', 345, /', 1, /" "$raw" >"$work/per_unit.raw"
 "$swingbank" plant --raw "$work/per_unit.raw" --dyr "$dyr" --bus 32 >"$work/per_unit.toml" 2>"$work/notes"
 grep -q '^base_kv' "$work/per_unit.toml" && fail "1 kV is taken for a nominal voltage"
@@ -32,7 +32,7 @@ status=0
 [[ $(grep -c 'add base_kv under \[record\]' "$work/words") == 1 ]] || fail "the missing base_kv is named otherwise than once: $(cat "$work/words")"
 grep -q 'kv1.csv.*kv2.csv' "$work/words" || fail "the missing base_kv is not named for both records"
 
-# Out as PSLF's and back: the same plant, with controls; the .dyd's Ra and mva count.
+# Exported to PSLF and read back: the same plant, with controls; Ra and mva of the .dyd take precedence.
 {
   cat "$work/plant.toml"
   "$swingbank" effects --toml SEXS TGOV1
@@ -51,7 +51,7 @@ refuses "neither" "no dynamic models" "$swingbank" plant --raw "$raw" --bus 32
 sed '/^base_kv/d' "$work/controlled.toml" >"$work/no_kv.toml"
 refuses "no kV" "no nominal voltage" "$swingbank" export --model "$work/no_kv.toml" --format dyd
 
-# Unknown records of others do not matter; its own are named with their line, and dropped or replaced.
+# Unknown records of other units are ignored; those of the unit are named with their line, and dropped or replaced.
 {
   cat "$dyr"
   echo "30 'STRANGE' 1 1 2 3 /"
@@ -78,7 +78,7 @@ refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingb
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
 grep -q '^10 units: 5 wholly covered (50.0 %), 5 in part' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
-# A header without a frequency: no rotor turns in a count.
+# A header without a frequency: a count of rotors has none either.
 sed '1s/, 60$/,/' "$raw" >"$work/silent.raw"
 "$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 wholly covered' || fail "inventory without a frequency"
 refuses "no frequency" 'say it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
@@ -89,7 +89,7 @@ j = json.load(sys.stdin)
 assert (j['units'], j['covered']) == (10, 5)
 assert [m['not_covered'] for m in j['models'] if m['name'] == 'STRANGE'] == [4]" || fail "inventory --json"
 
-# Several names with commas; files in each other's place; a file that is cut off; records that are too short.
+# Several names with commas; files in each other's place; a truncated file; records that are too short.
 "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --ignore-model STRANGE,ESAC9Z --t-end 0.1 --out "$work/x.csv" >/dev/null 2>&1 ||
   fail "--ignore-model with commas"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z,STRANGE >/dev/null 2>"$work/notes" || fail "--drop with commas"
@@ -109,7 +109,7 @@ refuses "a short record" "SEXS with 5 parameters .*--complete-records" "$swingba
 grep -q 'has 5 of 6 values: EMAX = 0 ' "$work/notes" || fail "the value is not named: $(cat "$work/notes")"
 grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (SEXS's is usually " "$work/notes" || fail "an unusual value: $(cat "$work/notes")"
 
-# A block to paste makes a plant.
+# A block from `effects --toml` makes a plant.
 {
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
   "$swingbank" effects --toml GENROU IEEET1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank predict: estimates from records are those that the network made of the same rows when it was judged.
+# swingbank predict: estimates from records equal those of the network on the same rows when it was judged.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1
@@ -29,7 +29,7 @@ Ra = 0.0
 Xdp = 0.3
 TOML
 
-# Every row of the generator left out as a record of its own. P and Q are on the machine's base already.
+# Every row of the excluded generator as a separate record. P and Q are already on the machine's base.
 /usr/bin/python3 - "$work" <<'PYTHON'
 import glob, sys
 import h5py, numpy
@@ -47,13 +47,13 @@ for path in sorted(glob.glob(f"{work}/data/shards/*.h5")):
         t = numpy.arange(x.shape[1]) / 60
         write(f"row-{n:03d}", t, x)
         if n == 0:
-            # The same, seen by an instrument with its own clock, rate and base, after more rest.
+            # The same from an instrument with another clock, rate and base, after a longer pre-event.
             fine = numpy.arange(-120, 2 * len(t) - 1) / 120
             y = numpy.array([numpy.interp(fine, t, c) for c in x])
             y[:2] *= 100 / 250
             write("other", fine + 17, y)
         if abs(x[3]).min() > gentlest:
-            # All swings three times as large: nothing of the kind was trained on.
+            # All swings three times as large: outside the training data.
             gentlest = abs(x[3]).min()
             write("wild", t, x[:, :1] + 3 * (x - x[:, :1]))
         truth.append(shard["parameters"][i])
@@ -77,11 +77,11 @@ estimates = numpy.array([r["estimates"] for r in every["records"]])
 assert estimates.shape == truth.shape and len(truth) == result["test_rows"], (estimates.shape, result["test_rows"])
 mse = ((estimates - truth) ** 2).mean(axis=0)
 said = [p["mse"] for p in result["per_parameter"]]
-# Records hold nine digits of single-precision values; the steady level is their median, not their first sample.
+# Records have nine digits of single-precision values; the steady level is their median, not their first sample.
 assert numpy.allclose(mse, said, rtol=2e-3), (mse, said)
 assert one["records"][0]["estimates"] == every["records"][0]["estimates"]
 assert abs(one["records"][0]["event_s"] - 0.5) < 0.02, one
-# Another clock and rate move the found event by less than a sample, 17 ms of a 1 s window.
+# Another clock and rate move the detected event by less than a sample, 17 ms of a 1 s window.
 a, b = (numpy.array([p["estimate"] for p in j["parameters"]]) for j in (one, other))
 assert numpy.allclose(a, b, rtol=0.02), (a, b)
 assert abs(other["records"][0]["event_s"] - 17.5) < 0.02 and other["records"][0]["held_before_record_s"] == 0
@@ -89,7 +89,7 @@ assert every["parameters"][0]["name"] == "H" and every["parameters"][0]["spread"
 assert every["parameters"][0]["unit"] == "s" and every["parameters"][0]["effect"] == "GENCLS"
 PYTHON
 
-# What cannot be estimated is told.
+# Impossible estimates are reported.
 predict() { "$swingbank" predict --network "$network" --model "$work/plant.toml" "$@"; }
 cut -d, -f1-3,5,6 "$work/row-000.csv" >"$work/no-speed.csv"
 refuses "channel that was not measured" 'channel speed at no-speed.csv' predict --records "$work/no-speed.csv"
@@ -106,7 +106,8 @@ refuses "truncated network" 'cut.network .its checksum is wrong' "$swingbank" pr
 refuses "another machine model" 'the network was trained on GENCLS' "$swingbank" predict --network "$network" --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" --records "$work/row-000.csv"
 misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nonsense 3
 
-# calibrate asks the network by itself: its estimate is a start, and stands beside the fit; what is held out is not shown to it
+# calibrate runs the network itself: its estimate is a start and is reported with the fit; held-out events are not
+# used
 sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 100.0/' "$work/plant.toml"
 status=0
 "$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --hold-out row-003 --network "$network" --draws 0 --starts 0 \

@@ -23,7 +23,7 @@ same=(sed '/^#/d; /^origin/d; /^name/d')
 "$swingbank" plant --epc "$epc" --dyd "$dyd" --bus 32 --frequency-hz 60 2>/dev/null | "${same[@]}" >"$work/pslf.toml"
 cmp "$work/psse.toml" "$work/pslf.toml" || fail "the plant is another: $(diff "$work/psse.toml" "$work/pslf.toml")"
 
-# The .dyd's base counts, and what it holds beside machines is named.
+# The .dyd's base takes precedence, and its records other than machines are named.
 sed '/^genrou 32 /s/mva=[^ ]*/mva=900/' "$dyd" >"$work/other.dyd"
 echo 'cmpldw 8 "BUS 8" 345 "1 " : #9 1 2 3' >>"$work/other.dyd"
 "$swingbank" simulate --epc "$epc" --dyd "$work/other.dyd" --frequency-hz 60 --t-end 0.1 --out "$work/other.csv" >"$work/said" 2>&1

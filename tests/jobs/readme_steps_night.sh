@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The README's own lines, word for word: the example's diagnosis, and the steps for one's own plant. Every way to the
-# diagnosis ends in the same verdict, also the one by a calibration that did not hold.
+# The README's commands, word for word: the example's diagnosis, and the steps for the user's plant. Every way to the
+# diagnosis must end in the same verdict, even through an inadequate calibration.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export PATH=$SWINGBANK_BIN:$PATH
 readme=$SWINGBANK_SOURCE/README.md
@@ -12,7 +12,7 @@ cp configs/networks/ieee14_genrou.raw configs/networks/mine.raw
 cp configs/networks/ieee14_genrou.dyr configs/networks/mine.dyr
 for k in 1 2 3 4; do cp "configs/records/record-example/avr_ev$k.csv" "event$k.csv"; done
 
-# step EXIT PATTERN: runs the README's line that matches, which must end with that exit code
+# step EXIT PATTERN: runs the README's line that matches, which must end with this exit code
 step() {
   local expected=$1 pattern=$2 line status=0
   line=$(grep -E "^ *swingbank $pattern" "$readme" | sed 's/^ *//')
@@ -21,7 +21,7 @@ step() {
   eval "$line" >said 2>said.errors || status=$?
   ((status == expected)) || fail "exit code $status, expected $expected: $line: $(tail -n 5 said said.errors)"
 }
-# verdict FOLDER: what a diagnosis accepted
+# verdict FOLDER: the accepted effects of a diagnosis
 verdict() {
   python3 -c "
 import json, sys
@@ -47,7 +47,7 @@ grep -q '^next: .*swingbank diagnose --model configs/plants/mine.toml' said || f
 step 0 'export'
 grep -q "^2 'GENROU' '1' " mine_unit.dyr || fail "export: $(cat mine_unit.dyr)"
 
-# Diagnosed from the bent model: the same as from the original.
+# Diagnosis of the biased model: the same as of the original.
 status=0
 swingbank diagnose --model calibrated/model-not-adequate.toml --records event*.csv --out bent >said 2>said.errors || status=$?
 ((status == 3)) || fail "diagnose of the bent model: exit code $status: $(tail -n 5 said.errors)"

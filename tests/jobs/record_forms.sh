@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One record in the forms in which instruments, historians and spreadsheets write it: units of time, time stamps, words
-# for no value, separators, frames of zeros, phases, COMTRADE of each revision. Each is compared as the plain record is;
-# what cannot be read is refused in one sentence each.
+# One record in the formats of instruments, historians and spreadsheets: units of time, time stamps, words for missing
+# values, separators, frames of zeros, phases, COMTRADE of each revision. The comparison must equal that of the plain
+# record; unreadable files are refused with one message each.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks/ieee39_dataset_genrou
@@ -104,8 +104,7 @@ write("short.csv", "t_s", lambda t: f"{t:.6f}", frames=frames[:3], folder="refus
 (work / "refused" / "status.dat").write_text("1,0,0,0\n2,16667,0,0\n")
 PY
 
-# Read: the errors of P and Q are the plain record's, but for the steps in which COMTRADE keeps its numbers and the frames
-# that are lost.
+# Read: the errors of P and Q equal the plain record's, up to COMTRADE's quantisation and lost frames.
 status=0
 "$swingbank" compare --model "$work/plant.toml" --records "$work"/read/*.csv "$work"/read/*.cfg --out "$work/out" >"$work/said" 2>&1 ||
   status=$?
@@ -122,7 +121,7 @@ for record, r in wrong:
 exit(bool(wrong))
 PY
 
-# refused NAME PATTERN: in one sentence
+# refused NAME PATTERN: with one message
 refused() {
   refuses "$1" "$2" "$swingbank" compare --model "$work/plant.toml" --records "$work/refused/$1" --out "$work/refused-out"
   [[ ! -e $work/refused-out ]] || fail "$1 leaves a folder"

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# A network whose file has faults that are repaired on request, and models with blocks that are switched off, as a user
-# meets them in swingbank simulate.
+# A network file with faults that are repaired on request, and models with inactive blocks, in swingbank simulate.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
-# case_of NAME LOAD BRANCH: $work/NAME.raw, four buses and what is given
+# case_of NAME LOAD BRANCH: $work/NAME.raw, four buses and the given load and branch
 case_of() {
   {
     printf '%s\n' "0, 100.0, 33, 0, 0, 60.0" "a grid" "and a unit"
@@ -48,7 +47,7 @@ cmp -s "$work/run.csv" "$work/whole.csv" || fail "dangling equipment changes the
 sed 3d "$work/whole.raw" >"$work/title.raw"
 refuses "missing title line" 'line 3 looks like a bus record at .*title.raw:3' simulate title
 
-# A feedback of no gain needs no time constant; with a gain it does.
+# A feedback with zero gain needs no time constant; with a gain it does.
 printf '%s\n' "${machines[@]}" "2 'EXST1' 1 0.01 0.1 -0.1 1.0 10.0 200.0 0.0 6.0 -5.0 0.05 0.0 0.0 /" >"$work/case.dyr"
 simulate whole | holds -q '^stable at 3 s' || fail "EXST1 without feedback and regulator lag does not run"
 sed -i "s/0.05 0.0 0.0/0.05 0.03 0.0/; s/200.0 0.0 6.0/200.0 0.02 6.0/" "$work/case.dyr"

@@ -3,12 +3,12 @@
 export OMP_NUM_THREADS=1
 model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 one=$work/avr_ev1.csv two=$work/avr_ev2.csv
-# Six seconds, every other sample: the fit is done in a fifth of the time.
+# Six seconds, every other sample: the fit takes a fifth of the time.
 for record in "$one" "$two"; do
   awk -F, '!/^[0-9]/ || (n++ % 2 == 0 && $1 <= 6)' "$SWINGBANK_SOURCE/configs/records/record-example/$(basename "$record")" >"$record"
 done
 
-# Few draws and one epoch: this is about the way, not about how good the networks are.
+# Few draws and one epoch: the procedure is tested, not the quality of the networks.
 add() { "$swingbank" add SEXS --model "$model" --records "$one" "$two" --power-only --train-draws 60 --train-epochs 1 "$@"; }
 retrain() { add --hold-out avr_ev2 --retrain "$@"; }
 retrain_given() { retrain --dataset "$SWINGBANK_SOURCE/configs/datasets/ieee14_genrou_bus2.toml" --out "$work/given" >"$1" 2>"$work/log"; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank add --retrain: two networks made, asked and compared; what cannot be is told.
-# shellcheck disable=SC2154 # what lib.bash sets
+# swingbank add --retrain: two networks are trained, applied and compared; errors are reported.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/retrain.bash"
 
@@ -17,7 +17,7 @@ shared = [p for p in r["parameters"] if not p["of_the_effect"]]
 own = [p for p in r["parameters"] if p["of_the_effect"]]
 assert len(shared) == 10 and {"SEXS.K", "SEXS.TB"} <= {p["parameter"] for p in own}, r["parameters"]
 assert all("without" not in p for p in own)
-# D is not fitted (zero in the model), so there is nothing to hold its estimate against
+# D is not fitted (zero in the model), so its estimate has no reference
 for side in ("without", "with"):
     rms = (sum(p[side]["error"] ** 2 for p in shared) / len(shared)) ** 0.5
     assert abs(rms - r["parameter_error"][side]) < 1e-9, side

@@ -1,7 +1,7 @@
-# To be sourced after lib.bash: what must be the same of two trainings, whatever happened to them.
-# shellcheck disable=SC2154 # what lib.bash sets
+# To be sourced after lib.bash: the parts that two equivalent trainings have in common.
+# shellcheck disable=SC2154 # set by lib.bash
 
-# A network's header says how long the training took; what follows is its weights and, last, the sum of it all.
+# A network's header contains the training time; the weights follow, and last the checksum of the file.
 cat >"$work/network.py" <<'PYTHON'
 import hashlib, json, struct, sys
 data = open(sys.argv[1], "rb").read()
@@ -11,7 +11,7 @@ header = json.loads(data[at + 8 : end])
 del header["training"]["seconds"]
 print(hashlib.sha256(json.dumps(header).encode() + data[end:-8]).hexdigest())
 PYTHON
-# essence FOLDER: a line per file, of all but the time it took
+# essence FOLDER: a line per file, without times
 essence() {
   (cd "$1" && find . -type f ! -name '*.lock' ! -name .lock | sort | while IFS= read -r file; do
     case $file in

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank simulate: what it writes, as CSV and as HDF5, by both integrators.
+# swingbank simulate: its output as CSV and as HDF5, by both integrators.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -15,7 +15,7 @@ header='t_s,2.delta_rad,2.P_pu,2.V_pu,8.delta_rad,8.P_pu,8.V_pu,bus5.V_pu,bus5.t
 simulate --fault 5:1:1.1 --integrator lanes --out "$work/lanes.h5" >/dev/null
 simulate --fault 5:1:1.1 --out "$work/reference.h5" >/dev/null
 
-# Debian's own python3: that is the one python3-h5py belongs to.
+# Debian's own python3, for which python3-h5py is installed.
 /usr/bin/python3 - "$work" <<'PYTHON'
 import csv, sys
 import h5py, numpy as np
@@ -40,7 +40,7 @@ assert abs(rows[0, 2] - 0.4) < 1e-9  # 40 MW on 100 MVA
 with h5py.File(folder + "/lanes.h5") as lanes, h5py.File(folder + "/reference.h5") as reference:
     assert lanes.attrs["integrator"] == "lanes" and reference.attrs["integrator"] == "reference"
     difference = np.abs(lanes["records"][:] - reference["records"][:]).max()
-    assert difference < 1e-4, difference  # what the lanes promise
+    assert difference < 1e-4, difference  # the promised accuracy of the SIMD batch
 PYTHON
 
 # Unbalanced faults by hand: two machines at no load and 1 pu (X'' = 0.2 and 0.3 pu), a line of 0.1 pu between

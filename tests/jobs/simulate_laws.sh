@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# swingbank simulate --law and --attach: a law from a file and drives run in both integrators, and what is wrong is
-# said.
+# swingbank simulate --law and --attach: a law from a file and disturbances in both integrators; errors are reported.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks laws=$SWINGBANK_SOURCE/configs/laws

@@ -32,19 +32,19 @@ for integrator in ("reference", "lanes"):
     true, seen = table(f"true_{integrator}"), table(f"measured_{integrator}")
     assert "2.f_hz" in seen and "2.f_hz" not in true
     assert seen["t_s"] == true["t_s"]
-    # A turn of S by -0.005 rad, scaled by 1.01, of the current three samples ago. Both runs hold 1e-6 per step.
+    # S rotated by -0.005 rad and scaled by 1.01, with the current of three samples ago. Both runs have 1e-6 per step.
     def phasors(r):
         v = [cmath.rect(m, a) for m, a in zip(r["2.V_pu"], r["2.theta_rad"])]
         return v, [((p + 1j * q) / u).conjugate() for p, q, u in zip(r["2.P_pu"], r["2.Q_pu"], v)]
     (v, i), (vm, im) = phasors(true), phasors(seen)
     late = [i[max(k - 3, 0)] * 1.01 * cmath.exp(0.005j) for k in range(len(i))]
     worst_v = max(abs(a - b) for a, b in zip(v, vm))
-    # Away from the switchings, where a sample is one-sided at 60/s and inside the jump at 480/s.
+    # Away from the switchings, where a sample is one-sided at 60/s and inside the step at 480/s.
     worst_i = max(abs(a - b) for k, (a, b) in enumerate(zip(late, im)) if abs(k - 63) > 2 and abs(k - 69) > 2)
     assert worst_v < 2e-5, worst_v
     assert worst_i < 1e-4, worst_i
     assert max(true["2.speed_pu"]) > 1e-3 and abs(seen["2.f_hz"][0] - 60) < 1e-6
-    # Once the grid has calmed down a bus moves with its machine: within a few mHz.
+    # In steady state a bus moves with its machine: within a few mHz.
     assert abs(seen["2.f_hz"][-2] - 60 * (1 + seen["2.speed_pu"][-2])) < 0.05
 
 true, one = table("true_reference"), table("one")
@@ -64,7 +64,7 @@ missing = [k for k, row in enumerate(rows) if row["2.P_pu"] == ""]
 assert 0 < len(missing) < 40, len(missing)
 for k in missing:
     assert all(rows[k][c] == "" for c in ("2.V_pu", "2.theta_rad", "2.P_pu", "2.Q_pu", "2.f_hz"))
-    assert rows[k]["2.speed_pu"] != ""  # the rotor passes no instrument
+    assert rows[k]["2.speed_pu"] != ""  # no instrument measures the rotor
 quiet = [float(row["2.V_pu"]) for row in rows[:55] if row["2.V_pu"]]
 spread = (sum((v / true["2.V_pu"][0] - 1) ** 2 for v in quiet) / len(quiet)) ** 0.5
 assert 0.0006 < spread < 0.0014, spread  # 0.001 of about 50 samples: within 4 / sqrt(2 x 50) = 40 %

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank diagnose --thresholds prints every threshold of a verdict with value, unit and why, as a table and as JSON,
-# and needs neither model nor records.
+# swingbank diagnose --thresholds prints every threshold of a verdict with value, unit and reason, as a table and as
+# JSON; it needs neither model nor records.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 cd "$work"

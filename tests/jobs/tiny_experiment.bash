@@ -1,5 +1,5 @@
-# tiny_experiment FOLDER: a dataset and an experiment that take a core under a minute, slow enough to be broken off. With
-# TINY_TRAINING_DRAWS a network `mlp` too, which also trains on the rows of a second dataset.
+# tiny_experiment FOLDER: a dataset and an experiment that take a core under a minute, slow enough to be interrupted.
+# With TINY_TRAINING_DRAWS it adds a network `mlp` that also trains on the rows of a second dataset.
 tiny_experiment() {
   local more='' names='"gru"'
   if [[ -n ${TINY_TRAINING_DRAWS:-} ]]; then more='"tiny_points.toml"' names='"gru", "mlp"'; fi

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Trained straight from memory, with no dataset on a disk: the same results to the last digit as from shards, and the
-# same again.
-# shellcheck disable=SC2154 # what lib.bash sets
+# Training directly from memory, without a dataset on a disk: the results equal those from shards to the last digit,
+# and are reproducible.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=2
@@ -11,7 +11,7 @@ sed 's/^split = .*/split = "by-databank-point"/;/^folds/d' "$work/tiny.toml" >"$
 train() { # OUT ARGUMENTS
   "$swingbank" train --experiment "$work/split.toml" --out "$work/$1" "${@:2}" >"$work/log" 2>&1 || fail "$1: $(cat "$work/log")"
 }
-# The result without what a clock says, and the network's bytes.
+# The result without times, and the network's bytes.
 told() {
   /usr/bin/python3 - "$work/$1" <<'PYTHON'
 import glob, hashlib, json, sys
@@ -19,7 +19,7 @@ result, = glob.glob(f"{sys.argv[1]}/*.json")
 network, = glob.glob(f"{sys.argv[1]}/*.network")
 print("\n".join(f"{key} {value}" for key, value in json.load(open(result)).items() if "seconds" not in key and key != "history"))
 data = open(network, "rb").read()
-# Its header says the seconds that the training took, its last bytes the sum of all; the weights stand between.
+# The header contains the training time, the last bytes are the checksum; the weights lie between.
 start = data.index(b"{")
 header, length = json.JSONDecoder().raw_decode(data[start:].decode("latin-1"))
 weights = data[start + length:-64]
@@ -43,7 +43,7 @@ cmp <(told float32-memory) <(told again) || fail "another time, other results"
 train seed --simulate "$work/float32/tiny_data.toml" --draw-seed 8
 cmp -s <(told float32-memory) <(told seed) && fail "the seed changes nothing"
 
-# Folds on two processes that share the rows, with noise.
+# Folds in two processes that share the rows, with noise.
 for from in disk memory; do
   rows=("$work/float32/data")
   [[ $from == disk ]] || rows=(--simulate "$work/float32/tiny_data.toml")

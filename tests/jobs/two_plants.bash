@@ -1,5 +1,5 @@
-# To be sourced after lib.bash and fleet.bash: a fleet that is soon diagnosed, two plants that lack nothing.
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; `fleet_file` is for those who source this
+# To be sourced after lib.bash and fleet.bash: a fleet with a short diagnosis, two plants without a missing effect.
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; `fleet_file` is for those who source this
 fleet_file=$work/fleet.toml
 {
   echo '[options]'
@@ -7,9 +7,9 @@ fleet_file=$work/fleet.toml
   model=whole.toml plant a '"records/e[12].csv"'
   model=whole.toml plant b '"records/e[34].csv"'
 } >"$fleet_file"
-# whole_fleet COMMAND...: runs it; whether both plants are done
+# whole_fleet COMMAND...: runs it; true if both plants are complete
 whole_fleet() { "$@" >"$work/log" 2>&1 && grep -q '^2 plants: 2 adequate' "$work/log"; }
-# same_fleet OUT: as $work/whole, with nothing left behind
+# same_fleet OUT: equals $work/whole, without leftover files
 same_fleet() {
   local file
   for file in fleet.json fleet.csv fleet.html a/plant.json b/plant.json; do

@@ -3,11 +3,11 @@
 bent=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 one=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv
 export OMP_NUM_THREADS=2
-# the same plant with the exciter that it lacks, its values near enough for a grid code and not for the noise
+# the same plant with its exciter; the values are accurate enough for a grid code but not for the noise
 sexs() { cat "$bent"; printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10\nK = %s\nTE = 0.05\nEMIN = -4\nEMAX = 5\n' "$1"; }
 sexs 100 >"$work/right.toml"
 
-# gives CODE SENTENCE COMMAND...: that exit code, and a line with that sentence
+# gives CODE SENTENCE COMMAND...: this exit code, and a line with this sentence
 gives() {
   local expected=$1 said=$2 code=0
   shift 2

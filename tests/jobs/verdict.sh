@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The two verdicts on a model, fit for purpose and statistically complete: each exit code, and limits that are wrong.
+# The two verdicts on a model, fit for purpose and statistically complete: each exit code, and invalid limits.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
-# shellcheck disable=SC2154 # what verdict.bash sets
+# shellcheck disable=SC2154 # set by verdict.bash
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
 sexs 85 >"$work/near.toml"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# A launcher that hangs beside its dead processes is ended from outside; one whose processes live is left alone.
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what run_saving.bash reads
+# A launcher that hangs after its processes have died is ended from outside; one with living processes is left alone.
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; read by run_saving.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 launcher_patience=2
-# Starts a process that lives so many seconds, does not notice its end, and itself ends after some more.
+# Starts a process that lives for some seconds, does not notice its end, and itself ends some seconds later.
 launcher=(/usr/bin/python3 -c 'import os, sys, time
 if os.fork() == 0:
     time.sleep(float(sys.argv[1]))

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Nothing is missing, but three values of fifteen are wrong by 30 %: blind cases of the usual mixture with nothing hidden and a
-# TGOV1, whose model is the truth but for three values that are drawn. `calibrate --fewest` names exactly these in four of five
-# cases, and never more than two too many. SWINGBANK_CASES=36; SWINGBANK_KEEP=FOLDER keeps everything and goes on with it.
-# shellcheck disable=SC2154 # what lib.bash sets
+# Nothing is missing, but three values of fifteen are wrong by 30 %: blind cases of the usual mixture without a hidden
+# effect and with a TGOV1. `calibrate --fewest` must select exactly the three drawn parameters in four of five cases,
+# and never more than two others. SWINGBANK_CASES=36; SWINGBANK_KEEP=FOLDER keeps everything and continues from it.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 folder=${SWINGBANK_KEEP:-$work}

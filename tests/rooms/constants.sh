@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A number has one name and a name one number: no two named constants of one name have different values, whichever rooms
-# they stand in; pi, a full turn and the quantiles of the normal distribution are written in base/constants.hpp only; and
-# what is a threshold of a verdict is defined in validate/thresholds only.
+# Named constants are unique: two constants of the same name have the same value in all modules. Pi, a full turn and
+# the quantiles of the normal distribution are written in base/constants.hpp only. Thresholds of a verdict are defined
+# in validate/thresholds only.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 work=$(mktemp -d)
@@ -60,7 +60,7 @@ print("\n".join(failed))
 sys.exit(bool(failed))
 PYTHON
 
-# what the check must refuse, planted in a copy
+# violations planted in a copy, which the check must refuse
 plant() {
   rm -rf "$work/tree" && mkdir "$work/tree" && cp -r base sim mpi train validate jobs "$work/tree"
   printf '%s\n' "$2" >"$work/tree/$1"

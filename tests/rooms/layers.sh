@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# A room sees its own files and the public headers of the rooms it names; anything else must not compile. Each line of
-# `forbidden` is a source of a room, with whose very options an include is tried that must not be found; each line of
-# `allowed` proves that the same way of trying finds what it may.
+# A module sees its own files and the public headers of the modules that it names; any other include must not compile.
+# Each line of `forbidden` names a source and a header that must not be found with the options of that source. Each
+# line of `allowed` names a header that must be found in the same way.
 set -euo pipefail
 build=${SWINGBANK_BIN:?}/..
 source=${SWINGBANK_SOURCE:?}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# try_all FILE: a line each of a source and a header; says behind both whether the header was found, and what was said if
-# that is not so. Only read, not compiled: what is asked is what can be found.
+# try_all FILE: for each line (a source and a header) adds whether the header was found, and otherwise the compiler's
+# message. The preprocessor suffices, because only the search for the header is tested.
 try_all() {
   python3 - "$build/compile_commands.json" "$source" "$work/try.cpp" "$1" <<'PYTHON'
 import json, shlex, subprocess, sys

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# A file's namespace is its folder: swingbank::validate::fit in validate/fit and validate/fit/detail. Two rooms are what
-# all others stand on and have their parent's name: base is swingbank, sim/core is swingbank::sim. A folder that holds
-# rooms holds no source. JSON is read through base/json.hpp, which alone includes the library.
+# A file's namespace is its folder: swingbank::validate::fit in validate/fit and validate/fit/detail. The two basic
+# modules have their parent's name: base is swingbank, sim/core is swingbank::sim. A folder of modules contains no
+# source. JSON is read through base/json.hpp, which alone includes the library.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
 failed=0
 
-# room_of FILE: sets `room`
+# room_of FILE: sets `room`, the module of the file
 room_of() {
   room=${1%/*}
   room=${room%/detail}

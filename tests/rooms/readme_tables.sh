@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The tables of files in the rooms' READMEs say what the sources say of themselves: a file that vanished is noticed and
-# dropped, a new one gets a row. docs/architecture.svg shows the rooms that the CMakeLists.txt files name, without circles.
+# The file tables in the modules' READMEs match the head comments of the sources: a deleted file is reported and its
+# row dropped, a new file gets a row. docs/architecture.svg shows the modules of the CMakeLists.txt files, without
+# cycles.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 bash docs/readme_tables.sh --check
@@ -8,11 +9,11 @@ python3 docs/architecture.py --check
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate | tar -xf - -C "$copy"
-# Two rooms show it as well as all.
+# Two modules are sufficient for the test.
 for folder in mpi sim train validate; do mv "$copy/$folder/CMakeLists.txt" "$copy/$folder.all"; done
 grep '^swingbank_room(sim/formats ' "$copy/sim.all" >"$copy/sim/CMakeLists.txt"
 touch "$copy"/{mpi,train,validate}/CMakeLists.txt
-# What only sources say, as in this copy without them, is out of date.
+# Without the sources, as in this copy, the tables are out of date.
 if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
   echo "vanished sources went unnoticed" >&2
   exit 1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Readers of a dataset need no MPI: mpi/store makes no MPI call, neither in its sources nor in what was compiled of them.
+# Readers of a dataset need no MPI: mpi/store makes no MPI call, neither in its sources nor in its object code.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 failed=0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank blind-test: makes, resumes, judges and scores a run; refuses what cannot be meant.
+# swingbank blind-test: makes, resumes, judges and scores a run; refuses invalid input.
 set -euo pipefail
 bin=${SWINGBANK_BIN:?} source=${SWINGBANK_SOURCE:?}
 folder=$(mktemp -d)
@@ -11,7 +11,7 @@ tiny=(--config "$source/configs/blind/tiny.toml" --out "$run" --seed 5 --kinds "
 grep -q 'made 2 cases' "$folder/log"
 before=$(cd "$run" && find . -type f -exec sha256sum {} + | sort)
 
-# a case that is missing, and one half-written, are made again to the same bytes
+# a missing and a partly written case are made again with the same bytes
 rm -r "$run/cases/c0002"
 mkdir "$run/cases/.c0002.partial"
 "$bin/swingbank-blind-test" "${tiny[@]}" >"$folder/log"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A small blind test, judged: the missing exciter is named, nothing is named where nothing is missing, and what
-# is not in the list is not called adequate. Its rates mean nothing (docs/reference/blind-test-results.md has those that do).
+# A small blind test with diagnosis: the missing exciter is named, nothing is named if nothing is missing, and an
+# unlisted effect is not called adequate. Its rates are not representative (docs/reference/blind-test-results.md has
+# those).
 set -euo pipefail
 bin=${SWINGBANK_BIN:?} source=${SWINGBANK_SOURCE:?}
 folder=$(mktemp -d)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank-compare and swingbank-tables as a user starts them: exit codes, files, and nothing written on bad input.
+# swingbank-compare and swingbank-tables: exit codes, output files, and nothing written on bad input.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -22,7 +22,7 @@ assert [s["t_s"] for s in events[0]["switchings"]] == [2.0, 2.1]
 PYTHON
 [[ $(find "$work/report" -type f ! -name '.*' | wc -l) == 4 ]] || fail "report.html, compare.json and two curves expected"
 
-# refuses WORDS... : exit code 1, a sentence that holds the first argument, no file
+# refuses WORDS... : exit code 1, a message that contains the first argument, no file
 refuses() {
   local words=$1 code=0
   shift

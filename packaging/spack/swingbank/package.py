@@ -1,4 +1,4 @@
-# The Spack package of Swingbank; it stands here until it stands in Spack's own repository:
+# The Spack package of Swingbank, kept here until it is part of Spack's own repository:
 #   spack repo add packaging/spack && spack install swingbank
 from spack.package import *
 

@@ -1,13 +1,13 @@
 #pragma once
-// Controls written from the model sheets: SEXS and TGOV1 from ENTSO-E, Documentation on Controller Tests in
-// Test Grid Configurations (2013); IEEEST from the PSS/E sheet as in IEC 61970-302, PssIEEE1A's neighbour
-// PssIEEEST. Each works on plain doubles; a limited state stops at its limit.
+// Controls implemented from the model sheets: SEXS and TGOV1 from ENTSO-E, Documentation on Controller Tests
+// in Test Grid Configurations (2013); IEEEST from the PSS/E sheet, as PssIEEEST in IEC 61970-302. All use
+// plain doubles; a limited state stops at its limit.
 #include <algorithm>
 #include <cmath>
 
 namespace swingbank::blind_second {
 
-/// Rate of a state held between limits.
+/// Rate of a state with limits: zero at a limit if the rate points outwards.
 inline double held(double rate, double x, double low, double high) {
   if (x >= high && rate > 0) return 0.0;
   if (x <= low && rate < 0) return 0.0;
@@ -52,7 +52,7 @@ struct Tgov1 {
   }
 };
 
-/// Speed input, no numerator in the filter (A5 = A6 = 0), no voltage cut-off.
+/// Speed input; filter without numerator (A5 = A6 = 0), without voltage cut-off.
 struct Ieeest {
   double A1 = 0.06, A2 = 0.0016, A3 = 0.03, A4 = 0.0004;
   double T1 = 0.1, T2 = 0.02, T3 = 0.1, T4 = 0.02, T5 = 5, T6 = 5, KS = 10, high = 0.1, low = -0.1;

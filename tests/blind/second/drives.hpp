@@ -1,6 +1,6 @@
 #pragma once
-// Drives of the private set, written for the second simulator: sawtooth torque, field lost in part, limit
-// cycle of the field voltage, stick-slip, random walk.
+// Unlisted disturbances for the second simulator: sawtooth torque, partial loss of field, limit cycle of the
+// field voltage, stick-slip, random walk.
 #include <cmath>
 #include <random>
 
@@ -8,7 +8,7 @@
 
 namespace swingbank::blind_second {
 
-/// Rises evenly from -A to A, falls at once.
+/// Rises linearly from -A to A, then falls in one step.
 inline UnlistedDrive sawtooth(double A, double hz, double start, double until) {
   UnlistedDrive d;
   for (double t = start; t < until; t += 1 / hz) d.instants.push_back(t);
@@ -27,7 +27,7 @@ inline UnlistedDrive field_loss(double part, double start) {
   };
   return d;
 }
-/// Van der Pol's oscillator on Efd, kicked by the voltage's deviation.
+/// Van der Pol oscillator on Efd, excited by the deviation of the voltage.
 inline UnlistedDrive limit_cycle(double A, double hz, double growth) {
   UnlistedDrive d;
   d.rates = [=](double dV, const UnlistedDrive::Memory& m) {
@@ -37,7 +37,7 @@ inline UnlistedDrive limit_cycle(double A, double hz, double growth) {
   d.field = [=](double, double Efd, const UnlistedDrive::Memory& m) { return Efd + A * m[0]; };
   return d;
 }
-/// Friction that is twice as large while the shaft hardly moves.
+/// Friction that doubles when the speed deviation is small.
 inline UnlistedDrive stick_slip(double A, double loose) {
   UnlistedDrive d;
   d.torque = [=](double, double, double w, const UnlistedDrive::Memory&) {
@@ -46,7 +46,7 @@ inline UnlistedDrive stick_slip(double A, double loose) {
   };
   return d;
 }
-/// Normal increments, straight between knots `step` apart.
+/// Normal increments, linear between knots at distance `step`.
 inline UnlistedDrive random_walk(double A, double step, double start, double until, unsigned seed) {
   UnlistedDrive d;
   std::mt19937 engine(seed);

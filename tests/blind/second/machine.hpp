@@ -1,8 +1,8 @@
 #pragma once
-// A round-rotor machine, written from P. W. Sauer and M. A. Pai, Power System Dynamics and Stability (1998),
-// section 3.6 (two-axis model with one damper per axis), with the air-gap saturation of PSS/E's GENROU: on
-// both axes, by the subtransient flux. Per unit on the machine's base; speed does not enter the stator
-// voltage; the prime mover sets power.
+// A round-rotor machine after P. W. Sauer and M. A. Pai, Power System Dynamics and Stability (1998), section
+// 3.6 (two-axis model with one damper per axis). Saturation is that of PSS/E's GENROU: on both axes, by the
+// subtransient flux. Per unit on the machine's base. The stator voltage does not depend on speed; the prime
+// mover sets power.
 #include <cmath>
 #include <complex>
 
@@ -29,7 +29,7 @@ inline double saturation(const MachineData& m, double psi) {
   return psi > A ? m.S10 * std::pow((psi - A) / (1.0 - A), 2) / psi : 0.0;
 }
 
-/// From the network's frame to d + jq of the rotor.
+/// Transforms from the network's frame to d + jq of the rotor.
 inline Phasor to_dq(Phasor x, double delta) { return x * std::exp(-kJ * (delta - kPi / 2)); }
 inline Phasor to_network(Phasor dq, double delta) { return dq * std::exp(kJ * (delta - kPi / 2)); }
 
@@ -48,7 +48,7 @@ inline Phasor internal_voltage(const MachineData& m, const Rotor& x) {
 struct Torques {
   double Te, Ifd;
 };
-/// Rates of the rotor's variables [1/s] for a current out of the machine.
+/// Derivatives of the rotor's variables [1/s] for a current out of the machine.
 inline Rotor rates(const MachineData& m, const Rotor& x, Phasor current, double Efd, double Pm, double hz,
                    Torques& out) {
   const Phasor i = to_dq(current, x.delta);
@@ -70,7 +70,7 @@ inline Rotor rates(const MachineData& m, const Rotor& x, Phasor current, double 
   return r;
 }
 
-/// The rotor at rest that delivers `current` at terminal voltage `v`; Efd and Pm that hold it.
+/// Returns the rotor at rest that delivers `current` at terminal voltage `v`; sets the matching Efd and Pm.
 inline Rotor at_rest(const MachineData& m, Phasor v, Phasor current, double& Efd, double& Pm) {
   const Phasor inner = v + Phasor(m.Ra, m.X2) * current;
   const double Se = saturation(m, std::abs(inner));

@@ -43,7 +43,7 @@ class Simulation {
     V0_ = std::abs(terminal);
   }
   [[nodiscard]] Vector start() const { return pack(start_); }
-  /// When anything jumps.
+  /// Times of all steps [s], sorted.
   [[nodiscard]] std::vector<double> jumps() const {
     std::vector<double> all = s_.unlisted.instants;
     for (const Stretch& g : stretch_) all.push_back(g.start);
@@ -51,7 +51,7 @@ class Simulation {
     std::ranges::sort(all);
     return all;
   }
-  /// Rates at t, on the side of the segment whose middle is `within`.
+  /// Derivatives at t; `within` selects the segment that contains it.
   Vector rates(double t, double within, const Vector& v) {
     const State x = unpack(v);
     solve(t, within, x);
@@ -84,7 +84,7 @@ class Simulation {
   }
 
  private:
-  /// Currents, voltages and what the controls give.
+  /// Computes currents, voltages and controller outputs.
   void solve(double t, double within, const State& x) {
     const Stretch* now = &stretch_.front();
     for (const Stretch& g : stretch_)
@@ -121,7 +121,7 @@ Vector moved(const Vector& x, double h, const Vector& k) {
   return y;
 }
 
-/// One classical Runge-Kutta step from t to t + h, which no jump divides.
+/// One classical Runge-Kutta step from t to t + h; no step of an input lies inside.
 void advance(Simulation& s, double t, double h, Vector& x) {
   const double middle = t + h / 2;
   const Vector k1 = s.rates(t, middle, x), k2 = s.rates(middle, middle, moved(x, h / 2, k1));

@@ -1,4 +1,4 @@
-// An effect added to the model of the committed records, which were made with a SEXS and nothing else.
+// An effect added to the model of the committed records, whose plant has a SEXS.
 #include "validate/add/add.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ AddOptions power_only() {
   return options;
 }
 
-TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
+TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   const plant::PlantModel model = example(false);
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
@@ -47,14 +47,14 @@ TEST(Add, TheMissingExciterExplainsTheUnseenEvent) {
   ASSERT_EQ(a.events.size(), 2U);
   EXPECT_FALSE(a.events[1].score.seen);
   EXPECT_LT(a.events[1].score.after, a.events[1].score.limit);
-  EXPECT_GT(a.events[1].refitted, 10 * a.events[1].score.after);  // a refit alone does not do it
+  EXPECT_GT(a.events[1].refitted, 10 * a.events[1].score.after);  // a refit alone does not suffice
   ASSERT_EQ(a.model.plant.controls.size(), 1U);
   EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
   EXPECT_THAT(a.sentence, HasSubstr("TB = "));
 }
 
-TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
+TEST(Add, VerdictOmitsManyValues) {
   const plant::PlantModel model = example(false);
   const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
   ASSERT_GT(a.own, 6);
@@ -62,9 +62,9 @@ TEST(Add, ManyValuesAreNotPartOfTheVerdict) {
                                 testing::Not(HasSubstr("KA = "))));
 }
 
-// Noise taken through the model without the exciter left TA/TB outside its interval. Of seventeen sound 95 %
-// intervals all hold the truth in 42 % of such records, all but one in 79 %.
-TEST(Add, IntervalsHoldTheTruth) {
+// If the noise transfer is computed without the exciter, TA/TB lies outside its interval. All of seventeen 95
+// % intervals contain the truth in 42 % of such records, all but one in 79 %.
+TEST(Add, IntervalsContainTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"4"};
@@ -83,11 +83,11 @@ TEST(Add, IntervalsHoldTheTruth) {
   }
   EXPECT_LE(outside.size(), 1U) << testing::PrintToString(outside);
   EXPECT_THAT(outside, testing::Not(testing::Contains("SEXS.TAoverTB")));
-  EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // pulled by the voltage's noise
+  EXPECT_THAT(outside, testing::Not(testing::Contains("GENROU.Xdpp")));  // biased by the voltage's noise
 }
 
-/// The committed records, as a plant with EXST1 and this rate feedback [pu] in place of SEXS would have given
-/// them, with the same noise. TF is short, or a lead-lag does what the feedback does.
+/// The committed records, simulated with EXST1 and this rate feedback [pu] in place of SEXS, with the same
+/// noise. TF is short because a slow feedback is equivalent to a lead-lag.
 std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, double KF) {
   constexpr double kFast = 0.1;  // TF [s]
   const plant::PlantModel sexs = example(true);
@@ -109,7 +109,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
   return changed;
 }
 
-TEST(Add, FreesARateFeedbackThatTheDefaultValuesLeaveOff) {
+TEST(Add, FreesRateFeedbackInactiveByDefault) {
   constexpr double kKF = 0.05;
   const plant::PlantModel model = example(false);
   const Addition a =
@@ -123,7 +123,7 @@ TEST(Add, FreesARateFeedbackThatTheDefaultValuesLeaveOff) {
   EXPECT_NEAR(p->value, kKF, 3 * p->error);
 }
 
-TEST(Add, FreesNothingThatTheRecordsDoNotAskFor) {
+TEST(Add, FreesNothingWithoutEvidence) {
   const plant::PlantModel model = example(false);
   const auto exst1 = find_hypothesis(model, "EXST1");
   const Addition a = add_effect(model, exst1, with_rate_feedback(model, 0.0), power_only());
@@ -142,11 +142,11 @@ TEST(Add, NamesAnEffectThatWasRemoved) {
   const plant::PlantModel model = example(true);
   const Removal r = try_without(model, 0, records(model), power_only());
   EXPECT_EQ(r.effect, "SEXS");
-  EXPECT_GT(r.evidence, 1000);  // Q is off by fifty times its noise without it
+  EXPECT_GT(r.evidence, 1000);  // without it the error of Q is fifty times its noise
   EXPECT_TRUE(r.model.plant.controls.empty());
 }
 
-TEST(Add, AnInstrumentThatIsMissingIsFound) {
+TEST(Add, FindsMissingInstrument) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   plant::PlantModel model = example.truth;
   model.plant.measurements.clear();
@@ -161,7 +161,7 @@ TEST(Add, AnInstrumentThatIsMissingIsFound) {
   EXPECT_LT(a.parameters[1].error, 0.01);
 }
 
-TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
+TEST(Add, ScreensEffectsThroughTheInstruments) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   plant::PlantModel model = example.truth;
   model.plant.controls.clear();
@@ -172,7 +172,7 @@ TEST(Add, AnEffectIsScreenedThroughTheInstrumentsOfTheModel) {
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
 
-TEST(Add, NamesAreFoundAsWrittenAndOthersListed) {
+TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   const plant::PlantModel model = example(true);
   EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12").name, "GENROU:S10,S12");
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch"); }),

@@ -1,5 +1,5 @@
-// Calibration against known truth: the committed records, whose maker was another program, and noisy copies
-// of events simulated with the reference integrator.
+// Calibration against known truth: the committed records (another simulator) and noisy copies of events
+// simulated with the reference integrator.
 #include "validate/calibrate/calibrate.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ std::size_t index_of(const sim::plant::Plant& plant, const char* name) {
   return static_cast<std::size_t>(plant.machine.effect->parameter_index(name));
 }
 
-/// Records of three faults at generator 2 of IEEE 14, without noise, and the plant.
+/// Noise-free records of three faults at generator 2 of IEEE 14, and the plant.
 struct Simulation {
   sim::plant::Plant plant;
   std::vector<record::Record> records;
@@ -81,7 +81,7 @@ std::vector<record::Record> noisy(std::vector<record::Record> records, double po
     }
   return records;
 }
-/// Every free parameter 10 % off, up and down in turn; limits of the exciter as they are.
+/// Every free parameter 10 % off, alternately up and down; the exciter's limits are right.
 plant::PlantModel wrong(const sim::plant::Plant& truth) {
   plant::PlantModel model;
   model.name = "wrong";
@@ -97,7 +97,7 @@ plant::PlantModel wrong(const sim::plant::Plant& truth) {
   return model;
 }
 
-/// The bound of every parameter of a calibration, with the events of which `used` holds.
+/// Cramer-Rao bound of every parameter of a calibration, from the events that `used` marks.
 std::vector<double> bounds_of(const sim::plant::Plant& truth, const Calibration& c,
                               const std::vector<bool>& used) {
   std::vector<fit::FittedParameter> fitted;
@@ -105,9 +105,9 @@ std::vector<double> bounds_of(const sim::plant::Plant& truth, const Calibration&
   return test::cramer_rao({truth, sim::Conventions::psse()}, c.prepared, used, fitted);
 }
 
-TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
+TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   plant::PlantModel model = example();
-  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, as --spread believes
+  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, the prior of --spread
   CalibrateOptions options;
   options.draws = 2;
   options.starts = 1;
@@ -123,21 +123,20 @@ TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
   const std::vector<double> bound = bounds_of(right.plant, c, {true, true, true, false});
   for (const auto& [name, value] : truth) {
     const auto& p = parameter(c, name).fit;
-    // 3 standard errors, and what the records' maker (trapezoidal rule, 1/240 s) and our splines through 60
-    // samples/s do to a time constant of 0.05 s
+    // Three standard errors, plus the bias of a time constant of 0.05 s by the other simulator (trapezoidal
+    // rule, 1/240 s) and by splines through 60 samples/s.
     EXPECT_NEAR(p.value, value, 3 * p.error + 3e-3 * value) << name;
     const auto at = &parameter(c, name) - c.parameters.data();
-    // noise of V, which the bound leaves out, reaches Efd through K TA/TB as large as the noise of Efd
+    // The bound omits the noise of V. It reaches Efd through K TA/TB and is as large as the noise of Efd.
     EXPECT_LT(p.error, 2.6 * bound[static_cast<std::size_t>(at)]) << name;
     EXPECT_GT(p.error, 0.6 * bound[static_cast<std::size_t>(at)]) << name;
   }
   ASSERT_EQ(c.events.size(), 4U);
   EXPECT_FALSE(c.events[3].seen);
   EXPECT_TRUE(c.events[3].adequate());
-  // Efd and Ifd are missed by 7 times their noise, but slowly; of that, whitening leaves 3.7 in chi2 per
-  // value
+  // The error of Efd and Ifd is 7 times their noise, but slow; after whitening chi2 per value is 3.7.
   EXPECT_GT(c.events[3].before, 3 * c.events[3].after);
-  EXPECT_LT(parameter(c, "EMIN").fit.decided, 0.1);  // Efd is never driven down to it
+  EXPECT_LT(parameter(c, "EMIN").fit.decided, 0.1);  // Efd never reaches it
   EXPECT_TRUE(std::ranges::any_of(c.blurs, [&](const Blur& b) {
     return c.parameters[static_cast<std::size_t>(b.members.front().parameter)].fit.name == "EMIN" && b.alone;
   }));
@@ -146,7 +145,7 @@ TEST(Calibrate, FindsTheTruthOfTheExampleAndExplainsTheUnseenEvent) {
   EXPECT_EQ(json["parameters"].size(), c.parameters.size());
 }
 
-TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
+TEST(Calibrate, ReportsMissingExciterAfterTheRefit) {
   const plant::PlantModel model = example();
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -158,7 +157,7 @@ TEST(Calibrate, AMissingExciterSurvivesTheRefit) {
   EXPECT_GT(c.after, 2 * c.limit);
 }
 
-TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
+TEST(Calibrate, SkipsDraws_WhenTheClosedFormReachesTheNoise) {
   const Simulation s = simulate_three(false);
   plant::PlantModel model = wrong(s.plant);
   const auto records = noisy(s.records, 1e-6, 1e-7, 1);
@@ -178,13 +177,13 @@ TEST(Calibrate, AClosedFormThatLeavesNothingButNoiseSavesTheDraws) {
   const Calibration straight = calibrate(model, records, options);
   EXPECT_THAT(names(straight), ElementsAre("closed form", "model"));
   EXPECT_NE(straight.adequacy, Adequacy::structure_poor) << straight.sentence;
-  reactance = off;  // its X''d is the model's, a tenth off: it leads away, and sets are drawn
+  reactance = off;  // the closed form keeps this X''d, 10 % off: a wrong start
   const Calibration drawn = calibrate(model, records, options);
   EXPECT_THAT(names(drawn), ::testing::Contains(HasSubstr("draw ")));
   EXPECT_EQ(drawn.adequacy, straight.adequacy);
 }
 
-TEST(Calibrate, RefusesWhatCannotBeFitted) {
+TEST(Calibrate, RefusesInvalidInput) {
   const plant::PlantModel model = example();
   const auto records = example_records(model, 2);
   CalibrateOptions options;
@@ -202,7 +201,7 @@ TEST(Calibrate, RefusesWhatCannotBeFitted) {
   EXPECT_THAT(test::messages([&] { calibrate(model, {}, options); }), ElementsAre(HasSubstr("no record")));
 }
 
-TEST(Calibrate, FixedParametersStay) {
+TEST(Calibrate, KeepsFixedParameters) {
   const plant::PlantModel model = example();
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -219,8 +218,8 @@ TEST(Calibrate, FixedParametersStay) {
   }
 }
 
-// Public cases have machines with X''d below Xl, and their intervals must hold the truth as others' do.
-TEST(Calibrate, NoiseOfTheVoltageIsTakenBackWithXdppBelowXl) {
+// Some public cases have machines with X''d below Xl; their intervals must contain the truth as well.
+TEST(Calibrate, CorrectsForVoltageNoiseWithXdppBelowXl) {
   const Simulation s = simulate_three(true, 0.38);
   plant::PlantModel model;
   model.name = "right";
@@ -236,8 +235,8 @@ TEST(Calibrate, NoiseOfTheVoltageIsTakenBackWithXdppBelowXl) {
   EXPECT_GT(shift, 0.5);
 }
 
-/// Errors three times too wide are caught as those three times too narrow.
-TEST(Calibrate, StandardErrors_AreThoseOfTheCramerRaoBound) {
+/// Detects errors three times too wide as well as three times too narrow.
+TEST(Calibrate, StandardErrors_EqualTheCramerRaoBound) {
   const Simulation s = simulate_three();
   plant::PlantModel model;
   model.plant = s.plant;
@@ -261,10 +260,10 @@ TEST(Calibrate, StandardErrors_AreThoseOfTheCramerRaoBound) {
   EXPECT_LT(ratio[ratio.size() / 2], 1.3);
 }
 
-/// Of noisy copies of the same events: how often the 95 % intervals hold the truth.
+/// Coverage of the 95 % intervals over noisy copies of the same events.
 struct Coverage {
   int tries = 0, covered = 0, covered_white = 0, adequate = 0, copies = 0;
-  int decided = 0, half = 0;  ///< values that the records decide; of these within 0.6745 standard errors
+  int decided = 0, half = 0;  ///< values that the records determine; of these within 0.6745 standard errors
   std::vector<std::pair<std::string, int>> by_parameter;
   [[nodiscard]] double share() const { return static_cast<double>(covered) / tries; }
   [[nodiscard]] double half_share() const { return static_cast<double>(half) / decided; }
@@ -313,11 +312,11 @@ Coverage coverage(double power, double voltage, int copies) {
   return sum;
 }
 
-// 20 copies x 18 parameters: if 95 % are right, the share is 0.95 +- 0.02 even if a copy's parameters are
-// strongly correlated; below 0.90 the intervals are too narrow. The models are a tenth off where a fifth is
-// believed, so that values which the priors decide are always inside; the rest lie in the middle half of
-// their intervals in 50 % of cases (+- 7 % with some 50 independent values): three times too wide gives 96 %,
-// three times too narrow 18 %.
+// 20 copies x 18 parameters: if 95 % are right, the share is 0.95 +- 0.02 even with strongly correlated
+// parameters; below 0.90 the intervals are too narrow. The models are 10 % off at a prior of 20 %, so values
+// determined by the priors are always inside. The others lie in the middle half of their intervals in 50 % of
+// cases (+- 7 % with some 50 independent values): errors three times too wide give 96 %, three times too
+// narrow 18 %.
 void expect_two_sided(const Coverage& c, double most_within_half = 0.70) {
   EXPECT_GE(c.share(), 0.90);
   EXPECT_GE(c.decided, 60);
@@ -325,10 +324,10 @@ void expect_two_sided(const Coverage& c, double most_within_half = 0.70) {
   EXPECT_LT(c.half_share(), most_within_half);
   EXPECT_GE(c.adequate, 19);  // the limit is one in a thousand per event
 }
-TEST(CalibrateFull, IntervalsHoldTheTruthUnderUsualNoise) { expect_two_sided(coverage(2e-3, 2e-4, 20)); }
+TEST(CalibrateFull, IntervalsContainTheTruthUnderUsualNoise) { expect_two_sided(coverage(2e-3, 2e-4, 20)); }
 // Here the intervals are too wide: 113 of 158 values (72 %) lie in the middle half, as if the errors were 1.6
-// times the right ones; without widening 96.9 % of the intervals hold the truth.
-TEST(CalibrateFull, IntervalsHoldTheTruthWhereTheVoltageIsAsNoisyAsThePower) {
+// times the right ones. Without widening, 96.9 % of the intervals contain the truth.
+TEST(CalibrateFull, IntervalsContainTheTruth_WhenTheVoltageIsAsNoisyAsThePower) {
   expect_two_sided(coverage(2e-3, 2e-3, 20), 0.80);
 }
 

@@ -1,4 +1,4 @@
-// A wrong parameter of an exciter, a governor or a machine alone is found from the component's records.
+// A wrong parameter of an exciter, a governor or a machine alone, found from the component's records.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using record::Component;
 
-/// Two noisy events of a component, one of whose parameters is wrong in the model.
+/// Two noisy events of a component; one parameter of the model is wrong.
 void expect_found(const std::vector<std::string>& controls, Component component,
                   const std::string& parameter) {
   std::vector<record::Record> records;
@@ -35,7 +35,7 @@ void expect_found(const std::vector<std::string>& controls, Component component,
   test::expect_found(event::component_model(std::move(model), component), std::move(records), parameter, 1.4);
 }
 
-TEST(CalibrateComponentTest, WrongParametersAreFoundWithinTheirIntervals) {
+TEST(CalibrateComponentTest, FindsWrongParametersWithinTheirIntervals) {
   const struct {
     std::vector<std::string> controls;
     Component component;

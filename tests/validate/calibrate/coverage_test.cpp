@@ -1,6 +1,5 @@
-// How often the 95 % intervals of calibrate hold the truth where the voltage is as noisy as instruments of a
-// class make it (docs/reference/uncertainty.md): filtered phasors with noise on magnitude and angle of V and
-// I.
+// Coverage of the 95 % intervals of calibrate with realistic noise of the voltage
+// (docs/reference/uncertainty.md): filtered phasors with noise on magnitude and angle of V and I.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,19 +22,19 @@ namespace {
 constexpr double kFineRate = 480;
 constexpr int kCopies = 34;  // of 18 parameters each: 612 intervals
 
-/// What the records of a cell are made with.
+/// Instrument properties of one test condition.
 struct Cell {
   double magnitude;  ///< noise of |V| and |I| [% of themselves]
   double angle;      ///< noise of either angle [degrees]
   int rate;          ///< records per second
 };
 
-/// How GoogleTest names a cell.
+/// Prints a condition in GoogleTest's messages.
 void PrintTo(const Cell& cell, std::ostream* out) {
   *out << fmt::format("{} % {} degrees {}/s", cell.magnitude, cell.angle, cell.rate);
 }
 
-/// Three faults at generator 2 of IEEE 14, sampled finely, as they are behind a filter of class P.
+/// Three faults at generator 2 of IEEE 14, finely sampled, behind a class P filter.
 struct Filtered {
   plant::PlantModel truth;
   std::vector<record::Record> fine;
@@ -59,7 +58,7 @@ struct Filtered {
     truth.record_base.mva = truth.plant.mva;
     truth.plant.measurements = filter;
   }
-  /// What the instruments of a cell make of the events.
+  /// Returns the events as the instruments of a condition record them.
   [[nodiscard]] std::vector<record::Record> recorded(const Cell& cell, unsigned seed) const {
     std::mt19937_64 generator(seed);
     std::normal_distribution<double> normal;
@@ -89,7 +88,7 @@ struct Filtered {
   }
 };
 
-/// Every free parameter 10 % off, up and down in turn; limits of the exciter as they are.
+/// Every free parameter 10 % off, alternately up and down; the exciter's limits are right.
 plant::PlantModel off_by_a_tenth(const plant::PlantModel& truth) {
   plant::PlantModel model = truth;
   int sign = 1;
@@ -101,8 +100,8 @@ plant::PlantModel off_by_a_tenth(const plant::PlantModel& truth) {
   return model;
 }
 
-/// Every free parameter as far off as it is believed to be, drawn until the machine's values are in order;
-/// limits of the exciter as they are.
+/// Every free parameter drawn from its prior, until the machine's values satisfy their orderings; the
+/// exciter's limits are right.
 plant::PlantModel off_as_believed(const plant::PlantModel& truth, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -119,7 +118,7 @@ plant::PlantModel off_as_believed(const plant::PlantModel& truth, unsigned seed)
   }
 }
 
-/// The campaign's way, to save time: one start and no draws.
+/// Options of the campaign, to save time: one start and no draws.
 CalibrateOptions from_one_start() {
   CalibrateOptions options;
   options.draws = options.starts = 0;
@@ -127,8 +126,8 @@ CalibrateOptions from_one_start() {
   return options;
 }
 
-TEST(CoverageFull, ARightModelIsNotCalledIncompleteForNoiseOfTheAngle) {
-  // until the noise is measured through the fit and whitened, this copy leaves 1.54 per value
+TEST(CoverageFull, AcceptsRightModelWithNoiseOfTheAngle) {
+  // Before the noise is measured through the fit and whitened, chi2 per value of this copy is 1.54.
   const Filtered events;
   const Calibration c =
       calibrate(off_by_a_tenth(events.truth), events.recorded({0.02, 0.1, 30}, 105), from_one_start());
@@ -138,7 +137,7 @@ TEST(CoverageFull, ARightModelIsNotCalledIncompleteForNoiseOfTheAngle) {
 
 class CoverageNight : public ::testing::TestWithParam<Cell> {};
 
-TEST_P(CoverageNight, TheIntervalsHoldTheTruth) {
+TEST_P(CoverageNight, IntervalsContainTheTruth) {
   static const Filtered events;
   const CalibrateOptions options = from_one_start();
   std::vector<Calibration> all(kCopies);
@@ -171,7 +170,7 @@ TEST_P(CoverageNight, TheIntervalsHoldTheTruth) {
       for (const auto& e : c.events)
         fmt::print("  {}: {:.3f} per value, limit {:.3f}\n", e.record, e.after, e.limit);
   EXPECT_GE(tries, 500);
-  // 93 to 97 %, and two standard deviations of a share of so many intervals
+  // 93 to 97 %, plus two standard deviations of a share of so many intervals.
   const double share = static_cast<double>(covered) / tries, doubt = 2 * std::sqrt(0.95 * 0.05 / tries);
   EXPECT_GE(share, 0.93 - doubt);
   EXPECT_LE(share, 0.97 + doubt);

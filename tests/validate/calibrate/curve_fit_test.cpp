@@ -1,4 +1,4 @@
-// The baseline: right where what it assumes is true, and less right than `calibrate` where it is not.
+// The baseline: right if its assumptions hold, otherwise less accurate than `calibrate`.
 #include "validate/calibrate/curve_fit.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ using namespace readme;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Every free parameter 10 % off, up and down in turn; limits of the exciter as they are.
+/// Every free parameter 10 % off, alternately up and down; the exciter's limits are right.
 plant::PlantModel off(plant::PlantModel model) {
   int sign = 1;
   for (const auto& f : fit::free_parameters(model.plant, 0.2)) {
@@ -32,7 +32,7 @@ plant::PlantModel off(plant::PlantModel model) {
   }
   return model;
 }
-/// A file of this process, gone with it.
+/// A temporary file of this process.
 struct Scratch {
   std::filesystem::path file;
   Scratch(const std::string& name, const std::string& text)
@@ -42,8 +42,8 @@ struct Scratch {
   ~Scratch() { std::filesystem::remove(file); }
 };
 
-// Switched half-way between samples, no noise: all that the baseline takes for granted holds.
-TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
+// Switched half-way between samples, no noise: all assumptions of the baseline hold.
+TEST(CurveFit, FindsTheTruth_WhenItsAssumptionsHold) {
   plant::PlantModel truth;
   std::vector<record::Record> records;
   for (const auto& [bus, seconds] : {std::pair{5, 0.1}, {4, 0.15}, {9, 0.2}}) {
@@ -70,11 +70,11 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
   const CurveFit f = curve_fit(model, records, options);
   EXPECT_TRUE(f.converged) << f.sentence;
   EXPECT_LT(f.rms_after,
-            2e-4);  // what splines through 60 samples/s leave (validate/playin/README.md: 2.6e-5 to 1e-3)
+            2e-4);  // error of splines through 60 samples/s (validate/playin/README.md: 2.6e-5 to 1e-3)
   ASSERT_EQ(f.parameters.size(), 4U);
   for (const auto& p : f.parameters) {
     const double value = sim::plant::parameter_value(truth.plant, p.where.id);
-    EXPECT_NEAR(p.value, value, 0.01 * value) << p.name;  // 2e-4 pu of the 0.02 pu that 15 % make
+    EXPECT_NEAR(p.value, value, 0.01 * value) << p.name;  // 2e-4 pu of the 0.02 pu that 15 % cause
     EXPECT_LE(p.low, p.value);
     EXPECT_GE(p.high, p.value);
   }
@@ -83,7 +83,7 @@ TEST(CurveFit, FindsTheTruthWhereItsAssumptionsHold) {
   EXPECT_LT(f.events[2].after, 0.05 * f.events[2].before);
 }
 
-TEST(CurveFit, StandsBehindCalibrateOnTheExample) {
+TEST(CurveFit, IsLessAccurateThanCalibrateOnTheExample) {
   plant::PlantModel truth = example(), model = truth;
   truth.plant.controls.push_back(sexs(0.1, 100, 10, 0.05));
   model = off(truth);
@@ -118,7 +118,7 @@ TEST(CurveFit, StandsBehindCalibrateOnTheExample) {
   EXPECT_EQ(leaves_no_trace->value, -4.0);
 }
 
-TEST(CurveFit, RefusesWhatCannotBeFitted) {
+TEST(CurveFit, RefusesInvalidInput) {
   const plant::PlantModel model = example();
   const auto records = example_records(model, 1);
   CurveFitOptions options;
@@ -131,7 +131,7 @@ TEST(CurveFit, RefusesWhatCannotBeFitted) {
               ElementsAre(HasSubstr("GENROU.Xdp")));
 }
 
-TEST(Truth, IsReadFromPlantFilesAndBlindTruths) {
+TEST(Truth, ReadsPlantFilesAndBlindTruths) {
   const plant::PlantModel model = example();
   plant::PlantModel other = model;
   other.plant.mva = 250;

@@ -1,4 +1,4 @@
-// The README's example for the tests of this room: the plant whose exciter is missing, and its records.
+// The README's example: the plant model without its exciter, and its records.
 #pragma once
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ inline plant::PlantModel example() {
   return plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
 }
 
-/// Its record of event k, from 1 on.
+/// Record of event k, from 1 on.
 inline record::Record example_record(const plant::PlantModel& model, int k) {
   return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)),
                              model.record_base);

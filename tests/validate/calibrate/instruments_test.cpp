@@ -1,5 +1,5 @@
-// A plant whose file says through which instruments it was recorded: fit, starts, slopes and errors are all
-// of the plant as these show it.
+// A plant whose file names the instruments of its records: fit, starts, sensitivities and errors refer to the
+// plant as recorded through them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using ::testing::Contains;
 
 constexpr const char* kMoving[] = {"H", "Xdp", "Tdop", "K", "TE", "gain", "phase", "skew"};
 
-/// The truth with some parameters 10 % off, up and down in turn; all others are fixed.
+/// The truth with some parameters 10 % off, alternately up and down; all others are fixed.
 struct Wrong {
   plant::PlantModel model;
   std::vector<std::string> fixed;
@@ -35,7 +35,7 @@ struct Wrong {
 
 class SeenThrough : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
+TEST_P(SeenThrough, IntervalsContainTheTruth) {
   const test::InstrumentExample example({test::instrument(GetParam())});
   const Wrong wrong(example.truth);
   CalibrateOptions options;
@@ -43,7 +43,7 @@ TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
   options.fixed = wrong.fixed;
   const Calibration c = calibrate(wrong.model, example.records, options);
   EXPECT_NE(c.adequacy, Adequacy::structure_poor) << c.sentence;
-  // What the starts' scores and the events' fits compare is the same, but for the colour of the noise.
+  // The scores of the starts and the fits of the events agree but for the colour of the noise.
   EXPECT_LT(std::abs(std::log(c.started.front().before / c.before)), std::log(1.5));
   std::vector<std::string> names, outside;
   std::vector<fit::FittedParameter> fitted;
@@ -56,7 +56,7 @@ TEST_P(SeenThrough, TheTruthLiesInTheIntervals) {
     names.emplace_back(p.fit.name);
     if (truth < p.fit.low || truth > p.fit.high) outside.emplace_back(p.fit.name);
     EXPECT_NEAR(p.fit.value, truth, 3 * p.fit.error) << p.fit.name;
-    EXPECT_LT(p.fit.error, 2 * p.curvature_error) << p.fit.name;  // the residual is noise, as believed
+    EXPECT_LT(p.fit.error, 2 * p.curvature_error) << p.fit.name;  // the residual is noise, as assumed
     EXPECT_LT(p.fit.error, 2 * bound[names.size() - 1]) << p.fit.name;
     EXPECT_GT(p.fit.error, 0.6 * bound[names.size() - 1]) << p.fit.name;
   }
@@ -76,8 +76,8 @@ INSTANTIATE_TEST_SUITE_P(Calibrate, SeenThrough,
                            return text.substr(0, text.find(':'));
                          });
 
-// A filter's window is known; it is never fitted.
-TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
+// A filter's window is known and never fitted.
+TEST(CalibrateSeenThrough, SimulatesTheFilterWithoutFittingIt) {
   plant::PlantModel model;
   model.plant.machine = {sim::library::compiled().find("GENROU"),
                          sim::library::compiled().find("GENROU")->default_parameters()};
@@ -89,7 +89,7 @@ TEST(CalibrateSeenThrough, AFilterBelongsToTheModelButIsNotFitted) {
                                   [&](const fit::FreeParameter& f) { return f.id.block == last; }));
 }
 
-TEST(CurveFitSeenThrough, TheInstrumentsBelongToTheModel) {
+TEST(CurveFitSeenThrough, SimulatesTheInstruments) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   const Wrong wrong(example.truth);
   CurveFitOptions options;
@@ -99,7 +99,7 @@ TEST(CurveFitSeenThrough, TheInstrumentsBelongToTheModel) {
   for (const auto& p : f.parameters)
     if (p.name == "H" || p.name == "Xdp" || p.name == "phase") {
       const double truth = sim::plant::parameter_value(example.truth.plant, p.where.id);
-      // instants are off by up to 2.7 ms; the phase's own standard error is 4 % of it
+      // Switching times are off by up to 2.7 ms; the standard error of the phase is 4 % of it.
       EXPECT_NEAR(p.value, truth, (p.name == "phase" ? 0.12 : 0.03) * std::abs(truth)) << p.name;
     }
 }

@@ -1,5 +1,5 @@
-// A network's estimate as a start: what is taken, and what is told where network and plant do not belong
-// together.
+// A network's estimate as a start: the values taken, and the errors reported if network and plant do not
+// match.
 #include "validate/calibrate/network.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ json estimate_json(const std::string& name, double value, double low, double hig
 }
 using Parameters = std::vector<json>;
 
-/// What `swingbank predict --json` writes, in a file of this process.
+/// Output of `swingbank predict --json` in a file of this process.
 class EstimateFile {
  public:
   explicit EstimateFile(Parameters parameters, const std::string& machine = "GENROU",
@@ -57,13 +57,13 @@ double value(const sim::plant::Plant& plant, const std::string& name) {
   return plant.machine.p[static_cast<std::size_t>(plant.machine.effect->parameter_index(name))];
 }
 
-TEST(NetworkStart, TakesWhatWasLearntWithinPhysicalBounds) {
+TEST(NetworkStart, ClampsEstimatesToPhysicalBounds) {
   const plant::PlantModel model = example();
   const EstimateFile file(Parameters{estimate_json("H", 7.0, 1, 10), estimate_json("Xdpp", 0.3, 0.3, 0.3),
                                      estimate_json("Xl", -0.5, 0.01, 0.25)});
   const sim::plant::Plant plant = estimated_plant(file.read(), model, 0.2);
   EXPECT_EQ(value(plant, "H"), 7.0);
-  EXPECT_EQ(value(plant, "Xdpp"), 0.3);  // held by the dataset: the plant's own value stays
+  EXPECT_EQ(value(plant, "Xdpp"), 0.3);  // fixed in the dataset: the plant's own value stays
   EXPECT_EQ(value(plant, "Xl"),
             sim::plant::parameter_record(
                 plant, {sim::plant::kMachineBlock, plant.machine.effect->parameter_index("Xl")})
@@ -71,7 +71,7 @@ TEST(NetworkStart, TakesWhatWasLearntWithinPhysicalBounds) {
   EXPECT_EQ(value(plant, "Xq"), value(model.plant, "Xq"));
 }
 
-TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
+TEST(NetworkStart, RefusesNetworksOfOtherPlants) {
   const plant::PlantModel model = example();
   const auto refused = [&](const EstimateFile& file) {
     return test::messages([&] { estimated_plant(file.read(), model, 0.2); });
@@ -81,7 +81,7 @@ TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
   EXPECT_THAT(refused(EstimateFile(Parameters{estimate_json("SEXS.K", 90, 20, 300, "SEXS"),
                                               estimate_json("SEXS.TE", 0.1, 0.02, 0.5, "SEXS")})),
               ElementsAre(AllOf(HasSubstr("without SEXS"), HasSubstr("swingbank add"))));
-  // 6.54 s, believed to 20 %: three standard deviations reach from 2.6 to 10.5 s
+  // Prior 6.54 s +- 20 %: three standard deviations reach from 2.6 to 10.5 s.
   EXPECT_THAT(refused(EstimateFile(Parameters{estimate_json("H", 1.2, 1, 2)})),
               ElementsAre(HasSubstr("trained on 1 to 2")));
   EXPECT_THAT(refused(EstimateFile(Parameters{estimate_json("H", 2.7, 2.65, 3)})), ElementsAre());
@@ -89,7 +89,7 @@ TEST(NetworkStart, NetworksOfOtherPlantsAreToldApart) {
               ElementsAre(HasSubstr("holds it at 40")));
 }
 
-TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
+TEST(NetworkStart, IsAStartAndIsReportedWithTheFit) {
   plant::PlantModel model = example();
   model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
   const EstimateFile file(Parameters{estimate_json("H", 8.0, 1, 10), estimate_json("Tdop", 5.0, 2, 10)});
@@ -106,9 +106,9 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
   const Calibration c = calibrate(model, {example_record(model, 1)}, options);
   ASSERT_EQ(c.started.size(), 2U);
   EXPECT_EQ(c.started[1].name, "network");
-  EXPECT_GT(c.started[1].before, c.started[0].before);  // its H is a fifth off, the model's is right
+  EXPECT_GT(c.started[1].before, c.started[0].before);  // its H is 20 % off, the model's is right
   EXPECT_LE(c.started[1].after, c.started[1].before);
-  EXPECT_TRUE(c.started[1].agrees);  // two parameters that the record decides: there is one optimum
+  EXPECT_TRUE(c.started[1].agrees);  // two determined parameters: there is one optimum
   const Way way = way_of(estimate, plant, c);
   ASSERT_EQ(way.values.size(), 2U);
   EXPECT_EQ(way.values[0].parameter, "GENROU.H");
@@ -116,7 +116,7 @@ TEST(NetworkStart, IsOneOfTheStartsAndStandsBesideTheFit) {
   EXPECT_GT(way.events[0].after, c.events[0].after);
 }
 
-TEST(NetworkStart, RefusesEventsHeldOutAndOtherFiles) {
+TEST(NetworkStart, RefusesHeldOutEventsAndOtherFiles) {
   const plant::PlantModel model = example();
   const std::vector<record::Record> records = {example_record(model, 1), example_record(model, 2)};
   const EstimateFile file(Parameters{estimate_json("H", 7, 1, 10)}, "GENROU", records[1].sha256);

@@ -1,13 +1,13 @@
 #pragma once
-// A model with one wrong parameter, calibrated with everything else fixed.
+// A model with one wrong parameter, calibrated with all others fixed.
 #include <gtest/gtest.h>
 
 #include "validate/calibrate/calibrate.hpp"
 
 namespace swingbank::validate::test {
 
-/// `parameter` ("SEXS.K") of the right model is set `factor` times too high. It must be called poor, and be
-/// found within four standard errors of the truth, to a tenth of it.
+/// Sets `parameter` ("SEXS.K") of the right model too high by `factor`. The model must be judged poor; the
+/// fit must find the value within four standard errors and within 10 % of the truth.
 inline void expect_found(plant::PlantModel model, std::vector<record::Record> records,
                          const std::string& parameter, double factor) {
   model.record_base = records.front().base;

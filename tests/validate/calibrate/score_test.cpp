@@ -1,4 +1,4 @@
-// What an event that was not fitted to may hold: the limit is exceeded once in a thousand.
+// Allowance for parameter errors on an event outside the fit: its limit is exceeded once in a thousand.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -8,9 +8,9 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-// Three parameters with errors of very different weight move 200 values with noise of one. A normal
-// distribution's 3.09 is exceeded by one in a thousand; a form of few squares has a longer tail.
-TEST(UnseenAllowance, IsSeldomExceededAndNotIdle) {
+// Three parameters with very different errors move 200 values with noise of one. A normal distribution
+// exceeds 3.09 once in a thousand; a quadratic form of few squares has a longer tail.
+TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
   constexpr int kValues = 200, kParameters = 3, kDraws = 20000;
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
@@ -30,11 +30,11 @@ TEST(UnseenAllowance, IsSeldomExceededAndNotIdle) {
     beyond += added > allowed;
   }
   EXPECT_LT(beyond, kDraws / 50);  // of one square, 3.09 deviations leave 2.1 %: z^2 > 1 + 3.09 sqrt(2)
-  EXPECT_GT(beyond, 0);            // and no limit that nothing reaches
+  EXPECT_GT(beyond, 0);            // the limit is reachable
   EXPECT_GT(allowed, 2 * mean);
 }
 
-TEST(UnseenAllowance, IsNothingWhereTheParametersAreKnown) {
+TEST(UnseenAllowance, IsZero_WhenTheParametersAreKnown) {
   const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(4, 4);
   EXPECT_EQ(unseen_allowance(information, Eigen::MatrixXd::Zero(4, 4), 100), 0);
 }

@@ -1,4 +1,4 @@
-// Parameters from the staged tests that a MOD-026 report holds, and what compare says of the right model.
+// Parameters from the staged tests of a MOD-026 report, and the comparison of the right model.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

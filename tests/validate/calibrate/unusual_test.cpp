@@ -1,4 +1,4 @@
-// A parameter whose value lies outside the range that is usual for it is fitted from there, and beyond.
+// A parameter outside its usual range is fitted from there, and beyond.
 #include <gtest/gtest.h>
 
 #include "tests/validate/calibrate/example.hpp"
@@ -8,8 +8,8 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-/// The README's plant, its exciter known, on a quarter of its base: H is four times as large there, and the
-/// model's, though already beyond what is usual (20 s), is too small.
+/// The README's plant with its exciter, on a quarter of its base: H is four times as large. The model's H is
+/// already beyond its usual range (20 s), but still too small.
 struct Quarter {
   plant::PlantModel model = readme::example();
   double H = 0;
@@ -41,7 +41,7 @@ void expect_found(const Parameter& p, double expected, double within) {
   EXPECT_FALSE(p.at_bound);
 }
 
-TEST(CalibrateUnusual, AValueBeyondItsRangeIsMovedFurther) {
+TEST(CalibrateUnusual, MovesValueFurtherBeyondItsRange) {
   const Quarter q;
   CalibrateOptions options;
   options.events.measured_states = false;
@@ -52,13 +52,13 @@ TEST(CalibrateUnusual, AValueBeyondItsRangeIsMovedFurther) {
   expect_found(c.parameters[0].fit, q.H, 0.02);
 }
 
-TEST(CurveFitUnusual, AValueBeyondItsRangeIsMovedFurther) {
+TEST(CurveFitUnusual, MovesValueFurtherBeyondItsRange) {
   const Quarter q;
   CurveFitOptions options;
   options.fixed = q.all_but_inertia();
   const CurveFit f = curve_fit(q.model, readme::example_records(q.model, 2), options);
   ASSERT_EQ(f.parameters.size(), 1U);
-  expect_found(f.parameters[0], q.H, 0.05);  // the baseline does not know the instants: 3.3 %
+  expect_found(f.parameters[0], q.H, 0.05);  // the baseline does not fit the switching times: 3.3 %
 }
 
 }  // namespace

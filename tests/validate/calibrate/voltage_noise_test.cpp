@@ -1,4 +1,4 @@
-// What noise of the played-in voltage makes of the scores at the truth, against noisy copies of a record.
+// Effect of noise of the played-in voltage on the scores at the truth, against noisy copies of a record.
 #include "validate/calibrate/detail/voltage_noise.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDeviation = 1e-3;  // of V (relative) and theta [rad]
 
-/// The example's plant at rest, and copies of that with noise on V and theta, which P and Q carry too.
+/// The example's plant at rest, and copies with noise on V and theta that P and Q also contain.
 class Copies {
  public:
   Copies() : model_(readme::example()) {
@@ -29,7 +29,7 @@ class Copies {
   [[nodiscard]] static fit::VoltageNoise voltage(double carried = 1) {
     return {.variance = {kDeviation * kDeviation, kDeviation * kDeviation, 0.0}, .carried = carried};
   }
-  /// Scores of one copy after `settled` samples, less those of the plant at rest.
+  /// Scores of one copy after `settled` samples, minus those of the plant at rest.
   [[nodiscard]] Eigen::VectorXd score(unsigned seed) const {
     event::FitEvent noisy = event_;
     record::Record& r = noisy.record;
@@ -59,7 +59,7 @@ class Copies {
   std::vector<fit::FreeParameter> free_;
 };
 
-TEST(VoltagePull, TheScoresAtTheTruthAreThoseExpectedOfNoiseThatPAndQCarryToo) {
+TEST(VoltagePull, MeanScoreMatchesPredictionForNoiseSharedWithPAndQ) {
   constexpr int kCount = 24;
   const Copies copies;
   std::vector<Eigen::VectorXd> scores(kCount);
@@ -74,10 +74,10 @@ TEST(VoltagePull, TheScoresAtTheTruthAreThoseExpectedOfNoiseThatPAndQCarryToo) {
   const Eigen::VectorXd carried = copies.expected(1), apart = copies.expected(0);
   for (Eigen::Index i = 0; i < 4; ++i)
     EXPECT_NEAR(carried[i], mean[i], 3.5 * error[i] + 0.03 * std::abs(mean[i])) << i << ", else " << apart[i];
-  EXPECT_GT(std::abs(apart[0] - mean[0]), 5 * error[0]);  // and not those of noise of V alone
+  EXPECT_GT(std::abs(apart[0] - mean[0]), 5 * error[0]);  // differs from noise of V alone
 }
 
-TEST(Secants, AStepThatOvershootsIsCorrected) {
+TEST(Secants, CorrectOvershootingSteps) {
   Eigen::Vector2d x(1, -2);
   Secants secants(2);
   for (int round = 0; round < 6; ++round) {  // the curvature is 2.5 times the expected one along the diagonal

@@ -1,4 +1,4 @@
-// Every mistake a record can come with is made to sound records and recognised; sound ones pass.
+// Sound records are modified by every known mistake and must be recognised; unmodified records pass.
 #include "validate/check/check.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +32,8 @@ record::Record example(int i) {
   return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), {});
 }
 
-/// The record as a file in the units of its name would hold it, with other words in the header or other
-/// figures: the way mistakes really come about.
+/// The record as a file in the units of its name, with a modified header or modified values, as mistakes
+/// occur in practice.
 struct Written {
   std::string V = "V_pu", theta = "theta_rad", P = "P_pu", Q = "Q_pu", f = "f_pu";
   std::function<void(std::vector<double>& row)> edit = [](auto&) {};  ///< t, V, theta, P, Q, f
@@ -71,8 +71,8 @@ std::vector<Mistake> mistakes() {
       {"ends_before_the_event", "no_event", {.to = 1.98}},
       {"power_in_MW", "wrong_base", {.edit = [](Row x) { x[3] *= 100, x[4] *= 100; }}},
       {"power_in_pu_named_MW", "wrong_base", {.P = "P_MW", .Q = "Q_Mvar"}},
-      // The example's machine, six times as large: on its own base the figures stay, on 100 MVA they are
-      // 6-fold.
+      // The example's machine, six times as large: on its own base the numbers are unchanged, on 100 MVA they
+      // are six times as large.
       {"power_on_the_machine_base", "wrong_base", {}, 600},
       {"power_on_the_system_base",
        "wrong_base",
@@ -130,7 +130,7 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
 
-TEST(RecordCheckTest, LostSamplesAsZerosAreBridged) {
+TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
   for (int i = 1; i <= 4; ++i) {
     Written w;
     w.edit = [](std::vector<double>& x) {
@@ -141,7 +141,7 @@ TEST(RecordCheckTest, LostSamplesAsZerosAreBridged) {
     EXPECT_FALSE(refused(check_record(r, {100, 60}), "dropout"));
   }
 }
-/// A fault of a third of the record, with noise.
+/// A record of which the fault takes a third, with noise.
 record::Record short_record(int samples, double rate, std::mt19937& random) {
   std::normal_distribution<double> noise(0, 1e-4);
   record::Record r;
@@ -189,7 +189,7 @@ TEST(RecordCheckTest, VoltsUnderTheHeadingOfKilovolts_NameTheUnit) {
               ::testing::HasSubstr("a voltage in V taken as kV"));
 }
 
-TEST(RecordCheckTest, ASlowRecordIsSaid) {
+TEST(RecordCheckTest, ReportsSlowRecord) {
   const record::Record r = example(1);
   const auto every = [&](std::size_t stride) {
     record::Record thin = r;
@@ -205,14 +205,14 @@ TEST(RecordCheckTest, ASlowRecordIsSaid) {
   EXPECT_THAT(every(4), ::testing::HasSubstr("warn slow_rate: 15 samples/s"));
 }
 
-TEST(RecordCheckTest, OnlyAMachinesCurrentMustJumpAsItsReactanceSays) {
+TEST(RecordCheckTest, ChecksStepOfCurrentForMachinesOnly) {
   Written turned;
   turned.edit = [](std::vector<double>& x) { x[4] = -x[4]; };
   const record::Record r = rewritten(example(1), turned);
   EXPECT_THROW(raise_refusals(check_record(r, {100, 60})), InputError);
   EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60, false})));
 }
-TEST(RecordCheckTest, ANegativeMagnitudeIsRefusedOnReading) {
+TEST(RecordCheckTest, RefusesNegativeMagnitude) {
   const Written w{.edit = [](auto& x) { std::swap(x[1], x[2]); }};
   EXPECT_THAT(test::messages([&] { rewritten(example(1), w); }),
               ::testing::ElementsAre(::testing::HasSubstr("are their columns swapped?")));
@@ -221,12 +221,12 @@ bool warned(const std::vector<Finding>& findings, const std::string& kind) {
   return std::ranges::any_of(
       findings, [&](const Finding& f) { return f.severity == Severity::warn && f.kind == kind; });
 }
-TEST(RecordCheckTest, AFifthOfASecondBeforeTheEventIsAWarning) {
+TEST(RecordCheckTest, WarnsOfPreEventOfAFifthOfASecond) {
   const auto findings = check_record(record::stretch(example(1), 1.79, 1e9), {100, 60});
   EXPECT_TRUE(warned(findings, "short_pre_event")) << told(findings);
   EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
 }
-/// A dip of the frequency over 40 s, P and Q without noise or in steps, moving from the first sample on.
+/// A dip of the frequency over 40 s that starts at the first sample; P and Q without noise or quantised.
 record::Record dip(double noise, double step) {
   record::Record r;
   r.name = "dip";
@@ -242,7 +242,7 @@ record::Record dip(double noise, double step) {
   }
   return r;
 }
-TEST(RecordCheckTest, EventsWithoutSwitchingAreTaken) {
+TEST(RecordCheckTest, AcceptsEventsWithoutSwitching) {
   for (const double noise : {0.0, 1e-5, 1e-3}) {
     const auto findings = check_record(dip(noise, 0), {100, 60});
     EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
@@ -257,7 +257,7 @@ TEST(RecordCheckTest, EventsWithoutSwitchingAreTaken) {
   const std::string of_voltage = told(check_record(coarse, {100, 60}));
   EXPECT_THAT(of_voltage, testing::HasSubstr("what that does behind a regulator is slow"));
 }
-TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
+TEST(RecordCheckTest, DoesNotCheckIntegratedAngle) {
   record::Record r = example(1);
   r.theta_as_written.clear();
   r.angle = record::AngleSource::integrated;
@@ -266,19 +266,19 @@ TEST(RecordCheckTest, AnIntegratedAngleIsNotHeldAgainstTheRecord) {
     r.theta[k] = r.theta[k - 1] + 2 * std::numbers::pi * 60 * r.step() * (r.f[k] + r.f[k - 1]) / 2;
   EXPECT_NO_THROW(raise_refusals(check_record(r, {100, 60})));
 }
-TEST(RecordCheckTest, RadiansThatWereNeverWrappedAreTaken) {
+TEST(RecordCheckTest, AcceptsUnwrappedRadians) {
   for (int i = 1; i <= 4; ++i)
     for (const bool with_frequency : {true, false}) {
       const Written w{.edit = [](auto& x) { x[2] += 5 * 2 * std::numbers::pi; },
                       .with_frequency = with_frequency};
       const auto findings = check_record(rewritten(example(i), w), {100, 60});
-      if (i == 2 && !with_frequency)  // its angle hardly jumps: that would fit degrees too
+      if (i == 2 && !with_frequency)  // its angle hardly steps: degrees would be plausible too
         EXPECT_TRUE(refused(findings, "angle_unit"));
       else
         EXPECT_EQ(told(findings), "") << "event " << i;
     }
 }
-TEST(RecordCheckTest, TheExamplePasses) {
+TEST(RecordCheckTest, AcceptsTheExample) {
   for (int i = 1; i <= 4; ++i) {
     const record::Record r = example(i);
     EXPECT_EQ(told(check_record(r, {100, 60})), "") << r.name;

@@ -39,7 +39,7 @@ struct ReadingsTest : ::testing::Test {
   }
 };
 
-TEST_F(ReadingsTest, SoundRecordIsTakenAsItIs) { EXPECT_EQ(kind(sound), ""); }
+TEST_F(ReadingsTest, AcceptsSoundRecord) { EXPECT_EQ(kind(sound), ""); }
 TEST_F(ReadingsTest, MirroredAngleIsReported) {
   record::Record r = sound;
   for (double& a : r.theta) a = -a;
@@ -78,7 +78,8 @@ TEST_F(ReadingsTest, SignsAndExchangedColumnsAreReported) {
   std::swap(r.P, r.Q);
   EXPECT_EQ(kind(r), "swapped_channels");
 }
-/// The example's model lacks the exciter of the machine that was recorded: that is no matter of reading.
+/// The example's model lacks the exciter of the recorded machine: a model error, not a wrong reading of the
+/// record.
 TEST(ReadingsOfAWrongModel, AreNotReported) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   for (int i = 1; i <= 4; ++i) {
@@ -100,7 +101,7 @@ struct DispatchTest : ReadingsTest {
     return {};
   }
 };
-TEST_F(DispatchTest, SameOperatingPointIsNoFinding) { EXPECT_EQ(told(sound), ""); }
+TEST_F(DispatchTest, AcceptsSameOperatingPoint) { EXPECT_EQ(told(sound), ""); }
 TEST_F(DispatchTest, RatioAndItsLikelyCauseAreReported) {
   EXPECT_THAT(told(scaled(1.0 / 3)), AllOf(HasSubstr("0.33 times the case's"), HasSubstr("one phase")));
   EXPECT_THAT(told(scaled(1 / std::numbers::sqrt3)), AllOf(HasSubstr("0.58 times"), HasSubstr("sqrt(3)")));
@@ -108,8 +109,7 @@ TEST_F(DispatchTest, RatioAndItsLikelyCauseAreReported) {
 }
 TEST_F(DispatchTest, PowerFactorAngleIsReported) {
   record::Record r = sound;
-  for (std::size_t k = 0; k < r.t.size();
-       ++k) {  // P + jQ = V I e^j(theta - phi), phi being that of the power
+  for (std::size_t k = 0; k < r.t.size(); ++k) {  // P + jQ = V I e^j(theta - phi), phi: power factor angle
     const Complex s0(sound.P[k], sound.Q[k]);
     const Complex made = std::polar(std::abs(s0), 1.3 - std::arg(s0));
     r.P[k] = made.real(), r.Q[k] = made.imag();
@@ -130,7 +130,7 @@ TEST(WrongMachineBase, RemedyNamesTheMachinesMva) {
       AllOf(HasSubstr("times base_mva = 100"), HasSubstr("base_mva in [plant] is probably the system's base"),
             HasSubstr("write the machine's MVA")));
 }
-TEST(ShortRecord, IsAWarningThatNamesWhatCanBeJudged) {
+TEST(ShortRecord, WarningNamesTheJudgedPart) {
   const record::Record r =
       record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), {});
   const auto findings = check_record(record::stretch(r, 1.7, 3.58), {100, 60});

@@ -1,4 +1,4 @@
-// Records of one plant are read, named and checked together, and all that is wrong is told at once.
+// Reading, naming and checking the records of one plant together, with one report of all problems.
 #include "validate/check/record_set.hpp"
 
 #include <gmock/gmock.h>
@@ -22,8 +22,8 @@ TEST_F(RecordSets, KeepTheOrderGiven) {
   EXPECT_EQ(set.records.front().name, "avr_ev2.csv");
   EXPECT_EQ(set.warnings.size(), 2U);
 }
-TEST_F(RecordSets, TellEveryProblemOfEveryFileAtOnce) {
-  model.plant.mva = 1;  // the records' power is then forty times what the machine can give
+TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
+  model.plant.mva = 1;  // the records' power is then forty times the machine's rating
   try {
     read_records({kFirst, "none.csv", kFirst}, model);
     FAIL() << "nothing was refused";
@@ -31,17 +31,17 @@ TEST_F(RecordSets, TellEveryProblemOfEveryFileAtOnce) {
     const std::string told = error.what();
     EXPECT_THAT(told, ::testing::HasSubstr("none.csv"));
     EXPECT_THAT(told, ::testing::HasSubstr("two records named avr_ev1.csv"));
-    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record besides
+    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record as well
   }
 }
-TEST_F(RecordSets, JoinTheProblemsThatAreKnownAlready) {
+TEST_F(RecordSets, AppendToKnownProblems) {
   Problems problems;
   problems.add("a plant", "plants.csv", "it has no name", "give it one");
   const RecordSet set = read_records({kFirst, "none.csv"}, model, problems);
   EXPECT_EQ(set.records.size(), 1U);
   EXPECT_THROW(problems.raise(), InputError);
 }
-TEST_F(RecordSets, AreNotCheckedAgainstAModelThatWasNotRead) {
+TEST_F(RecordSets, SkipTheCheckWithoutAModel) {
   Problems problems;
   EXPECT_EQ(read_records({kFirst}, plant::PlantModel{}, problems).records.size(), 1U);
   EXPECT_TRUE(problems.empty());

@@ -1,4 +1,4 @@
-// Sound records of many plants, events, rates and instruments pass without a word.
+// Sound records of many plants, events, rates and instruments pass without a finding.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ std::string told_of(const std::vector<Finding>& findings) {
   return all;
 }
 
-/// A grid of which a generator is lost: a frequency event, in which no voltage need jump.
+/// A grid that loses a generator: a frequency event, without voltage steps at most plants.
 test::Simulated frequency_event(const std::string& name, std::size_t lost) {
   test::Simulated s{
       sim::grid::load_grid(test::source("configs/networks/" + name + ".raw"),
@@ -36,8 +36,8 @@ test::Simulated frequency_event(const std::string& name, std::size_t lost) {
   return s;
 }
 
-/// What a one-cycle window over voltage and current makes of a record at 480/s (8 samples a cycle), kept at
-/// every `stride`-th sample.
+/// A record at 480/s (8 samples a cycle) after a one-cycle window over voltage and current; every `stride`-th
+/// sample.
 record::Record one_cycle(const record::Record& fine, std::size_t stride) {
   record::Record r;
   r.name = fine.name;
@@ -61,8 +61,8 @@ record::Record one_cycle(const record::Record& fine, std::size_t stride) {
 void expect_sound(const record::Record& r, double mva, const std::string& which) {
   EXPECT_EQ(told_of(check_record(r, {mva, 60})), "") << which;
 }
-/// Every plant that stays in the run, at 120, 60 and 30 samples/s, noise of 0.1 and 0.2 %, with and without a
-/// one-cycle window. Returns how many records that were.
+/// Expects no finding for every plant in operation, at 120, 60 and 30 samples/s, noise of 0.1 and 0.2 %, with
+/// and without a one-cycle window. Returns the number of records.
 int expect_all_sound(const test::Simulated& s, const std::string& event, int lost = -1) {
   int records = 0;
   for (int p = 0; p < static_cast<int>(s.grid.plants.size()); ++p) {
@@ -84,7 +84,7 @@ int expect_all_sound(const test::Simulated& s, const std::string& event, int los
 
 TEST(RecordSoundTest, Faults) {
   int records = 0;
-  // Instants off every sampling grid, as in the field.
+  // Switching times between the samples of every rate, as in the field.
   records +=
       expect_all_sound(test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, 2.1083), "bus 4");
   records += expect_all_sound(test::simulate("ieee14_genrou", sim::Conventions::andes(), 9, 2.0112, 2.2007),
@@ -112,8 +112,8 @@ TEST(RecordSoundTest, FrequencyEvents) {
   expect_all_sound(frequency_event("ieee39_genrou", 2), "generator lost", 2);
   expect_all_sound(frequency_event("ieee14_genrou", 1), "generator lost", 1);
 }
-/// A lost generator makes a jump that is small; six samples at 30/s before it are enough to see it.
-TEST(RecordSoundTest, ASmallJumpSoonAfterTheBeginningIsNoReasonToRefuse) {
+/// A lost generator causes a small step; six samples at 30/s before it suffice to detect it.
+TEST(RecordSoundTest, AcceptsEarlySmallStep) {
   constexpr std::size_t kLost = 2;
   const test::Simulated s = frequency_event("ieee39_genrou", kLost);
   for (std::size_t p = 0; p < s.grid.plants.size(); ++p) {
@@ -131,7 +131,7 @@ TEST(RecordSoundTest, AnotherFrameAndWrappedAngles) {
   for (double& a : r.theta_as_written) a = std::remainder(a, 2 * std::numbers::pi);
   expect_sound(r, r.base.mva, "0.03 Hz off nominal");
 }
-/// A record at 60/s from one at 480/s, the current `late` ticks behind the voltage.
+/// A record at 60/s from one at 480/s, the current delayed by `late` ticks.
 record::Record late_current(const record::Record& fine, std::size_t late) {
   constexpr std::size_t kStride = 8;
   record::Record r;
@@ -149,8 +149,8 @@ record::Record late_current(const record::Record& fine, std::size_t late) {
   }
   return r;
 }
-TEST(RecordSoundTest, ACurrentUpToASampleLateIsNotedNotRefused) {
-  for (const double cleared : {2.1083, 2.0541}) {  // the shorter one: three intervals from jump to jump
+TEST(RecordSoundTest, NotesCurrentUpToOneSampleLate) {
+  for (const double cleared : {2.1083, 2.0541}) {  // shorter one: three intervals from step to step
     const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, cleared);
     int noted = 0;
     for (const std::size_t late : {2U, 4U, 6U, 7U, 8U}) {  // of eight ticks

@@ -38,8 +38,8 @@ std::vector<std::string> names(const std::vector<Window>& windows) {
   return all;
 }
 
-/// The right model of a simulated event, instants off the samples, noise 0.1 %: nothing but noise may be
-/// left.
+/// The right model of a simulated event, switching times between samples, noise 0.1 %: the residual must be
+/// noise.
 struct RightModel {
   test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0062, 2.1131);
   plant::PlantModel model;
@@ -53,19 +53,19 @@ struct RightModel {
   }
 };
 
-TEST(CompareTest, ARightModelLeavesTheNoise) {
+TEST(CompareTest, RightModelLeavesOnlyNoise) {
   const RightModel right;
   const EventComparison e = compare_event(right.model, right.record);
   EXPECT_TRUE(e.detected);
   EXPECT_TRUE(e.fitted);
   for (const auto& c : e.channels) {
     EXPECT_NEAR(c.noise, 0.001, 0.0003);  // 120 samples; the noise of V adds to that of P and Q
-    // Windows of a few samples scatter by 1/sqrt(2 n): 30 % for the 6 samples of the fault.
+    // RMS values of a few samples scatter by 1/sqrt(2 n): 30 % for the 6 samples of the fault.
     for (const auto& w : c.windows) EXPECT_LT(w.in_noise, 1.7);
     EXPECT_GT(c.whole.in_noise, 0.8);
   }
 }
-TEST(CompareTest, ARightModelIsAdequate) {
+TEST(CompareTest, RightModelIsAdequate) {
   const RightModel right;
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   const Adequacy a = judge(events);
@@ -73,7 +73,7 @@ TEST(CompareTest, ARightModelIsAdequate) {
   EXPECT_EQ(a.exceeding, 0);
   EXPECT_THAT(a.sentence, HasSubstr("Adequate"));
 }
-/// A record as a simulator writes it, on the system's base, where the machine is large.
+/// A record in a simulator's output format, on the system's base; the machine is large.
 struct WithoutNoise : RightModel {
   WithoutNoise() {
     record = test::record_of(s, 3, 8, 0);
@@ -83,7 +83,7 @@ struct WithoutNoise : RightModel {
       for (double& value : *power) value *= scale;
   }
 };
-TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
+TEST(CompareTest, JudgesRightAndWrongModel_WithoutNoise) {
   WithoutNoise exact;
   std::vector<EventComparison> events = {compare_event(exact.model, exact.record)};
   EXPECT_TRUE(events[0].fitted);
@@ -95,7 +95,7 @@ TEST(CompareTest, ARightModelIsAdequateWithoutNoiseAndAWrongOneNot) {
   std::vector<EventComparison> wrong = {compare_event(exact.model, exact.record)};
   EXPECT_FALSE(judge(wrong).adequate);
 }
-// Steps of 1 % of the machine without noise to blur them: a slow swing is rounded slowly.
+// Quantisation in steps of 1 % of the machine, without noise: the rounding error of a slow swing is slow.
 TEST(CompareTest, AllowsForQuantisation) {
   WithoutNoise coarse;
   const double step = 0.01 * coarse.model.plant.mva / 100;
@@ -109,19 +109,19 @@ TEST(CompareTest, AllowsForQuantisation) {
   events = {compare_event(coarse.model, coarse.record)};
   EXPECT_FALSE(judge(events).adequate);
 }
-TEST(CompareTest, FramesThatWereLostAreNotCompared) {
+TEST(CompareTest, ExcludesLostFrames) {
   RightModel right;
   for (const std::size_t k : {std::size_t{60}, std::size_t{300}, std::size_t{301}}) {
     right.record.lost.resize(right.record.t.size(), 0);
     right.record.lost[k] = 1;
-    right.record.P[k] += 0.5;  // whatever stands there
+    right.record.P[k] += 0.5;  // arbitrary value
   }
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
   EXPECT_EQ(std::ranges::count(events[0].left_out, 1), 3);
 }
-TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
+TEST(CompareTest, PlaysInPower_WithoutAngleAndFrequency) {
   RightModel right;
   right.record.theta.assign(right.record.t.size(), 0.0);
   right.record.angle = record::AngleSource::none;
@@ -132,8 +132,8 @@ TEST(CompareTest, WithoutAngleAndFrequencyPowerDrives) {
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
-// What the noise of P and Q in the fault and instants known to half a sample leave in V afterwards is no
-// misfit.
+// Noise of P and Q in the fault and switching times known to half a sample cause an error of V afterwards. It
+// must not count as a model error.
 TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
   plant::PlantModel model = example_model();
   model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
@@ -155,10 +155,10 @@ TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
   auto wrong = events();
   EXPECT_FALSE(judge(wrong).adequate);
 }
-TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
+TEST(CompareTest, PlaysInAngleIntegratedFromFrequency) {
   RightModel right;
   const record::Record whole = test::record_of(right.s, 3, 8);
-  const auto jump = [&](double at) {  // of the voltage's angle, over the sample interval
+  const auto jump = [&](double at) {  // step of the voltage's angle over the sample interval
     const auto k = static_cast<std::size_t>(std::ranges::upper_bound(whole.t, at) - whole.t.begin());
     return (whole.theta[k] - whole.theta[k - 1]) - (whole.theta[k - 1] - whole.theta[k - 2]);
   };
@@ -168,7 +168,7 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   right.record = test::by_frequency(right.record, {right.s.t_on, right.s.t_off}, kFrequencyNoise);
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   ASSERT_EQ(events[0].switchings.size(), 2U);
-  constexpr double kSubtransient = 0.04;  // moves the angle in the samples next to a switching
+  constexpr double kSubtransient = 0.04;  // changes the angle in the samples next to a switching
   EXPECT_NEAR(events[0].switchings[0].turn, on, kSubtransient);
   EXPECT_NEAR(events[0].switchings[1].turn, off, kSubtransient);
   EXPECT_THAT(events[0].notes, ::testing::Contains(HasSubstr("were fitted at the switching times")));
@@ -179,9 +179,10 @@ TEST(CompareTest, AnAngleOfTheFrequencyDrivesTheModel) {
   std::vector<EventComparison> wrong = {compare_event(right.model, right.record)};
   EXPECT_FALSE(judge(wrong).adequate) << "turns do not hide it";
 }
-/// A converter that regulates Q has the voltage's noise behind two integrals, which moves Q by several times
-/// its own noise and says nothing of when the fault began: taken for white it puts the fault 5 ms too late.
-TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
+/// In a converter that regulates Q, the voltage's noise passes two integrals and moves Q by several times its
+/// own noise. It contains no information on the start of the fault; if taken for white, it shifts the fault
+/// by 5 ms.
+TEST(CompareTest, SlowNoiseDoesNotMoveTheSwitchingTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9", "Vdip=0.88,Kqi=0.09");
   };
@@ -198,7 +199,7 @@ TEST(CompareTest, SlowNoiseDoesNotMoveTheInstants) {
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_NEAR(events[0].switchings[0].time, s.t_on, 5e-4);
 }
-TEST(CompareTest, AWrongModelDoesNotMoveTheStart) {
+TEST(CompareTest, WrongModelDoesNotMoveTheStart) {
   RightModel right;
   auto& machine = right.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xd"))] *= 1.3;
@@ -212,22 +213,22 @@ TEST(CompareTest, AWrongModelDoesNotMoveTheStart) {
   EXPECT_NEAR(e.playback.start.P, mean(right.record.P), 1e-9);
   EXPECT_NEAR(e.playback.start.Q, mean(right.record.Q), 1e-9);
 }
-TEST(CompareTest, AFifthOfASecondBeforeTheEventIsEnough) {
+TEST(CompareTest, AcceptsPreEventOfAFifthOfASecond) {
   RightModel right;
   right.record = record::stretch(right.record, 1.8, 1e9);
   std::vector<EventComparison> events = {compare_event(right.model, right.record)};
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
-TEST(CompareTest, TheBeginningIsToldInUtc) {
+TEST(CompareTest, ReportsTheBeginningInUtc) {
   EventComparison e = example_event();
   EXPECT_THAT(csv_playback(e).substr(0, 200), ::testing::Not(HasSubstr("utc")));
   e.record.epoch = 1714607940.5;
   EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr(",utc\n"));
   EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr("2024-05-01T23:59:00.500000Z"));
 }
-/// What the P-class filter of IEEE C37.118.1 (a triangle over two cycles) makes of a record at 480/s, kept at
-/// 60/s; then noise as record_of.
+/// A record at 480/s after the P-class filter of IEEE C37.118.1 (a triangle over two cycles), at 60/s; then
+/// noise as in record_of.
 record::Record filtered(const record::Record& fine, double noise) {
   constexpr int kHalf = 7, kStride = 8;
   std::mt19937_64 generator(8);
@@ -253,11 +254,11 @@ record::Record filtered(const record::Record& fine, double noise) {
   }
   return r;
 }
-TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
+TEST(CompareTest, JudgesRightAndWrongModel_BehindAFilter) {
   RightModel right;
   const record::Record record = filtered(test::record_of(right.s, 3, 1), 0.001);
   std::vector<EventComparison> events = {compare_event(right.model, record)};
-  EXPECT_GE(std::ranges::count(events[0].left_out, 1), 4);  // two jumps, two samples at least each
+  EXPECT_GE(std::ranges::count(events[0].left_out, 1), 4);  // two steps, at least two samples each
   EXPECT_NEAR(events[0].switchings.front().time, 2.0062, 0.002);
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
@@ -266,11 +267,11 @@ TEST(CompareTest, BehindAFilterARightModelIsAdequateAndAWrongOneNot) {
   std::vector<EventComparison> off = {compare_event(right.model, record)};
   EXPECT_FALSE(judge(off).adequate);
 }
-/// Behind a regulator what noise of V leaves is slow, and larger than the channels' own noise.
-TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
+/// Behind a regulator the residual caused by noise of V is slow and larger than the channels' own noise.
+TEST(CompareTest, AllowsForVoltageNoiseBehindARegulator) {
   plant::PlantModel model = example_model();
   const sim::Effect* sexs = sim::library::compiled().find("SEXS");
-  model.plant.controls.push_back({sexs, {0.1, 10, 100, 0.05, -4.0, 5.0}});  // as the records were made
+  model.plant.controls.push_back({sexs, {0.1, 10, 100, 0.05, -4.0, 5.0}});  // the true exciter
   std::vector<EventComparison> events;
   for (const char* name : {"avr_ev1.csv", "avr_ev2.csv", "avr_ev3.csv", "avr_ev4.csv"})
     events.push_back(compare_event(
@@ -279,7 +280,8 @@ TEST(CompareTest, NoiseOfTheVoltageBehindARegulatorIsNoMisfit) {
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
-/// A time constant of a hundredth of a sample takes more steps than a fit grants, and play-in has them.
+/// A time constant of a hundredth of a sample needs more steps than a fit allows, but not more than play-in
+/// allows.
 TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
   RightModel right;
   right.model.plant.controls.push_back(
@@ -287,21 +289,22 @@ TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
   const EventComparison e = compare_event(right.model, right.record);
   EXPECT_FALSE(e.fitted);
   ASSERT_EQ(e.channels.size(), 2U);
-  for (const auto& c : e.channels) EXPECT_LT(c.whole.in_noise, 10) << c.name;  // by the middles: 5.2, 2.9
+  for (const auto& c : e.channels)
+    EXPECT_LT(c.whole.in_noise, 10) << c.name;  // with the middles of the intervals: 5.2, 2.9
   ASSERT_FALSE(e.notes.empty());
   EXPECT_THAT(e.notes.front(), HasSubstr("the fit within these intervals failed"));
   EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
 }
-TEST(CompareTest, AnInadequateModelIsCalledSo) {
+TEST(CompareTest, ReportsInadequateModel) {
   std::vector<EventComparison> events = {example_event({2.0, 2.1})};
   const Adequacy a = judge(events);
   EXPECT_FALSE(a.adequate);
   EXPECT_THAT(a.sentence, HasSubstr("Not adequate"));
-  // The missing exciter raises the field voltage; nothing in P before the event is wrong.
+  // The missing exciter raises the field voltage; P before the event is right.
   EXPECT_THAT(a.sentence, HasSubstr("Efd"));
   EXPECT_FALSE(events[0].channels[0].map.rows[0].all.exceeds());
 }
-TEST(CompareTest, OfAModelThatRunsAwayNothingIsTold) {
+TEST(CompareTest, GivesNoVerdictOnUnstableModel) {
   WithoutNoise unstable;
   auto& machine = unstable.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("D"))] = -60;
@@ -312,14 +315,14 @@ TEST(CompareTest, OfAModelThatRunsAwayNothingIsTold) {
   EXPECT_THAT(a.sentence, HasSubstr("Cannot be told"));
   EXPECT_THAT(a.sentence, HasSubstr("by more than 10 times its size"));
 }
-TEST(CompareTest, ComparesWhatIsRecorded) {
+TEST(CompareTest, ComparesRecordedChannels) {
   const EventComparison e = example_event({2.0, 2.1});
   std::vector<std::string> channels;
   for (const auto& c : e.channels) channels.push_back(c.name);
   EXPECT_THAT(channels, ElementsAre("P", "Q", "speed", "Efd", "Ifd"));
-  EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // as made; 121 samples: 3 s.e. are 19 %
+  EXPECT_NEAR(e.channels[2].noise, 2e-5, 4e-6);  // true value; 121 samples: 3 s.e. are 19 %
 }
-TEST(CompareTest, PowerDrivesTheModelToo) {
+TEST(CompareTest, PlaysInPower_OnRequest) {
   const RightModel right;
   CompareOptions options;
   options.drive = DriveBy::power;
@@ -338,14 +341,14 @@ TEST(CompareTest, PowerDrivesTheModelToo) {
   std::vector<EventComparison> off = {compare_event(wrong.model, wrong.record, options)};
   EXPECT_FALSE(judge(off).adequate);
 }
-TEST(CompareTest, UntilLeavesOutTheRest) {
+TEST(CompareTest, UntilTruncatesTheRecord) {
   const EventComparison e = example_event({2.0, 2.1}, {.play_in = {.until = 6.0}});
   EXPECT_NEAR(e.record.t.back(), 6.0, 1e-6);
   EXPECT_EQ(e.channels[0].residual.size(), e.record.t.size());
   EXPECT_THAT(test::messages([] { example_event({}, {.play_in = {.until = 0.3}}); }),
               ElementsAre(HasSubstr("a later --until")));
 }
-TEST(CompareTest, AWrongParameterShowsWhereverTheInstantsLie) {
+TEST(CompareTest, DetectsWrongParameter_WithFittedSwitchingTimes) {
   RightModel wrong;
   wrong.model.plant.machine
       .p[static_cast<std::size_t>(wrong.model.plant.machine.effect->parameter_index("H"))] *= 1.3;
@@ -356,16 +359,17 @@ TEST(CompareTest, AWrongParameterShowsWhereverTheInstantsLie) {
   EXPECT_TRUE(e.fitted);
   EXPECT_GT(e.channels[0].whole.in_noise, 3);
   EXPECT_LT(e.channels[0].whole.in_noise, middle.channels[0].whole.in_noise);
-  // the start is not moved to hide the error, which would count as noise
+  // The start does not move to hide the error; that would count as noise.
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     EXPECT_NEAR(e.channels[c].noise, middle.channels[c].noise, 0.01 * middle.channels[c].noise);
 }
-TEST(CompareTest, AMissingExciterShowsInQ) {
-  // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P far less.
+TEST(CompareTest, MissingExciterAppearsInQ) {
+  // The record's plant has an exciter, the model has none: Q is off by tens of Mvar for seconds, P by far
+  // less.
   const EventComparison e = example_event({2.0, 2.1});
   const auto& p = e.channels[0];
   const auto& q = e.channels[1];
-  EXPECT_NEAR(p.noise, 0.002, 0.0005);  // as made: 0.2 % of 100 MVA
+  EXPECT_NEAR(p.noise, 0.002, 0.0005);  // true value: 0.2 % of 100 MVA
   EXPECT_NEAR(q.noise, 0.002, 0.0005);
   EXPECT_LT(q.windows[0].in_noise, 1.1);
   EXPECT_GT(q.windows[2].in_noise, 50);
@@ -384,7 +388,7 @@ TEST(CompareTest, WindowsFollowTheSwitchings) {
   EXPECT_EQ(sum, e.record.samples());
   EXPECT_THAT(names(event_windows(e.record, {{.time = 2.0}}, 1.0)),
               ElementsAre("pre-event", "0–1 s after", "1–5 s after", "> 5 s after"));
-  // Where nothing switches, nothing is "after" anything.
+  // Without switching no window is "after" an event.
   EXPECT_THAT(names(event_windows(e.record, {}, 14.5)),
               ElementsAre("0–14.5 s of the record", "14.5–15.5 s of the record"));
   EXPECT_THAT(names(event_windows(e.record, {}, 1)),
@@ -424,7 +428,7 @@ TEST(ErrorTable, PrintedRatio_IsThePrintedRmsOverThePrintedNoise) {
               HasSubstr(report::padded(error_table({{"", events, fitness}}))));
 }
 
-TEST(CompareReportTest, JsonHoldsTheNumbers) {
+TEST(CompareReportTest, JsonContainsTheNumbers) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const auto j = nlohmann::json::parse(
@@ -437,10 +441,10 @@ TEST(CompareReportTest, JsonHoldsTheNumbers) {
   EXPECT_EQ(map[12]["window"], "0–1 s after");
   EXPECT_EQ(map[12]["band"], "0.1–0.8 Hz");
   EXPECT_DOUBLE_EQ(map[12]["normalised_rms"], events[0].channels[1].map.rows[2].bands[1].normalised);
-  EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s hold nothing below 0.1 Hz
+  EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s contain no frequency below 0.1 Hz
   EXPECT_EQ(j["adequate"], false);
 }
-TEST(CompareReportTest, PageAsksForNothing) {
+TEST(CompareReportTest, PageLoadsNothingExternal) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const std::string html = html_report(example_model(), events, adequacy, fitness_of(events),
@@ -451,14 +455,14 @@ TEST(CompareReportTest, PageAsksForNothing) {
   const std::string own = html.substr(0, at) + html.substr(at + library.size());
   for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"})
     EXPECT_EQ(own.find(word), std::string::npos) << word;
-  EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // what a browser would fetch
+  EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // a browser would fetch it
   EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
   ASSERT_NE(own.find("Error map</h2>"), std::string::npos);
-  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map stands under the verdict
-  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare tries none
+  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map follows the verdict
+  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare has no hypotheses
 }
-TEST(CompareReportTest, TerminalReportCarriesUnits) {
+TEST(CompareReportTest, TerminalReportHasUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), true);
@@ -476,7 +480,7 @@ TEST(CompareReportTest, TerminalReport_PrintsVerdictFirstAndEachNoteOnce) {
   EXPECT_THAT(text, HasSubstr("note (all events): a note of both\nnote (other.csv): a note of one\n"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("In units of noise")));
 }
-TEST(CompareReportTest, PlaybackHasOneLineASample) {
+TEST(CompareReportTest, PlaybackHasOneLinePerSample) {
   const EventComparison e = example_event();
   const std::string text = csv_playback(e);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), e.record.samples() + 1);

@@ -1,4 +1,5 @@
-// Components compared: the right model leaves the noise, a wrong parameter and a missing block do not.
+// Comparison of components: the right model leaves only noise; a wrong parameter or a missing block leaves
+// more.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ namespace {
 using record::Component;
 using ::testing::HasSubstr;
 
-/// The component of a simulated machine, and its noisy record. Instants lie between the samples.
+/// The component of a simulated machine and its noisy record. Switching times lie between the samples.
 struct Tried {
   test::ComponentCase simulated;
   plant::PlantModel model;
@@ -43,7 +44,7 @@ struct Tried {
   }
 };
 
-TEST(CompareComponentTest, ARightExciterIsAdequateAndAWrongGainIsNot) {
+TEST(CompareComponentTest, JudgesRightExciterAndWrongGain) {
   Tried t({"IEEET1", "STAB1"}, Component::exciter);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -55,14 +56,14 @@ TEST(CompareComponentTest, ARightExciterIsAdequateAndAWrongGainIsNot) {
   EXPECT_FALSE(wrong.adequate) << wrong.sentence;
 }
 
-TEST(CompareComponentTest, AnExciterWithoutItsStabiliserIsNotAdequate) {
+TEST(CompareComponentTest, ExciterWithoutItsStabiliserIsInadequate) {
   Tried t({"IEEET1", "STAB1"}, Component::exciter);
   std::erase_if(t.model.plant.controls,
                 [](const auto& b) { return b.effect->slot == sim::Slot::stabiliser; });
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
-TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
+TEST(CompareComponentTest, JudgesRightGovernorAndWrongDroop) {
   Tried t({"TGOV1"}, Component::governor);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -72,7 +73,7 @@ TEST(CompareComponentTest, ARightGovernorIsAdequateAndAWrongDroopIsNot) {
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
-TEST(CompareComponentTest, ThatAFrequencyStandsForTheSpeedIsSaid) {
+TEST(CompareComponentTest, NotesThatFrequencyReplacesSpeed) {
   Tried t({"TGOV1"}, Component::governor);
   const auto notes = [&] { return compare_event(t.model, t.record).notes; };
   EXPECT_THAT(notes(), ::testing::Not(::testing::Contains(HasSubstr("has no speed"))));
@@ -80,7 +81,7 @@ TEST(CompareComponentTest, ThatAFrequencyStandsForTheSpeedIsSaid) {
   EXPECT_THAT(notes(), ::testing::Contains(HasSubstr("has no speed")));
 }
 
-TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
+TEST(CompareComponentTest, JudgesRightMachineAndWrongReactance) {
   Tried t({"SEXS", "TGOV1"}, Component::machine);
   std::vector<std::string> channels;
   const Adequacy right = t.adequacy(&channels);
@@ -91,8 +92,8 @@ TEST(CompareComponentTest, ARightMachineIsAdequateAndAWrongReactanceIsNot) {
   EXPECT_FALSE(t.adequacy().adequate);
 }
 
-/// What a recorder of an excitation system writes at 208/s: no angle, quantities in their own units, Efd with
-/// the ripple of six thyristors (300 Hz, seen at 92 Hz) and noise.
+/// Output of an excitation system's recorder at 208/s: no angle, quantities in their own units, Efd with
+/// noise and the ripple of six thyristors (300 Hz, aliased to 92 Hz).
 std::string excitation_recorder(const test::ComponentCase& c) {
   std::string text = "Time [s],Ug [kV],Ig [kA],P [MW],Q [Mvar],Ifd [A],Efd [V]\n";
   const record::Record r = test::component_record(c, Component::exciter, {.V = 1e-4, .P = 1e-3, .Efd = 0.03});
@@ -105,7 +106,7 @@ std::string excitation_recorder(const test::ComponentCase& c) {
   return text;
 }
 
-TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
+TEST(CompareComponentTest, ReadsExcitationRecorderAt208HzWithoutAngle) {
   const auto simulated = test::simulated_component(std::vector<std::string>{"ESAC1A"},
                                                    {.on = 2.0062, .off = 2.1131, .end = 10, .rate = 208});
   plant::PlantModel model;
@@ -115,7 +116,7 @@ TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
   model = event::component_model(std::move(model), Component::exciter);
   const std::string text = excitation_recorder(simulated);
   EXPECT_THAT(test::messages([&] { record::parse_record(text, "x.csv", model.record_base, model.reading); }),
-              ::testing::ElementsAre(HasSubstr("ifd_base")));  // ESAC1A is fed by it
+              ::testing::ElementsAre(HasSubstr("ifd_base")));  // ESAC1A uses Ifd
   model.record_base.ifd = 850;
   const record::Record r = record::parse_record(text, "x.csv", model.record_base, model.reading);
   EXPECT_NEAR(r.rate(), 208, 1e-3);
@@ -126,7 +127,7 @@ TEST(CompareComponentTest, RecorderOfAnExcitationSystemWithoutAngleAt208) {
   exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KF"))] *= 1.5;
   std::vector<EventComparison> wrong = {compare_event(model, r)};
   EXPECT_FALSE(judge(wrong).adequate);
-  // the whole plant would lack its angle: P and Q must drive
+  // The whole plant lacks the angle, so P and Q are played in.
   const record::Record whole = record::parse_record(text, "x.csv", model.record_base, {});
   EXPECT_EQ(whole.angle, record::AngleSource::none);
   EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("neither angle nor frequency")));

@@ -12,14 +12,14 @@ namespace swingbank::validate::compare {
 namespace {
 
 constexpr double kRate = 60;
-/// 20 s at 60/s; the event at 2 s, over at 2.1 s.
+/// 20 s at 60/s; the event is from 2 to 2.1 s.
 std::vector<double> times() {
   std::vector<double> t;
   for (int k = 0; k <= 1200; ++k) t.push_back(k / kRate);
   return t;
 }
 std::vector<Window> windows() {
-  constexpr double slack = 1e-6;  // a sample at an instant belongs before it
+  constexpr double slack = 1e-6;  // a sample at a switching time belongs to the window before it
   return {{"pre-event", 0, 2 + slack},
           {"fault", 2 + slack, 2.1 + slack},
           {"0–1 s after", 2.1 + slack, 3.1 + slack},
@@ -39,7 +39,7 @@ std::vector<double> noise(double sigma, double a, unsigned seed, std::size_t n =
   return x;
 }
 
-TEST(ErrorMapTest, CellsHoldWhatTheirWindowCanShow) {
+TEST(ErrorMapTest, BinsContainResolvableFrequencies) {
   const auto t = times();
   const ErrorMap map = error_map(t, noise(1, 0, 1), windows(), white_noise(1));
   const std::vector<std::vector<bool>> holds = {{false, true, true, true},
@@ -58,7 +58,7 @@ TEST(ErrorMapTest, CellsHoldWhatTheirWindowCanShow) {
   EXPECT_EQ(map.rows[4].bands[1].values, 18);
 }
 
-/// Mean square of each cell over many draws: 1 if the cell's noise was right.
+/// Expects a mean square of 1 in each bin over many draws, as for a correct noise estimate.
 void expect_unit(double colour, bool estimated) {
   const auto t = times();
   constexpr int kDraws = 150;
@@ -81,17 +81,17 @@ void expect_unit(double colour, bool estimated) {
   for (std::size_t i = 0; i < 5; ++i)
     for (std::size_t b = 0; b < 5; ++b)
       if (values[i][b] > 0) {
-        // A mean of kDraws * values squares of normal numbers, five standard errors. An estimated variance
-        // (120 samples, or the spectrum of a coloured one) puts 1/(1 - 2/nu), up to 10 %, on top.
+        // A mean of kDraws * values squares of normal numbers: five standard errors. An estimated variance
+        // (120 samples, or a coloured spectrum) adds a factor of 1/(1 - 2/nu), up to 10 %.
         EXPECT_NEAR(sum[i][b], 1, 5 * std::sqrt(2.0 / (kDraws * values[i][b])) + (estimated ? 0.1 : 0))
             << i << " " << b;
       }
 }
-TEST(ErrorMapTest, WhiteNoiseIsOneEverywhere) { expect_unit(0, false); }
-TEST(ErrorMapTest, ColouredNoiseIsOneEverywhere) { expect_unit(0.8, false); }
+TEST(ErrorMapTest, NormalisesWhiteNoiseToOne) { expect_unit(0, false); }
+TEST(ErrorMapTest, NormalisesColouredNoiseToOne) { expect_unit(0.8, false); }
 TEST(ErrorMapTest, NoiseIsEstimatedBeforeTheEvent) { expect_unit(0, true); }
 
-TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
+TEST(ErrorMapTest, SineAppearsInItsBandAndWindow) {
   const auto t = times();
   const auto w = windows();
   const struct {
@@ -100,7 +100,7 @@ TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
   } cases[] = {{4, 0, 0.05}, {4, 1, 0.4}, {3, 1, 0.4}, {3, 2, 1.5}, {2, 2, 1.5}, {2, 3, 8.0}, {0, 3, 10.0}};
   for (const auto& c : cases) {
     auto x = noise(1, 0, 5);
-    // As a cosine that is flat at both ends it does not leak.
+    // A cosine with zero slope at both ends has no leakage.
     const double length = w[c.window].to - w[c.window].from, from = w[c.window].from;
     const double k = std::round(2 * length * c.frequency);
     for (std::size_t i = 0; i < t.size(); ++i)
@@ -118,7 +118,7 @@ TEST(ErrorMapTest, ASineShowsInItsBandAndWindow) {
   }
 }
 
-TEST(ErrorMapTest, AnOffsetOfAShortWindowShowsInAll) {
+TEST(ErrorMapTest, OffsetOfAShortWindowAppearsInTheTotal) {
   const auto t = times();
   auto x = noise(1, 0, 6);
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -131,7 +131,7 @@ TEST(ErrorMapTest, AnOffsetOfAShortWindowShowsInAll) {
   EXPECT_NEAR(map.rows[3].all.rms, std::sqrt(10.0), 0.2);  // 240 samples: 3 s.e. of the rms
 }
 
-TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
+TEST(ErrorMapTest, IncludesErrorOfTheStartInTheNoise) {
   // An offset of one standard error of the mean of 121 samples, 11 sigma of the mean of 774.
   const auto t = times();
   std::vector<double> x(t.size(), 1.0 / 11);
@@ -142,7 +142,7 @@ TEST(ErrorMapTest, TheStartsOwnErrorIsNoise) {
   EXPECT_NEAR(started, std::sqrt(774.0 / 121 / 3 / (1 + 774.0 / 121)), 0.01);
 }
 
-TEST(NoiseModelTest, EstimatesSpreadAndColour) {
+TEST(NoiseModelTest, EstimatesDeviationAndColour) {
   const auto x = noise(0.002, 0.7, 3, 4000);
   const ChannelNoise model = estimate_noise(x, 1e-5);
   EXPECT_NEAR(model.sigma, 0.002, 0.0002);  // 4000 samples correlated over 3: 3 s.e. are 8 %
@@ -175,13 +175,13 @@ TEST(NoiseBoundTest, NoiseAloneStaysBelowAllBounds) {
     }
     above += any;
   }
-  // At most 2 % of 300; the cells overlap, so Bonferroni is cautious; 6 + 3 sqrt(6) draws at worst. Colour
-  // found where there is none adds a little.
+  // At most 2 % of 300 draws: the bins overlap, so Bonferroni is conservative; 6 + 3 sqrt(6) draws at most.
+  // Spurious colour adds a little.
   EXPECT_LE(above, 14);
   EXPECT_GT(above, 0);
 }
 
-TEST(MapSentenceTest, NamesTheWindowAndBandThatAreFurthestOff) {
+TEST(MapSentenceTest, NamesTheWindowAndBandOfTheLargestError) {
   const auto t = times();
   const auto w = windows();
   std::vector<double> off = noise(1, 0, 5), also = noise(1, 0, 6), quiet = noise(1, 0, 7);

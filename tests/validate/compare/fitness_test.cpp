@@ -1,4 +1,4 @@
-// Errors of IEC 61400-27-2 by window, at their limits and beside them.
+// Errors of IEC 61400-27-2 by window, at their limits and next to them.
 #include "validate/compare/fitness.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using thresholds::Phase;
 
 constexpr double kPerSecond = 100;
 
-/// 0 to 4 s, switched at 1 and 1.5 s, on 50 MVA; what P is off is `error(t)` [pu], Q is right.
+/// 0 to 4 s, switched at 1 and 1.5 s, on 50 MVA; the error of P is `error(t)` [pu], Q is right.
 template <class Error>
 EventComparison event_off_by(Error error) {
   EventComparison e;
@@ -38,7 +38,7 @@ EventComparison event_off_by(Error error) {
   e.channels = {p, q};
   return e;
 }
-/// Limits of 8, 4 and 7 % everywhere, nothing left out.
+/// Limits of 8, 4 and 7 % in all windows, without exclusions.
 thresholds::Acceptance plain_limits() {
   thresholds::Acceptance a = thresholds::read_acceptance("dtr-test");
   for (auto& channel : a.limits) channel.fill({8, 4, 7});
@@ -49,7 +49,7 @@ const JudgedErrors& row_of(const Fitness& f, Phase phase) {
   return *std::ranges::find(f.rows, phase, &JudgedErrors::phase);
 }
 
-TEST(Fitness, ErrorsAreInPercentOfTheMachinesMva) {
+TEST(Fitness, ErrorsAreInPercentOfMachineMva) {
   const auto e = event_off_by([](double t) { return t <= 1.5 ? 0.0 : t <= 2 ? -0.1 : 0.02; });
   const Fitness f = judge_fitness({e}, 200, plain_limits());
   ASSERT_EQ(f.rows.size(), 6U);
@@ -63,8 +63,8 @@ TEST(Fitness, ErrorsAreInPercentOfTheMachinesMva) {
   EXPECT_TRUE(f.fit);
 }
 
-/// P falls by 3 % of MVA after 1.5 s, as a governor answers to a rise of frequency; the model makes `share`
-/// of it.
+/// P falls by 3 % of MVA after 1.5 s, as a governor responds to a rise of frequency; the model's response is
+/// `share` of it.
 EventComparison governor_event(double share) {
   const auto moved = [](double t) { return t > 1.5 ? -0.03 * std::min(1.0, t - 1.5) : 0.0; };
   EventComparison e = event_off_by([&](double t) { return (share - 1) * moved(t); });
@@ -75,7 +75,7 @@ EventComparison governor_event(double share) {
   p.noise = 1e-3;
   return e;
 }
-TEST(Fitness, MissingResponse_FailsByItsMovement_WhereNoLimitOfMvaDoes) {
+TEST(Fitness, MissingResponse_FailsByItsMovement_WhenEveryLimitOfMvaHolds) {
   const Fitness f = judge_fitness({governor_event(0)}, 50, plain_limits());
   for (const auto& row : f.rows) EXPECT_EQ(thresholds::exceeding(row.errors, row.limits), 0);
   EXPECT_FALSE(f.fit);
@@ -91,16 +91,16 @@ TEST(Fitness, MissingResponse_FailsByItsMovement_WhereNoLimitOfMvaDoes) {
   EXPECT_THAT(report::padded(movement_table(most)), HasSubstr("80 %"));
   EXPECT_EQ(fitness_json(most)["movement"][0]["limit_percent"], 25);
 }
-TEST(Fitness, Movement_IsNotJudged_WhereNoiseOrSizeHidesIt) {
+TEST(Fitness, Movement_IsNotJudged_BelowNoiseOrMinimumSize) {
   EventComparison noisy = governor_event(0);
   noisy.channels.front().noise = 0.01;
   EXPECT_TRUE(judge_fitness({noisy}, 50, plain_limits()).movements.empty());
   EXPECT_TRUE(judge_fitness({governor_event(0)}, 500, plain_limits()).movements.empty());  // 0.3 % of MVA
 }
 
-TEST(Fitness, TheLimitItselfIsKept) {
+TEST(Fitness, AcceptsErrorAtTheLimit) {
   const auto by = plain_limits();
-  const auto off = [&](double percent) {  // one sample of the fault; 100 % are 50 MVA
+  const auto off = [&](double percent) {  // error of one sample of the fault; 100 % are 50 MVA
     return judge_fitness({event_off_by([&](double t) { return t == 1.2 ? percent / 100 : 0.0; })}, 50, by);
   };
   const double at = off(8).rows[1].errors.mxe;
@@ -116,8 +116,8 @@ TEST(Fitness, TheLimitItselfIsKept) {
   EXPECT_THAT(f.sentence, HasSubstr("MXE of P in the fault window of one.csv"));
 }
 
-TEST(Fitness, AMeanErrorCountsByItsSize) {
-  const auto e = event_off_by([](double t) { return t > 1.5 ? -0.05 : 0.0; });  // -5 %, where 4 % is allowed
+TEST(Fitness, JudgesAbsoluteMeanError) {
+  const auto e = event_off_by([](double t) { return t > 1.5 ? -0.05 : 0.0; });  // -5 % at a limit of 4 %
   const Fitness f = judge_fitness({e}, 50, plain_limits());
   EXPECT_FALSE(f.fit);
   EXPECT_LT(row_of(f, Phase::post_fault).errors.me, 0);
@@ -140,7 +140,7 @@ TEST(Fitness, IgnoresChannelsWithoutLimits) {
   EXPECT_TRUE(judge_fitness({smeared}, 50, by).fit);
 }
 
-TEST(Fitness, WithoutASwitchingNoWindowIsOfAFault) {
+TEST(Fitness, HasNoFaultWindow_WithoutSwitching) {
   auto e = event_off_by([](double t) { return t > 2.0 ? 0.5 : 0.0; });
   const auto faulted = e;
   e.switchings.clear();
@@ -171,7 +171,7 @@ TEST(Fitness, RejectsNaN) {
   }
 }
 
-TEST(Fitness, WithoutPAndQNothingIsJudged) {
+TEST(Fitness, JudgesNothing_WithoutPAndQ) {
   auto e = event_off_by([](double) { return 0.0; });
   for (auto& c : e.channels) c.name = "Efd";
   const Fitness f = judge_fitness({e}, 50, plain_limits());
@@ -181,7 +181,7 @@ TEST(Fitness, WithoutPAndQNothingIsJudged) {
   EXPECT_EQ(f.exit_code(false), 3);
 }
 
-TEST(Fitness, AnEventWithOneSwitchingOrNoneHasNoFaultWindow) {
+TEST(Fitness, HasNoFaultWindow_WithOneSwitchingOrNone) {
   auto e = event_off_by([](double) { return 0.0; });
   e.switchings = {{.time = 1.0}};
   Fitness f = judge_fitness({e}, 50, plain_limits());

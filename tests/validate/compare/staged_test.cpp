@@ -1,4 +1,5 @@
-// Staged tests compared: the right model leaves the noise, a wrong one does not, nor one that is not told.
+// Comparison of staged tests: the right model leaves only noise; a wrong model or an undeclared test leaves
+// more.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ TEST(CompareStagedTest, LoadRejection) {
                          test::staged_record(c, {{Staged::load_rejection, 2.0}}, 0, 2e-4, 0.005));
 }
 
-TEST(CompareStagedTest, StepInAnOpenCircuit) {
+TEST(CompareStagedTest, StepInOpenCircuit) {
   const sim::plant::Plant plant = test::unloaded_plant();
   const sim::Conventions conventions = sim::Conventions::psse();
   expect_right_and_wrong({plant, conventions}, test::open_circuit_record(0.05, 2e-4, 0.005));

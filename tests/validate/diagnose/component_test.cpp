@@ -1,4 +1,4 @@
-// The stabiliser that an exciter's model lacks is named from records of the exciter alone.
+// The diagnosis names the missing stabiliser from records of the exciter alone.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::Contains;
 
-TEST(ComponentHypotheses, OnlyBlocksOfTheComponentJoin) {
+TEST(ComponentHypotheses, ContainOnlyBlocksOfTheComponent) {
   plant::PlantModel model;
   model.plant.machine = test::default_block("GENROU");
   model.conventions = sim::Conventions::psse();
@@ -31,7 +31,7 @@ TEST(ComponentHypotheses, OnlyBlocksOfTheComponentJoin) {
   }
 }
 
-TEST(DiagnoseComponentFull, TheMissingStabiliserIsNamed) {
+TEST(DiagnoseComponentFull, NamesMissingStabiliser) {
   std::vector<record::Record> records;
   plant::PlantModel model;
   unsigned seed = 1;

@@ -1,4 +1,4 @@
-// The example records, whose machine has an exciter that the model lacks: diagnosed from P and Q alone.
+// Diagnosis of the example records from P and Q alone; the model lacks the machine's exciter.
 #include "validate/diagnose/diagnose.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ std::vector<record::Record> example_records(const plant::PlantModel& model) {
   return records;
 }
 
-TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
+TEST(Hypotheses, IncludeEveryFittingEffectAndNullGroup) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   std::vector<std::string> names;
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) names.push_back(h.name);
@@ -36,21 +36,21 @@ TEST(Hypotheses, EveryEffectThatFitsAndEveryNeutralGroupJoins) {
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"GENROU:D", "GENROU:S10,S12", "GENROU:Ra", "speed-voltage"}));
 }
-TEST(Hypotheses, NoneFillsAnOccupiedSlot) {
+TEST(Hypotheses, LeaveOccupiedSlotsUnchanged) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const auto* sexs = sim::library::compiled().find("SEXS");
   model.plant.controls.push_back({sexs, sexs->default_parameters()});
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
     EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
 }
-TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
+TEST(FindSwitchings, FindsAndMarksFilteredSteps) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   record::Record r = example_records(model).front();
   std::vector<char> smeared;
   const auto sharp = event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
   ASSERT_EQ(sharp.size(), 2u);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
-  // a filter that takes the mean of each sample and the next
+  // A filter: the mean of each sample and the next.
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
     const Complex v = (std::polar(r.V[k], r.theta[k]) + std::polar(r.V[k + 1], r.theta[k + 1])) / 2.0;
     r.V[k] = std::abs(v);
@@ -63,7 +63,7 @@ TEST(FindSwitchings, SmearedJumpsAreFoundAndMarked) {
     EXPECT_LE(std::abs(found[k].time - sharp[k].time), found[k].uncertainty);
 }
 
-TEST(DiagnoseFull, TheMissingExciterIsNamed) {
+TEST(DiagnoseFull, NamesMissingExciter) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;
@@ -72,19 +72,19 @@ TEST(DiagnoseFull, TheMissingExciterIsNamed) {
   EXPECT_NE(d.verdict, Verdict::unexplained);
   EXPECT_EQ(d.side, hypothesis::Side::excitation);
   EXPECT_THAT(d.effects, testing::ElementsAre("SEXS"));
-  // A free field voltage closes the gap, a free torque does not.
+  // A free field voltage removes the residual, a free torque does not.
   EXPECT_LT(d.field.reduced_chi2(), 1.1);
   EXPECT_GT(d.torque.reduced_chi2(), 100);
   const hypothesis::Judgement& best = d.ranked.front();
   for (const auto& h : best.held_out) {
     EXPECT_GT(h.before, 100) << h.record;
-    EXPECT_LT(h.after, 1.1) << h.record;  // 1 + 3 standard deviations of chi2 per value, and a little
+    EXPECT_LT(h.after, 1.1) << h.record;  // 1 + 3 standard deviations of chi2 per value, plus a margin
   }
-  // The truth (configs/records/README.md) within three standard errors; README's figures: K 93 +- 11, TE
+  // The truth (configs/records/README.md) within three standard errors. The README states K 93 +- 11, TE
   // 0.053 +- 0.004 s from three of these events.
   struct Known {
     std::string_view name;
-    double value, most;  // the most that its standard error may be
+    double value, most;  // `most`: largest permitted standard error
   };
   for (const Known& known : {Known{"TE", 0.05, 0.006}, Known{"K", 100, 16}, Known{"H", 6.54, 0.05}}) {
     const auto p = std::ranges::find(best.fit.parameters, known.name, &fit::FittedParameter::name);
@@ -95,7 +95,7 @@ TEST(DiagnoseFull, TheMissingExciterIsNamed) {
   }
 }
 
-/// The example's voltages, and what the plant would answer to them with EXST1 of these values, with noise.
+/// The example's voltages and the simulated response with EXST1 of these values, with noise.
 std::vector<record::Record> records_with_exst1(
     const plant::PlantModel& model, const std::vector<std::pair<std::string_view, double>>& values) {
   constexpr double kNoise = 0.002;  // of P and Q [pu]
@@ -120,7 +120,7 @@ std::vector<record::Record> records_with_exst1(
   }
   return records;
 }
-TEST(DiagnoseNight, AnExciterWithARateFeedbackIsNotLost) {
+TEST(DiagnoseNight, FindsExciterWithRateFeedback) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;

@@ -1,4 +1,4 @@
-// Case 1 of RTE's dynamic model validation engine, simulated by Dynawo, the whole way
+// Case 1 of RTE's dynamic model validation engine, simulated by Dynawo, from files to diagnosis
 // (docs/reference/records-of-others.md).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -25,13 +25,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kMachineMva = 500;
-constexpr double kUntil = 2.01;  ///< later the record's field voltage stays at its floor [s]
+constexpr double kUntil = 2.01;  ///< afterwards the record's field voltage stays at its floor [s]
 
 plant::PlantModel believed() {
   return plant::load_plant_model(test::source("tests/validate/diagnose/dynawo_case_1.toml"));
 }
 
-/// A table of Modelica's as CSV: its lines of two numbers, below a heading.
+/// Writes a Modelica table as CSV: its lines of two numbers, below a heading.
 void write_table(const std::string& text, const std::string& table, const std::string& heading,
                  const std::filesystem::path& file) {
   std::istringstream lines(text.substr(text.find("double " + table + "(")));
@@ -44,7 +44,7 @@ void write_table(const std::string& text, const std::string& table, const std::s
     csv << line.replace(line.find(' '), 1, ",") << '\n';
 }
 
-/// The record: voltage and angle of the infinite bus, P and Q of the machine, each with its own instants.
+/// The record: voltage and angle of the infinite bus, P and Q of the machine, each with its own times.
 record::Record dynawo_record() {
   static const record::Record read = [] {
     const auto from = sim::test::record_folder("dynawo_play_in") / "test_case_1";
@@ -72,7 +72,7 @@ double& inertia(plant::PlantModel& model) {
   return model.plant.machine.p[static_cast<std::size_t>(H)];
 }
 
-/// What is left of P and Q, rms over the record [% of MVA].
+/// Residual RMS of P and Q over the record [% of MVA].
 std::pair<double, double> left(const plant::PlantModel& model) {
   const compare::EventComparison e = compare::compare_event(model, dynawo_record());
   const auto rms = [&](std::size_t channel) {
@@ -81,7 +81,7 @@ std::pair<double, double> left(const plant::PlantModel& model) {
   return {rms(0), rms(1)};
 }
 
-TEST(DynawoRecords, ThreeFilesOfDifferentInstantsAreOneRecord) {
+TEST(DynawoRecords, JoinsThreeFilesWithDifferentTimes) {
   const record::Record r = dynawo_record();
   EXPECT_NEAR(r.P.front(), 4.751, 1e-3);
   EXPECT_NEAR(r.Q.front(), 1.562, 1e-3);
@@ -91,8 +91,8 @@ TEST(DynawoRecords, ThreeFilesOfDifferentInstantsAreOneRecord) {
   EXPECT_NEAR(r.t.back(), kUntil, 0.01);
 }
 
-// Efd runs from 1.9 pu into its ceiling within 4 ms of the fault, at 600 pu/s.
-TEST(DynawoRecords, TheBelievedModelMissesAndARightInertiaNearlyMeetsIt) {
+// Efd rises from 1.9 pu to its ceiling within 4 ms of the fault, at 600 pu/s.
+TEST(DynawoRecords, RightInertiaReducesTheErrorOfTheSubmittedModel) {
   plant::PlantModel model = believed();
   const auto [P, Q] = left(model);
   inertia(model) = 4.03;
@@ -107,23 +107,23 @@ TEST(DynawoRecords, TheBelievedModelMissesAndARightInertiaNearlyMeetsIt) {
   EXPECT_LT(right_Q, 2.5);
 }
 
-TEST(DynawoRecords, OneEventIsTooFewForADiagnosis) {
+TEST(DynawoRecords, RefusesDiagnosisOfOneEvent) {
   EXPECT_THAT(test::messages([] { diagnose(believed(), {dynawo_record()}); }),
               ElementsAre(HasSubstr("two events or more")));
 }
 
-TEST(DynawoRecordsFull, TheWrongInertiaIsFound) {
+TEST(DynawoRecordsFull, FindsWrongInertia) {
   const calibrate::Calibration c = calibrate::calibrate(believed(), {dynawo_record()}, {});
   const auto& H = std::ranges::find(c.parameters, "H", [](const auto& p) { return p.fit.name; })->fit;
   EXPECT_GT(H.low, 3.8);
   EXPECT_LT(H.high, 4.3);
   EXPECT_GT(H.decided, 0.99);
-  // 0.25 % and 0.35 % of MVA were left of 17.7 % and 11.9 %
+  // Measured: 0.25 % and 0.35 % of MVA, down from 17.7 % and 11.9 %.
   for (const calibrate::ChannelScore& channel : c.events.front().channels) {
     EXPECT_GT(channel.rms_before, 50) << channel.unit;
     EXPECT_LT(channel.rms_after, 0.005 * kMachineMva) << channel.unit;
   }
-  // The record has no noise, so that what another program computes otherwise is enough to fail by it.
+  // The record has no noise, so the numerical differences between two programs suffice to fail.
   EXPECT_EQ(c.adequacy, calibrate::Adequacy::structure_poor);
 }
 

@@ -1,4 +1,4 @@
-// Intercept valves that close after each fault: the model knows nothing of them.
+// Intercept valves that close after each fault and are missing in the model.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -13,8 +13,8 @@ namespace {
 constexpr double kValveNoise = 0.002;  ///< of P and Q [pu]
 constexpr double kAfterFault = 0.15;   ///< [s]
 
-/// The example's voltages, and what the plant answers with FASTVALVE at its time after each event's fault,
-/// with noise.
+/// The example's voltages and the simulated response with FASTVALVE, which acts kAfterFault after each
+/// event's fault, with noise.
 std::vector<record::Record> records_with_valves(const plant::PlantModel& model) {
   std::vector<record::Record> records;
   for (int i = 1; i <= 4; ++i)
@@ -37,7 +37,7 @@ std::vector<record::Record> records_with_valves(const plant::PlantModel& model) 
   return records;
 }
 
-TEST(DiagnoseNight, FastValvingAfterEachFaultIsNamed) {
+TEST(DiagnoseNight, NamesFastValvingAfterEachFault) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;

@@ -1,4 +1,4 @@
-// A limit of the model that is wrong, and that the model therefore never meets.
+// A wrong limit of the model that its response therefore never reaches.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ double& current_limit(sim::plant::Plant& plant) {
   return control.p[static_cast<std::size_t>(control.effect->parameter_index("Imax"))];
 }
 
-/// A converter whose current is limited at 0.9 pu, where its model says 1.3 pu.
-TEST(BetterStart, ALimitThatIsNeverMetIsTried) {
+/// A converter with a current limit of 0.9 pu; its model has 1.3 pu.
+TEST(BetterStart, TriesLimitThatTheModelNeverReaches) {
   const auto converter = [](sim::grid::Grid& grid) {
     sim::plant::Plant& plant = grid.plants[3];
     plant.machine = test::block("REGCA1", "Tg=0.04");

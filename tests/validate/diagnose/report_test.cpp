@@ -1,4 +1,4 @@
-// The page and the JSON of a diagnosis say the same, and a browser shows the page without complaint.
+// The page and the JSON of a diagnosis agree, and a browser renders the page without errors.
 #include "validate/diagnose/report.hpp"
 
 #include <gmock/gmock.h>
@@ -18,8 +18,8 @@ namespace {
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-/// Two events of the example, whose exciter the model lacks. The fits are cut short: what is shown is tested
-/// here, not how good it is.
+/// Two events of the example, whose exciter the model lacks. The fits are short: the report is tested, not
+/// their quality.
 struct Example {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   Diagnosis d;
@@ -46,7 +46,7 @@ struct Example {
       d.ranked.push_back(std::move(j));
     }
     hypothesis::Judgement refused = d.ranked.front();
-    refused.hypothesis.name = "A < B";  // a name that must be escaped
+    refused.hypothesis.name = "A < B";  // must be escaped
     refused.accepted = false;
     refused.gain = 3;
     refused.why_not = "evidence 3, below 25";
@@ -91,7 +91,7 @@ std::vector<std::vector<std::string>> table_after(const std::string& html, const
   }
   return rows;
 }
-/// As engineers write it.
+/// The symbol of a parameter in engineering notation.
 std::string symbol(const std::string& block, const std::string& name) {
   for (const auto& p : sim::library::compiled().find(block)->parameters)
     if (p.name == name) return std::string(p.symbol);
@@ -104,7 +104,7 @@ std::string cell_text(const nlohmann::json& cell) {
 }
 
 /// An inferred input has a time series with limits, and no fitted parameters.
-TEST(DiagnosisReportTest, AnInferredInputHasLimitsAndNoTableOfParameters) {
+TEST(DiagnosisReportTest, InferredInputHasLimitsAndNoParameterTable) {
   Diagnosis d = example().d;
   d.verdict = Verdict::unexplained;
   for (hypothesis::Judgement& j : d.ranked) j.accepted = false;
@@ -124,7 +124,7 @@ TEST(DiagnosisReportTest, ErrorMapsEqualTheJson) {
     for (const auto& c : e["channels"]) {
       const auto& map = c["map_after"];
       for (std::size_t i = 0; i + 1 < map.size();
-           i += 5) {  // all and four bands; the whole record comes last
+           i += 5) {  // total and four bands; the whole record comes last
         const double rms = map[i]["rms_pu"].get<double>() * c["units_in_pu"].get<double>();
         expected.push_back({c["name"], map[i]["window"], ""});
         char text[64];
@@ -162,16 +162,16 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   EXPECT_TRUE(j["missing_torque"].is_null());
 }
 TEST(DiagnosisReportTest, ErrorFallsWithTheAddedEffect) {
-  const auto j = figures();  // an exciter, even fitted in haste, is nearer to the truth than none
+  const auto j = figures();  // an exciter, even from a short fit, is nearer to the truth than none
   EXPECT_LT(j["after"]["normalised_rms"], j["before"]["normalised_rms"]);
 }
-TEST(DiagnosisReportTest, TheVerdictComesFirst) {
+TEST(DiagnosisReportTest, VerdictIsFirst) {
   const auto verdict = page().find("The exciter &lt;SEXS&gt; is missing.");
   ASSERT_NE(verdict, std::string::npos);
   EXPECT_LT(verdict, page().find("<table"));
   EXPECT_LT(verdict, page().find("<h2"));
 }
-TEST(DiagnosisReportTest, AnAdequateModelNeedsNothingAdded) {
+TEST(DiagnosisReportTest, AdequateModelNeedsNoEffect) {
   Diagnosis d = example().d;
   d.verdict = Verdict::adequate;
   d.sentence = "The model is adequate.";
@@ -189,8 +189,8 @@ TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
   EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict bad"));
 }
 
-/// The example where nothing known was accepted but a law for the field voltage was, ahead of one that was
-/// not.
+/// The example without an accepted effect, with an accepted law for the field voltage and a rejected second
+/// one.
 Diagnosis with_laws() {
   Diagnosis d = example().d;
   d.laws.kind = fit::InputKind::field;
@@ -221,7 +221,7 @@ Diagnosis with_laws() {
   return d;
 }
 
-TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
+TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
   const Diagnosis d = with_laws();
   const std::string html = diagnosis_html(example().model, d, {});
   const auto section = html.find("A law for it");
@@ -233,7 +233,7 @@ TEST(DiagnosisReportTest, LawsStandOnThePageAsInTheJson) {
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0][0], "LAW1");
   EXPECT_EQ(rows[0][1], "83 %");
-  EXPECT_EQ(rows[0][4], "≤ 1.50 ×");  // the example's unseen chi2 per value is 2.25
+  EXPECT_EQ(rows[0][4], "≤ 1.50 ×");  // the example's chi2 per value outside the fit is 2.25
   EXPECT_EQ(rows[0][5], "accepted");
   EXPECT_EQ(rows[1][4], "–");
   EXPECT_EQ(rows[1][5], "it worsens <ev3>");
@@ -250,13 +250,13 @@ TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
   EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
 }
-TEST(DiagnosisReportTest, WithoutASearchForLawsThePageIsSilent) {
+TEST(DiagnosisReportTest, PageOmitsLaws_WithoutASearch) {
   EXPECT_THAT(page(), testing::Not(HasSubstr("A law for it")));
   EXPECT_TRUE(figures()["laws"].is_null());
 }
 
-TEST(DiagnosisPageTest, ABrowserShowsIt) {
-  // A drag from 30 % to 60 % of the first chart's width, as a person would zoom.
+TEST(DiagnosisPageTest, RendersInABrowser) {
+  // A drag from 30 % to 60 % of the first chart's width: a user's zoom.
   const std::string zoom = R"js(<script>
     const box=[...document.getElementById("chart0").querySelectorAll("canvas")].pop(), r=box.getBoundingClientRect();
     const mouse=(what,x,on)=>on.dispatchEvent(new MouseEvent(what,{bubbles:true,cancelable:true,view:window,button:0,buttons:1,
@@ -277,10 +277,10 @@ TEST(DiagnosisPageTest, ABrowserShowsIt) {
   EXPECT_LT(to, 10.0);
   EXPECT_GT(to, from + 2);
   for (const auto& range : result["zoomed"])
-    EXPECT_EQ(range, result["zoomed"][0]);     // the event's charts follow
-  EXPECT_LE(result["wide"], result["inner"]);  // on a telephone nothing needs scrolling sideways but tables
+    EXPECT_EQ(range, result["zoomed"][0]);     // the event's charts share the range
+  EXPECT_LE(result["wide"], result["inner"]);  // on a telephone only tables need horizontal scrolling
 }
-TEST(DiagnosisPageTest, ABrowsersComplaintsAreSeen) {
+TEST(DiagnosisPageTest, DetectsBrowserErrors) {
   EXPECT_THAT(
       test::show("<!doctype html><body>", "<script>document.body.dataset.result='1';nothing.there()</script>")
           .complaints,

@@ -1,4 +1,5 @@
-// Which steps of the voltage are switchings: jumps, small ones too, but not a swing however fast.
+// Detection of switchings among the steps of the voltage: steps, even small ones, but no swings, however
+// fast.
 #include "validate/event/event.hpp"
 
 #include <gtest/gtest.h>
@@ -35,15 +36,15 @@ std::vector<playin::Switching> switchings_of(const record::Record& r) {
   return find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
 }
 
-TEST(FindSwitchings, AFastSwingIsNone) {
-  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from those two further by 0.016 pu
+TEST(FindSwitchings, IgnoresFastSwing) {
+  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from the second-next ones by 0.016 pu.
   const record::Record r = record_of([](double) { return 1.0; },
                                      [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
   for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
 }
-TEST(FindSwitchings, TheEndOfARampIsNone) {
-  // a converter's active power comes back at its ramp rate: the angle turns by 0.05 rad from sample to sample
-  // for 70 ms, and the steps die out within three
+TEST(FindSwitchings, IgnoresEndOfRamp) {
+  // A converter's active power returns at its ramp rate: the angle turns by 0.05 rad per sample for 70 ms,
+  // then the steps decay within three samples.
   const auto theta = [](double t) {
     const double ramp = std::clamp(t, 3.0, 3.07) - 3.0, after = std::max(0.0, t - 3.07);
     return 6.0 * (ramp + 0.02 * (1 - std::exp(-after / 0.02)));
@@ -53,18 +54,18 @@ TEST(FindSwitchings, TheEndOfARampIsNone) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 120, 0.51 / 120);
 }
-TEST(FindSwitchings, ASmallJumpIsOne) {
+TEST(FindSwitchings, FindsSmallStep) {
   const auto found = switchings_of(record_of([](double t) { return t <= 3.0 ? 1.0 : 0.985; }));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 3.0 + 0.5 / 60, 0.51 / 60);  // within its sample interval
 }
-TEST(FindSwitchings, AJumpOutOfASwingIsOne) {
+TEST(FindSwitchings, FindsStepDuringSwing) {
   const auto found = switchings_of(
       record_of([](double t) { return (t <= 5.0 ? 1.0 : 0.8) + 0.05 * std::sin(2 * std::numbers::pi * t); }));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.front().time, 5.0 + 0.5 / 60, 0.51 / 60);
 }
-/// A fault from 3 s to 3.1 s, then a swing of 3 Hz past the voltage's minimum, as near loss of synchronism.
+/// A fault from 3 s to 3.1 s, then a swing of 3 Hz through a voltage minimum, as near loss of synchronism.
 record::Record near_loss(double fault = 0.35) {
   return record_of(
       [fault](double t) {
@@ -74,7 +75,7 @@ record::Record near_loss(double fault = 0.35) {
       },
       [](double t) { return t <= 3.1 ? 0.1 : 0.5 + 0.6 * std::erf((t - 3.5) / 0.05); });
 }
-/// Each phasor the mean of itself and the next.
+/// Replaces each phasor by the mean of itself and the next.
 record::Record filtered(record::Record r) {
   const auto at = [&](std::size_t k) { return std::polar(r.V[k], r.theta[k]); };
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
@@ -85,7 +86,7 @@ record::Record filtered(record::Record r) {
   return r;
 }
 
-TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
+TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   const record::Record r = near_loss();
   std::vector<char> smeared;
   const auto either = find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
@@ -97,9 +98,9 @@ TEST(FindSwitchings, ASwingBesideSharpJumpsIsNone) {
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
 }
-/// Behind a triangular window that reaches `half` [s] to either side (0: none): a fault at `on` for `length`
-/// [s] that leaves `V`, with subtransients of `fell` pu behind both jumps; the angle jumps by `turn` [rad]
-/// and then turns at 2 rad/s.
+/// A fault at `on` for `length` [s] behind a triangular window of half-width `half` [s] (0: none). The fault
+/// voltage is `V`; a subtransient of `fell` pu follows both steps. The angle steps by `turn` [rad], then
+/// turns at 2 rad/s.
 record::Record behind(double half, double on, double length, double V, double fell, double turn) {
   const double off = on + length;
   const auto since = [](double t, double begin) { return std::exp(-(t - begin) / 0.03); };
@@ -125,8 +126,8 @@ record::Record behind(double half, double on, double length, double V, double fe
   r.Q.assign(r.t.size(), 0.1);
   return r;
 }
-/// One fault that looks sharp does not outweigh another that was plainly smeared, if their samples are more
-/// probable behind a window.
+/// A fault that looks sharp does not outweigh another that is clearly filtered, if the samples of both are
+/// more probable behind a window.
 TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
   const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
@@ -139,17 +140,17 @@ TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
               Jumps::sharp)
         << phase;
 }
-TEST(FindSwitchings, ASmallJumpTellsThatNoneIsSmeared) {
+TEST(FindSwitchings, SharpSmallStepExcludesFilter) {
   EXPECT_EQ(jumps_of({near_loss(0.85)}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({filtered(near_loss(0.85))}, playin::kJumpThreshold), Jumps::spread);
 }
-TEST(FindSwitchings, OneInstrumentSmearsAllOrNone) {
+TEST(FindSwitchings, TreatsAllRecordsAsFilteredOrSharp) {
   const record::Record quiet = record_of([](double) { return 1.0; });
   EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
   EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
 }
-/// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of `tau` behind both jumps and a
-/// rotor that swings; `on` is the instant within its sample interval, from 0 to 1.
+/// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of time constant `tau` after both
+/// steps and a swinging rotor. `on`: position of the switching in its sample interval, 0 to 1.
 record::Record subtransient(double on, double cycles, double tau) {
   const double from = 3 + on / 30, to = from + cycles / 60, fell = 0.12;
   const auto since = [](double t, double begin, double time) { return std::exp(-(t - begin) / time); };
@@ -164,7 +165,7 @@ record::Record subtransient(double on, double cycles, double tau) {
   };
   return record_of(V, theta, 30);
 }
-TEST(FindSwitchings, ADecayBehindASharpJumpIsNoFilters) {
+TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
   for (const double tau : {0.02, 0.025, 0.03})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const record::Record r = subtransient(on, 6, tau);
@@ -176,9 +177,9 @@ TEST(FindSwitchings, ADecayBehindASharpJumpIsNoFilters) {
       EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
     }
 }
-/// The same jumps without a decay behind a triangular window of two cycles, at 30/s and 60/s: what a filter
-/// leaves on one side only is not taken for a decay.
-TEST(FindSwitchings, AFilterIsStillOne) {
+/// The same steps without decay behind a triangular window of two cycles, at 30/s and 60/s: a filtered step
+/// with samples on one side only is not taken for a decay.
+TEST(FindSwitchings, RecognisesTriangularFilter) {
   for (const double rate : {30.0, 60.0})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const auto at = [=](double t) { return t <= 3 + on / rate || t > 3.15 + on / rate ? 1.0 : 0.5; };
@@ -194,10 +195,10 @@ TEST(FindSwitchings, AFilterIsStillOne) {
           << on << " at " << rate;
     }
 }
-TEST(FindSwitchings, NoiseIsNone) {
+TEST(FindSwitchings, IgnoresNoise) {
   EXPECT_TRUE(switchings_of(record_of([](double) { return 1.0; })).empty());
 }
-TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
+TEST(PrepareEvents, FindsEndOfFaultWithDecay) {
   record::Record r = subtransient(0.5, 6, 0.025);
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -207,7 +208,7 @@ TEST(PrepareEvents, TheEndOfAFaultWithADecayIsFound) {
   EXPECT_TRUE(e.smeared.empty());
   EXPECT_NEAR(e.switchings[1].time, 3.1 + 0.5 / 30, 0.51 / 30);
 }
-TEST(PrepareEvents, TheWindowBeforeAnEventEndsWherePAndQJump) {
+TEST(PrepareEvents, PreEventWindowEndsAtTheStepOfPAndQ) {
   record::Record r = record_of([](double) { return 1.0; });
   std::mt19937_64 random(6);
   std::normal_distribution<double> noise(0, 1e-4);
@@ -220,8 +221,8 @@ TEST(PrepareEvents, TheWindowBeforeAnEventEndsWherePAndQJump) {
   EXPECT_TRUE(e.switchings.empty());
   EXPECT_EQ(e.start.samples, 13);  // up to 0.2 s at 60/s
 }
-/// Two samples of fault at 30/s tell no decay from a filter: the person does.
-TEST(PrepareEvents, ToldInstantsAreTaken) {
+/// Two samples of fault at 30/s cannot distinguish a decay from a filter; the given switching times do.
+TEST(PrepareEvents, UsesGivenSwitchingTimes) {
   record::Record r = subtransient(0.5, 4, 0.025);
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -236,7 +237,7 @@ TEST(PrepareEvents, ToldInstantsAreTaken) {
   EXPECT_TRUE(e.smeared.empty());
   EXPECT_EQ(e.start.samples, 91);
 }
-TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
+TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
@@ -248,9 +249,9 @@ TEST(PrepareEvents, AboutToldInstantsAFilterSmearsAsAboutFoundOnes) {
   EXPECT_EQ(told.start.samples, found.start.samples);
   EXPECT_EQ(told.switchings[1].time, 3.1);
 }
-/// A fault near the terminal behind a triangular window of two cycles, stamps with six decimals: the window
-/// reaches one interval more at its end than at its begin.
-TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
+/// A fault near the terminal behind a triangular window of two cycles, time stamps with six decimals: the
+/// filtered fault end is one interval wider than its beginning.
+TEST(PrepareEvents, AcceptsFaultEndOneIntervalWider) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3 + 0.5 / 60;
   for (const double end : {5.05, 5.25, 5.75}) {
@@ -271,8 +272,8 @@ TEST(PrepareEvents, TheEndOfAFaultMayReachOneIntervalMore) {
     EXPECT_NEAR(e.switchings[1].time, off, e.switchings[1].uncertainty) << end;
   }
 }
-/// A subtransient of 30 ms behind the fault's end makes that jump wider than its begin.
-TEST(PrepareEvents, BehindAFilterTheEndOfAFaultMayDecay) {
+/// A subtransient of 30 ms makes the step at the fault's end wider than at its beginning.
+TEST(PrepareEvents, AcceptsDecayAtFilteredFaultEnd) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3.005, off = on + 0.06;
   const FitEvent e = prepare_events(model, {behind(kOneCycle, on, off - on, 0.95, 0.12, 0.0)}).front();
@@ -280,8 +281,8 @@ TEST(PrepareEvents, BehindAFilterTheEndOfAFaultMayDecay) {
   EXPECT_NEAR(e.switchings[0].time, on, kOneCycle / 2);
   EXPECT_NEAR(e.switchings[1].time, off, kOneCycle / 2);
 }
-/// The filter smears every jump over as many samples, the swing is wider.
-TEST(PrepareEvents, BehindAFilterAWiderSwingIsNone) {
+/// The filter spreads every step over the same number of samples; the swing is wider.
+TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);

@@ -1,4 +1,4 @@
-// The whitening filter against the covariance it stands for, and the slow noise of a regulated machine.
+// The whitening filter against the covariance that it represents, and the slow noise of a regulated machine.
 #include "validate/event/innovations.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace swingbank::validate::event {
 namespace {
 
-/// Covariance of all compared values of a short record, entry by entry.
+/// Covariance of all compared values of a short record, computed directly.
 Eigen::MatrixXd covariance_of(const SlowNoise& s, const std::vector<char>& left_out) {
   const auto samples = static_cast<Eigen::Index>(left_out.size());
   const Eigen::Index n = s.C.rows();
@@ -34,7 +34,7 @@ Eigen::MatrixXd covariance_of(const SlowNoise& s, const std::vector<char>& left_
   return whole(rows, rows);
 }
 
-TEST(Innovations, EqualTheCholeskyFactorOfTheWholeCovariance) {
+TEST(Innovations, EqualCholeskyWhitening) {
   SlowNoise s;
   s.A = (Eigen::MatrixXd(2, 2) << 0.98, 0.05, -0.02, 0.9).finished();
   s.C = (Eigen::MatrixXd(2, 2) << 1.0, 0.3, -0.4, 0.8).finished();
@@ -50,11 +50,12 @@ TEST(Innovations, EqualTheCholeskyFactorOfTheWholeCovariance) {
   Innovations(s, static_cast<int>(left_out.size()), left_out).whiten(e);
   const Eigen::MatrixXd inverse_root =
       covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
-  // rounding of two dozen recursions
+  // Rounding of two dozen recursions.
   EXPECT_LT((e - inverse_root).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// Five quiet records of a machine with a regulator of gain 200, as its model answers their noisy voltage.
+/// Five quiet records of a machine with a regulator of gain 200: the model's responses to their noisy
+/// voltage.
 struct Quiet {
   plant::PlantModel model;
   WhitenedEvents events;
@@ -89,7 +90,7 @@ struct Quiet {
     }
     events = prepare_events(model, std::move(records));
   }
-  /// Residuals of the model as it is.
+  /// Computes the residuals of the present model.
   void answer() {
     fit.events.clear();
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -106,7 +107,7 @@ struct Quiet {
       fit.events.push_back(std::move(f));
     }
   }
-  /// Power of means over a second of Q's residual, 1 where it is white.
+  /// Variance of one-second means of Q's residual, relative to white noise (1).
   [[nodiscard]] double slow_power() const {
     constexpr std::size_t kLength = 60;
     double sum = 0;
@@ -121,14 +122,14 @@ struct Quiet {
   }
 };
 
-TEST(RememberNoise, WhitensWhatARegulatorMakesOfTheVoltagesNoise) {
+TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
   Quiet quiet("SEXS");
   quiet.answer();
-  EXPECT_GT(quiet.slow_power(), 3.0);  // or there is nothing to whiten
+  EXPECT_GT(quiet.slow_power(), 3.0);  // the residual is coloured
   quiet.events = quiet.events.with(fit::remember_noise(quiet.fit, quiet.model.conventions, quiet.events));
   ASSERT_TRUE(quiet.events.noise(0).memory);
   quiet.answer();
-  // 75 squares scatter by 16 %, the measured noise of V by a fifth more
+  // 75 squares scatter by 16 %, and the measured noise of V by another 20 %.
   EXPECT_NEAR(quiet.slow_power(), 1.0, 0.6);
 }
 

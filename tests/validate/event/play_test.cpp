@@ -1,4 +1,4 @@
-// What lenient play costs and what it misses: steps per sample, and the error beside the noise.
+// Cost and error of lenient play: steps per sample, and the error relative to the noise.
 #include "validate/event/play.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ struct Played {
   double mean_square;  ///< of the error, in variances of the noise
 };
 
-/// The example's fault played into its machine with the exciter at its standard values.
+/// The example's fault played into its machine, with this exciter at its default values.
 Played with_exciter(const char* name) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const sim::Effect* effect = sim::library::compiled().find(name);
@@ -33,10 +33,10 @@ Played with_exciter(const char* name) {
           error.squaredNorm() / static_cast<double>(error.size())};
 }
 
-/// Measured 2026-11-25: 1.0 to 2.6 steps and 1.1e-5 to 7.5e-4 of the variance. With one tolerance for all
-/// states EXST1 took 5.1, EXAC1 5.7 and ESAC1A 7.9 steps.
+/// Measured 2026-11-25: 1.0 to 2.6 steps and 1.1e-5 to 7.5e-4 of the variance. A common tolerance for all
+/// states gave 5.1 steps for EXST1, 5.7 for EXAC1 and 7.9 for ESAC1A.
 class LenientPlay : public ::testing::TestWithParam<const char*> {};
-TEST_P(LenientPlay, TakesFewStepsAndStaysBelowAHundredthOfTheNoise) {
+TEST_P(LenientPlay, TakesFewStepsWithErrorBelowOnePerCentOfNoise) {
   const Played p = with_exciter(GetParam());
   EXPECT_LT(p.steps, 3.2);
   EXPECT_LT(p.mean_square, 2e-3);

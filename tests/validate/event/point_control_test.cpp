@@ -1,4 +1,4 @@
-// A plant whose control measures at the point, beyond the collector.
+// A plant whose control measures at the point of common coupling, beyond the collector.
 #include <gmock/gmock.h>
 
 #include "tests/sim/grid/far_case.hpp"
@@ -15,7 +15,7 @@ namespace far = sim::grid::far_control;
 
 const std::vector<Collector> kCable = {{.R = 0.002, .X = 0.06, .B = 0.05, .ratio = 1, .mva = 100}};
 
-TEST(PointControl, TheTwoPortIsTheWayBackFromBehindTheCollector) {
+TEST(PointControl, TwoPortInvertsTheCollector) {
   const std::vector<Collector> sections = {{.R = 0.01, .X = 0.05, .B = 0.02, .ratio = 0.97, .mva = 150},
                                            {.R = 0.002, .X = 0.06, .B = 0.1, .ratio = 1.03, .mva = 80}};
   record::Record at_point;
@@ -33,7 +33,8 @@ TEST(PointControl, TheTwoPortIsTheWayBackFromBehindTheCollector) {
   EXPECT_NEAR(std::abs(S - Complex(80, -30)), 0, 1e-9);
 }
 
-/// A fault near the point of a plant whose control stands there, seen at the plant's own bus.
+/// A fault near the point of common coupling, recorded at the plant's own bus; the plant's control measures
+/// at the point.
 struct Plant : ::testing::Test {
   static constexpr double kOn = 2.0, kOff = 2.1;
   test::Simulated run = simulated();
@@ -65,16 +66,16 @@ struct Plant : ::testing::Test {
   }
 };
 
-TEST_F(Plant, ItsControlSeesThePoint) {
+TEST_F(Plant, ControlMeasuresAtThePointOfCommonCoupling) {
   sim::plant::Plant plant = model();
-  EXPECT_GT(missed(plant), 1e-3);  // as if it measured at the plant's own bus
+  EXPECT_GT(missed(plant), 1e-3);  // as if the control measured at the plant's own bus
   MeasuredPoint point;
   point.collector = kCable;
   point.tried.plant = plant;
   EXPECT_LT(missed(at_point(point)), 1e-4);
 }
 
-TEST_F(Plant, OthersAtThePointNeedAShare) {
+TEST_F(Plant, RequiresAShareOfOtherUnits) {
   MeasuredPoint point;
   point.file = "point.toml";
   point.collector = kCable;

@@ -1,4 +1,4 @@
-// A measured point that several units share behind one impedance: what the record shows of one of them.
+// A measured point that several units share behind one impedance: the record of one unit is recovered.
 #include "validate/event/point.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ plant::PlantModel model_of(const test::Simulated& s, const std::string& name) {
   return model;
 }
 
-/// Unit 2 of IEEE 14 with unit 6 beside it at the same bus, as the point beyond a collector sees both.
+/// Units 2 and 6 of IEEE 14 at the same bus, as recorded at the point beyond a collector.
 struct TwoUnits : ::testing::Test {
   test::Simulated run = test::simulate("ieee14_genrou", sim::Conventions::psse(), 5, 2.0, 2.1, 240);
   plant::PlantModel tried = model_of(run, "2"), other = model_of(run, "6");
@@ -49,11 +49,11 @@ struct TwoUnits : ::testing::Test {
     beside.Q.assign(beside.t.size(), kQ / r.base.mva);
     std::vector<char> smeared;
     auto switchings = find_switchings(beside, playin::kJumpThreshold / 2, Jumps::either, smeared);
-    for (auto& s : switchings) s.time = s.time < 2.05 ? 2.0 : 2.1;  // when the fault was simulated
+    for (auto& s : switchings) s.time = s.time < 2.05 ? 2.0 : 2.1;  // simulated fault times
     const playin::VoltageCurve curve(beside, switchings);
     const playin::Playback both = playin::play_in(other.under_test(), beside, curve);
     for (std::size_t k = 0; k < r.t.size(); ++k) {
-      // The pi section the other way, in pu on its own base.
+      // The pi section in the reverse direction, in pu on its own base.
       const double scale = r.base.mva / section.mva;
       const Complex V = std::polar(r.V[k], r.theta[k]);
       const Complex S = Complex(r.P[k] + both.P[k], r.Q[k] + both.Q[k]) * scale;
@@ -70,11 +70,11 @@ struct TwoUnits : ::testing::Test {
     for (std::size_t k = 0; k < r.t.size(); ++k)
       worst = std::max({worst, std::abs(r.V[k] - alone.V[k]), std::abs(r.theta[k] - alone.theta[k]),
                         std::abs(r.P[k] - alone.P[k]), std::abs(r.Q[k] - alone.Q[k])});
-    EXPECT_LT(worst, 1e-4);  // instants in the middle of their intervals: 5e-3
+    EXPECT_LT(worst, 1e-4);  // with the middles of the sample intervals: 5e-3
   }
 };
 
-TEST_F(TwoUnits, TheTriedOneIsLeft) {
+TEST_F(TwoUnits, RecoversTheTestedUnit) {
   const record::Record at_point = seen();
   ASSERT_GT(std::abs(at_point.P[10] - alone.P[10]), 0.1);
   const MeasuredPoint point{.file = "point.toml",
@@ -88,7 +88,7 @@ TEST_F(TwoUnits, TheTriedOneIsLeft) {
                     Contains(HasSubstr("unit 6 does by its model was taken off; it began at 30 MW"))));
 }
 
-TEST_F(TwoUnits, AnAngleOfTheFrequencyTurnsForAllOfThem) {
+TEST_F(TwoUnits, IntegratedAngleGetsTurnsForAllUnits) {
   const MeasuredPoint point{.file = "point.toml",
                             .collector = collector,
                             .tried = tried,
@@ -97,9 +97,9 @@ TEST_F(TwoUnits, AnAngleOfTheFrequencyTurnsForAllOfThem) {
   double worst = 0;
   for (std::size_t k = 0; k < left.t.size(); ++k)
     worst = std::max({worst, std::abs(left.P[k] - alone.P[k]), std::abs(left.Q[k] - alone.Q[k])});
-  EXPECT_LT(worst, 1e-5);  // without turns the machines cannot follow
+  EXPECT_LT(worst, 1e-5);  // without turns the machines cannot follow the angle
 }
-TEST_F(TwoUnits, ASharesDispatchIsOfTheWhole) {
+TEST_F(TwoUnits, ShareDefinesTheDispatch) {
   const record::Record inner = behind_collector(seen(), collector);
   const double share = kP / inner.base.mva / inner.P[0];
   record::Record all = inner;
@@ -115,7 +115,7 @@ TEST_F(TwoUnits, ASharesDispatchIsOfTheWhole) {
   }
 }
 
-TEST_F(TwoUnits, PointFiles) {
+TEST_F(TwoUnits, ReadsPointFiles) {
   const auto folder =
       std::filesystem::path(::testing::TempDir()) / fmt::format("swingbank-point-{}", ::getpid());
   std::filesystem::create_directories(folder);

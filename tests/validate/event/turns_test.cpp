@@ -1,5 +1,5 @@
-// An angle that was integrated from a frequency: jumps are found in the power, a meter's peaks are dropped,
-// and the turn at each switching is told by P and Q.
+// An angle integrated from a frequency: steps are found in the power, a meter's peaks are dropped, and P and
+// Q determine the turn at each switching.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Turns : ::testing::Test {
     model.conventions = s.grid.conventions;
     model.record_base = whole.base;
   }
-  /// By how much the angle is off, samples beside switchings aside, once it has turned; the mean taken off.
+  /// Error of the angle after its turns, without the samples next to switchings and without the mean.
   [[nodiscard]] double off(const FitEvent& e) const {
     std::vector<double> left;
     for (std::size_t k = 0; k < whole.t.size(); ++k) {
@@ -36,14 +36,14 @@ struct Turns : ::testing::Test {
   }
 };
 
-TEST_F(Turns, ArePutWhereTheFrequencyLacksThem) {
+TEST_F(Turns, AreAdded_WhenTheFrequencyLacksTheSteps) {
   const auto events = prepare_events(model, {test::by_frequency(whole, {s.t_on, s.t_off})});
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_GT(std::abs(events[0].switchings[0].turn), 0.05);
-  EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
+  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior deviation
 }
-TEST_F(Turns, APeakOfAMeterIsDropped) {
-  record::Record r = whole;  // f: what the angle turns by from one sample before to one after
+TEST_F(Turns, MeterPeakIsDropped) {
+  record::Record r = whole;  // f: change of the angle from the sample before to the sample after
   const double nominal = constants::turn * r.base.frequency;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, r.t.size() - 1);
@@ -53,10 +53,10 @@ TEST_F(Turns, APeakOfAMeterIsDropped) {
   r.angle = record::AngleSource::integrated;
   const auto events = prepare_events(model, {r});
   ASSERT_EQ(events[0].switchings.size(), 2U);
-  EXPECT_LT(off(events[0]), 0.1);  // as a fit believes it to be
+  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior deviation
   EXPECT_FALSE(events[0].record.notes.empty());
 }
-TEST_F(Turns, ASwitchingThatOnlyThePowerShowsIsFound) {
+TEST_F(Turns, FindsSwitchingInPowerAlone) {
   record::Record r;
   r.base = whole.base;
   for (int k = 0; k < 300; ++k) {

@@ -1,4 +1,4 @@
-// A fault of three samples behind a filter of two cycles: what was smeared comes back.
+// A fault of three samples behind a filter of two cycles is restored.
 #include "validate/event/detail/unsmear.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Complex truth(const Fault& f, double t) {
   if (t <= f.off) return std::polar(f.V - 0.2 * (t - kOn), 0.05 + 0.8 * (t - kOn));
   return std::polar(0.95 + 0.03 * (1 - std::exp(-(t - f.off) / 0.2)), 0.1 + 0.3 * (t - f.off));
 }
-/// Reaches `half` to either side.
+/// A window of half-width `half`.
 struct Filter {
   double half;
   double (*weight)(double u, double half);
@@ -31,7 +31,7 @@ constexpr Filter kClassM30 = {306 / 32.0 * kCycle, [](double u, double half) {
                                 const double x = 4 * kPi * 5.02 * u;
                                 return std::sin(x) / x * (0.54 + 0.46 * std::cos(kPi * u / half));
                               }};
-/// A transducer's lag of 12 ms: what is known falls off to both sides.
+/// A transducer's lag of 12 ms; the assumed window falls off to both sides.
 constexpr Filter kLag = {4 * kCycle, [](double u, double) { return u < 0 ? std::exp(u / 0.012) : 0.0; }};
 Complex averaged(const Fault& fault, const Filter& filter, double t) {
   constexpr int kSteps = 4000;
@@ -69,32 +69,32 @@ double worst_within(const FitEvent& e, const Fault& fault = {}) {
   return worst;
 }
 
-TEST(Unsmear, ShortFaultComesBack) {
+TEST(Unsmear, RestoresShortFault) {
   std::vector<FitEvent> events = {event(0.0)};
   const double before = worst_within(events.front());
   const FilterWindow window = unsmear(events);
   EXPECT_EQ(window.shape(), FilterWindow::Shape::triangle);
   EXPECT_NEAR(window.half(), kCycle, 1e-9);
   ASSERT_EQ(events.front().switchings.size(), 2u);
-  // the fault's voltage bends by 3e-5 between chord and arc, the cubic before and after by less; against
-  // jumps of 0.25 pu over a window of 17 ms that moves an instant by some microseconds
+  // The fault's voltage deviates by 3e-5 between chord and arc, the cubics before and after by less. Against
+  // steps of 0.25 pu over a window of 17 ms that shifts a switching time by some microseconds.
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 5e-5);
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 5e-5);
   EXPECT_LT(worst_within(events.front()), 2e-3);
   EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
 }
-TEST(Unsmear, NoiseMovesItLittle) {
+TEST(Unsmear, IsInsensitiveToNoise) {
   std::vector<FitEvent> events = {event(2e-4)};
   unsmear(events);
-  // one smeared sample tells an instant to 2e-4 pu / (0.25 pu / 17 ms); slopes of the fault to a few times
-  // more
+  // One filtered sample determines a switching time to 2e-4 pu / (0.25 pu / 17 ms); with the fault's slopes
+  // free, to a few times as much.
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 3e-4);
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 3e-4);
   EXPECT_LT(worst_within(events.front()), 5e-3);
 }
-/// Both jumps of a fault of three samples share the samples between them, and the probability of the instants
-/// has many peaks.
-TEST(Unsmear, InstantsOfAShortFaultAreFoundWhereverItLies) {
+/// Both steps of a fault of three samples share the samples between them; the probability of the switching
+/// times has many local maxima.
+TEST(Unsmear, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {
       const Fault fault = {.off = kOn + length, .V = 0.85};
@@ -105,8 +105,8 @@ TEST(Unsmear, InstantsOfAShortFaultAreFoundWhereverItLies) {
       EXPECT_NEAR(events.front().switchings[1].time, fault.off, 2e-3) << phase << ' ' << length;
     }
 }
-/// The knots of what was brought back lie nearer to an instant than it is known.
-TEST(Unsmear, KnotsStayInTheirSegmentWhileTheInstantsMove) {
+/// The knots of the restored samples lie closer to a switching than its uncertainty.
+TEST(Unsmear, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
   std::vector<FitEvent> events = {event(1e-4, {.off = kOn + 0.055})};
   unsmear(events);
   const FitEvent& e = events.front();
@@ -121,9 +121,9 @@ TEST(Unsmear, KnotsStayInTheirSegmentWhileTheInstantsMove) {
         EXPECT_EQ(moved(segment, kOn + 0.03), curve(segment, kOn + 0.03)) << s << ' ' << by;
     }
 }
-/// Class M reaches far: at 30 reports a second 0.16 s to either side of a fault of 0.1 s, in which no sample
-/// is clean.
-TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {
+/// A class M window is long: at 30 reports a second 0.16 s to either side of a fault of 0.1 s. No sample of
+/// the fault is unfiltered.
+TEST(Unsmear, RestoresFaultShorterThanClassMWindow) {
   for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
     const Fault deep = {.off = kOn + 0.1, .V = 0.3};
     std::vector<FitEvent> events = {event(1e-4, deep, kClassM30, 30, phase / 30)};
@@ -134,10 +134,10 @@ TEST(Unsmear, AFaultShorterThanTheWindowOfClassMComesBack) {
     ASSERT_EQ(e.switchings.size(), 2u);
     EXPECT_NEAR(e.switchings[0].time, kOn, 3e-4);
     EXPECT_NEAR(e.switchings[1].time, deep.off, 3e-4);
-    EXPECT_LT(worst_within(e, deep), 4e-3);  // measured: 1.5e-3, instants to 9e-5 s
+    EXPECT_LT(worst_within(e, deep), 4e-3);  // measured: 1.5e-3, switching times to 9e-5 s
   }
 }
-TEST(Unsmear, BehindALagThatIsNoWindowTheFaultKeepsItsVoltage) {
+TEST(Unsmear, KeepsFaultVoltageBehindALag) {
   const Fault deep = {.off = 1.92, .V = 0.3};
   std::vector<FitEvent> events = {event(1e-4, deep, kLag)};
   FitEvent& e = events.front();
@@ -147,7 +147,7 @@ TEST(Unsmear, BehindALagThatIsNoWindowTheFaultKeepsItsVoltage) {
   EXPECT_NEAR(e.switchings[1].time, deep.off, 0.012);
   const double middle = (kOn + deep.off) / 2;
   EXPECT_LT(std::abs(playin::VoltageCurve(e.clean, e.switchings)(1, middle) - truth(deep, middle)),
-            0.1);  // of jumps of 0.7 pu; measured: 0.065
+            0.1);  // relative to steps of 0.7 pu; measured: 0.065
 }
 
 }  // namespace

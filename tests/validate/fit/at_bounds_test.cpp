@@ -1,4 +1,4 @@
-// A search that ends at a bound goes on along it.
+// A search that reaches a bound continues along it.
 #include "validate/fit/detail/at_bounds.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ struct Valley {
     return true;
   }
 };
-/// The valley from (x, 1, 0), with an upper bound of one of the three and some that never move.
+/// The valley from (x, 1, 0), with an upper bound on one of the three variables and some fixed ones.
 struct Bounded {
   double at[3];
   ceres::Problem problem;
@@ -27,7 +27,7 @@ struct Bounded {
   }
   double solve() {
     ceres::Solver::Options o;
-    o.function_tolerance = 1e-3;  // each step along the cut direction gains a ten-thousandth
+    o.function_tolerance = 1e-3;  // each step along the clipped direction gains a ten-thousandth
     o.max_num_line_search_step_size_iterations = 0;
     o.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

@@ -1,6 +1,6 @@
 #pragma once
-// The Cramer-Rao bound of a plant's parameters by central differences of the playback and the noise with
-// which the records were made: it uses nothing of what the fit says of its own errors.
+// Cramer-Rao bound of a plant's parameters by central differences of the playback and the known noise of the
+// records. It uses nothing of the fit's own error estimates.
 #include <Eigen/Dense>
 #include <string_view>
 #include <vector>
@@ -12,9 +12,9 @@ namespace swingbank::validate::test {
 /// Noise of the example's records (configs/records/README.md) and of add_noise() [pu].
 inline double known_noise(playin::Output channel) { return channel == playin::Output::speed ? 2e-5 : 2e-3; }
 
-/// Least standard errors [unit of the parameter] that the events leave where the priors are of relative
-/// standard deviation `FreeParameter::spread`. Switching times and start of every event are unknown too.
-/// Noise of the voltage (2e-4 pu, which adds some per cent) is left out.
+/// Least standard errors [unit of the parameter] given the events and priors of relative standard deviation
+/// `FreeParameter::spread`. Switching times and start of every event are unknown too. Omits the noise of the
+/// voltage (2e-4 pu, which adds some per cent).
 inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
                                       const std::vector<event::FitEvent>& events,
                                       const std::vector<fit::FreeParameter>& free) {
@@ -37,7 +37,7 @@ inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
     };
     Eigen::MatrixXd by_parameter(e.values(), n), by_state;
     for (Eigen::Index i = 0; i < n; ++i) {
-      constexpr double kStep = 1e-3;  // of the parameter
+      constexpr double kStep = 1e-3;  // relative to the parameter
       const auto moved = [&](double factor) {
         sim::plant::Plant plant = truth.plant;
         sim::plant::parameter_value(plant, free[static_cast<std::size_t>(i)].id) *= factor;
@@ -71,7 +71,7 @@ inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
   return errors;
 }
 
-/// The bound of each fitted parameter, for the events of `prepared` that `used` marks.
+/// Bound of each fitted parameter, from the events of `prepared` that `used` marks.
 inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
                                       const event::WhitenedEvents& prepared, const std::vector<bool>& used,
                                       const std::vector<fit::FittedParameter>& fitted) {

@@ -1,4 +1,4 @@
-// Where a search begins in an event whose answer runs away from its instants.
+// Start of a search in an event whose response diverges if a switching time is wrong.
 #include <gtest/gtest.h>
 
 #include "tests/validate/playin/support.hpp"
@@ -8,10 +8,10 @@
 namespace swingbank::validate::fit {
 namespace {
 
-/// A converter that regulates Q through two integrals and the voltage behind them: what half a sample of
-/// the fault does to Q grows for eight seconds. From the middle of the sample intervals the search ended at
+/// A converter that regulates Q through two integrals and the voltage behind them. The effect on Q of half a
+/// sample of fault grows for eight seconds. From the middles of the sample intervals the search ended at
 /// 1,800.
-TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
+TEST(EarlyStates, FitConverges_WhenTheResponseDivergesFromWrongTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1", "Vdip=0.75,Kqi=0.1");
   };
@@ -27,7 +27,7 @@ TEST(EarlyStates, AnAnswerThatRunsAwayIsMet) {
   const auto slow = events.with(remember_noise(white, model.conventions, events));
   const Fit f = fit(model.under_test(), slow, {});
   EXPECT_LT(f.reduced_chi2(), 1.2);
-  // of a sample interval of 16.7 ms; the middles are 5.7 and 8.3 ms off
+  // The sample interval is 16.7 ms; the middles are 5.7 and 8.3 ms off.
   EXPECT_NEAR(f.events[0].state.switchings[0], s.t_on, 1e-3);
   EXPECT_NEAR(f.events[0].state.switchings[1], s.t_off, 1e-3);
 }

@@ -1,12 +1,12 @@
 #pragma once
-// An example event and its plant, with an exciter whose lower limit is never met.
+// An example event and its plant, with an exciter whose lower limit is never reached.
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/fit/fit.hpp"
 
 namespace swingbank::validate::fit {
 
-/// What the plant answers to the event from `at`.
+/// Response of the plant to the event from the state `at`.
 inline playin::Response answer(const event::FitEvent& e, const EventState& at,
                                const sim::plant::PlantUnderTest& tested) {
   return event::play(tested, e, at);
@@ -15,8 +15,8 @@ inline playin::Response answer(const event::FitEvent& e, const EventState& at,
 struct ExciterExample {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   event::WhitenedEvents events;
-  double spread;  ///< believed of every parameter
-  /// TE [s] of the exciter; 0.05 is true.
+  double spread;  ///< prior relative standard deviation of every parameter
+  /// `TE` of the exciter [s]; the true value is 0.05.
   explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {
     model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
     record::Record r =

@@ -1,4 +1,4 @@
-// The fewest parameters that must change: those that were made wrong, and no others.
+// Sparse parameter selection: finds the wrong parameters and no others.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Known {
     events = event::prepare_events(model, all, {.measured_states = false});
   }
   [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
-  /// Names of what is found, in order of the alphabet.
+  /// Names of the selected parameters, in alphabetical order.
   [[nodiscard]] std::vector<std::string> named(const SparseOptions& options = {}) const {
     const SparseSelection found = select_parameters(model.under_test(), events, free(), options);
     std::vector<std::string> names;
@@ -45,18 +45,18 @@ struct Known {
   }
 };
 
-TEST(SparseSelection, NamesTheParameterThatIsWrong) {
+TEST(SparseSelection, SelectsTheWrongParameter) {
   EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
 }
-/// One per cent off has an evidence of its own here, which is named only where right means exactly.
-TEST(SparseSelection, AValueThatIsOffByAPercentIsRight) {
+/// One per cent off has significant evidence here; it is selected only if exact values are required.
+TEST(SparseSelection, AcceptsErrorOfOnePerCent) {
   const Known known({{"GENROU.H", 1.3}, {"GENROU.Xdp", 1.01}}, 2);
   EXPECT_EQ(known.named(), std::vector<std::string>{"GENROU.H"});
   EXPECT_EQ(known.named({.right = 1e-6}), (std::vector<std::string>{"GENROU.H", "GENROU.Xdp"}));
 }
-TEST(SparseSelection, NamesNothingWhereNothingIsWrong) { EXPECT_TRUE(Known({}, 2).named().empty()); }
+TEST(SparseSelection, SelectsNothing_WhenAllValuesAreRight) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
-/// Unit 2 of IEEE 14 as `change` has it, and the record of one fault.
+/// Unit 2 of IEEE 14 modified by `change`, and the record of one fault.
 std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
     const std::function<void(sim::grid::Grid&)>& change) {
   const auto run =
@@ -73,12 +73,12 @@ std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
 }
 
 /// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
-/// by the same factor: the gain behind them does what they do.
-TEST(SparseSelection, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
+/// by the same factor: the gain behind them has the same effect.
+TEST(SparseSelection, ReportsThatTwoParametersReplaceOne) {
   const auto exciter = [](sim::grid::Grid& grid) {
     const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
     sim::plant::Block block{&esst4b, esst4b.default_parameters()};
-    for (const char* limit : {"VRMAX", "VRMIN", "VMMAX", "VMMIN"})  // far off: the exchange is exact
+    for (const char* limit : {"VRMAX", "VRMIN", "VMMAX", "VMMIN"})  // far away: the equivalence is exact
       block.p[static_cast<std::size_t>(esst4b.parameter_index(limit))] *= 50;
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)->controls.push_back(std::move(block));
   };
@@ -97,8 +97,9 @@ TEST(SparseSelection, TellsThatTwoTogetherWouldDoInPlaceOfOne) {
   EXPECT_EQ(found.alternatives[0].instead, (std::vector<std::string>{"ESST4B.KPR", "ESST4B.KIR"}));
 }
 
-/// A ceiling that is believed a fifth too high is not met there, and costs no more than one that just is not.
-TEST(SparseSelection, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
+/// A ceiling whose prior mean is 20 % too high is not reached there; its cost equals that of a ceiling that
+/// is just not reached.
+TEST(SparseSelection, SelectsLimitThatThePriorMeanNeverReaches) {
   const sim::Effect& sexs = *sim::library::compiled().find("SEXS");
   const auto exciter = [&](sim::grid::Grid& grid) {
     std::ranges::find(grid.plants, "2", &sim::plant::Plant::name)
@@ -115,7 +116,7 @@ TEST(SparseSelection, ALimitThatIsNotMetAtItsBelievedValueIsNamed) {
   EXPECT_EQ(found.wrong[0].fit.full_name(), "SEXS.EMAX");
 }
 
-TEST(SparseSelectionFull, NamesThreeThatAreWrong) {
+TEST(SparseSelectionFull, SelectsThreeWrongParameters) {
   for (const auto& wrong : std::vector<std::vector<std::pair<std::string, double>>>{
            {{"GENROU.H", 1.3}, {"GENROU.Xdp", 0.8}, {"SEXS.K", 0.7}},
            {{"GENROU.Tdop", 1.3}, {"GENROU.Xq", 0.7}, {"SEXS.TB", 1.3}},

@@ -1,4 +1,4 @@
-// What a fit says of the structure's evidence: parameters count as far as the records decide them.
+// Evidence of a structure from its fit: a parameter counts as far as the records determine it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,29 +13,29 @@ namespace {
 
 constexpr double kSpread = 0.2;
 
-TEST(FitEvidence, AParameterThatTheRecordsDoNotDecideAddsNothing) {
+TEST(FitEvidence, UndeterminedParameterAddsNothing) {
   const Fit f = ExciterExample(kSpread).fitted({"EMIN"});
   ASSERT_EQ(f.parameters.size(), 1U);
-  EXPECT_LT(f.parameters.front().decided, 1e-9);  // the records never meet that limit
+  EXPECT_LT(f.parameters.front().decided, 1e-9);  // the response never reaches that limit
   EXPECT_NEAR(f.occam, 0.0, 1e-9);
 }
-TEST(FitEvidence, AParameterDecidedToSigmaAddsTheLogOfWhatWasBelieved) {
+TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
   const Fit f = ExciterExample(kSpread).fitted({"H"});
   ASSERT_EQ(f.parameters.size(), 1U);
   const auto& H = f.parameters.front();
   const double sigma = H.error / H.value;  // H is fitted as a logarithm
-  EXPECT_LT(sigma, 0.1 * kSpread);         // or the records decide nothing
+  EXPECT_LT(sigma, 0.1 * kSpread);         // otherwise the records determine nothing
   EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
   EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }
-TEST(FitEvidence, AStructureIsNotBlamedForWhatCannotBeSeen) {
+TEST(FitEvidence, UnobservableStructureHasNoPenalty) {
   const ExciterExample example(kSpread);
   const Fit without = example.fitted({"H"}), with = example.fitted({"H", "EMIN"});
   ASSERT_EQ(with.parameters.size(), 2U);
-  // two searches end within 1e-5 of chi2, some 2000
+  // Two searches agree within 1e-5 of chi2, which is some 2000.
   EXPECT_NEAR(criterion(with), criterion(without), 0.05);
 }
-TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
+TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
   const auto from = [](double start) { return Axis{{}, start, 0.1, 1e3, true, 1.0}; };
   for (const double bound : {0.1, 0.2, 0.3, 0.7, 5.0})
     for (const double start : {15.0, 30.0, 60.0, 7.3}) {
@@ -43,8 +43,8 @@ TEST(FitAxis, ParametersAtOneBoundAreEqualWhereverTheyStarted) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
-/// The plant on a quarter of its base: H is beyond what is usual, and the search goes on from there.
-TEST(FitAxis, AValueBeyondItsRangeIsMovedFurtherWhereTheRecordsAskForIt) {
+/// The plant on a quarter of its base: H is beyond its usual range, and the search continues from there.
+TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   ExciterExample example(kSpread);
   sim::plant::Block& machine = example.model.plant.machine;
   const auto at = [&](const char* name) -> double& {
@@ -60,15 +60,15 @@ TEST(FitAxis, AValueBeyondItsRangeIsMovedFurtherWhereTheRecordsAskForIt) {
   EXPECT_NEAR(f.parameters.front().value, expected, 0.02 * expected);
   EXPECT_FALSE(f.parameters.front().at_bound);
 }
-/// The machine without its exciter: parameters would be bent beyond what any machine is.
-TEST(FitOrderings, BoundEveryFit) {
+/// The machine without its exciter: the parameters would otherwise be biased beyond physical values.
+TEST(FitOrderings, ConstrainEveryFit) {
   ExciterExample example(0.5);
   example.model.plant.controls.clear();
   const Fit f = fit(example.model.under_test(), example.events, free_parameters(example.model.plant, 0.5));
   ASSERT_EQ(f.failed, "");
   for (const auto& o : sim::plant::violated(f.plant.machine))
     ADD_FAILURE() << sim::plant::violation_text(f.plant.machine, o);
-  // A model that violates one is drawn back to it.
+  // The fit restores an ordering that the model violates.
   sim::plant::Plant biased = example.model.plant;
   const auto at = [&](const char* name) -> double& {
     return biased.machine.p[static_cast<std::size_t>(biased.machine.effect->parameter_index(name))];
@@ -82,7 +82,7 @@ TEST(FitOrderings, BoundEveryFit) {
   };
   EXPECT_GT(value("Xd"), 0.99 * value("Xdp"));
 }
-TEST(FitEvidence, AFailedFitIsTheWorst) {
+TEST(FitEvidence, FailedFitRanksLast) {
   Fit f;
   f.failed = "it cannot be run";
   EXPECT_EQ(criterion(f), std::numeric_limits<double>::infinity());

@@ -1,4 +1,4 @@
-// A steady oscillation in a residual is found below what chi2 shows, and noise holds none.
+// A steady oscillation in a residual is found below the limit of chi2, and none is found in noise.
 #include "validate/fit/lines.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ struct Residuals {
     return sum / count;
   }
 };
-/// Five events of 12 to 20 s, P and Q: white noise, in Q with a wave of that size, whose phase is each
-/// event's own; its third harmonic has a ninth of its power.
+/// Five events of 12 to 20 s, P and Q: white noise; Q also contains a wave of this amplitude. Its phase
+/// differs between events, and its third harmonic has a ninth of its power.
 Residuals with_wave(double amplitude, double frequency, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -43,7 +43,7 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
       f.residual[0].push_back(normal(random));
       f.residual[1].push_back(normal(random) + amplitude * (std::sin(phase) + std::sin(3 * phase) / 3));
     }
-    for (auto& channel : f.residual) std::fill_n(channel.begin() + 100, 20, 0.0);  // not compared
+    for (auto& channel : f.residual) std::fill_n(channel.begin() + 100, 20, 0.0);  // excluded samples
     e.channels = {playin::Output::P, playin::Output::Q};
     noise.push_back(
         {.deviation = Eigen::VectorXd::Constant(2, 1.0), .whitening = Eigen::MatrixXd::Identity(2, 2)});
@@ -54,19 +54,19 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
   return c;
 }
 
-TEST(Lines, AWaveBelowWhatChi2ShowsIsFoundAtItsFrequency) {
+TEST(Lines, FindsOscillationBelowTheChi2Limit) {
   const Residuals c = with_wave(0.2, 0.37, 1);
   EXPECT_LT(c.reduced_chi2(), thresholds::adequacy.reduced_chi2);
   const Line line = strongest_line(c.fit, c.events);
   EXPECT_EQ(line.channel, playin::Output::Q);
-  EXPECT_NEAR(line.frequency, 0.37, 0.02);  // half of 1 / 20 s is resolved
+  EXPECT_NEAR(line.frequency, 0.37, 0.02);  // resolution: half of 1 / 20 s
   EXPECT_GT(line.explains, thresholds::adequacy.line);
 }
-TEST(Lines, NoiseHoldsNone) {
+TEST(Lines, FindsNoneInNoise) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const Residuals c = with_wave(0.0, 0.37, seed);
-    // a sum of ten squares reaches 52, which is 20 beyond its price, at one of 400 places in 40 residuals
-    // once in 500 such tests
+    // A sum of ten squares reaches 52, i.e. 20 above the penalty, at one of 400 frequencies in 40 residuals
+    // once in 500 such tests.
     EXPECT_LT(strongest_line(c.fit, c.events).explains, thresholds::adequacy.line / 2) << seed;
   }
 }

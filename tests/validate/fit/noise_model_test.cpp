@@ -1,4 +1,4 @@
-// Noise is a value: measuring it changes no event, and fits made with different noise are never compared.
+// Noise models are values: measuring changes no event, and fits with different noise are never compared.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -21,7 +21,7 @@ struct NoiseModels : ::testing::Test {
   }
 };
 
-TEST_F(NoiseModels, FitsWithDifferentNoiseCannotBeCompared) {
+TEST_F(NoiseModels, RefusesToCompareFitsWithDifferentNoise) {
   const Fit same = fitted_to(example.events), other = fitted_to(again);
   ASSERT_TRUE(first.failed.empty() && same.failed.empty() && other.failed.empty());
   EXPECT_DOUBLE_EQ(gain(first, same), penalised(first) - penalised(same));
@@ -32,22 +32,22 @@ TEST_F(NoiseModels, FitsWithDifferentNoiseCannotBeCompared) {
   EXPECT_THROW(static_cast<void>(better(other, first)), std::logic_error);
   EXPECT_THROW(static_cast<void>(gain(first.events.front(), other.events.front())), std::logic_error);
 }
-TEST_F(NoiseModels, EqualNumbersOfTwoMeasurementsAreStillTwo) {
+TEST_F(NoiseModels, EqualValuesOfTwoMeasurementsRemainDistinct) {
   const event::WhitenedEvents twice =
       example.events.with(event::measure_noise(example.model.under_test(), example.events));
   EXPECT_EQ(twice.noise(0).deviation, example.events.noise(0).deviation);
   EXPECT_THROW(static_cast<void>(gain(first, fitted_to(twice))), std::logic_error);
 }
-TEST_F(NoiseModels, SomeOfTheEventsKeepTheMeasurement) {
+TEST_F(NoiseModels, SubsetOfEventsKeepsTheNoiseModel) {
   EXPECT_NO_THROW(static_cast<void>(gain(first, fitted_to(example.events.only({0})))));
 }
-TEST_F(NoiseModels, AFitThatFailedIsWorseInAnyUnit) {
+TEST_F(NoiseModels, FailedFitIsWorseThanAnyOther) {
   Fit failed;
   failed.failed = "not fitted";
   EXPECT_TRUE(better(first, failed));
   EXPECT_FALSE(better(failed, first));
 }
-TEST_F(NoiseModels, MeasuringLeavesTheEventsUntouched) {
+TEST_F(NoiseModels, MeasuringDoesNotChangeTheEvents) {
   const event::EventNoise before = example.events.noise(0);
   const event::NoiseModel measured = example.events.noise_model();
   const event::FitEvent* const where = &example.events.front();

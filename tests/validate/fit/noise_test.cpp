@@ -1,4 +1,4 @@
-// Noise measured on whole records: as large as it is where it is white, left alone where it is not.
+// Noise measured on whole records: white noise is estimated, coloured noise is left unchanged.
 #include "validate/fit/noise.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ struct Case {
   event::WhitenedEvents events;
   Fit fit;
 };
-/// Events whose residual is noise of that colour (1: white) on a slow misfit of ten times its size; the
-/// noise's assumed size is `assumed` times its true one.
+/// Events whose residual is noise of that colour (1: white) on a slow model error of ten times its size; the
+/// assumed noise is `assumed` times the true one.
 Case make(double colour, double assumed) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, kSigma);
@@ -48,9 +48,9 @@ Case make(double colour, double assumed) {
   return c;
 }
 
-TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
+TEST(SharpenNoise, EstimatesWhiteNoiseWithinFivePerCent) {
   Case c = make(1.0, 1.0);
-  // as prepare_events would: the spread of 450 samples before the events
+  // As prepare_events: the standard deviation of 450 samples before the events.
   double quiet = 0;
   for (const auto& e : c.events)
     for (int k = 0; k < kQuiet; ++k) quiet += std::pow(e.record.P[static_cast<std::size_t>(k)] - 0.5, 2);
@@ -62,11 +62,11 @@ TEST(SharpenNoise, WhiteNoiseIsMeasuredToAFewPerCent) {
     noise.back().whitening(0, 0) = 1 / quiet;
   }
   const event::NoiseModel sharp = sharpen_noise(c.fit, c.events.with(event::NoiseModel(std::move(noise))));
-  // the median of 4400 squares scatters by 2.6 %, so its root by 1.3 %; pre-event means cost 1 % more
+  // The median of 4400 squares scatters by 2.6 %, its root by 1.3 %; pre-event means cost another 1 %.
   EXPECT_NEAR(sharp.of(0).deviation[0], kSigma, 0.05 * kSigma);
   EXPECT_NEAR(sharp.of(0).whitening(0, 0) * sharp.of(0).deviation[0], 1.0, 1e-12);
 }
-TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
+TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   for (const double slow : {0.0, 0.25}) {  // a quarter of the noise, over seconds
@@ -82,8 +82,8 @@ TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
       }
     }
     const double remainder = slow_remainder(c.fit, c.events);
-    // the largest of six nearly normal numbers; slow: 0.0625 of the variance over 200 samples is some 5 times
-    // the power of white noise in two seconds, 4 / sqrt(2 / 35)
+    // The largest of six nearly normal numbers. Slow: 0.0625 of the variance over 200 samples is some 5 times
+    // the power of white noise in two seconds, 4 / sqrt(2 / 35).
     if (slow == 0.0) {
       EXPECT_LT(remainder, 5.0);
     } else {
@@ -91,15 +91,15 @@ TEST(SlowRemainder, IsFewStandardDeviationsOfWhiteNoiseAndManyOfSlow) {
     }
   }
 }
-TEST(SharpenNoise, ColouredNoiseIsLeftAlone) {
+TEST(SharpenNoise, DoesNotChangeColouredNoise) {
   Case c = make(0.3, 1.0);
   const event::NoiseModel sharp = sharpen_noise(c.fit, c.events);
   EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
 }
 
-/// Events in which V and theta have white noise that the model answers; the measured P and Q hold the share
-/// `carried` of it as phasors would, noise of their own, and the answer to what of the movement is `real`.
-/// Samples are at 30/s; so many precede an event.
+/// Events in which V and theta have white noise to which the model responds. The measured P and Q contain the
+/// share `carried` of it through the phasors and noise of their own; if `real`, V and theta truly moved, and
+/// P and Q contain the plant's response. Samples are at 30/s; `before` of them precede an event.
 struct Samples {
   int before = 30, all = kSamples, events = 3;
 };
@@ -137,33 +137,33 @@ Case moving(double carried, bool real, Samples samples = {}) {
   return c;
 }
 
-TEST(VoltageNoise, IsSeenInPAndQThatWereMadeOfThePhasors) {
+TEST(VoltageNoise, IsDetectedInPAndQComputedFromPhasors) {
   for (const double carried : {0.0, 1.0}) {
     const Case c = moving(carried, false);
     const VoltageNoise found = voltage_noise(c.fit, c.events);
     EXPECT_NEAR(found.carried, carried, 0.15);
     EXPECT_NEAR(found.share, 1.0, 0.05);
-    // noise of 4e-4 where the deviation is taken for 2e-3; 84 samples tell it to 15 %
+    // Noise of 4e-4 with an assumed deviation of 2e-3; 84 samples determine it to 15 %.
     EXPECT_NEAR(found.own[static_cast<int>(playin::Output::Q)], 0.04, 0.3 * 0.04);
   }
 }
-TEST(VoltageNoise, IsMeasuredOnTheWholeRecordAndNotByItsSwings) {
+TEST(VoltageNoise, IsEstimatedOnTheWholeRecordWithoutSwings) {
   const VoltageNoise found = voltage_noise(moving(1, false).fit, moving(1, false).events);
-  EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the stretches before the events alone tell it to 0.3
+  EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the pre-event segments alone determine it to 0.3
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
-TEST(VoltageNoise, AfterAFifthOfASecondTheCalmPartsTellIt) {
+TEST(VoltageNoise, UsesCalmSegments_WhenThePreEventIsShort) {
   const Case c = moving(1, false, {.before = 6});
   const VoltageNoise found = voltage_noise(c.fit, c.events);
-  EXPECT_LT(found.doubt[1], 0.05);  // six lines alone tell it to 0.6
+  EXPECT_LT(found.doubt[1], 0.05);  // six bins alone determine it to 0.6
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, CorrectsForMeanAndTrendOfShortSegments) {
-  const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no second that could be calm
+  const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no calm second
   const VoltageNoise found = voltage_noise(c.fit, c.events);
   EXPECT_LT(found.doubt[1], 0.04);
-  EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be gone
+  EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be missing
 }
 TEST(VoltageNoise, ExcludesThePlantsResponse) {
   const Case c = moving(0, true);

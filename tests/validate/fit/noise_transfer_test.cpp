@@ -1,4 +1,4 @@
-// Noise of the played-in voltage in the answers of two structures.
+// Transfer of the played-in voltage's noise into the responses of two structures.
 #include "validate/fit/noise_transfer.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 class NoiseTransferTest : public ::testing::Test {
  protected:
-  /// The example's plant whose current is late by that many samples.
+  /// The example's plant with a current delay of that many samples.
   sim::plant::Plant late(double samples) const {
     sim::plant::Plant plant = example_.model.plant;
     plant.measurements.push_back(
@@ -31,16 +31,16 @@ class NoiseTransferTest : public ::testing::Test {
                                       VoltageNoise{.variance = {4e-8, 4e-8, 0}}};
 };
 
-TEST_F(NoiseTransferTest, ACurrentReadBetweenSamplesPassesLess) {
+TEST_F(NoiseTransferTest, DelayBetweenSamplesReducesTransfer) {
   ASSERT_GT(noise_transfer_.own(), 0.0);
-  // a spline's weights at mid-interval are 0.60 twice, -0.13 twice, 0.03 ...: their squares sum to 0.76
+  // A spline's weights at mid-interval are 0.60 twice, -0.13 twice, 0.03 ...: their squares sum to 0.76.
   EXPECT_NEAR(less_with(late(0.5)) / noise_transfer_.own(), 0.24, 0.03);
 }
-TEST_F(NoiseTransferTest, AWholeSamplePassesAsMuch) {
-  // but for what V and current of one moment have in common
+TEST_F(NoiseTransferTest, DelayOfAWholeSampleKeepsTransfer) {
+  // Up to the correlation of V and current of one sample.
   EXPECT_NEAR(less_with(late(1.0)) / noise_transfer_.own(), 0.0, 0.02);
 }
-TEST_F(NoiseTransferTest, ALargerReactancePassesLess) {
+TEST_F(NoiseTransferTest, LargerReactanceReducesTransfer) {
   EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * noise_transfer_.own());
 }
 TEST_F(NoiseTransferTest, AssumesFullNoiseTransferWhenSimulationFails) {

@@ -1,4 +1,5 @@
-// Where a fit must be able to get: across zero, below the leakage, past a regulator that chatters.
+// Values that a fit must be able to reach: across zero, below the leakage reactance, past a chattering
+// regulator.
 #include <gtest/gtest.h>
 
 #include "sim/plant/orderings.hpp"
@@ -14,7 +15,7 @@ double& parameter(sim::plant::Block& block, std::string_view name) {
   return block.p[static_cast<std::size_t>(block.effect->parameter_index(name))];
 }
 
-/// The example's first event as `truth` would have answered it, without noise.
+/// Returns the example's first event as `truth` would respond to it, without noise.
 event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::Plant& truth) {
   event::FitEvent e = example.events.front();
   const playin::Response r = answer(e, {}, {truth, example.model.conventions});
@@ -23,7 +24,7 @@ event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::
   return {{e}, example.events.noise_model()};
 }
 
-TEST(Sign, IsOpenWhereTheRangeSaysSo) {
+TEST(Sign, IsFree_WhenTheRangeAllowsIt) {
   const auto open = [](std::string_view of, std::string_view name) {
     const sim::Effect& e = effect(of);
     return may_change_sign(e.parameters[static_cast<std::size_t>(e.parameter_index(name))]);
@@ -34,10 +35,10 @@ TEST(Sign, IsOpenWhereTheRangeSaysSo) {
   EXPECT_FALSE(open("IEEET1", "KA"));     // never below
   EXPECT_FALSE(open("STAB1", "KT"));      // a gain, within decades
 }
-/// DC exciters that feed themselves have a KE just below zero in most public cases; the standard value is 1.
+/// Self-excited DC exciters have a KE just below zero in most public cases; the default is 1.
 class SelfExcited : public ::testing::TestWithParam<bool> {};
 
-TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
+TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   ExciterExample example(0.2);
   example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").default_parameters()};
   sim::plant::Plant truth = example.model.plant;
@@ -55,12 +56,12 @@ TEST_P(SelfExcited, IsFoundFromTheStandardOne) {
   EXPECT_LT(KE->error, 0.3);
   EXPECT_LT(f.reduced_chi2(), 0.05);
 }
-/// It lies at the end of a curved valley; lenient steps, with slopes linear about each step, come as far in
-/// as many steps more.
+/// The optimum lies at the end of a curved valley. Lenient steps with sensitivities linearised about each
+/// step reach it in twice as many steps.
 INSTANTIATE_TEST_SUITE_P(Steps, SelfExcited, ::testing::Values(false, true),
                          [](const auto& lenient) { return lenient.param ? "lenient" : "exact"; });
-/// Public cases have machines with X''d below Xl. A record of such a machine keeps it.
-TEST(FitOrderings, ASubtransientReactanceBelowTheLeakageIsLeftToTheRecords) {
+/// Some public cases have machines with X''d below Xl. The fit to a record of such a machine keeps that.
+TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   ExciterExample example(0.2);
   sim::plant::Block& machine = example.model.plant.machine;
   parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
@@ -84,7 +85,7 @@ struct BelowLeakage {
     return fit(example.model.under_test(), events, example.free({"Xdpp"}), options);
   }
 };
-TEST(FitOrderings, XdppReturnsBelowXl_WhereTheModelHasItBelow) {
+TEST(FitOrderings, XdppReturnsBelowXl_WhenTheModelHasItBelow) {
   const BelowLeakage below;
   const double Xl = parameter(below.machine, "Xl");
   const Fit f = below.fitted({.values = {1.2 * Xl}});
@@ -93,7 +94,7 @@ TEST(FitOrderings, XdppReturnsBelowXl_WhereTheModelHasItBelow) {
   EXPECT_FALSE(f.parameters.front().at_bound);
   EXPECT_EQ(bounds_text(f.parameters), "");
 }
-TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
+TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
   BelowLeakage below;
   const double Xl = parameter(below.machine, "Xl");
   parameter(below.machine, "Xdpp") = 1.2 * Xl;
@@ -104,9 +105,9 @@ TEST(FitOrderings, HeldParameterIsNamed_WhereTheModelKeepsTheOrder) {
   EXPECT_EQ(bounds_text(f.parameters),
             "GENROU.Xdpp (held by X''d > Xl): at a bound, where the 95 % interval is not valid.");
 }
-/// A regulator of gain 2000 behind a lead of eleven times answers each sample's noise with its limits: these
-/// values are where a search ended in a public case, before it was dropped for them.
-TEST(FitSteps, APlantThatSmallStepsDoNotPassIsFittedWithLenientOnes) {
+/// A regulator of gain 2000 behind a lead of eleven times responds to the noise of each sample with its
+/// limits. A search in a public case reached these values and was dropped because of them.
+TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};
   for (const auto& [name, value] : {std::pair("TR", 6.5606997582993224e-4),

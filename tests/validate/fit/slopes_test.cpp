@@ -1,4 +1,5 @@
-// Slopes of an event's answer are those of what the fit compares: the plant as its instruments show it.
+// Sensitivities of an event's response refer to the compared quantities: the plant as seen through its
+// instruments.
 #include "validate/fit/slopes.hpp"
 
 #include <gtest/gtest.h>
@@ -38,15 +39,15 @@ struct Slopes : ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(Slopes, ResidualIsThatOfTheFit) {
+TEST_P(Slopes, ResidualEqualsThatOfTheFit) {
   const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
-  EXPECT_LT(f.reduced_chi2(), 1.2);  // the plant and its instruments are the true ones
+  EXPECT_LT(f.reduced_chi2(), 1.2);  // plant and instruments are the true ones
   const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), f.events.front().state, {});
-  EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // the fit integrates to 1e-5
+  EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // tolerance of the fit's integration: 1e-5
 }
 
-TEST_P(Slopes, AreThoseOfDifferences) {
+TEST_P(Slopes, AgreeWithCentralDifferences) {
   const int last = block_count(model.plant) - 1;
   std::vector<FreeParameter> free = {{{0, model.plant.machine.effect->parameter_index("H")}, 0.2},
                                      {{0, model.plant.machine.effect->parameter_index("Xdp")}, 0.2},
@@ -65,7 +66,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
       parameter_value(plant, f.id) += by * axis_unit(model.plant, f);
     });
   }
-  // what the event's own state absorbs of them, each believed to be off by so much
+  // The part that the event's own state absorbs, each with its prior deviation.
   std::vector<Eigen::VectorXd> own;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (const double off = event.switchings[k].uncertainty; off > 0)
@@ -84,7 +85,7 @@ TEST_P(Slopes, AreThoseOfDifferences) {
   slopes -= states * inner.ldlt().solve(states.transpose() * slopes).eval();
   for (Eigen::Index i = 0; i < columns; ++i) {
     const auto name = parameter_record(model.plant, free[static_cast<std::size_t>(i)].id).name;
-    EXPECT_GT(slopes.col(i).norm(), 0.1) << name;  // or the records say nothing of it
+    EXPECT_GT(slopes.col(i).norm(), 0.1) << name;  // otherwise the records do not determine it
     EXPECT_LT((s.slopes.col(i) - slopes.col(i)).norm(), 2e-2 * slopes.col(i).norm()) << name;
   }
 }

@@ -1,4 +1,4 @@
-// Fleets: their files, what a plant leaves behind, the table.
+// Fleets: input files, rows of finished plants, result tables.
 #include "validate/fleet/fleet.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using ::testing::Not;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A folder of one test's own.
+/// A temporary folder for each test.
 class FleetFiles : public ::testing::Test {
  protected:
   FleetFiles() {
@@ -73,7 +73,7 @@ FleetRow named() {
   return r;
 }
 
-TEST_F(FleetFiles, CommonOptionsHoldWhereAPlantSaysNothing) {
+TEST_F(FleetFiles, CommonOptionsApply_WhenAPlantSetsNone) {
   const Fleet fleet = load_fleet(write("fleet.toml", R"(
 [options]
 power_only = true
@@ -88,7 +88,7 @@ power_only = false
 spread = 0.1
 )"));
   ASSERT_EQ(fleet.plants.size(), 2);
-  EXPECT_EQ(fleet.plants[0].name, "a");  // in order of names
+  EXPECT_EQ(fleet.plants[0].name, "a");  // sorted by name
   EXPECT_EQ(fleet.plants[0].model, "/elsewhere/m.toml");
   EXPECT_FALSE(fleet.plants[0].power_only);
   EXPECT_EQ(fleet.plants[0].spread, 0.1);
@@ -98,7 +98,7 @@ spread = 0.1
   EXPECT_EQ(fleet.plants[1].records, (std::vector<std::string>{"e1.csv", "e*.csv"}));
 }
 
-TEST_F(FleetFiles, EveryFaultIsToldAtOnce) {
+TEST_F(FleetFiles, ReportsEveryFaultAtOnce) {
   const std::string said = problems(R"(
 [options]
 spread = -1
@@ -116,7 +116,7 @@ colour = "red"
   EXPECT_THROW(load_fleet(folder / "nowhere.toml"), InputError);
 }
 
-TEST_F(FleetFiles, APlantThatCannotBeReadIsARowWithAllItsProblems) {
+TEST_F(FleetFiles, UnreadablePlantIsARowWithAllItsProblems) {
   const Fleet fleet = load_fleet(write("fleet.toml", R"(
 [plant.a]
 model = "no-model.toml"
@@ -143,7 +143,7 @@ TEST_F(FleetFiles, KeepsForeignFiles) {
   EXPECT_FALSE(fs::exists(folder / "out/a/plant.json"));
 }
 
-TEST(FleetRows, AreReadBackAsWritten) {
+TEST(FleetRows, ReadBackAsWritten) {
   const FleetRow a = named(), b = read_row(row_json(a).dump(), "here");
   EXPECT_EQ(row_json(a), row_json(b));
   EXPECT_EQ(b.evidence, a.evidence);
@@ -154,7 +154,7 @@ TEST(FleetRows, AreReadBackAsWritten) {
   EXPECT_THROW(read_row("{\"format\": ", "here"), InputError);
 }
 
-TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
+TEST(FleetTables, ReportFindingsAndExitCodes) {
   const Fleet fleet{"f.toml", "", {}};
   const std::vector<FleetRow> sound = {row("a", "adequate")}, found = {row("a", "adequate"), named()},
                               broken = {row("a", "adequate"), named(),
@@ -173,16 +173,15 @@ TEST(FleetTables, SayWhatWasFoundAndExitCodesFollow) {
               HasSubstr("b,confusable,SEXS,ESST1A,excitation,412.25,1.01,26.4,1.02,3e-05,3,"));
   const std::string page = fleet_html(fleet, broken);
   EXPECT_THAT(page, HasSubstr("<a href=\"b/report.html\">b</a>"));
-  EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has none
+  EXPECT_THAT(page, Not(HasSubstr("c/report.html")));  // it has no report
   const auto j = nlohmann::json::parse(fleet_json(fleet, broken));
   EXPECT_EQ(j["plants"].size(), 3);
   EXPECT_EQ(j["plants"][1]["evidence"], 412.25);
   EXPECT_TRUE(j["plants"][2]["evidence"].is_null());
 }
 
-TEST(FleetChance, IsThatOfTheChiSquareDistribution) {
-  // Tables of the distribution: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4
-  // digits).
+TEST(FleetChance, FollowsTheChiSquareDistribution) {
+  // Quantiles from tables: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4 digits).
   const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
   for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
   EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));

@@ -1,4 +1,4 @@
-// What to record next, for exciters that differ and for one beside itself.
+// The proposed next measurement, for different exciters and for identical ones.
 #include "validate/hypothesis/decide.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-constexpr double kDecideSpread = 0.2;  ///< believed of the machine's parameters
+constexpr double kDecideSpread = 0.2;  ///< prior standard deviation of the machine's parameters, relative
 
 class Decide : public ::testing::Test {
  protected:
@@ -23,7 +23,7 @@ class Decide : public ::testing::Test {
     if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
     return j;
   }
-  /// With the same evidence.
+  /// Decision between competitors of equal evidence.
   [[nodiscard]] Decision between(const std::vector<Judgement>& competitors) const {
     std::vector<Explanation> all;
     for (const Judgement& j : competitors)
@@ -37,7 +37,7 @@ class Decide : public ::testing::Test {
       {.measured_states = false});
 };
 
-TEST_F(Decide, TheFieldTellsExcitersApart) {
+TEST_F(Decide, FieldQuantitiesDistinguishExciters) {
   const Decision d = between({fitted("SEXS"), fitted("IEEET1")});
   EXPECT_EQ(d.now, 2);
   ASSERT_FALSE(d.next.empty());
@@ -51,14 +51,14 @@ TEST_F(Decide, TheFieldTellsExcitersApart) {
   EXPECT_TRUE(std::ranges::is_sorted(d.next, {}, &NextRecord::expected));
   EXPECT_THAT(decide_sentence(d), testing::HasSubstr("would decide: set of 2 -> 1."));
 }
-TEST_F(Decide, NothingTellsAnExciterFromItself) {
+TEST_F(Decide, NothingDistinguishesAnExciterFromItself) {
   const Judgement sexs = fitted("SEXS");
   const Decision d = between({sexs, sexs});
   ASSERT_FALSE(d.next.empty());
   for (const NextRecord& n : d.next) EXPECT_NEAR(n.expected, 2, 1e-9) << n.what;
   EXPECT_THAT(decide_sentence(d), testing::HasSubstr("Nothing that was tried would decide"));
 }
-TEST_F(Decide, OneAloneNeedsNoDecision) {
+TEST_F(Decide, SingleHypothesisNeedsNoDecision) {
   const Decision d = between({fitted("SEXS")});
   EXPECT_TRUE(d.next.empty());
   EXPECT_EQ(decide_sentence(d), "");

@@ -1,5 +1,5 @@
 #pragma once
-// An event of a plant whose exciter its model lacks.
+// An event of a plant whose model lacks the exciter.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace swingbank::validate::hypothesis {
 
 class HiddenExciter : public ::testing::Test {
  protected:
-  /// P and Q of the event become what this plant answers.
+  /// Sets P and Q of the event to the response of this plant.
   void record_answer_of(const sim::plant::PlantUnderTest& truth) {
     event::FitEvent e = events_.front();
     const playin::Response r = fit::answer(e, base_.events.front().state, truth);
@@ -24,7 +24,7 @@ class HiddenExciter : public ::testing::Test {
     const auto all = all_hypotheses(model_.under_test(), model_.library);
     return *std::ranges::find(all, name, &Hypothesis::name);
   }
-  /// Of the block that the hypothesis adds.
+  /// Parameter of the block that the hypothesis adds.
   static double& parameter(sim::plant::Plant& plant, std::string_view name) {
     sim::plant::Block& exciter = plant.controls.back();
     const auto& known = exciter.effect->parameters;

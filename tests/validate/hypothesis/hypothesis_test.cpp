@@ -1,4 +1,4 @@
-// What is tried: every start of every hypothesis is a plant that can be.
+// The hypotheses: every start of every hypothesis is a plant that can run.
 #include "validate/hypothesis/hypothesis.hpp"
 
 #include <gmock/gmock.h>
@@ -24,16 +24,16 @@ std::vector<Hypothesis> hypotheses() {
   return all_hypotheses(model.under_test(), model.library);
 }
 
-TEST(Hypotheses, EveryStartIsSound) {
+TEST(Hypotheses, EveryStartCanRun) {
   std::set<std::string> drawn;
   for (const Hypothesis& h : hypotheses()) {
     if (h.drawn) drawn.insert(h.name);
     for (const auto& start : h.starts) EXPECT_TRUE(playin::can_run(started(h, start))) << h.name;
   }
-  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve, which keep their order
+  EXPECT_TRUE(drawn.contains("MAXEX2"));  // three points of one curve; draws keep their order
   EXPECT_TRUE(drawn.contains("TGOV1"));
 }
-TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
+TEST(Hypotheses, StartsAreDefaultsThenDraws) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;
     EXPECT_EQ(h.starts.size(), 40U) << h.name;
@@ -41,7 +41,7 @@ TEST(Hypotheses, StartsAreTheStandardValuesThenDraws) {
     EXPECT_EQ(std::set(h.starts.begin(), h.starts.end()).size(), h.starts.size()) << h.name;
   }
 }
-TEST(Hypotheses, AnAddedTransformersRatioIsFreeWithinItsTaps) {
+TEST(Hypotheses, RatioOfAddedTransformerIsFreeWithinItsTaps) {
   for (const Hypothesis& h : hypotheses()) {
     if (h.name != "STEPUP") continue;
     std::vector<std::string_view> names;
@@ -57,7 +57,7 @@ TEST(Hypotheses, AnAddedTransformersRatioIsFreeWithinItsTaps) {
   }
   FAIL() << "no transformer is tried";
 }
-TEST(Hypotheses, FurtherDrawsAreOthers) {
+TEST(Hypotheses, FurtherDrawsDiffer) {
   for (const Hypothesis& h : hypotheses()) {
     if (!h.drawn) continue;
     const std::set known(h.starts.begin(), h.starts.end());
@@ -66,8 +66,8 @@ TEST(Hypotheses, FurtherDrawsAreOthers) {
     for (const auto& draw : further) EXPECT_FALSE(known.contains(draw)) << h.name;
   }
 }
-/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters are no draws.
-TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
+/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters have no draws.
+TEST(Hypotheses, FreesInactivePartsInGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   for (const Hypothesis& h : all_hypotheses(model.under_test(), model.library)) {
@@ -89,7 +89,7 @@ TEST(Hypotheses, PartsThatDefaultValuesLeaveOffAreFreedByGroups) {
   EXPECT_FALSE(names.contains("CTERROR"));
   EXPECT_FALSE(names.contains("GENROU:S10,S12"));
 }
-TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
+TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
   const auto all = all_replacements(model.under_test(), model.library);
   std::size_t exciters = 0;
@@ -105,8 +105,8 @@ TEST(Hypotheses, AReplacementStandsAloneInItsSlot) {
     EXPECT_TRUE(playin::can_run(h.plant)) << h.name;
   }
 }
-/// Of whatever block of a converter has one: a source that is its own control among them.
-TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
+/// In any block of a converter that has a switch, also in a source with built-in control.
+TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
   const auto names = [](const char* source, const std::vector<const char*>& controls) {
     sim::plant::Plant plant;
     const auto standard = [](const char* name) {
@@ -127,8 +127,8 @@ TEST(Hypotheses, EverySwitchIsTriedInItsOtherPosition) {
             (std::set<std::string>{"REGCB1:rateFlag=1", "REGCB1:pqFlag=1", "REECA1:PFFLAG=1",
                                    "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
 }
-/// Its edges lie to either side of the neutral 0, and a start wider than all that moves has no slope.
-TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
+/// Its edges lie on either side of the null value 0. A start wider than the signal has no sensitivity.
+TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
   const auto standard = [](const char* name) {
     const sim::Effect* effect = sim::library::compiled().find(name);
     return sim::plant::Block{effect, effect->default_parameters()};
@@ -142,16 +142,16 @@ TEST(Hypotheses, ADeadBandIsTriedFromNarrowToWide) {
     ++bands;
     ASSERT_GE(h.starts.size(), 4U);
     for (const auto& start : h.starts) EXPECT_DOUBLE_EQ(start[0], -start[1]);
-    EXPECT_LT(h.starts.front()[1], 1e-3);  // a frequency's is some 0.0006 pu
-    EXPECT_GT(h.starts.back()[1], 0.02);   // a voltage's some 0.02 pu
+    EXPECT_LT(h.starts.front()[1], 1e-3);  // a frequency deviation is some 0.0006 pu
+    EXPECT_GT(h.starts.back()[1], 0.02);   // a voltage deviation is some 0.02 pu
   }
   EXPECT_EQ(bands, 2);
 }
-TEST(Triangle, HasTheProductsOfTheColumns) {
+TEST(Triangle, ReproducesTheProductsOfTheColumns) {
   event::RowMatrix e = event::RowMatrix::Random(50, 6);
-  e.col(3) = 2 * e.col(0) - e.col(1);  // what the others make leaves nothing of its own
+  e.col(3) = 2 * e.col(0) - e.col(1);  // linearly dependent
   const event::RowMatrix r = fit::fitting::triangle_of(e);
-  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // sums of 50, rounded
+  EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // rounding of sums of 50
   EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
   for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);
 }

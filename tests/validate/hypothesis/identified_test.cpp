@@ -10,7 +10,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// The example of README: four faults at a plant whose model has no exciter.
+/// The README's example: four faults at a plant whose model has no exciter.
 class IdentifiedExciter : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<Judgement> found(const std::vector<std::string>& names) const {
@@ -41,29 +41,29 @@ class IdentifiedExciter : public ::testing::Test {
                               .fit = base_};
 };
 
-TEST_F(IdentifiedExciter, ReachesTheOptimumThatTheTruthLeadsTo) {
+TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   const auto all = found({"SEXS", "ESST4B"});
   ASSERT_EQ(all.size(), 2U);
   const Judgement& best = all.front();
   EXPECT_EQ(best.hypothesis.name, "SEXS");
   ASSERT_TRUE(best.fitted);
   EXPECT_LT(best.fit.reduced_chi2(), 1.05);
-  // values of the plant that made the records
+  // Parameter values of the plant that made the records.
   const auto free = free_of(best.hypothesis, base_model_.spread);
   fit::FitOptions truth{.iterations = 20, .lenient = true};
   for (const auto& e : best.fit.events) truth.start.push_back(e.state);
   truth.values = fit::values_of(best.hypothesis.plant, free);
   const fit::Fit there = fit::fit({best.hypothesis.plant, best.hypothesis.conventions}, events_, free, truth);
   EXPECT_LT(fit::penalised(best.fit), fit::penalised(there) + 5);
-  // what is far behind is not fitted, and says so
+  // A hypothesis far behind the best is not fitted and reports that.
   EXPECT_FALSE(all.back().fitted);
   EXPECT_GT(all.back().behind, 1000);
   EXPECT_NE(all.back().why_not.find("more of chi2 than SEXS"), std::string::npos) << all.back().why_not;
 }
 
-/// A phase error of an instrument transformer is found beside the exciter, and nothing where they are right.
-/// That of the voltage and that of the current turn the power alike.
-TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
+/// A phase error of an instrument transformer is found beside the exciter; without an error none is found.
+/// Phase errors of voltage and current rotate the power in the same way.
+TEST_F(IdentifiedExciter, FindsTheMissingCompanionToo) {
   EXPECT_EQ(found({"SEXS"}).front().companion, "");
   auto wrong = records(model_);
   for (record::Record& r : wrong)
@@ -86,7 +86,7 @@ TEST_F(IdentifiedExciter, HasTheCompanionThatIsMissingToo) {
   }
 }
 
-TEST_F(IdentifiedExciter, IsLeftAloneBesideAStageThatLeavesNoise) {
+TEST_F(IdentifiedExciter, IsNotFitted_WhenTheBaseModelReachesTheNoise) {
   const Judgement first = found({"SEXS"}).front();
   const BaseModel then = after(base_model_, first);
   auto all = all_hypotheses(then.under_test(), then.library);

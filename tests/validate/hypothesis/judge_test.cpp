@@ -1,4 +1,4 @@
-// What events left out of a fit say against an effect.
+// Objections to an effect from events outside the fit.
 #include "validate/hypothesis/judge.hpp"
 
 #include <gmock/gmock.h>
@@ -25,30 +25,30 @@ HeldOut event(const std::string& name, double before, double after) {
   return h;
 }
 
-TEST(Objection, NoneToWhatPredictsEveryEvent) {
+TEST(Objection, NoneWhenEveryEventIsPredicted) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.2, 1.01)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventThatIsUntouchedMayScatter) {
+TEST(Objection, AllowsScatterOfAnUnaffectedEvent) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.01)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventMayNotPayForTheOthers) {
+TEST(Objection, RefusesImprovementAtTheCostOfAnEvent) {
   EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
-  // 30 of chi2: above 20, and above a tenth of this evidence
+  // 30 of chi2: above 20, and above 10 % of this evidence.
   EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
               HasSubstr("improve b"));
-  // ... and below a tenth of this one, still as good as noise
+  // Below 10 % of this evidence, and still as good as noise.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
 }
-TEST(Objection, AnEventThatWasBadMayNotBecomeWorse) {
+TEST(Objection, RefusesDeteriorationOfABadEvent) {
   EXPECT_THAT(objection({event("a", 30.0, 1.0), event("b", 2.0, 2.1)}, 29000, kAdequate),
               HasSubstr("improve b"));
 }
-TEST(Objection, AnEventWithoutWhichNothingCouldBeFittedIsNotPredicted) {
+TEST(Objection, EventIsNotPredicted_WhenTheFitWithoutItFails) {
   HeldOut none = event("b", 1.0, 1.0);
   none.cost_after = std::numeric_limits<double>::infinity();
   EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("b when"));
 }
-TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
+TEST(HeldOutEvents, FailedFitPredictsNothing) {
   fit::ExciterExample example(0.2);
   example.events = example.events.only({0, 0});
   const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
@@ -59,13 +59,13 @@ TEST(HeldOutEvents, AFitThatFailsWithoutOnePredictsNothing) {
   EXPECT_LT(hold(whole).front().cost_after, 1e6);
   fit::Fit impossible = whole;
   for (const auto& f : example.free({"EMAX"}))
-    sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // Efd stands above it
+    sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // below the initial Efd
   EXPECT_GT(hold(impossible).front().cost_after, 1e300);
 }
-TEST(Objection, AnEventMustBePredictedNotOnlyImproved) {
+TEST(Objection, RequiresPredictionNotOnlyImprovement) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),
               HasSubstr("predict b"));
-  // a tenth of what it was will do: the plain misfit is judged apart
+  // A tenth of the former error suffices; the reduced chi-square is judged separately.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 30.0, 1.5)}, 30000, kAdequate), IsEmpty());
 }
 

@@ -1,4 +1,4 @@
-// Probabilities from evidences, by hand.
+// Probabilities from log evidences, computed by hand.
 #include "validate/hypothesis/posterior.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ double of(const std::vector<Explanation>& all, const std::string& name) {
   return at == all.end() ? -1 : at->probability;
 }
 
-TEST(Posterior, EqualEvidencesShareWhatIsNotOutside) {
+TEST(Posterior, EqualEvidencesHaveEqualProbabilities) {
   const auto all = posterior({{kNothingMissing, 0}, {"A", 400, 0}, {"B", 400, 1}}, kNone);
   const double scale = 2 * thresholds::posterior.scale;
   const double outside = std::exp(-thresholds::evidence.accepted / scale), nothing = std::exp(-400 / scale);
@@ -25,7 +25,7 @@ TEST(Posterior, EqualEvidencesShareWhatIsNotOutside) {
   EXPECT_DOUBLE_EQ(of(all, "A"), of(all, "B"));
   EXPECT_NEAR(of(all, kNoneOfThese), outside / (2 + outside + nothing), 1e-12);
 }
-TEST(Posterior, AddsUpAndPutsTheMostProbableFirst) {
+TEST(Posterior, SumsToOneInDescendingOrder) {
   const auto all = posterior({{kNothingMissing, 0}, {"A", 60, 0}, {"B", 75, 1}, {"C", -30, 2}}, kNone);
   double sum = 0;
   for (const auto& e : all) sum += e.probability;
@@ -33,11 +33,11 @@ TEST(Posterior, AddsUpAndPutsTheMostProbableFirst) {
   EXPECT_EQ(all.front().name, "B");
   EXPECT_EQ(all.size(), 5U);
 }
-TEST(Posterior, OddsFollowTheDifferenceOfEvidences) {
+TEST(Posterior, OddsFollowFromTheDifferenceOfEvidences) {
   const auto all = posterior({{"A", 100, 0}, {"B", 100 - 2 * thresholds::posterior.scale, 1}}, kNone);
   EXPECT_NEAR(of(all, "A") / of(all, "B"), std::exp(1), 1e-12);
 }
-TEST(Posterior, AFreeInputThatExplainsMoreIsNoneOfThese) {
+TEST(Posterior, PrefersNoneOfThese_WhenAFreeInputExplainsMore) {
   const auto all = posterior({{kNothingMissing, 0}, {"A", 60, 0}}, 400);
   EXPECT_EQ(all.front().name, kNoneOfThese);
   EXPECT_GT(all.front().probability, 0.99);
@@ -47,7 +47,7 @@ TEST(Posterior, FallsBackToNothingMissing) {
   EXPECT_EQ(all.front().name, kNothingMissing);
   EXPECT_GT(all.front().probability, 0.99);
 }
-TEST(Posterior, TheSetMakesUpNinetyFivePerCent) {
+TEST(Posterior, SetSumsToNinetyFivePerCent) {
   const auto with = [](std::vector<double> shares) {
     std::vector<Explanation> all;
     for (const double p : shares) all.push_back({"", 0, 0, p});
@@ -58,7 +58,7 @@ TEST(Posterior, TheSetMakesUpNinetyFivePerCent) {
   EXPECT_EQ(with({0.4, 0.3, 0.2, 0.1}), 4U);
   EXPECT_EQ(with({}), 0U);
 }
-TEST(Posterior, IsNeverToldAsSure) {
+TEST(Posterior, TextNeverStatesCertainty) {
   EXPECT_EQ(probability_text(1.0), "> 99 %");
   EXPECT_EQ(probability_text(0.0), "< 1 %");
   EXPECT_EQ(probability_text(0.97), "97 %");

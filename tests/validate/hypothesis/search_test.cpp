@@ -1,4 +1,4 @@
-// What is tried beside a structure, and in the place of a part of it.
+// Effects tried in addition to a structure, and in place of a part of it.
 #include "validate/hypothesis/search.hpp"
 
 #include <gmock/gmock.h>
@@ -16,8 +16,8 @@ using testing::Not;
 
 using WholeFit = HiddenExciter;
 
-/// An armature resistance that the model lacks. A load compensator without an exciter changes nothing.
-TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
+/// An armature resistance that the model lacks. A load compensator without an exciter has no effect.
+TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   Hypothesis truth = named("GENROU:Ra");
   constexpr double kRa = 0.03;
   sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
@@ -32,9 +32,9 @@ TEST_F(WholeFit, FindsAParameterThatIsNeutralInTheModel) {
   EXPECT_EQ(tried.back().hypothesis.name, "PTERROR");
 }
 
-/// An ordinary fit that begins at KF = 0 does not find a fast rate feedback.
-TEST_F(WholeFit, FindsARateFeedbackThatDefaultValuesLeaveOff) {
-  constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback acts as a lead-lag does
+/// An ordinary fit from KF = 0 does not find a fast rate feedback.
+TEST_F(WholeFit, FindsRateFeedbackInactiveByDefault) {
+  constexpr double kKF = 0.05, kTF = 0.1;  // [pu], [s]; a slow feedback is equivalent to a lead-lag
   const Hypothesis exst1 = named("EXST1");
   Hypothesis truth = exst1;
   parameter(truth.plant, "KF") = kKF;
@@ -61,7 +61,7 @@ class Exchange : public ::testing::Test {
     if (found == all.end()) throw std::runtime_error("no hypothesis " + name);
     return *found;
   }
-  /// `name` in the model alone, fitted to `value` of its first parameter.
+  /// `name` alone in the model, its first parameter fitted to `value`.
   [[nodiscard]] Judgement alone(const std::string& name, double value) const {
     Judgement j;
     j.hypothesis = named(all_hypotheses(model().under_test(), model().library), name);
@@ -71,7 +71,7 @@ class Exchange : public ::testing::Test {
     sim::plant::parameter_value(j.fit.plant, f.id) = value;
     return j;
   }
-  /// `second` beside what is fitted already.
+  /// `second` in addition to the fitted effect.
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
     const BaseModel then = after(base_model_, first);
     Judgement j;
@@ -98,7 +98,7 @@ class Exchange : public ::testing::Test {
                               .fit = base_};
 };
 
-TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
+TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   const auto competitors = exchanges(base_model_, pair, {});
   EXPECT_THAT(names(competitors),
@@ -106,7 +106,7 @@ TEST_F(Exchange, RivalsOfTheSlotStandBesideTheSecondAsItWasFitted) {
                                             "STEPUP + HYGOV", "STEPUP + IEEEG1"));
   for (const Judgement& j : competitors) {
     EXPECT_FALSE(j.fit.failed.empty());
-    // believed to be what it was before any fit, and starting where the pair's fit ended
+    // The prior is that before any fit; the start is the end of the pair's fit.
     const sim::plant::ParameterId own = pair.hypothesis.free.front().id;
     const auto id = sim::plant::same_parameter(j.hypothesis.plant, pair.hypothesis.plant, own).value();
     EXPECT_EQ(sim::plant::block_effect(j.hypothesis.plant, id.block).name, "STEPUP");
@@ -132,14 +132,14 @@ TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const fit::FreeParameter& f = found->hypothesis.free.front();
   EXPECT_EQ(sim::plant::parameter_value(found->fit.plant, f.id), 0.01);
 }
-TEST_F(Exchange, NothingStandsWithoutWhatItNeeds) {
+TEST_F(Exchange, DropsEffectsWithoutTheirPrerequisite) {
   Judgement pair = beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001);
   EXPECT_THAT(exchanges(base_model_, pair, {}), IsEmpty());
 }
 
 class Crossing : public Exchange {
  protected:
-  /// A pair of these names and this evidence.
+  /// A pair of these names and this log evidence.
   [[nodiscard]] static Judgement pair(const std::string& with, const std::string& name, double gain) {
     Judgement j;
     j.hypothesis.with = with;
@@ -157,23 +157,23 @@ TEST_F(Crossing, AddsReductionsOfTwoEffects) {
   EXPECT_EQ(best->joins_in, &pairs[0]);
   EXPECT_EQ(best->stays_in, &pairs[2]);
   EXPECT_EQ(best->expected, 95);
-  pairs.push_back(pair("IEEEG1", "IEEET1", 130));  // now the best, and beside it HYGOV's turn
+  pairs.push_back(pair("IEEEG1", "IEEET1", 130));  // now the best pair, so HYGOV is tried beside it
   const auto next = best_cross(pairs);
   ASSERT_TRUE(next);
   EXPECT_EQ(next->joins + " joins " + next->stays, "IEEET1 joins HYGOV");
   EXPECT_EQ(next->expected, 130 + 60 - 75);
 }
-TEST_F(Crossing, NothingIsExpectedOfEffectsWhosePartnersWereNeverTogether) {
+TEST_F(Crossing, ExpectsNothing_WhenThePartnersWereNeverPaired) {
   EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("EXAC1", "IEEEG1", 75)}));
   EXPECT_FALSE(best_cross(std::vector{pair("GGOV1", "IEEET1", 100), pair("GGOV1", "EXAC1", 75)}));
 }
-TEST_F(Crossing, APairThatCannotBeFittedIsNotTriedAgain) {
+TEST_F(Crossing, DoesNotRetryFailedPair) {
   std::vector<Judgement> pairs = {pair("GGOV1", "IEEET1", 100), pair("EXAC1", "GGOV1", 80),
                                   pair("EXAC1", "IEEEG1", 75), pair("IEEEG1", "IEEET1", 0)};
   pairs.back().fit.failed = "too steep";
   EXPECT_FALSE(best_cross(pairs));
 }
-TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
+TEST_F(Crossing, StartsEachEffectFromItsPair) {
   const std::vector<Judgement> pairs = {beside(alone("STEPUP", 0.07), "IEEEG1", 0.08),
                                         beside(alone("TGOV1", 0.06), "CTERROR", 0.01)};
   const Judgement j = crossed(base_model_, {"IEEEG1", &pairs[0], "CTERROR", &pairs[1], 0});
@@ -184,7 +184,7 @@ TEST_F(Crossing, EachEffectStartsAsItsPairHasIt) {
   EXPECT_EQ(sim::plant::parameter_value(j.fit.plant, id), 0.01);
   EXPECT_NE(std::ranges::find(j.hypothesis.free, id, &fit::FreeParameter::id), j.hypothesis.free.end());
 }
-TEST_F(Crossing, NothingIsFittedWhereAnEffectNeedsAnother) {
+TEST_F(Crossing, FitsNothing_WhenAnEffectRequiresAnother) {
   const std::vector<Judgement> pairs = {beside(alone("TGOV1", 0.06), "TGOV1:db", 0.001),
                                         beside(alone("CTERROR", 0.01), "STEPUP", 0.07)};
   Judgement j = crossed(base_model_, {"STEPUP", &pairs[1], "TGOV1:db", &pairs[0], 0});

@@ -1,5 +1,5 @@
-// Laws for an input that no known effect explains: ranked on its course, written as law files, found in
-// records and believed only where they predict events that they were not fitted to.
+// Laws for an input that no known effect explains: ranked by its time series, written as law files, found in
+// records, and accepted only if they predict events outside the fit.
 #include "validate/laws/search.hpp"
 
 #include <fmt/format.h>
@@ -16,14 +16,14 @@
 namespace swingbank::validate::laws {
 namespace {
 
-/// Two events as laws see them: a swing that decays, knots as `missing_input` sets them, and an input by a
-/// function of the speed deviation and of time.
+/// Two events as input of the search for laws: a decaying swing, knots as `missing_input` sets them, and an
+/// input given by a function of the speed deviation and of time.
 template <class F>
 std::vector<LawTrace> traces_with(F input) {
   std::vector<LawTrace> all;
   for (const double size : {0.006, 0.003}) {
     LawTrace e;
-    e.trigger = e.begin = size > 0.004 ? 2.0 : 1.5;  // s; record time and time since the event differ
+    e.trigger = e.begin = size > 0.004 ? 2.0 : 1.5;  // [s]; record time and time since the event differ
     e.rest = size > 0.004 ? 0.4 : 0.7;
     const auto swing = [&](double t, double hertz, double phase) {
       const double tau = t - e.begin;
@@ -51,7 +51,7 @@ double value_of(const LawCandidate& law, const std::string& name) {
 }
 constexpr double kLevel = 0.1;
 
-TEST(LawCandidates, ALimitedLawOfTheSpeedLeads) {
+TEST(LawCandidates, LimitedSpeedLawRanksFirst) {
   const auto traces = traces_with(
       [](const LawTrace&, double speed, double) { return -0.02 * std::clamp(speed / 0.001, -1.0, 1.0); });
   const auto ranked = law_candidates(fit::InputKind::torque, traces, kLevel);
@@ -62,22 +62,23 @@ TEST(LawCandidates, ALimitedLawOfTheSpeedLeads) {
   const auto limited = std::ranges::find(ranked, "limited", &LawCandidate::family);
   ASSERT_NE(limited, ranked.end());
   EXPECT_EQ(limited->signal, "speed");
-  // the grid's widths lie a factor of two apart, the limit itself is a factor of least squares
+  // The grid's widths are a factor of two apart; the limit itself follows from least squares.
   EXPECT_NEAR(value_of(*limited, "L"), -0.02, 0.003);
   EXPECT_NEAR(std::log2(value_of(*limited, "w") / 0.001), 0.0, 1.0);
 }
-TEST(LawCandidates, AnOscillationIsFoundWithItsFrequency) {
+TEST(LawCandidates, FindsOscillationWithItsFrequency) {
   const auto traces = traces_with([](const LawTrace&, double, double t) {
     return t < 4 ? 0.0 : 0.01 * std::sin(6.283185307 * 0.47 * t + 0.3);
   });
   const auto best = law_candidates(fit::InputKind::torque, traces, kLevel).front();
   EXPECT_EQ(best.family, "periodic");
-  EXPECT_EQ(best.signal, "time");  // not since the event: that is at another time in each record
-  EXPECT_NEAR(value_of(best, "f"), 0.47, 0.005);    // a quarter of what turns the phase once over the record
-  EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // a tenth: the edge of the beginning is not on the grid
+  EXPECT_EQ(best.signal, "time");  // not since the event, whose time differs between the records
+  EXPECT_NEAR(value_of(best, "f"), 0.47,
+              0.005);  // a quarter of the frequency that turns the phase once over the record
+  EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // 10 %: its start is not on the grid
   EXPECT_NEAR(value_of(best, "start"), 4.0, 0.25);  // half the grid's step
 }
-TEST(LawCandidates, APulseThatTheEventSetsOffIsCountedFromIt) {
+TEST(LawCandidates, PulseDelayCountsFromTheEvent) {
   const auto traces = traces_with([](const LawTrace& e, double, double t) {
     const double tau = t - e.trigger;
     return tau > 1.0 && tau < 2.5 ? 0.05 : 0.0;
@@ -85,21 +86,21 @@ TEST(LawCandidates, APulseThatTheEventSetsOffIsCountedFromIt) {
   const auto best = law_candidates(fit::InputKind::field, traces, kLevel).front();
   EXPECT_EQ(best.family, "pulse");
   EXPECT_EQ(best.signal, "time since the voltage moved");
-  // knots lie 0.1 s apart
+  // The knots are 0.1 s apart.
   EXPECT_NEAR(value_of(best, "delay"), 1.0, 0.1);
   EXPECT_NEAR(value_of(best, "length"), 1.5, 0.1);
   EXPECT_NEAR(value_of(best, "A"), 0.05, 0.005);
 }
-TEST(LawCandidates, WithoutAVoltageThatMovesNoneIsSetOffByIt) {
+TEST(LawCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
   const auto traces = traces_with([](const LawTrace&, double speed, double) { return -5 * speed; });
   for (const auto& law : law_candidates(fit::InputKind::torque, traces, 0.0))
     EXPECT_NE(law.signal, "time since the voltage moved") << law.family;
 }
 
-/// Every law's file is read, rests at the operating point, and puts out what the ranking took it for.
-TEST(LawText, EveryFileDoesWhatWasRanked) {
+/// Every law file can be read, rests at the operating point, and has the output that was ranked.
+TEST(LawText, EveryFileReproducesTheRankedTimeSeries) {
   const auto traces = traces_with([](const LawTrace& e, double speed, double t) {
-    return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t) : 0.0);  // something for every law to fit
+    return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t) : 0.0);  // a feature for every law to fit
   });
   const LawRegression regression(traces);
   for (const fit::InputKind kind : {fit::InputKind::torque, fit::InputKind::field}) {
@@ -121,17 +122,18 @@ TEST(LawText, EveryFileDoesWhatWasRanked) {
           difference += std::pow(time_series[e][k] - law.time_series[e][k], 2);
           size += std::pow(law.time_series[e][k], 2);
         }
-      // Ranking samples 20 times a second and jumps where the file has an edge; a trigger takes some 10 ms.
-      // Of a sawtooth above 1 Hz, whose every jump is smeared so, most of a tenth of the square may differ.
+      // The ranking samples at 20/s with a step at each edge of the law; a trigger acts within some 10 ms.
+      // For a sawtooth above 1 Hz, whose every step is affected, most of a tenth of the mean square may
+      // differ.
       const bool wave = law.family.starts_with("periodic, ");
-      // What explains next to nothing is never fitted; the least values of its curves are kept from zero.
+      // A law that explains next to nothing is never fitted; its amplitudes are kept away from zero.
       if (law.explained > 0.1) {
         EXPECT_LT(difference, (wave ? 0.3 : 0.05) * size) << law_toml(law, "test");
       }
     }
   }
 }
-TEST(LawText, NumbersComeWithUnitAndInterval) {
+TEST(LawText, NumbersHaveUnitAndInterval) {
   LawCandidate law;
   law.words = "{K} × the speed deviation (lagged by {T})";
   law.parameters = {{"K", "pu", -7.5, -10, 10, true, "gain"}, {"T", "s", 0.25, 0, 10, false, "lag"}};
@@ -142,7 +144,8 @@ TEST(LawText, NumbersComeWithUnitAndInterval) {
   EXPECT_EQ(law_words(law, {K}), "a torque of -7.5 pu (-8 to -7) × the speed deviation (lagged by 0.25 s)");
 }
 
-/// Records of the example's events as a plant answers that has parameters a tenth off and something more.
+/// Simulated records of the example's events: the plant's parameters are 10 % off, and it has an additional
+/// input.
 struct Case {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   event::WhitenedEvents events;
@@ -200,7 +203,7 @@ sim::Effect torque_law(const std::string& value) {
       "truth.toml");
 }
 
-TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
+TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
   const sim::Effect law = torque_law("-0.02 * clamp(speed / 0.001, -1, 1)");
   Case c({1, 3}, &law, [](int, playin::Drive&) {});
   ASSERT_GT(c.base.reduced_chi2(), 5);
@@ -217,7 +220,7 @@ TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
   for (const auto& h : f.judgement.held_out) {
     EXPECT_GT(h.before, 5) << h.record;
     EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value)
-        << h.record;  // chi2 per value of 1802 numbers: 1 + 3.6 standard deviations
+        << h.record;  // chi2 per value of 1802 values: 1 + 3.6 standard deviations
   }
   for (const auto& p : f.judgement.fit.parameters) {
     if (p.name == "L") {
@@ -229,13 +232,13 @@ TEST(LawSearchTest, ATorqueLimitedAboveASpeedIsFoundAndPredicts) {
   }
   EXPECT_THAT(law_sentence(s, 30),
               testing::HasSubstr("None of the 30 known effects explains it; a torque of -0.0"));
-  // the file that is offered is the law that was judged
+  // The law file contains the law that was judged.
   const sim::Effect read = sim::laws::make_law(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)
     EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.law.parameters[i].value) << read.parameters[i].name;
 }
 
-TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
+TEST(LawSearchFull, FindsPulseAtARecordTime) {
   const sim::Effect law = torque_law("0.02 * (clamp((t - 3) / 0.05, 0, 1) - clamp((t - 4.5) / 0.05, 0, 1))");
   const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
   ASSERT_NE(s.found(), nullptr);
@@ -243,7 +246,7 @@ TEST(LawSearchFull, APulseAtATimeOfTheRecordIsFoundAndPredicts) {
   for (const auto& h : s.found()->judgement.held_out)
     EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value) << h.record;
 }
-TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
+TEST(LawSearchFull, FindsOscillation) {
   const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
   const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
   ASSERT_NE(s.found(), nullptr);
@@ -253,8 +256,8 @@ TEST(LawSearchFull, AnOscillationIsFoundAndPredicts) {
       EXPECT_NEAR(p.value, 0.7, 4 * p.error);
     }
 }
-/// A torque that differs from event to event follows no law.
-TEST(LawSearchFull, ARandomTorqueGivesNoLaw) {
+/// A torque that differs between events follows no law.
+TEST(LawSearchFull, RejectsRandomTorque) {
   Case c({1, 2, 3}, nullptr, [](int event, playin::Drive& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
     std::normal_distribution<double> normal;

@@ -1,6 +1,7 @@
-// Every unit of every public case that runs is taken out of it: the plant is the one that runs, its file
-// reads back, it finds its operating point, and it answers the voltage of the case's own simulation with the
-// same P and Q. The cases are not part of this repository; tests/README.md says where they are looked for.
+// Extraction of every unit of every public case that runs: the plant equals the one in the grid, its file
+// reads back, it finds its operating point, and its response to the voltage of the case's simulation has the
+// same P and Q. The cases are not part of this repository; tests/README.md states where they are searched
+// for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,10 +59,10 @@ fs::path cases() { return sim::test::record_folder("../cases"); }
 
 struct Loaded {
   fs::path raw, dyr;
-  std::vector<std::string> ignored;  ///< models that are not here, by the names that the messages give
+  std::vector<std::string> ignored;  ///< unsupported models, by the names in the messages
   sim::grid::Grid grid;
 };
-/// As `simulate` reads it, with the options that the messages name.
+/// Loads a case as `simulate` does, with the options that the messages name.
 Loaded load(const Case& c) {
   Loaded l{cases() / c.name / c.raw, cases() / c.name / c.dyr, {}, {}};
   sim::grid::CaseOptions options;
@@ -92,7 +93,7 @@ PlantModel taken_out(const Loaded& l, const Case& c, const sim::plant::Plant& pl
   return parse_plant_model(plant_text(model, {}), "plant.toml");
 }
 
-/// What keeps a plant that was taken out from being the one that runs; empty: nothing.
+/// Returns the first difference of an extracted plant from the one in the grid; empty if there is none.
 std::string difference_from(const sim::plant::Plant& running, const sim::plant::Plant& taken) {
   if (running.machine.effect != taken.machine.effect || running.machine.p != taken.machine.p)
     return "machine";
@@ -106,8 +107,8 @@ std::string difference_from(const sim::plant::Plant& running, const sim::plant::
   return running.mva == taken.mva ? "" : "base";
 }
 
-/// What is wrong with the records that are written of a plant; empty: they hold its values, in as few digits
-/// as people write.
+/// Returns the first error of the plant's exported records; empty if they have its values, in as few digits
+/// as in manual input.
 std::string fault_of_export(const PlantModel& model) {
   Problems problems;
   const std::string text = dyr_text(model, {}, "plant.toml", problems);
@@ -126,7 +127,7 @@ std::string fault_of_export(const PlantModel& model) {
 
 class EveryUnitFull : public ::testing::TestWithParam<Case> {};
 
-TEST_P(EveryUnitFull, IsTakenOutAndStands) {
+TEST_P(EveryUnitFull, IsExtractedAndInitialised) {
   Loaded l = load(GetParam());
   const auto before = l.grid.plants;
   sim::grid::settle_limits(l.grid, true);
@@ -141,7 +142,7 @@ TEST_P(EveryUnitFull, IsTakenOutAndStands) {
       unusual += std::ranges::any_of(
           model.warnings, [](const std::string& w) { return w.find("is usually") != std::string::npos; });
       widened += difference_from(before[k], l.grid.plants[k]).empty() ? 0 : 1;
-      model.plant.controls = l.grid.plants[k].controls;  // where limits had to be moved, these
+      model.plant.controls = l.grid.plants[k].controls;  // with widened limits
       model.plant.generation = before[k].generation;
       (void)sim::plant::operating_point(model.plant,
                                         l.grid.flow.voltage[static_cast<std::size_t>(before[k].bus)],
@@ -160,16 +161,16 @@ TEST_P(EveryUnitFull, IsTakenOutAndStands) {
 INSTANTIATE_TEST_SUITE_P(Cases, EveryUnitFull, ::testing::ValuesIn(kCases),
                          [](const auto& i) { return std::to_string(i.index) + "_" + i.param.name; });
 
-/// A case with a fault at one bus, and the units whose terminals are recorded.
+/// A case with a fault at one bus, and the units with recorded terminals.
 struct Replay {
-  std::size_t which;  ///< of kCases
+  std::size_t which;  ///< index into kCases
   int fault;
   std::vector<std::string> units;
 };
 std::ostream& operator<<(std::ostream& out, const Replay& r) { return out << kCases[r.which].name; }
 class ReplayFull : public ::testing::TestWithParam<Replay> {};
 
-TEST_P(ReplayFull, TheUnitTakenOutAnswersAsItRan) {
+TEST_P(ReplayFull, ExtractedUnitReproducesTheSimulation) {
   const Case& c = kCases[GetParam().which];
   Loaded l = load(c);
   const auto before = l.grid.plants;

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 PlantModel example() { return load_plant_model(test::source("configs/plants/ieee14_bus2.toml")); }
 
-/// Values that need all 17 digits, consistent because they hardly differ from the standard ones.
+/// Values that need all 17 digits, consistent because they differ little from the defaults.
 std::vector<double> awkward(const sim::Effect& effect) {
   std::vector<double> p = effect.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -31,7 +31,7 @@ std::vector<double> awkward(const sim::Effect& effect) {
 class PlantFileTest : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  /// What is written and read again.
+  /// Writes a model and reads it back.
   PlantModel again(const PlantModel& model) {
     write_plant_file(folder_ / "model.toml", model, {"written by a test", "two\nlines"});
     return load_plant_model(folder_ / "model.toml");
@@ -40,7 +40,7 @@ class PlantFileTest : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("swingbank_plant_file_" + std::to_string(::getpid()));
 };
 
-TEST_F(PlantFileTest, EveryEffectReadsBackToTheLastBit) {
+TEST_F(PlantFileTest, EveryEffectReadsBackExactly) {
   for (const auto* effect : sim::library::compiled().all()) {
     PlantModel m = example();
     const sim::plant::Block block{effect, awkward(*effect)};
@@ -73,7 +73,7 @@ TEST_F(PlantFileTest, SeveralEffectsOfASharedSlotStayInOrder) {
     if (sim::is_shared(effect->slot))
       (effect->slot == sim::Slot::measurement ? m.plant.measurements : m.plant.controls)
           .push_back({effect, awkward(*effect)});
-  // twice the same effect, with values of its own
+  // The same effect twice, with different values.
   sim::plant::Block second = m.plant.controls.front();
   second.p.front() = second.effect->parameters.front().high;
   m.plant.controls.insert(m.plant.controls.begin() + 1, second);
@@ -107,7 +107,7 @@ TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
   m.reading.columns = {{"V", "NORTH.BUS1.VPM [kV]"}, {"P", "-LINE \"1\" [MW]"}};
   EXPECT_EQ(again(m).reading.columns, m.reading.columns);
 }
-TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
+TEST_F(PlantFileTest, CopiesLawFilesToItsFolder) {
   PlantModel m = example();
   const auto law = test::source("configs/laws/torque_voltage_dip.toml");
   std::filesystem::create_directories(folder_);
@@ -124,7 +124,7 @@ TEST_F(PlantFileTest, CopiesLawFilesBesideIt) {
   EXPECT_EQ(difference(m, load_plant_model(folder_ / "other" / "model.toml")), "");
 }
 
-TEST_F(PlantFileTest, RefusesWhatWouldNotReadBackAndWritesNothing) {
+TEST_F(PlantFileTest, RefusesValuesThatDoNotReadBack) {
   PlantModel m = example();
   m.plant.machine.p[static_cast<std::size_t>(m.plant.machine.effect->parameter_index("H"))] = -5;
   EXPECT_THAT(test::messages([&] { write_plant_file(folder_ / "model.toml", m, {}); }),
@@ -132,7 +132,7 @@ TEST_F(PlantFileTest, RefusesWhatWouldNotReadBackAndWritesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_));
 }
 
-TEST_F(PlantFileTest, SharedSlotsNameWhatIsWrong) {
+TEST_F(PlantFileTest, ReportsErrorsOfSharedSlots) {
   PlantModel m = example();
   const std::string text = plant_text(m, {}) + "\n[[shaft]]\neffect = \"FASTVALVE\"\nnonsense = 1.0\n";
   const auto all = test::messages([&] { parse_plant_model(text, "plant.toml"); });

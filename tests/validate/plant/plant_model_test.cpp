@@ -56,12 +56,12 @@ TEST_F(PlantModelTest, ReadsTheExample) {
   EXPECT_FALSE(m.conventions.speed_voltage);
   EXPECT_TRUE(m.plant.controls.empty());
 }
-TEST_F(PlantModelTest, AMistypedEffect_GivesOneLineWithASuggestion) {
+TEST_F(PlantModelTest, SuggestsNameForMistypedEffect) {
   EXPECT_THAT(
       faults(replaced(example_text(), "\"GENROU\"", "\"GENRUO\"")),
       ElementsAre(AllOf(HasSubstr("machine.effect = 'GENRUO' at "), HasSubstr("did you mean GENROU?"))));
 }
-TEST_F(PlantModelTest, ReadsLawsBesideIt) {
+TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
   const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
@@ -72,8 +72,8 @@ TEST_F(PlantModelTest, ReadsLawsBesideIt) {
   EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example_text()),
               ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
 }
-/// Plants in files of their own folders, each with a law of the same file name and effect.
-TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
+/// Plants in different folders, each with a law of the same file name and effect name.
+TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedLaws) {
   const auto folder = file_.parent_path() / file_.stem();
   const auto read = [&](const std::string& depth) {
     const auto own = folder / depth;
@@ -104,14 +104,14 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWhoseLawsHaveOneName) {
   EXPECT_NE(difference(models[0], models[1]), "") << "laws of other texts are other effects";
   EXPECT_EQ(load_plant_model(test::source("configs/plants/ieee14_bus2.toml")).library.find("MINE"), nullptr);
 }
-TEST_F(PlantModelTest, EveryParameterMustBeThere) {
+TEST_F(PlantModelTest, RequiresEveryParameter) {
   EXPECT_THAT(faults(replaced(example_text(), "Xqp = 0.6\n", "")), ElementsAre(HasSubstr("machine.Xqp")));
 }
-TEST_F(PlantModelTest, UnknownParametersListTheKnownOnes) {
+TEST_F(PlantModelTest, ListsKnownParametersForUnknownOnes) {
   EXPECT_THAT(faults(replaced(example_text(), "Ra = 0.0", "Ra = 0.0\nXddp = 0.2")),
               ElementsAre(AllOf(HasSubstr("Xddp"), HasSubstr("Xdpp"), HasSubstr("Tqopp"))));
 }
-TEST_F(PlantModelTest, UnknownEffectsListTheKnownOnes) {
+TEST_F(PlantModelTest, ListsKnownEffectsForUnknownOnes) {
   EXPECT_THAT(faults(replaced(example_text(), "\"GENROU\"", "\"GENSOL\"")),
               Contains(AllOf(HasSubstr("GENSOL"), HasSubstr("GENCLS"), HasSubstr("GENROU"))));
 }
@@ -130,7 +130,7 @@ TEST_F(PlantModelTest, NamesARecordGivenInItsPlace) {
                 ::testing::ElementsAre(::testing::AllOf(::testing::HasSubstr("a record at event.csv"),
                                                         ::testing::HasSubstr("--model"))));
 }
-TEST_F(PlantModelTest, AllFaultsAtOnce) {
+TEST_F(PlantModelTest, ReportsAllFaultsAtOnce) {
   const auto all =
       faults(replaced(replaced(replaced(example_text(), "Xqp = 0.6\n", ""), "frequency_hz = 60.0\n", ""),
                       "[record]", "[recordings]"));
@@ -178,7 +178,7 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
   EXPECT_EQ(m.plant.machine.p, plain.plant.machine.p);
   EXPECT_EQ(m.defaults.size(), 5u);
   EXPECT_EQ(m.bus, 31);
-  // What stands there already is named, and how it is dropped.
+  // The message names the present block and the option that drops it.
   const std::string dyr =
       "1 'GENROU' 1 8.0 0.03 0.4 0.05 6.175 0.05 1.8 1.7 0.3 0.55 0.25 0.2 0.1 0.8 /\n"
       "1 'SEXS' 1 0.1 10 100 0.1 -5 5 /\n1 'NONE9' 2 1 2 3 /\n";
@@ -199,12 +199,12 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
   EXPECT_EQ(other.plant.controls[0].p.at(2), 150.0);
   EXPECT_EQ(other.plant.mva, 250.0);
 }
-TEST_F(PlantModelTest, DataOnTheSystemsBaseAreRecognised) {
+TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
   const auto on_system = [](std::string text, const char* h, const char* xd) {
     text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
     return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
   };
-  const auto warnings = [&](std::string text) {  // reactances in proportion, so that the equations hold
+  const auto warnings = [&](std::string text) {  // proportional reactances satisfy the initial equations
     for (const auto& [name, value] : std::map<std::string, std::string>{{"Xq = 1.7", "Xq = 0.0189"},
                                                                         {"Xdp = 0.4", "Xdp = 0.0044"},
                                                                         {"Xqp = 0.6", "Xqp = 0.0067"},
@@ -221,17 +221,17 @@ TEST_F(PlantModelTest, DataOnTheSystemsBaseAreRecognised) {
       load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
       ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr("usually 0.1 to 20 s"), HasSubstr("toml:22"))))
       << "one slip is no other base";
-  // Where a value is unusual a smaller factor tells: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
+  // A smaller factor suffices for unusual values: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
   EXPECT_THAT(
       load(on_system(example_text(), "2.6", "6.7")).warnings,
       Contains(AllOf(HasSubstr("H = 2.6 s and Xd = 6.7 pu"), HasSubstr("one that the file has wrong"))));
   EXPECT_TRUE(load(on_system(example_text(), "2.6", "3.2")).warnings.empty());
-  // Within the bounds it is a warning.
+  // Within the bounds there is only a warning.
   const PlantModel m = load(on_system(example_text(), "19", "0.45"));
   EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:22"))));
   EXPECT_TRUE(load(example_text()).warnings.empty());
 }
-TEST_F(PlantModelTest, UnusualValuesAreWarnedOfWithTheirLineAndKept) {
+TEST_F(PlantModelTest, WarnsOfUnusualValuesAndKeepsThem) {
   const std::string governor =
       "\n[governor]\neffect = \"TGOV1\"\nR = 0.01\nT1 = 0.2\nVMAX = 1.5\nVMIN = -1.5\nT2 = 2.6\nT3 = 8.7\n"
       "Dt = 0.0\ndb = 0.0\n";
@@ -243,12 +243,12 @@ TEST_F(PlantModelTest, UnusualValuesAreWarnedOfWithTheirLineAndKept) {
   EXPECT_EQ(difference(m, again), "");
   EXPECT_EQ(again.warnings.size(), 2u);
 }
-TEST_F(PlantModelTest, OrderingsThatNoMachineViolatesAreWarnedOfWithTheirLine) {
+TEST_F(PlantModelTest, WarnsOfViolatedOrderings) {
   const PlantModel m = load(replaced(example_text(), "Xd = 1.8", "Xd = 0.35"));
   EXPECT_THAT(m.warnings,
               ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:24"))));
 }
-TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
+TEST_F(PlantModelTest, BiasedModelKeepsTheSubmittedValues) {
   const PlantModel before = load(example_text());
   PlantModel biased = before;
   biased.plant.machine.p[4] = 3.5;  // H
@@ -259,7 +259,7 @@ TEST_F(PlantModelTest, ABentModelKnowsWhatWasSubmitted) {
   EXPECT_EQ(difference(as_submitted(back), before), "");
   EXPECT_THAT(back.warnings, Contains(HasSubstr("did not hold")));
 }
-TEST_F(PlantModelTest, StandardValuesAreTakenWhereTheBlockSaysSo) {
+TEST_F(PlantModelTest, UsesDefaultValuesOnRequest) {
   const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";
   EXPECT_THAT(faults(example_text() + block), Contains(HasSubstr("exciter.TE")));
   const PlantModel m = load(example_text() + block + "standard = true\n");

@@ -1,4 +1,4 @@
-// [[event]] of a plant file: read, written and read back, and what is refused.
+// [[event]] of a plant file: reading, writing, reading back, and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Staged = record::StagedEvent::Kind;
 
-/// The example's text with more behind it.
+/// The example's text followed by `more`.
 std::string with(const std::string& more) {
   std::ifstream file(std::string(SWINGBANK_SOURCE) + "/configs/plants/ieee14_bus2.toml");
   std::stringstream text;
@@ -36,7 +36,7 @@ TEST(StagedPlantTest, EventsAreReadAndWritten) {
   EXPECT_EQ(difference(model, again), "");
 }
 
-TEST(StagedPlantTest, FaultsAreToldTogether) {
+TEST(StagedPlantTest, ReportsAllFaultsTogether) {
   try {
     parse_plant_model(
         with("\n[[event]]\nkind = \"vref_step\"\ntime = 2\nsise = 1\n[[event]]\nkind = \"trip\"\n"),

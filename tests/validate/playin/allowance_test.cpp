@@ -1,4 +1,5 @@
-// By how much more than the tolerance a step may miss a state: what the channels show of it.
+// The factor by which the integration error of a state may exceed the tolerance, given its effect on the
+// compared channels.
 #include "validate/playin/allowance.hpp"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,8 @@ namespace {
 
 constexpr double kInterval = 1.0 / 60;
 
-/// A slow state that P shows as it is; a lag of 0.02 s that drives it over 6 s; one that drives it over 0.2
-/// s; a state that nothing shows; and one that drives it hardly at all.
+/// States: a slow state shown by P; a lag of 0.02 s that drives it with a time constant of 6 s; one that
+/// drives it with 0.2 s; an unobservable state; a state that hardly drives it.
 LinearPlant plant() {
   LinearPlant p;
   p.A = Eigen::MatrixXd::Zero(5, 5);
@@ -27,22 +28,22 @@ LinearPlant plant() {
   return p;
 }
 
-TEST(Allowances, AreWhatTheComparedChannelsShow) {
+TEST(Allowances, FollowTheSensitivityOfTheComparedChannels) {
   const auto all = allowances(plant(), std::vector{Output::P}, kInterval);
   ASSERT_EQ(all.size(), 5U);
   EXPECT_EQ(all[0], 1.0);
-  // of the lag's 1, 0.02 s / 6 s arrives at the slow state; 0.02 s / 0.2 s of the next
+  // Of a unit error of the lag, 0.02 s / 6 s reaches the slow state; of the next state, 0.02 s / 0.2 s.
   EXPECT_EQ(all[1], kMostAllowance);
   EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
   EXPECT_EQ(all[3], 1.0) << "what is not seen about the start may act behind a limit";
   EXPECT_EQ(all[4], kMostAllowance);
 }
-TEST(Allowances, AreLeastWhereTheStateItselfIsCompared) {
+TEST(Allowances, AreSmallestForAComparedState) {
   const auto all = allowances(plant(), std::vector{Output::P, Output::Efd}, kInterval);
   EXPECT_EQ(all[1], 1.0);
   EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
 }
-TEST(Allowances, AreNoneWhereNothingIsKnown) {
+TEST(Allowances, AreOne_WhenTheLinearPlantIsUnknown) {
   LinearPlant unknown = plant();
   unknown.A(0, 0) = std::nan("");
   EXPECT_EQ(allowances(unknown, std::vector{Output::P}, kInterval), std::vector(5, 1.0));

@@ -1,4 +1,4 @@
-// One answer to whether a plant can be run, for all of its blocks.
+// One check of whether a plant can run, for all of its blocks.
 #include "validate/playin/can_run.hpp"
 
 #include <gtest/gtest.h>
@@ -30,28 +30,28 @@ struct CanRun : ::testing::Test {
   }
 };
 
-TEST_F(CanRun, AStandardPlantCan) {
+TEST_F(CanRun, AcceptsDefaultPlant) {
   EXPECT_TRUE(can_run(plant));
   EXPECT_TRUE(can_exist_beside(plant, plant));
   plant.transformer = {};
   EXPECT_TRUE(can_exist_beside(plant, plant));
 }
-TEST_F(CanRun, TheMachineIsAsked) {
+TEST_F(CanRun, ChecksTheMachine) {
   value(plant.machine, "H") = -1;
   refuse();
 }
-TEST_F(CanRun, TheTransformerIsAsked) {
+TEST_F(CanRun, ChecksTheTransformer) {
   value(plant.transformer, "ratio") = 0;
   refuse();
 }
-TEST_F(CanRun, EveryControlIsAsked) {
+TEST_F(CanRun, ChecksEveryControl) {
   plant.controls.back().p.assign(plant.controls.back().p.size(), -1);
   EXPECT_TRUE(can_run(plant.controls.front()));
   EXPECT_FALSE(can_run(plant.controls.back()));
   refuse();
 }
-TEST_F(CanRun, EveryInstrumentIsAsked) {
-  value(plant.measurements.back(), "gain") = -2;  // nothing of the current is left
+TEST_F(CanRun, ChecksEveryInstrument) {
+  value(plant.measurements.back(), "gain") = -2;  // reverses the sign of the current
   refuse();
 }
 TEST_F(CanRun, AcceptsUnusualMachines) {

@@ -1,5 +1,5 @@
 #pragma once
-// Events simulated by the reference integrator at a machine with controls, and records of its components.
+// Events at a machine with controls, simulated by the reference integrator, and records of its components.
 #include <algorithm>
 #include <random>
 #include <string>
@@ -16,7 +16,7 @@ inline sim::plant::Block default_block(const std::string& name) {
   return {effect, effect->default_parameters()};
 }
 
-/// Generator 2 of IEEE 14 with controls, and what a fault makes of it.
+/// Generator 2 of IEEE 14 with controls, and its response to a fault.
 struct ComponentCase {
   sim::grid::Grid grid;
   std::size_t index = 0;
@@ -24,7 +24,7 @@ struct ComponentCase {
   [[nodiscard]] const sim::plant::Plant& plant() const { return grid.plants[index]; }
 };
 
-/// What happens: a fault behind an impedance, with these instants.
+/// A fault behind an impedance from `on` to `off`, simulated until `end` [s] at `rate` [1/s].
 struct ComponentEvent {
   int bus = 4;
   double on = 1.0, off = 1.1, end = 5.0, rate = 240;
@@ -60,12 +60,12 @@ inline ComponentCase simulated_component(const std::vector<std::string>& names,
   return simulated_component(controls, e);
 }
 
-/// Gaussian noise, one standard deviation [pu].
+/// Standard deviations of the Gaussian noise [pu].
 struct ComponentNoise {
   double V = 0, P = 0, speed = 0, Efd = 0, Pm = 0;
 };
 
-/// A record of the component, P, Q and Pm on 100 MVA. Only the record of a machine has an angle.
+/// Returns the component's record, P, Q and Pm on 100 MVA. Only the record of a machine has an angle.
 inline record::Record component_record(const ComponentCase& c, record::Component component,
                                        const ComponentNoise& noise = {}, unsigned seed = 7) {
   record::Record r;

@@ -1,4 +1,4 @@
-// A component driven by what was simulated around it gives what it gave in the simulation.
+// A component driven by its simulated inputs reproduces its simulated output.
 #include "validate/playin/component.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ using Case = test::ComponentCase;
 using test::default_block;
 constexpr double kOn = test::ComponentEvent{}.on, kOff = test::ComponentEvent{}.off;
 
-/// Largest difference between what was simulated and what the component answers [pu].
+/// Largest difference between the component's response and the simulation [pu].
 double worst(const Case& c, record::Record r, Output output) {
   const auto part = component_of(c.plant(), r.component);
   const VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
@@ -53,14 +53,14 @@ TEST(ComponentTest, ExciterFedByTheFieldCurrentGivesTheSimulatedFieldVoltage) {
   const Case c = test::simulated_component(Words{"ESAC1A"});
   record::Record r = test::component_record(c, Component::exciter);
   EXPECT_LT(worst(c, r, Output::Efd), 2e-4);
-  r.Ifd.assign(r.Ifd.size(), r.Ifd.front());  // it matters
+  r.Ifd.assign(r.Ifd.size(), r.Ifd.front());  // the exciter uses it
   EXPECT_GT(worst(c, r, Output::Efd), 1e-2);
 }
 
-TEST(ComponentTest, RecordedStabiliserStandsForTheModelledOne) {
+TEST(ComponentTest, RecordedStabiliserReplacesTheModelledOne) {
   Case c = test::simulated_component(Words{"SEXS", "STAB1"});
   record::Record r = test::component_record(c, Component::exciter);
-  // STAB1 by itself, through an exciter without dynamics: Efd = K (Vref - V + Vs)
+  // STAB1 alone, through an exciter without dynamics: Efd = K (Vref - V + Vs).
   sim::plant::Plant with = component_of(c.plant(), Component::exciter), without = with;
   with.controls.back() = {with.controls.back().effect, {1.0, 0.0, 1.0, 0.0, -100.0, 100.0}};
   std::erase_if(without.controls, [](const auto& b) { return b.effect->slot == sim::Slot::stabiliser; });
@@ -93,7 +93,7 @@ TEST(ComponentTest, MachineGivesTheSimulatedPowerAndFieldCurrent) {
   EXPECT_GT(worst(c, still, Output::Q), 2e-2);
 }
 
-TEST(ComponentTest, SlopesAreThoseOfDifferences) {
+TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   const Case c = test::simulated_component(Words{"ESAC1A", "STAB1"});
   const record::Record r = test::component_record(c, Component::exciter);
   const VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
@@ -150,7 +150,7 @@ Words needed(const std::vector<std::string>& controls, Component component) {
   return all;
 }
 
-TEST(ComponentTest, BlocksSayWhatTheyNeed) {
+TEST(ComponentTest, BlocksDetermineRequiredColumns) {
   EXPECT_THAT(needed({"SEXS", "TGOV1"}, Component::exciter), ElementsAre("V", "Efd"));
   EXPECT_THAT(needed({"SEXS", "STAB1"}, Component::exciter), ElementsAre("V", "Efd", "speed|f"));
   EXPECT_THAT(needed({"ESAC1A"}, Component::exciter), UnorderedElementsAre("V", "Efd", "Ifd"));
@@ -159,7 +159,7 @@ TEST(ComponentTest, BlocksSayWhatTheyNeed) {
   EXPECT_THAT(needed({"GGOV1"}, Component::governor), ElementsAre("speed|f", "Pm|gate", "Pm|P", "P"));
 }
 
-TEST(ComponentTest, GoesBackWhereItCameFrom) {
+TEST(ComponentTest, PutBackRestoresTheWholePlant) {
   sim::plant::Plant plant;
   plant.machine = default_block("GENROU");
   for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(plant, default_block(name));

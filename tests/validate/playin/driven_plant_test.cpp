@@ -1,4 +1,4 @@
-// Slopes of a driven plant's answer against central differences, for every kind of direction.
+// Sensitivities of a playback response against central differences, for every kind of sensitivity parameter.
 #include "validate/playin/driven_plant.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@ namespace {
 
 using Kind = Direction::Kind;
 
-/// The example's fault and a GENROU with the exciter and governor that make every direction matter.
+/// The example's fault and a GENROU with exciter and governor, so that every sensitivity parameter has an
+/// effect.
 class DrivenPlantTest : public ::testing::Test {
  protected:
   DrivenPlantTest() {
@@ -28,7 +29,7 @@ class DrivenPlantTest : public ::testing::Test {
     knots_ = {0.5, 1.5, 2.5, 4.0};
     zeros_.assign(knots_.size(), 0.0);
   }
-  /// V and theta step by little at the start and stay: the outputs of the linear plant against play-in.
+  /// Compares the linear plant with play-in after a small step of V and theta at the start.
   void expect_linear() {
     for (const Complex factor : {Complex(1 + 1e-5, 0), std::polar(1.0, 1e-5)}) {
       record::Record quiet = record_;
@@ -48,7 +49,7 @@ class DrivenPlantTest : public ::testing::Test {
       double t = quiet.t.front();
       Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
       for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
-        constexpr int kParts = 2000;  // of a sample interval: explicit steps, right to 1e-4
+        constexpr int kParts = 2000;  // of a sample interval: explicit steps, accurate to 1e-4
         for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
           x += h * (plant.A * x + plant.B * u);
         t = quiet.t[k];
@@ -60,11 +61,11 @@ class DrivenPlantTest : public ::testing::Test {
         }
       }
       for (int o = 0; o < kOutputs; ++o)
-        // the step's own curvature and the explicit steps' error
+        // The step's own curvature and the error of the explicit steps.
         EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
     }
   }
-  /// The answer with every direction moved by `by` units.
+  /// Response with every sensitivity parameter moved by `by` units.
   Response answer(const std::vector<Direction>& along, double by, bool slopes = false) {
     plant::PlantModel model = model_;
     auto switchings = switchings_;
@@ -121,7 +122,7 @@ class DrivenPlantTest : public ::testing::Test {
           worst = std::max(worst, std::abs(difference - at.slopes[i].value[o][k]));
           largest = std::max(largest, std::abs(difference));
         }
-        // the difference quotient's own error: curvature over 2e-4 of the value; the gate hardly moves
+        // Error of the difference quotient: curvature over 2e-4 of the value; the gate hardly moves.
         EXPECT_LE(worst, 1e-4 * largest + (o == static_cast<int>(Output::gate) ? 1e-8 : 1e-9))
             << "direction " << i << ", " << output_name(static_cast<Output>(o));
       }
@@ -133,14 +134,15 @@ class DrivenPlantTest : public ::testing::Test {
   std::vector<double> knots_, zeros_;
 };
 
-TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
+TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
   std::vector<Direction> directions;
   const auto blocks = sim::plant::block_parameters(model_.plant);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto* effect = b == 0 ? model_.plant.machine.effect : model_.plant.controls[b - 1].effect;
     for (std::size_t p = 0; p < blocks[b].size(); ++p) {
       const auto name = effect->parameters[p].name;
-      // S10 = S12 = 0 and a dead-band of 0 have no two sides; ceilings that are not reached no slope
+      // S10 = S12 = 0 and a dead band of 0 have no two-sided derivative; limits that are not reached have
+      // sensitivity 0.
       if (name == "S10" || name == "S12" || name == "deadband" || blocks[b][p] == 0.0) continue;
       directions.push_back({.kind = Kind::parameter,
                             .parameter = {static_cast<int>(b), static_cast<int>(p)},
@@ -150,7 +152,7 @@ TEST_F(DrivenPlantTest, SlopesAlongEveryParameter) {
   EXPECT_GT(directions.size(), 15u);
   expect_slopes(directions);
 }
-TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
+TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
   expect_slopes({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
                  {.kind = Kind::switching, .index = 1, .scale = 1e-5},
                  {.kind = Kind::turn, .index = 0, .scale = 1e-5},
@@ -160,8 +162,8 @@ TEST_F(DrivenPlantTest, SlopesAlongNuisances) {
                  {.kind = Kind::angle, .scale = 1e-5},
                  {.kind = Kind::speed, .scale = 1e-6}});
 }
-/// A frequency that lacks the jumps of the angle, and the same voltage with them.
-TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
+/// A frequency without the steps of the angle, and the same voltage with them.
+TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
   const double lacks[] = {0.3, -0.5};  // [rad]
   record::Record turned = record_;
   auto turning = switchings_;
@@ -189,8 +191,9 @@ TEST_F(DrivenPlantTest, ATurnIsWhatTheAngleLacks) {
     }
   EXPECT_GT(least, 0.1);
 }
-/// The current of a GENTPJ is found by Newton's method, its terminal behind the transformer by another one.
-TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
+/// Newton's method solves for the current of a GENTPJ, and a second one for its terminal behind the
+/// transformer.
+TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -206,15 +209,16 @@ TEST_F(DrivenPlantTest, SlopesThroughATransformerAndASaturatedStator) {
   }
   expect_slopes(directions);
 }
-TEST_F(DrivenPlantTest, SlopesAlongAddedInputs) {
+TEST_F(DrivenPlantTest, SensitivitiesToAddedInputs) {
   expect_slopes({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
                  {.kind = Kind::torque, .index = 2, .scale = 1e-4},
                  {.kind = Kind::field, .index = 1, .scale = 1e-4},
                  {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
-TEST_F(DrivenPlantTest, LinearPlantAnswersASmallStep) { expect_linear(); }
-/// At rest the errors of a converter's regulators are zero, where their integrals' limits have a corner.
-TEST_F(DrivenPlantTest, LinearConverterAnswersASmallStep) {
+TEST_F(DrivenPlantTest, LinearPlantMatchesSmallStepResponse) { expect_linear(); }
+/// At rest the errors of a converter's regulators are zero, and the limits of their integrators have a corner
+/// there.
+TEST_F(DrivenPlantTest, LinearConverterMatchesSmallStepResponse) {
   model_.plant.controls.clear();
   model_.plant.machine = test::block("REGCA1", "");
   model_.plant.controls = {

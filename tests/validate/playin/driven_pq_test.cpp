@@ -1,4 +1,4 @@
-// A simulated plant's P and Q, played back, give its terminal voltage, angle and speed.
+// Simulated P and Q, played back, reproduce terminal voltage, angle and speed.
 #include "validate/playin/detail/driven_pq.hpp"
 
 #include <gmock/gmock.h>
@@ -50,10 +50,10 @@ Errors errors(const test::Simulated& s, int stride) {
 }
 
 TEST(DrivenByPowerTest, ReproducesVoltageAndAngleOfEveryGenrou) {
-  // A bolted fault in the middle of the grid; near it the lower of two solutions is the true one.
-  // Extrapolating P and Q to the jumps costs as much as that of V does (1.5e-9 pu at 480/s,
-  // validate/playin/README.md), times 1/X''. A speed error of e, which nothing pulls back, turns the angle by
-  // 377 e T: two orders more after 8 s.
+  // Bolted fault in the middle of the grid; close to it the lower of two solutions is the true one.
+  // Extrapolating P and Q to the steps costs as much as that of V (1.5e-9 pu at 480/s,
+  // validate/playin/README.md), times 1/X''. An undamped speed error e turns the angle by 377 e T: two more
+  // orders of magnitude after 8 s.
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1), 1);
   EXPECT_LT(e.V, 1e-7);
   EXPECT_LT(e.speed, 1e-8);
@@ -64,7 +64,7 @@ TEST(DrivenByPowerTest, ReproducesVoltageAndAngleBehindTransformers) {
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
                                          test::put_behind_transformers),
                           1);
-  // behind a transformer V is lower in the fault and answers P and Q the more: 5.9e-6 (2.8e-6 with GENROU)
+  // Behind a transformer V is lower in the fault and more sensitive to P and Q: 5.9e-6 (2.8e-6 with GENROU).
   EXPECT_LT(e.V, 2e-5);
   EXPECT_LT(e.speed, 1e-8);
   EXPECT_LT(e.theta, 1e-5);
@@ -80,7 +80,7 @@ TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
               ElementsAre(HasSubstr("no terminal voltage for P = ")));
 }
 
-TEST(DrivenByPowerTest, SeesAWrongReactance) {
+TEST(DrivenByPowerTest, DetectsWrongReactance) {
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 120);
   const record::Record r = test::record_of(s, 2, 1);
   sim::plant::Plant wrong = s.grid.plants[2];

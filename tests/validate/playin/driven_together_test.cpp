@@ -1,4 +1,4 @@
-// Plants driven in the lanes of a pack, against each by itself.
+// Plants played back in a SIMD batch, compared with each alone.
 #include "validate/playin/driven_together.hpp"
 
 #include <gtest/gtest.h>
@@ -47,9 +47,9 @@ class DrivenTogether : public ::testing::Test {
   std::optional<VoltageCurve> curve_;
 };
 
-/// At a tolerance of 1e-5 per step the two ways were 1.9e-4 apart at most.
-TEST_F(DrivenTogether, AnswersAsEachByItself) {
-  const auto all = plants(11);  // more than a pack has lanes
+/// At a tolerance of 1e-5 per step the two differed by at most 1.9e-4.
+TEST_F(DrivenTogether, AgreesWithSinglePlants) {
+  const auto all = plants(11);  // more than the size of a SIMD batch
   std::vector<Drive> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
   const auto answers = drive_together(runs);
@@ -72,17 +72,17 @@ TEST_F(DrivenTogether, ReturnsNothingForInfeasibleOperatingPoints) {
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
   std::vector<Drive> runs;
   for (auto& plant : all) {
-    plant.controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below what the start needs
+    plant.controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below the initial Efd
     runs.push_back(run(plant));
-    runs.back().allowance.assign(16, 1.0);  // as a search gives it, of the plant that it began with
+    runs.back().allowance.assign(16, 1.0);  // as in a search, from its first plant
   }
   for (const auto& answer : drive_together(runs)) EXPECT_FALSE(answer.has_value());
 }
-TEST_F(DrivenTogether, OneThatCannotStandLeavesTheOthers) {
+TEST_F(DrivenTogether, InfeasiblePlantDoesNotAffectTheOthers) {
   auto all = plants(4);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
   for (const std::size_t k : {std::size_t{0}, std::size_t{2}})
-    all[k].controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below what the start needs
+    all[k].controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below the initial Efd
   std::vector<Drive> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
   const auto answers = drive_together(runs);

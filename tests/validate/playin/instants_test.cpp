@@ -1,4 +1,4 @@
-// When a signal leaves its level, and how the voltage steps.
+// Time at which a signal leaves its level, and steps of the voltage.
 #include "validate/playin/instants.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-TEST(Leaves, OneSampleAloneIsNoise) {
+TEST(Leaves, IgnoresSingleSample) {
   const std::vector<double> signal = {1, 1, 1.5, 1, 0.4, 0.4, 1};
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.3}), 4U);
   EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.3, .in_a_row = 1}), 2U);
@@ -18,11 +18,12 @@ TEST(Leaves, OneSampleAloneIsNoise) {
 }
 TEST(Leaves, ReturnsTheLengthWithoutADeparture) {
   const std::vector<double> signal = {1, 1, 1.25, 1.25};
-  EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.25}), 4U);  // as far off as the reach is not further
-  EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.2, .from = 3}), 4U);  // one sample is left
+  EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.25}),
+            4U);  // a deviation equal to the reach does not count
+  EXPECT_EQ(leaves(signal, {.level = 1, .reach = 0.2, .from = 3}), 4U);  // only one sample remains
   EXPECT_EQ(leaves({}, {.level = 1}), 0U);
 }
-/// A second and a half at 50/s with noise, and P and Q that jump behind sample `at` or swing.
+/// 1.5 s at 50/s with noise; P and Q step after sample `at`, or swing.
 record::Record powers(std::size_t at, double jump, double swing = 0) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 1e-3);
@@ -35,23 +36,23 @@ record::Record powers(std::size_t at, double jump, double swing = 0) {
   }
   return r;
 }
-TEST(PowerJump, IsFoundWhereItStandsOutFromTheNoise) {
+TEST(PowerJump, IsFoundAboveTheNoise) {
   for (const std::size_t at : {std::size_t{4}, std::size_t{9}, std::size_t{40}})
     EXPECT_EQ(before_power_jump(powers(at, 0.012), 75), at);
   EXPECT_EQ(before_power_jump(powers(9, 0.012), 60), 9U);
-  EXPECT_EQ(before_power_jump(powers(40, 0.012), 30), 29U);  // later than asked for
+  EXPECT_EQ(before_power_jump(powers(40, 0.012), 30), 29U);  // later than the given sample
 }
-TEST(PowerJump, NoiseAndSwingsAreNone) {
+TEST(PowerJump, IgnoresNoiseAndSwings) {
   EXPECT_EQ(before_power_jump(powers(0, 0), 75), 74U);
   EXPECT_EQ(before_power_jump(powers(0, 0, 0.05), 75), 74U);
-  EXPECT_EQ(before_power_jump({}, 2), 1U);  // a record of a part may have no P
+  EXPECT_EQ(before_power_jump({}, 2), 1U);  // a component's record may lack P
 }
-TEST(PowerJump, OneStepOfARoundedRecordIsNone) {
+TEST(PowerJump, IgnoresOneQuantisationStep) {
   record::Record r = powers(0, 0);
   for (std::size_t k = 0; k < r.P.size(); ++k) r.P[k] = k > 30 ? 0.81 : 0.80, r.Q[k] = 0.1;
   EXPECT_EQ(before_power_jump(r, 75), 74U);
 }
-TEST(VoltageSteps, AreOfThePhasor) {
+TEST(VoltageSteps, AreDifferencesOfThePhasor) {
   record::Record r;
   r.t = {0, 0.1, 0.2};
   r.V = {1, 1, 2};

@@ -1,5 +1,5 @@
 #pragma once
-// Faults at a generator with an exciter, recorded through instruments that are not quite right.
+// Faults at a generator with an exciter, recorded through instruments with errors.
 #include <algorithm>
 #include <random>
 
@@ -16,7 +16,7 @@ inline sim::plant::Block instrument(const std::string& text) {
   return *block;
 }
 
-/// Every `stride`-th sample of what the instruments make of a record.
+/// Returns every `stride`-th sample of a record as seen through the instruments.
 inline record::Record seen_through(const std::vector<sim::plant::Block>& chain, const record::Record& record,
                                    int stride) {
   sim::plant::TerminalRecord terminal{record.V, record.theta, record.P, record.Q, {}};
@@ -48,7 +48,7 @@ inline void add_noise(record::Record& r, unsigned seed) {
   }
 }
 
-/// The plant with its instruments as it is, and noisy records of two faults, 60 samples/s.
+/// The plant with its instruments, and noisy records of two faults at 60 samples/s.
 struct InstrumentExample {
   plant::PlantModel truth;
   std::vector<record::Record> records;

@@ -1,5 +1,5 @@
-// A driven plant seen through instruments: what they change is taken back from what is played in, and put on
-// the answer.
+// Playback through instruments: their errors are removed from the played-in signals and applied to the
+// response.
 #include "validate/playin/instruments.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class InstrumentsTest : public ::testing::Test {
     run.tolerance = 1e-9;
     return run;
   }
-  /// What `chain` makes of the record's voltage and of the plant's own answer to it.
+  /// Returns the record's voltage and the plant's response to it, as seen through `chain`.
   record::Record seen_through(const std::vector<sim::plant::Block>& chain) const {
     const VoltageCurve curve(record_, switchings_);
     const Response plain = drive(run_with(model_.plant, record_, curve));
@@ -57,7 +57,7 @@ class InstrumentsTest : public ::testing::Test {
   std::vector<Switching> switchings_;
 };
 
-TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
+TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) {
   const std::vector<sim::plant::Block> chain = {instrument("PTERROR:gain=0.02,phase=0.03"),
                                                 instrument("CTERROR:gain=-0.01,phase=-0.02")};
   record::Record seen = seen_through(chain);
@@ -65,7 +65,7 @@ TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
   plant.measurements = chain;
   const VoltageCurve own(record_, switchings_), shown(seen, switchings_);
   Drive run = run_with(plant, seen, shown);
-  // the operating point as the instruments show it
+  // The operating point as shown by the instruments.
   const Drive plain = run_with(model_.plant, record_, own);
   const Complex factor = std::polar(1.02, 0.03) * std::conj(std::polar(0.99, -0.02));
   const Complex power = Complex(plain.start.P, plain.start.Q) * factor;
@@ -74,20 +74,21 @@ TEST_F(InstrumentsTest, ErrorsOfTransformersAreTakenBackAndPutOnAgain) {
   run.start.P = power.real();
   run.start.Q = power.imag();
   const Response r = observe(run);
-  // the integrator's tolerance of 1e-9 per step, a few thousand steps
+  // The integrator's tolerance of 1e-9 per step, over a few thousand steps.
   for (std::size_t k = 0; k < r.of(Output::P).size(); ++k) {
     EXPECT_NEAR(r.of(Output::P)[k], seen.P[k], 1e-6) << k;
     EXPECT_NEAR(r.of(Output::Q)[k], seen.Q[k], 1e-6) << k;
   }
 }
 
-TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
+TEST_F(InstrumentsTest, SkewShowsOnlyAtTheStep) {
   sim::plant::Plant plant = model_.plant;
   const VoltageCurve curve(record_, switchings_);
   const Response plain = drive(run_with(plant, record_, curve));
   plant.measurements = {instrument("SKEW:skew=0.0166")};
   const Response late = observe(run_with(plant, record_, curve));
-  // the first sample of the fault, nearer to the switching than the skew, still shows the current before it
+  // The first sample of the fault is closer to the switching than the skew: it still shows the pre-fault
+  // current.
   double largest = 0;
   int moved = 0;
   for (std::size_t k = 0; k < late.of(Output::P).size(); ++k) {
@@ -99,7 +100,7 @@ TEST_F(InstrumentsTest, SkewIsSeenAtTheJump) {
   EXPECT_LE(moved, 4);
 }
 
-TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
+TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::Plant plant = model_.plant;
   plant.measurements = {instrument("PTERROR:gain=0.02,phase=0.03"), instrument("SKEW:skew=0.004")};
   const int first = sim::plant::first_measurement(plant);
@@ -132,14 +133,14 @@ TEST_F(InstrumentsTest, SlopesAreThoseOfDifferences) {
         worst = std::max(worst, std::abs(difference - at.slopes[d].value[static_cast<int>(o)][k]));
         largest = std::max(largest, std::abs(difference));
       }
-      // beside a jump the skewed curve has corners: a difference quotient over 2e-4 s straddles them
+      // Next to a step the skewed curve has corners; a difference quotient over 2e-4 s spans them.
       EXPECT_LE(worst, 2e-2 * largest + 1e-8) << "direction " << d << ", " << output_name(o);
       EXPECT_GT(largest, 0) << "direction " << d;
     }
   }
 }
 
-TEST(Instruments, ChanceStepsAndFiltersCannotBeTakenBack) {
+TEST(Instruments, RandomStepwiseAndFilterEffectsHaveNoInverse) {
   for (const char* name : {"CTERROR", "PTERROR", "SKEW"})
     EXPECT_TRUE(can_be_taken_back(*sim::library::compiled().find(name))) << name;
   for (const char* name : {"NOISE", "GAPS", "QUANTISE", "PMUFILTER"})

@@ -1,4 +1,4 @@
-// Slopes from the plant as it is linear about the ends of each step, against the answer's own.
+// Sensitivities from the plant linearised about the ends of each step, against those of the full response.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,7 +47,8 @@ class LinearSlopesTest : public ::testing::Test {
                     .linear_slopes = linear ? kShown : std::vector<Output>()};
     return drive(run, along);
   }
-  /// Every parameter that a change of one part in a hundred thousand moves, and everything of an event.
+  /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
+  /// an event.
   [[nodiscard]] std::vector<Direction> all() const {
     std::vector<Direction> along;
     const auto blocks = sim::plant::block_parameters(model_.plant);
@@ -69,8 +70,7 @@ class LinearSlopesTest : public ::testing::Test {
     }
     return along;
   }
-  /// The largest difference of any slope of P, Q, speed and Ifd, each by its root mean square, as a share of
-  /// the slope's own.
+  /// Largest RMS error of any sensitivity of P, Q, speed and Ifd, relative to the RMS of the sensitivity.
   [[nodiscard]] double worst(const std::vector<Direction>& along) const {
     const Response exact = answer(along, false), linear = answer(along, true);
     double most = 0;
@@ -92,12 +92,12 @@ class LinearSlopesTest : public ::testing::Test {
   std::vector<double> knots_;
 };
 
-TEST_F(LinearSlopesTest, OfTheOutputsThatAreAskedFor) {
+TEST_F(LinearSlopesTest, OfRequestedOutputs) {
   const Response r = answer({{.kind = Kind::P}}, true);
   EXPECT_EQ(r.slopes.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
   EXPECT_TRUE(r.slopes.front().value[static_cast<int>(Output::V)].empty());
 }
-TEST_F(LinearSlopesTest, OfAMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
+TEST_F(LinearSlopesTest, OfMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
 TEST_F(LinearSlopesTest, WithControls) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
   EXPECT_LT(worst(all()), 0.06) << "the ceiling is met somewhere within a step";
@@ -114,9 +114,8 @@ TEST_F(LinearSlopesTest, AgreesForTimeConstantsFarBelowASample) {
   parameter("SEXS", "TE") = 2e-4;
   EXPECT_LT(worst(all()), 0.03);
 }
-/// A field voltage that stands at its ceiling moves with the ceiling, and what would drive it beyond does
-/// nothing.
-TEST_F(LinearSlopesTest, AtALimit) {
+/// A field voltage at its ceiling moves with the ceiling; inputs that drive it further have no effect.
+TEST_F(LinearSlopesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
   const Response r = answer({}, false);
@@ -124,14 +123,14 @@ TEST_F(LinearSlopesTest, AtALimit) {
   EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
   EXPECT_LT(worst(all()), 0.05);
 }
-/// A limiter acts from the instant on at which its timer runs out, which every parameter moves.
+/// A limiter acts from the time at which its timer expires; every parameter moves that time.
 class Limited : public LinearSlopesTest {
  protected:
   void SetUp() override {
     LinearSlopesTest::SetUp();
     for (const char* name : {"MAXEX2", "SEXS"}) add(name);
-    // the current is above the pickup in and behind the fault, below it, and above it for seconds from then
-    // on
+    // The current exceeds the pickup during and after the fault, falls below it, and then exceeds it for
+    // seconds.
     parameter("MAXEX2", "EFDRATED") = 1.92;
     parameter("MAXEX2", "EFD1") = 1.165;
     parameter("MAXEX2", "EFD2") = 1.19;
@@ -143,7 +142,7 @@ class Limited : public LinearSlopesTest {
     parameter("MAXEX2", "EFDDES") = 0.95;
   }
 };
-TEST_F(Limited, AnInstantHasSlopes) {
+TEST_F(Limited, LimiterTimeHasSensitivities) {
   const std::vector<Direction> along = all();
   const Response exact = answer(along, false), linear = answer(along, true);
   constexpr double kAside = 1e-4;
@@ -170,14 +169,14 @@ TEST_F(Limited, AnInstantHasSlopes) {
     }
     if (own < 0.01) continue;
     const std::string_view name = sim::plant::parameter_record(model_.plant, a.parameter).name;
-    // measured: 2.5 and 3.7 % at most
+    // Measured: at most 2.5 and 3.7 %.
     EXPECT_LT(std::sqrt(off / own), 0.03) << name;
     EXPECT_LT(std::sqrt(off_linear / own), 0.04) << name;
     limiter_moved += name.starts_with("EFD") || name.starts_with("TIME") ? 1 : 0;
   }
   EXPECT_EQ(limiter_moved, 8) << "it was meant to act";
 }
-TEST_F(LinearSlopesTest, WithASaturatedStatorBehindATransformer) {
+TEST_F(LinearSlopesTest, WithSaturatedStatorBehindTransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};

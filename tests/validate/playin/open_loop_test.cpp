@@ -8,8 +8,8 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// An exciter simulated open loop with its signals in the plant responds as it did there.
-TEST(OpenLoop, AnswersAsThePlantDid) {
+/// An exciter simulated open loop with its closed-loop input signals has its closed-loop response.
+TEST(OpenLoop, ReproducesTheClosedLoopResponse) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
   event::EventState state;
@@ -37,18 +37,18 @@ TEST(OpenLoop, AnswersAsThePlantDid) {
     moved = std::max(moved, std::abs(s.Efd - seen.front().Efd));
   }
   EXPECT_GT(moved, 1.0);
-  EXPECT_LT(worst, 5e-4 * moved);  // 2e-4 when this was written
+  EXPECT_LT(worst, 5e-4 * moved);  // measured: 2e-4
   EXPECT_GT(other, 0.1 * moved);
 }
 
-/// A plant that cannot stand at the start leaves its column empty, and the others as they were.
+/// An infeasible operating point empties only its own column.
 TEST(OpenLoop, IsolatesInfeasibleMembersOfABatch) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
   const auto seen = event::seen_along(example.model.under_test(), e, {});
   const OpenLoop loop(seen, e.record.t, example.model.conventions);
   sim::plant::Plant low = example.model.plant;
-  low.controls.front().p[5] = 0.5;  // EMAX [pu], below the field voltage at the start
+  low.controls.front().p[5] = 0.5;  // EMAX [pu], below the initial field voltage
   const auto part = component_of(example.model.plant, record::Component::exciter);
   const std::vector<sim::plant::Plant> two = {component_of(low, record::Component::exciter), part},
                                        one = {part};

@@ -24,7 +24,7 @@ double worst(const std::vector<double>& a, const std::vector<double>& b) {
   return w;
 }
 
-/// Largest error of P and Q over all plants that move [pu on each machine's base].
+/// Largest error of P and Q over all plants that respond [pu on each machine's base].
 double playback_error(const test::Simulated& s, int stride, bool one_sided) {
   double error = 0;
   for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
@@ -56,14 +56,15 @@ TEST(PlayInTest, ReproducesEverySimulatedGentpjBehindATransformer) {
             1e-7);
 }
 
-/// Puts an exciter of high gain at every machine. Its field voltage moves at hundreds of pu/s when the fault
-/// comes, and stands at a near ceiling milliseconds later: a corner that no step of error control can pass.
+/// Adds an exciter of high gain to every machine. After the fault its field voltage changes at hundreds of
+/// pu/s and reaches a close ceiling within milliseconds: a corner inside a step that error control cannot
+/// resolve.
 void put_fast_exciters(sim::grid::Grid& grid) {
   for (auto& plant : grid.plants)
     plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.3, 10.0, 300.0, 0.02, -1.0, 3.5}});
 }
 
-TEST(PlayInTest, AFieldVoltageRunsIntoItsCeiling) {
+TEST(PlayInTest, FieldVoltageReachesItsCeiling) {
   EXPECT_LT(playback_error(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
                                           put_fast_exciters),
                            1, true),
@@ -72,9 +73,8 @@ TEST(PlayInTest, AFieldVoltageRunsIntoItsCeiling) {
 
 TEST(PlayInTest, ErrorFallsWithTheRate) {
   std::printf("samples/s   one-sided values known   extrapolated   [pu, worst of P and Q, 10 machines]\n");
-  // Fourth order of the spline: 120/s is 4^4 = 256 times worse than 480/s; the bounds leave a factor of about
-  // 3 above what was measured when this was written (6.4e-8, 1.2e-6, 4.1e-5 and,
-  // extrapolated, 1.2e-6, 2.6e-5, 1.2e-3).
+  // Fourth order of the spline: the error at 120/s is 4^4 = 256 times that at 480/s. The bounds are about 3
+  // times the measured values (6.4e-8, 1.2e-6, 4.1e-5; extrapolated 1.2e-6, 2.6e-5, 1.2e-3).
   const struct {
     int stride;
     double known, extrapolated;
@@ -88,9 +88,9 @@ TEST(PlayInTest, ErrorFallsWithTheRate) {
   }
 }
 
-/// Largest error of V between samples of one segment, where it is interpolated by polynomials through
-/// `points` neighbours, and by the spline that play-in uses. Between the switching and the run's end, where
-/// samples of 480/s tell the truth.
+/// Largest interpolation error of V between samples of one segment, by polynomials through `points`
+/// neighbours and by the spline of play-in. From the switching to the end of the run; samples at 480/s are
+/// the reference.
 struct VoltageError {
   double polynomial = 0, spline = 0;
 };
@@ -119,7 +119,7 @@ VoltageError voltage_error(const test::Simulated& s, int stride, int points) {
   return worst_error;
 }
 
-TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
+TEST(PlayInTest, InterpolationErrorFallsWithOrderAndRate) {
   std::printf(
       "samples/s     linear      cubic    quintic     spline   [pu of V, 10 machines, after the fault]\n");
   double before[3] = {};
@@ -136,8 +136,8 @@ TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
     EXPECT_LT(error[2], error[1]);
     EXPECT_LT(spline,
               2 * error[1]);  // of the order of the cubic; through all points, not four, it is no worse
-    // Half the step divides the error by 2^order: 4, 16, 64. The worst lies at a segment's end, where the
-    // points are on one side and move with the step: about half of that is certain.
+    // Half the step divides the error by 2^order: 4, 16, 64. The largest error lies at a segment's end, where
+    // all points are on one side and move with the step; about half of the factor is certain.
     for (int i = 0; i < 3; ++i) {
       if (before[i] > 0) {
         EXPECT_GT(before[i] / error[i], 0.45 * std::pow(4.0, i + 1));
@@ -147,7 +147,7 @@ TEST(PlayInTest, InterpolationOfTheVoltageFallsWithOrderAndRate) {
   }
 }
 
-TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
+TEST(PlayInTest, ReproducesOtherConventionsAndModels) {
   EXPECT_LT(playback_error(
                 test::simulate("ieee39_genrou", sim::Conventions::andes(), 4, 2.0, 2.15, 480, {0.01, 0.05}),
                 1, true),
@@ -156,7 +156,7 @@ TEST(PlayInTest, HoldsInTheOtherConventionsAndModels) {
             1e-7);
 }
 
-TEST(PlayInTest, SeesAWrongParameter) {
+TEST(PlayInTest, DetectsWrongParameter) {
   const record::Record r = test::record_of(genrou(), 2, 4);
   sim::plant::Plant wrong = genrou().grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("H"))] *= 1.1;
@@ -166,7 +166,7 @@ TEST(PlayInTest, SeesAWrongParameter) {
             0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
 }
 
-TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
+TEST(PlayInTest, StaysAtRest_WithoutAnEvent) {
   record::Record r;
   for (int k = 0; k <= 900; ++k) {
     r.t.push_back(k / 60.0);
@@ -177,11 +177,11 @@ TEST(PlayInTest, StaysAtRestWhenNothingHappens) {
   }
   const Playback back = play_in({genrou().grid.plants[0], genrou().grid.conventions}, r, VoltageCurve(r, {}));
   EXPECT_LT(worst(back.P, r.P),
-            1e-10);  // a mean of equal numbers and an exact initialisation: rounding alone
+            1e-10);  // only rounding: a mean of equal numbers and an exact initialisation
   EXPECT_LT(worst(back.Q, r.Q), 1e-10);
 }
 
-TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
+TEST(PlayInTest, OffNominalFrequencyRotatesTheFrame) {
   const test::Simulated& s = genrou();
   record::Record r = test::record_of(s, 3, 4);
   const Playback still =
@@ -195,7 +195,7 @@ TEST(PlayInTest, AnOffNominalFrequencyTurnsTheFrame) {
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
 }
 
-/// Ten seconds before a switching: an angle of that course, P and V that rise, and noise.
+/// Ten seconds before a switching: an angle of this time series, rising P and V, and noise.
 record::Record before_an_event(double (*angle)(double t)) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 1e-5);
@@ -220,11 +220,11 @@ TEST(PlayInTest, StartsOnTheTrajectoryOfADriftingGrid) {
   EXPECT_NEAR(start.P, 0.8, 1e-5);
   EXPECT_NEAR(start.Q, 0.1, 1e-5);
 }
-TEST(PlayInTest, AnAngleThatTurnsEvenlyOrSwingsIsNoSuchCourse) {
+TEST(PlayInTest, LinearOrSwingingAngleIsNotDrift) {
   for (const auto angle : {+[](double t) { return 0.3 + 0.02 * t; },
                            +[](double t) { return 0.3 + 0.01 * std::sin(2 * std::numbers::pi * 0.7 * t); }}) {
     const OperatingPoint start = pre_event_point(before_an_event(angle), {{10.0, 0.0}}, 1.0);
-    EXPECT_NEAR(start.P, 0.825, 1e-5);  // the mean
+    EXPECT_NEAR(start.P, 0.825, 1e-5);  // mean value
   }
 }
 

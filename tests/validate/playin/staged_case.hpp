@@ -1,6 +1,6 @@
 #pragma once
-// Staged tests simulated by the reference integrator at generator 32 of IEEE 39, which one transformer ties
-// to the grid: steps of its references, a load rejection, and a step in an open circuit.
+// Staged tests at generator 32 of IEEE 39, which one transformer connects to the grid, simulated by the
+// reference integrator: steps of its references, a load rejection, and a step in an open circuit.
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -19,7 +19,7 @@ struct StagedCase {
 };
 
 struct StagedRun {
-  double open = std::numeric_limits<double>::infinity();  ///< when the breaker opens [s]
+  double open = std::numeric_limits<double>::infinity();  ///< time at which the breaker opens [s]
   double step = 1.0, dVref = 0, dPref = 0;                ///< [s], [pu]
   double end = 8, rate = 240;
   std::string machine = "GENROU";
@@ -67,8 +67,8 @@ inline sim::plant::Plant unloaded_plant() {
   return plant;
 }
 
-/// What that plant does in an open circuit when its reference moves by `dVref` at 2 s: the equations of its d
-/// axis written once more, by the classical Runge-Kutta method.
+/// Response of that plant in an open circuit to a step `dVref` of its reference at 2 s: an independent
+/// implementation of the d axis, integrated by the classical Runge-Kutta method.
 inline record::Record open_circuit_record(double dVref, double noise = 0, double field_noise = 0) {
   const sim::plant::Plant plant = unloaded_plant();
   const auto p = [&](const char* name) {
@@ -115,7 +115,7 @@ inline record::Record open_circuit_record(double dVref, double noise = 0, double
   return r;
 }
 
-/// The record from `from` [s] on, whose time begins at 0; noise of V, P, Q and of Efd, Ifd [pu].
+/// The record from `from` [s] on, with time starting at 0; noise of V, P, Q and of Efd, Ifd [pu].
 inline record::Record staged_record(const StagedCase& c, std::vector<record::StagedEvent> staged,
                                     double from = 0, double noise = 0, double field_noise = 0,
                                     unsigned seed = 7) {

@@ -1,4 +1,4 @@
-// Staged tests played in: steps of references on the grid, load rejection, a step in an open circuit.
+// Playback of staged tests: steps of references on the grid, load rejection, a step in an open circuit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using Staged = record::StagedEvent::Kind;
 using Controls = std::vector<std::string>;
 
-/// Largest difference of an output from what was recorded, and how far that moved [pu].
+/// Largest error of an output against the record, and its range in the record [pu].
 struct StagedError {
   double error = 0, moved = 0;
 };
@@ -58,7 +58,7 @@ TEST(StagedTest, StepOfThePowerReferenceOnTheGrid) {
   EXPECT_LT(e.error, 1e-3 * e.moved);
 }
 
-TEST(StagedTest, LoadRejectionLeavesTheVoltageToTheMachine) {
+TEST(StagedTest, LoadRejectionSimulatesTheVoltage) {
   for (const std::string machine : {"GENROU", "GENTPJ"}) {
     const auto c = test::simulated_staged({"SEXS", "TGOV1"}, {.open = 1.0021, .end = 6, .machine = machine});
     const record::Record r = test::staged_record(c, {{Staged::load_rejection, 1.0021}});
@@ -70,7 +70,7 @@ TEST(StagedTest, LoadRejectionLeavesTheVoltageToTheMachine) {
   }
 }
 
-TEST(StagedTest, StepInAnOpenCircuit) {
+TEST(StagedTest, StepInOpenCircuit) {
   const record::Record r = test::open_circuit_record(0.05);
   const sim::plant::Plant plant = test::unloaded_plant();
   const sim::Conventions conventions = sim::Conventions::psse();
@@ -81,7 +81,7 @@ TEST(StagedTest, StepInAnOpenCircuit) {
   }
 }
 
-TEST(StagedTest, TheJumpNearTheGivenTimeIsTheBreakers) {
+TEST(StagedTest, BreakerTimeIsTheStepNearestToTheGivenTime) {
   record::Record r;
   for (int k = 0; k < 100; ++k) r.t.push_back(0.02 * k);
   r.staged = {{Staged::load_rejection, 1.0}};
@@ -90,7 +90,7 @@ TEST(StagedTest, TheJumpNearTheGivenTimeIsTheBreakers) {
   for (const double t : r.t) r.P.push_back(t < 1.03 ? 0.8 : 0.0);
   EXPECT_NEAR(breaker_instants(r, {}).front().time, 1.03, 1e-12);
   EXPECT_NEAR(breaker_instants(r, {}).front().uncertainty, 0.01, 1e-12);
-  r.component = record::Component::exciter;  // does not see the grid
+  r.component = record::Component::exciter;  // has no connection to the grid
   EXPECT_EQ(r.breaker(), nullptr);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Simulated events, and records made of them, shared by the tests of play-in and compare.
+// Simulated events and their records, shared by several tests of validation.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,7 +21,7 @@ inline std::filesystem::path source(const std::string& path) {
   return std::filesystem::path(SWINGBANK_SOURCE) / path;
 }
 
-/// The messages of the InputError that `action` throws; empty if it throws none.
+/// Returns the messages of the InputError thrown by `action`; empty if none is thrown.
 template <class F>
 std::vector<std::string> messages(F action) {
   std::vector<std::string> all;
@@ -33,7 +33,7 @@ std::vector<std::string> messages(F action) {
   return all;
 }
 
-/// An effect with these values ("Kp=2,Ki=1") and standard ones.
+/// Returns an effect with these values ("Kp=2,Ki=1"); all others are defaults.
 inline sim::plant::Block block(const char* name, const char* values) {
   Problems problems;
   const sim::Effect* effect = sim::library::compiled().find(name);
@@ -43,8 +43,8 @@ inline sim::plant::Block block(const char* name, const char* values) {
   return b;
 }
 
-/// The fourth plant a converter that regulates Q through two integrals, with the voltage behind them; these
-/// values besides.
+/// Replaces the fourth plant by a converter that regulates Q through two integrals and the voltage behind
+/// them, with these values.
 inline void put_converter(sim::grid::Grid& grid, const std::string& plant_control,
                           const std::string& electrical_control) {
   const std::string outer = "RefFlag=0,Kc=0,Qmax=2,Qmin=-2,Pmax=2,Ddn=20,Dup=20,fdbd1=0,fdbd2=0,";
@@ -59,11 +59,11 @@ inline void put_converter(sim::grid::Grid& grid, const std::string& plant_contro
 struct Simulated {
   sim::grid::Grid grid;
   double t_on, t_off;
-  sim::reference::ReferenceRun before, after;  ///< at switching instants the value just before, just after
+  sim::reference::ReferenceRun before, after;  ///< at switching times the values just before and just after
 };
 
-/// A fault at a bus of the grid that `s` holds, by the reference integrator. Its rtol of 1e-10 per step keeps
-/// its own error near 1e-9, far below what is tested.
+/// Simulates a fault at a bus of the grid in `s` with the reference integrator. Its rtol of 1e-10 per step
+/// keeps its error near 1e-9, far below the tested errors.
 inline Simulated with_fault(Simulated s, int bus, double rate, Complex z) {
   sim::network::Event event;
   event.faults.push_back({s.grid.network.bus_index(bus), s.t_on, s.t_off, z});
@@ -80,7 +80,7 @@ inline Simulated with_fault(Simulated s, int bus, double rate, Complex z) {
   return s;
 }
 
-/// The same of a grid of configs/networks. `change`: of the grid, before.
+/// The same for a grid of configs/networks; `change` modifies the grid before the simulation.
 inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
                           double t_off, double rate = 480.0, Complex z = {},
                           const std::function<void(sim::grid::Grid&)>& change = {}) {
@@ -94,7 +94,7 @@ inline Simulated simulate(const std::string& name, sim::Conventions conventions,
   return with_fault(std::move(s), bus, rate, z);
 }
 
-/// Every machine a GENTPJ, whose current is no linear function of its voltage, behind a transformer.
+/// Makes every machine a GENTPJ, whose current is a nonlinear function of its voltage, behind a transformer.
 inline void put_behind_transformers(sim::grid::Grid& grid) {
   for (sim::plant::Plant& plant : grid.plants) {
     const sim::Effect* gentpj = sim::library::compiled().find("GENTPJ");
@@ -103,8 +103,8 @@ inline void put_behind_transformers(sim::grid::Grid& grid) {
   }
 }
 
-/// The record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian noise of
-/// `noise` pu on P and Q and a tenth of it on V and theta.
+/// Returns the record of one plant at every `stride`-th sample, P and Q on the machine's own base; Gaussian
+/// noise of `noise` pu on P and Q and a tenth of it on V and theta.
 inline record::Record record_of(const Simulated& s, int plant, int stride, double noise = 0.0) {
   record::Record r;
   r.name = "simulated.csv";
@@ -124,8 +124,8 @@ inline record::Record record_of(const Simulated& s, int plant, int stride, doubl
   return r;
 }
 
-/// The record with a frequency [pu] in place of its angle, which is integrated from it: it lacks the jumps at
-/// `switched` and goes astray by the frequency's noise.
+/// Returns the record with the angle integrated from a frequency [pu]. It lacks the steps at `switched` and
+/// drifts by the frequency's noise.
 inline record::Record by_frequency(record::Record r, const std::vector<double>& switched,
                                    double noise = 0.0) {
   std::mt19937_64 generator(3);
@@ -146,7 +146,8 @@ inline record::Record by_frequency(record::Record r, const std::vector<double>& 
   return r;
 }
 
-/// The exact instants; with both one-sided voltages if asked (they must be samples of the run).
+/// Returns the exact switching times, with both one-sided voltages if requested (they must be samples of the
+/// run).
 inline std::vector<playin::Switching> instants(const Simulated& s, int plant, bool one_sided) {
   std::vector<playin::Switching> list;
   for (const double t : {s.t_on, s.t_off}) {

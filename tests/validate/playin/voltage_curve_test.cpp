@@ -27,7 +27,7 @@ record::Record stepped() {
   return r;
 }
 
-TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
+TEST(VoltageCurveTest, IsExactForCubicsUpToTheSteps) {
   const VoltageCurve curve(stepped(), {{.time = 1.0}, {.time = 1.5}});
   ASSERT_EQ(curve.segments(), 3);
   for (const double t : {0.0, 0.013, 0.97, 1.0}) EXPECT_NEAR(curve(0, t).real(), 1 + t * t * t / 10, 1e-13);
@@ -35,8 +35,8 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheJumps) {
     EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
-TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
-  // 1, 2 and 3 points between the jumps: constant, line, parabola.
+TEST(VoltageCurveTest, ShortSegmentsUseLowerOrder) {
+  // 1, 2 and 3 points between the steps: constant, line, parabola.
   for (const int points : {1, 2, 3}) {
     const double off = 1.0 + points / 20.0;
     record::Record r = stepped();
@@ -49,17 +49,17 @@ TEST(VoltageCurveTest, ShortSegmentsTakeWhatTheyHave) {
     EXPECT_NEAR(curve(1, t).real(), points == 1 ? 0.3 : points == 2 ? 0.3 + t : 0.5 + t * t / 20, 1e-12);
   }
 }
-TEST(VoltageCurveTest, OneSidedValuesAreHit) {
+TEST(VoltageCurveTest, PassesThroughOneSidedValues) {
   Switching s{
       .time = 1.02, .has_before = true, .has_after = true, .before = {1.2, 0.1}, .after = {0.4, -0.2}};
   const VoltageCurve curve(stepped(), {s});
   EXPECT_NEAR(std::abs(curve(0, 1.02) - s.before), 0, 1e-14);
   EXPECT_NEAR(std::abs(curve(1, 1.02) - s.after), 0, 1e-14);
 }
-TEST(VoltageCurveTest, MovedInstantsGiveTheCurveThatTheyWouldHaveByThemselves) {
+TEST(VoltageCurveTest, MovedSwitchingTimesGiveTheSameCurveAsNewOnes) {
   const record::Record r = stepped();
   const VoltageCurve first(r, {{.time = 1.01}, {.time = 1.51}});
-  for (const double on : {1.02, 0.98}) {  // between the same samples, and beyond one
+  for (const double on : {1.02, 0.98}) {  // between the same samples, and across one
     const std::vector<Switching> to = {{.time = on}, {.time = 1.54}};
     const VoltageCurve moved = first.moved(r, to), own(r, to);
     ASSERT_EQ(moved.segments(), 3);
@@ -94,15 +94,14 @@ TEST(DetectTest, FindsTheFaultsOfTheExampleRecords) {
                 found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
   }
 }
-TEST(DetectTest, FindsAFaultOfOneSampleAndNothingInAQuietRecord) {
+TEST(DetectTest, FindsOneSampleFaultAndNothingInQuietRecord) {
   record::Record r = stepped();
   std::fill(r.V.begin(), r.V.end(), 1.0);
   EXPECT_TRUE(detect_switchings(r).empty());
   r.V[30] = 0.2;
   EXPECT_EQ(detect_switchings(r).size(), 2u);
 }
-/// A generator lost far away: the voltage sinks over seconds, the angle turns, and at once it jumps by 0.002
-/// pu.
+/// A generator lost far away: the voltage falls over seconds, the angle turns, and one step has 0.002 pu.
 record::Record far_loss(double noise) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0, 1);
@@ -116,7 +115,7 @@ record::Record far_loss(double noise) {
   }
   return r;
 }
-TEST(DetectTest, FindsASmallJumpThatStandsAlone) {
+TEST(DetectTest, FindsIsolatedSmallStep) {
   const auto found = detect_switchings(far_loss(0));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].time, 5.01, 0.5 / 30 + 1e-6);

@@ -1,5 +1,4 @@
-// Time columns: units, clocks that count from a known date, stamps in many forms, and clocks that cannot
-// be used.
+// Time columns: units, clocks that count from a known date, time stamps in many formats, and unusable clocks.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// 90 samples at 30/s, 3 s; `time` writes the instant t [s] of a sample.
+/// 90 samples at 30/s, 3 s; `time` formats the time t [s] of a sample.
 template <class F>
 std::string record_text(const std::string& heading, F time, int samples = 90) {
   std::string all = heading + ",V_pu,theta_deg,P_pu,Q_pu\n";
@@ -73,7 +72,7 @@ TEST(ClockTest, MappedColumnsAreReadLikeOthers) {
   expect_thirty_per_second(
       parse_record(record_text("clock", cycles), "r.csv", kTestBase, {.columns = {{"t", "clock [cycles]"}}}));
 }
-TEST(ClockTest, CountsFromKnownInstants) {
+TEST(ClockTest, RecognisesKnownEpochs) {
   struct Count {
     double origin, per_second;
     const char *format, *beginning;
@@ -105,16 +104,16 @@ TEST(ClockTest, SecondOfCenturyWithItsFraction) {
     EXPECT_THAT(beginning(r), HasSubstr("2026-03-01T14:05:20.5"));
   }
 }
-TEST(ClockTest, FirstOfSeveralTimesIsRead) {
+TEST(ClockTest, ReadsTheFirstOfSeveralTimes) {
   const auto both = [](double t) { return fmt::format("{:.7f},{:.3f}", t, 500 + 7 * t); };
   const Record r = parse_record(record_text("t_s,Elapsed Time (s)", both), "r.csv", kTestBase);
   expect_thirty_per_second(r);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("'t_s'"), HasSubstr("'Elapsed Time (s)'"))));
-  // A battery's state of charge is no time.
+  // A battery's state of charge is no time column.
   const auto charge = [](double t) { return fmt::format("80,{:.7f}", t); };
   expect_thirty_per_second(parse_record(record_text("SOC,t_s", charge), "r.csv", kTestBase));
 }
-TEST(ClockTest, StepsThatAreTooLongNameTheLikelyUnit) {
+TEST(ClockTest, SuggestsUnitForTooLongSteps) {
   EXPECT_THAT(clock_faults(record_text("t_s", [](double t) { return fmt::format("{:.3f}", 1e3 * t); })),
               ElementsAre(AllOf(HasSubstr("steps of 33.33 s"), HasSubstr("are the times in ms?"),
                                 HasSubstr("t_ms"))));
@@ -126,7 +125,7 @@ TEST(ClockTest, StepsThatAreTooLongNameTheLikelyUnit) {
   EXPECT_THAT(clock_faults(record_text("t_ms", [](double t) { return fmt::format("{:.7f}", t); })),
               ElementsAre(AllOf(HasSubstr("too short"), HasSubstr("are the times in s?"))));
 }
-TEST(ClockTest, AThirtiethOfASecondIsTooShort) {
+TEST(ClockTest, RefusesRecordOfAThirtiethOfASecond) {
   const auto fast = [](double t) { return fmt::format("{:.8f}", t * 30e-4); };  // 10,000 samples/s
   EXPECT_THAT(clock_faults(record_text("t_s", fast, 300)),
               ElementsAre(AllOf(HasSubstr("0.0299 s is too short"), HasSubstr("1 s before to 5 s after"))));
@@ -135,18 +134,18 @@ TEST(ClockTest, AThirtiethOfASecondIsTooShort) {
   EXPECT_THAT(clock_faults(text, {.from = 1.98, .until = 2.06}),
               ElementsAre(HasSubstr("0.0797 s is too short")));
 }
-TEST(ClockTest, TooFewDigitsAreNamed) {
+TEST(ClockTest, ReportsTooFewDigits) {
   EXPECT_THAT(
       clock_faults(record_text("Time", [](double t) { return fmt::format("05:{:04.1f}", 20 + t); })),
       ElementsAre(AllOf(HasSubstr("rounded to 0.1 s"), HasSubstr("spreadsheet"), HasSubstr("mm:ss.0"))));
   EXPECT_THAT(clock_faults(record_text("timestamp", [](double) { return "1.77237E+12"; })),
               ElementsAre(AllOf(HasSubstr("too few digits"), HasSubstr("1.77E+12"))));
-  // Ten samples a second are read from the same form.
+  // Ten samples a second are read in the same format.
   const auto text = record_text(
       "Time", [](double t) { return fmt::format("59:{:04.1f}", 30 * t / 10 + 50); }, 60);
   EXPECT_NEAR(parse_record(text, "r.csv", kTestBase).rate(), 10, 1e-6);
 }
-TEST(ClockTest, StandsStill) {
+TEST(ClockTest, ReportsStoppedClock) {
   const auto text = [](int from, int until) {
     std::string all = "t_s,V_pu,theta_deg,P_pu,Q_pu\n";
     for (int k = 0; k < 300; ++k)
@@ -194,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
         Written{"13.03.2026 12.56.20,017", "2026-03-13"}, Written{"08.03.2026 12:56:20.017", "2026-03-08"},
         Written{"3/13/26 12:56:20.017", "2026-03-13"}, Written{"12:56:20:017", "1970-01-01"},
         Written{"3/13/2026 12:56:20.017 p. m.", "2026-03-13"}));
-TEST(StampFormTests, OtherTextIsNone) {
+TEST(StampFormTests, RejectsOtherText) {
   for (const char* text :
        {"", "12.5", "1.5e-3", "-1", "46094.5", "Time", "2026-13-13 12:00:00.0", "25:00:00.0",
         "08-Xyz-2026 12:00:00", "1772373920017", "jui 5 2026 12:00:00", "12:61:00"})

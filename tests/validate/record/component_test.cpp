@@ -1,5 +1,4 @@
-// Records of components: which columns they must have, their units and bases, and what is said of missing
-// ones.
+// Records of components: required columns, units and bases, and messages about missing columns.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// 40 rows of time and a row of numbers after it.
+/// A header and 40 rows: the time, followed by `values`.
 std::string table(const std::string& head, const std::string& values) {
   std::string text = "t_s," + head + "\n";
   for (int k = 0; k < 40; ++k) text += std::to_string(0.02 * k) + "," + values + "\n";
@@ -36,14 +35,14 @@ std::vector<std::string> faults(const std::string& text, const ReadOptions& opti
 const ReadOptions kExciter{.component = Component::exciter,
                            .needed = {{"V"}, {"Efd"}, {"speed", "f"}, {"Ifd"}}};
 
-TEST(ComponentRecordTest, AllMissingColumnsAreToldAtOnce) {
+TEST(ComponentRecordTest, ReportsAllMissingColumnsAtOnce) {
   EXPECT_THAT(faults(table("P_MW", "3"), kExciter),
               ElementsAre(AllOf(HasSubstr("no column V_pu"), HasSubstr("the exciter"), HasSubstr("seen: ")),
                           HasSubstr("no column Efd_pu"), HasSubstr("omega_pu, speed_pu or f_pu"),
                           AllOf(HasSubstr("no column Ifd_pu"), HasSubstr("--columns Ifd="))));
 }
 
-TEST(ComponentRecordTest, NeitherAngleNorPowerIsNeeded) {
+TEST(ComponentRecordTest, NeedsNeitherAngleNorPower) {
   const Record r = parse_record(table("V_pu,Efd_pu,f_hz,Ifd_pu,Vs_pu,Vref_pu", "1.02,2,60.06,2.1,0.01,1.05"),
                                 "x.csv", {}, kExciter);
   EXPECT_EQ(r.component, Component::exciter);
@@ -55,7 +54,7 @@ TEST(ComponentRecordTest, NeitherAngleNorPowerIsNeeded) {
   EXPECT_TRUE(r.notes.empty());
 }
 
-TEST(ComponentRecordTest, FieldQuantitiesHaveBasesOfTheirOwn) {
+TEST(ComponentRecordTest, FieldQuantitiesHaveTheirOwnBases) {
   const std::string text = table("V_pu,Efd_V,speed_pu,Ifd_kA", "1,340,0,1.2");
   EXPECT_THAT(faults(text, kExciter), ElementsAre(HasSubstr("efd_base"), HasSubstr("ifd_base")));
   RecordBase base;
@@ -64,7 +63,7 @@ TEST(ComponentRecordTest, FieldQuantitiesHaveBasesOfTheirOwn) {
   const Record r = parse_record(text, "x.csv", base, kExciter);
   EXPECT_NEAR(r.Efd.front(), 2.0, 1e-12);
   EXPECT_NEAR(r.Ifd.front(), 2.0, 1e-12);
-  // per unit of another base
+  // Per unit of another base.
   EXPECT_NEAR(
       parse_record(table("V_pu,Efd_pu,speed_pu,Ifd_pu", "1,340,0,1200"), "x.csv", base, kExciter).Efd[0], 2.0,
       1e-12);
@@ -85,7 +84,7 @@ TEST(ComponentRecordTest, GovernorNeedsNoVoltage) {
   EXPECT_NEAR(r.Pref.front(), 0.4, 1e-12);
 }
 
-TEST(ComponentRecordTest, OtherRecordsLeaveInnerColumnsOut) {
+TEST(ComponentRecordTest, OtherRecordsIgnoreInnerColumns) {
   const Record r = parse_record(table("V_pu,theta_rad,P_MW,Q_Mvar,Vs,gate", "1,0,3,1,9,9"), "x.csv", {});
   EXPECT_THAT(r.ignored, ElementsAre("Vs", "gate"));
   EXPECT_TRUE(r.Vs.empty());

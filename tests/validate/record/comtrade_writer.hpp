@@ -1,5 +1,5 @@
-// COMTRADE files written from the standard's layout (C37.111-1991, -1999 and -2013, 7 and 8), and what they
-// hold.
+// COMTRADE files written from the standard's layout (C37.111-1991, -1999 and -2013, 7 and 8), and their
+// content.
 #pragma once
 #include <fmt/format.h>
 
@@ -19,12 +19,12 @@ inline constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
 struct Channel {
   std::string id, phase, component, unit;
   double a = 0.001, b = 0;
-  std::function<double(double)> value;  ///< of time [s], on the side that `side` names
+  std::function<double(double)> value;  ///< of time [s], on the side given by `side`
   double skew_us = 0, primary = 1, secondary = 1;
   char side = 'P';
 };
 
-/// Writes a pair of files. `edit` may spoil the lines of the configuration.
+/// Writes a pair of files. `edit` may modify the lines of the configuration.
 struct Writer {
   int revision = 1999;
   std::string kind = "ASCII";
@@ -35,9 +35,9 @@ struct Writer {
   std::vector<Channel> channels;
   std::function<void(std::vector<std::string>& cfg)> edit = [](auto&) {};
   int missing = -1;                                ///< sample whose first channel is marked missing
-  std::vector<std::pair<double, int>> rates = {};  ///< several: each with its last sample
+  std::vector<std::pair<double, int>> rates = {};  ///< several rates, each with its last sample
 
-  /// When sample k is taken [s].
+  /// Time of sample k [s].
   [[nodiscard]] double time(int k) const {
     if (rates.empty()) return k / rate;
     double t = -1 / rates[0].first;
@@ -81,7 +81,7 @@ struct Writer {
     std::string all;
     const auto put = [&](auto value) {
       char bytes[sizeof value];
-      std::memcpy(bytes, &value, sizeof value);  // tests run on little-endian machines, as the format is
+      std::memcpy(bytes, &value, sizeof value);  // the host is little-endian, as is the format
       all.append(bytes, sizeof value);
     };
     for (int k = 0; k < samples; ++k) {
@@ -136,7 +136,7 @@ inline Writer phasors(int revision = 1999, const std::string& kind = "ASCII") {
   return w;
 }
 
-/// Waveforms of phasors that move slowly, with the sign of a generator's current.
+/// Waveforms of slowly moving phasors, with the sign of a generator's current.
 struct Machine {
   double hertz_off = 0, harmonic = 0, negative = 0, scale = 1;
   [[nodiscard]] double V(double t) const { return scale * (1.02 + slow(t)); }
@@ -144,7 +144,7 @@ struct Machine {
   [[nodiscard]] Complex current(double t) const {  // pu on 200 MVA
     return std::conj(Complex(0.4 + slow(t), 0.1) / std::polar(V(t), theta(t)));
   }
-  /// Phase p in units of `peak` at 1 pu.
+  /// Waveform of phase p, `peak` at 1 pu.
   [[nodiscard]] double wave(Complex x, double t, int p, double peak) const {
     const double w = kTurn * 60 * t, shift = -kTurn / 3 * p;
     const double base = std::abs(x) * std::cos(w + std::arg(x) + shift);
@@ -168,7 +168,7 @@ inline Writer waveforms(const Machine& m, double rate = 4800, int samples = 4800
   }
   return w;
 }
-/// Largest error of V, theta, P and Q against the machine at the record's own instants.
+/// Largest error of V, theta, P and Q against the machine at the record's own times.
 inline double largest_error(const Record& r, const Machine& m) {
   double worst = 0;
   for (std::size_t k = 0; k < r.t.size(); ++k) {

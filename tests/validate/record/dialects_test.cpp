@@ -1,4 +1,4 @@
-// Headers, separators, units and time stamps that CSV records come with.
+// Headers, separators, units and time stamps of CSV records.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ std::string table(const std::string& header, F row) {
 std::vector<std::string> faults(const std::string& text, const RecordBase& base = kTestBase) {
   return test::messages([&] { parse_record(text, "r.csv", base); });
 }
-/// Those, at 10 degrees and 60 samples/s.
+/// Expects the values of expect_values, 10 degrees and 60 samples/s.
 void expect_all_values(const Record& r) {
   expect_values(r);
   ASSERT_EQ(r.samples(), 60);
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
         Dialect{"simulated", "t_s,G7.V_pu,G7.theta_rad,G7.P_pu,G7.Q_pu,bus4.V_pu,bus4.theta_rad\n",
                 "{t:.7f},1.02,0.17453293,0.4,0.1,1,0"},
         Dialect{"current", "t_s,V1 Mag (kV),V1 Ang (deg),I1 Mag (A),I1 Ang (deg)\n",
-                // S = 0.4 + j0.1 on 200 MVA at 140.76 kV: 338.2319 A, 14.0362435 degrees behind.
+                // S = 0.4 + j0.1 on 200 MVA at 140.76 kV: 338.2319 A, lagging by 14.0362435 degrees.
                 "{t:.7f},140.76,10,338.2319044,-4.0362435"}),
     [](const auto& each) { return std::string(each.param.name); });
 
@@ -89,7 +89,7 @@ TEST(RecordDialectTest, TimeStamps) {
       return fmt::format("{}12:00:{:06.3f}{},1.02,10,0.4,0.1", day, 59.2 + t - (t > 0.79 ? 60 : 0),
                          std::string(day).ends_with('T') ? "Z" : "");
     });
-    // From 12:00:59.2 on the minute must advance.
+    // After 12:00:59.2 the minute must advance.
     std::string advanced = text;
     for (std::size_t at = 0; (at = advanced.find("12:00:00", at)) != std::string::npos; ++at)
       advanced[at + 4] = '1';
@@ -100,7 +100,7 @@ TEST(RecordDialectTest, TimeStamps) {
     EXPECT_THAT(r.start, HasSubstr("12:00:59.200"));
   }
 }
-TEST(RecordDialectTest, AMissingMillisecondStampIsBridged) {
+TEST(RecordDialectTest, InterpolatesMissingMillisecondStamp) {
   const auto text = table("Timestamp,V_pu,theta_deg,P_pu,Q_pu\n", [&](int k, double t) {
     return fmt::format("12:00:{:06.3f},1.02,10,0.4,0.1", t + (k > 30 ? 1.0 / 60 : 0));
   });
@@ -123,13 +123,13 @@ TEST(RecordDialectTest, OneTerminalOfSeveral) {
   EXPECT_THAT(test::messages([&] { parse_record(text, "r.csv", kTestBase, {.terminal = "G2"}); }),
               Contains(AllOf(HasSubstr("G2"), HasSubstr("G1, G7"))));
 }
-TEST(RecordDialectTest, UnitsThatDoNotFitAreRefused) {
+TEST(RecordDialectTest, RefusesUnsuitableUnits) {
   EXPECT_THAT(faults("t_s,V (MW),theta_deg,P_pu,Q_pu\n0,1,1,1,1\n"), ElementsAre(HasSubstr("'V (MW)'")));
   EXPECT_THAT(faults("Time,VOLTAGE,ANGLE,P,Q\ns,kV,MW,MW,MVAR\n0,1,1,1,1\n"),
               ElementsAre(AllOf(HasSubstr("'ANGLE'"), HasSubstr("r.csv:1-2"))));
   EXPECT_THAT(faults("0,1,1,1,1\n"), ElementsAre(HasSubstr("no header line")));
 }
-TEST(RecordDialectTest, ABurstOfMissingValuesIsOneSentence) {
+TEST(RecordDialectTest, ReportsABurstOfMissingValuesOnce) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", [](int k, double t) {
     const bool bad = k >= 20 && k < 33;
     return fmt::format("{:.7f},{},10,{},{}", t, bad ? "NaN" : "1.02", bad ? "" : "0.4",

@@ -1,4 +1,4 @@
-// What the records of this room's tests hold, however they are written.
+// Common content of the test records, in every format.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace swingbank::validate::record {
 
 inline const RecordBase kTestBase{200, 60, 138};
 
-/// V 1.02 pu and 0.4 + j0.1 pu on 200 MVA; written with at least 7 digits.
+/// Expects V 1.02 pu and 0.4 + j0.1 pu on 200 MVA, written with at least 7 digits.
 inline void expect_values(const Record& r) {
   ASSERT_GE(r.samples(), 60);
   EXPECT_NEAR(r.V[5], 1.02, 1e-6);

@@ -1,5 +1,4 @@
-// Records as they come from the field and from simulators: columns by name, lost frames, stamps that are
-// wrong.
+// Records from the field and from simulators: columns by name, lost frames, wrong time stamps.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +46,7 @@ TEST(ColumnMapTest, NamesColumnsWithTheirUnits) {
   expect_values(r);
   EXPECT_THAT(r.notes, Contains(HasSubstr("P, with the sign turned, is the column 'line.p'")));
 }
-TEST(ColumnMapTest, GoesBeforeWhatTheNamesSay) {
+TEST(ColumnMapTest, OverridesColumnNames) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu,net_P_pu\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,10,0.7,0.1,0.4", k / 60.0); });
   expect_values(parse_record(text, "r.csv", kTestBase, {.columns = {{"P", "net_P_pu"}}}));
@@ -69,7 +68,7 @@ TEST(ColumnMapTest, CountsColumnsWithoutHeadings) {
            {"t", "#1 [s]"}, {"V", "#2 [kV]"}, {"f", "#3 [Hz]"}, {"P", "#4 [MW]"}, {"Q", "#5 [Mvar]"}}}));
 }
 
-// ---- names of PDCs and of simulators
+// ---- column names of PDCs and of simulators
 
 TEST(TwoDevicesTest, VoltageOfTheBusAndPowerOfTheLine) {
   const auto text = table(
@@ -81,7 +80,7 @@ TEST(TwoDevicesTest, VoltageOfTheBusAndPowerOfTheLine) {
   EXPECT_EQ(r.f.size(), r.t.size());
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("500KV_BUS1"), HasSubstr("GSU_T1"))));
 }
-TEST(TwoDevicesTest, TwoVoltagesAreAskedAbout) {
+TEST(TwoDevicesTest, AmbiguousVoltagesAreReported) {
   const auto text = table("t_s,B1.V_pu,B2.V_pu,B1.theta_deg,B2.theta_deg,L.P_MW,L.Q_Mvar\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,1.02,10,10,80,20", k / 60.0); });
   EXPECT_THAT(field_faults(text), Contains(AllOf(HasSubstr("no complete terminal"), HasSubstr("--columns"),
@@ -111,7 +110,7 @@ TEST(PscadTest, DomainIsTheTime) {
   EXPECT_THAT(r.notes, Contains(HasSubstr("taken for seconds")));
 }
 
-// ---- playback of simulators, joined with what was measured
+// ---- playback files of simulators, joined with measurements
 
 class Files : public ::testing::Test {
  protected:
@@ -132,7 +131,7 @@ std::string meter() {
   return table("t_s,P_MW,Q_Mvar\n", 121, [](int k) { return fmt::format("{:.7f},80,20", k / 60.0); });
 }
 TEST_F(PlaybackTest, PlbWithMeasuredPower) {
-  // Unevenly spaced, and a step at 1 s: the time is there twice.
+  // Unevenly spaced, and a step at 1 s, for which there are two rows.
   std::string plb = "  0.0  140.76  60.00\n 0.5, 140.76, 60.00\n 1.0 140.76 60.0\n 1.0 130.0 60.0\n";
   for (int k = 1; k <= 20; ++k) plb += fmt::format("{} 135 60.06\n", 1.0 + 0.05 * k + (k % 3) * 0.001);
   const auto file = write("event.plb", plb);
@@ -157,9 +156,9 @@ TEST_F(PlaybackTest, PowerWorldSignals) {
   EXPECT_NEAR(r.f[5], 1e-4, 1e-9);
 }
 
-// ---- angle of the frequency
+// ---- angle from the frequency
 
-TEST(FrequencyTest, GivesTheAngleWhereNoneWasRecorded) {
+TEST(FrequencyTest, ReplacesTheMissingAngle) {
   const auto text = table("t_s,V_pu,f_hz,P_pu,Q_pu\n", 121, [](int k) {
     const double t = k / 60.0;
     return fmt::format("{:.7f},1.02,{:.9f},0.4,0.1", t, 60 + 0.1 * std::sin(t));
@@ -169,7 +168,7 @@ TEST(FrequencyTest, GivesTheAngleWhereNoneWasRecorded) {
   EXPECT_NEAR(r.theta[120], 2 * std::numbers::pi * 0.1 * (1 - std::cos(2.0)), 1e-4);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("integrated from the frequency"), HasSubstr("switching"))));
 }
-/// A straight line between samples would miss 5e-3 rad of it.
+/// Linear interpolation between samples would miss 5e-3 rad of it.
 TEST(FrequencyTest, GivesTheAngleOfAFastSwing) {
   constexpr double kSwing = 2 * std::numbers::pi * 1.5;  // [rad/s]
   const auto text = table("t_s,V_pu,f_hz,P_pu,Q_pu\n", 121, [](int k) {
@@ -180,7 +179,7 @@ TEST(FrequencyTest, GivesTheAngleOfAFastSwing) {
     EXPECT_NEAR(r.theta[k], std::numbers::pi / kSwing * (1 - std::cos(kSwing * r.t[k])), 3e-4)
         << r.t[k] << " s";
 }
-TEST(FrequencyTest, WithoutItNothingIsKnownOfTheAngle) {
+TEST(FrequencyTest, AngleIsUnknown_WithoutFrequency) {
   const auto text =
       table("t_s,V_pu,P_pu,Q_pu\n", 60, [](int k) { return fmt::format("{:.7f},1.02,0.4,0.1", k / 60.0); });
   const Record r = parse_record(text, "r.csv", kTestBase);
@@ -198,7 +197,7 @@ std::string row(int k, double t) {
 }
 const std::string kHeader = "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
 
-TEST(LostFramesTest, AreBridgedAndMarked) {
+TEST(LostFramesTest, AreInterpolatedAndMarked) {
   const auto text =
       table(kHeader, 900, [](int k) { return k >= 400 && k < 406 ? std::string() : row(k, k / 30.0); });
   const Record r = parse_record(text, "r.csv", kTestBase);
@@ -212,9 +211,9 @@ TEST(LostFramesTest, AreBridgedAndMarked) {
   }
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("6 of 900 frames"), HasSubstr("0.2 s"))));
 }
-// A swing as a machine makes it, with an instrument's noise: what stands in the gap is as good as a sample.
-// Straight through the step beside the gap it would be off by 2e-3.
-TEST(LostFramesTest, InTheMiddleOfASwingAreMetWithinTheNoise) {
+// A swing of a machine with an instrument's noise: the interpolated values are as accurate as samples. A
+// straight line across the step next to the gap would be off by 2e-3.
+TEST(LostFramesTest, AreInterpolatedWithinTheNoiseDuringASwing) {
   constexpr double kNoise = 1e-4;
   const auto angle = [](double t) { return 0.2 * std::sin(9.0 * t) * std::exp(-0.3 * t); };
   for (const int rate : {30, 60}) {
@@ -235,7 +234,7 @@ TEST(LostFramesTest, InTheMiddleOfASwingAreMetWithinTheNoise) {
     }
   }
 }
-TEST(LostFramesTest, BesideAJumpOnlyItsOwnSideTells) {
+TEST(LostFramesTest, InterpolationDoesNotCrossAStep) {
   const auto text = table(kHeader, 240, [](int k) {
     return k == 100 || k == 101
                ? std::string()
@@ -247,7 +246,7 @@ TEST(LostFramesTest, BesideAJumpOnlyItsOwnSideTells) {
     EXPECT_NEAR(r.theta[k], 0.15, 1e-6);
   }
 }
-TEST(LostFramesTest, AlsoWhereRowsHoldNoValues) {
+TEST(LostFramesTest, IncludeRowsWithoutValues) {
   const auto text = table(kHeader, 900, [](int k) {
     return k == 300   ? fmt::format("{:.7f},,,,", k / 30.0)
            : k == 500 ? fmt::format("{:.7f},nan,0.1,0.4,0.1", k / 30.0)
@@ -260,7 +259,7 @@ TEST(LostFramesTest, AlsoWhereRowsHoldNoValues) {
   EXPECT_EQ(r.V[600], 1.02) << "P alone is missing: the voltage is as recorded";
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("in 2 places"), HasSubstr("P_pu has no value in 1 of 900")));
 }
-TEST(LostFramesTest, AQuantityAloneMissingKeepsTheVoltageOfItsFrames) {
+TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   const auto with = [](const std::string& q, int first, int count) {
     return table(kHeader, 900, [&](int k) {
       return k >= first && k < first + count
@@ -284,14 +283,14 @@ TEST(LostFramesTest, AQuantityAloneMissingKeepsTheVoltageOfItsFrames) {
   EXPECT_NEAR(ends.Q[0], 0.1, 1e-9) << "held before the first value";
   EXPECT_EQ(std::ranges::count(ends.lost, 1), 2);
   EXPECT_THAT(field_faults(with("", 400, 8)), ElementsAre(AllOf(HasSubstr("Q_pu"), HasSubstr("8 samples"))));
-  // Without an angle f drives the model, and its frames are lost with it.
+  // Without an angle the angle is integrated from f, whose missing values are lost frames too.
   const auto driven = table("t_s,V_pu,f_Hz,P_pu,Q_pu\n", 900, [](int k) {
     return fmt::format("{:.7f},1.02,{},0.4,0.1", k / 30.0, k == 300 ? "" : "60.0");
   });
   EXPECT_THAT(parse_record(driven, "r.csv", kTestBase).notes,
               ::testing::Contains(HasSubstr("frames are missing")));
 }
-TEST(LostFramesTest, LongerGapsAreNamed) {
+TEST(LostFramesTest, LongerGapsAreReported) {
   const auto text =
       table(kHeader, 900, [](int k) { return k >= 400 && k < 407 ? std::string() : row(k, k / 30.0); });
   EXPECT_THAT(field_faults(text), ElementsAre(AllOf(HasSubstr("a gap of 0.2667 s"), HasSubstr("r.csv:402"),
@@ -300,13 +299,13 @@ TEST(LostFramesTest, LongerGapsAreNamed) {
       << "the stretch before it is sound";
   EXPECT_NEAR(parse_record(text, "r.csv", kTestBase, {.from = 14}).t.front(), 14, 1e-9);
 }
-TEST(LostFramesTest, ATimeFarOffIsNamed) {
-  // Steps as a simulation chooses them are joined by straight lines, but not over two days.
+TEST(LostFramesTest, OutlyingTimeIsReported) {
+  // Variable steps of a simulation are joined by straight lines, but not over two days.
   const auto text =
       table(kHeader, 90, [](int k) { return row(k, k / 30.0 + 0.01 * (k % 3)); }) + row(90, 1.6e5) + "\n";
   EXPECT_THAT(field_faults(text), Contains(HasSubstr("r.csv:92")));
 }
-TEST(LostFramesTest, AJumpWithinTheGapIsSaid) {
+TEST(LostFramesTest, StepWithinTheGapIsReported) {
   const auto text = table(kHeader, 300, [](int k) {
     return k == 100 ? std::string() : fmt::format("{:.7f},{},0.1,0.4,0.1", k / 30.0, k < 100 ? 1.02 : 0.7);
   });
@@ -314,13 +313,13 @@ TEST(LostFramesTest, AJumpWithinTheGapIsSaid) {
   EXPECT_TRUE(r.V[100] == 1.02 || r.V[100] == 0.7);
   EXPECT_THAT(r.notes, Contains(HasSubstr("jumps where frames are missing")));
 }
-TEST(StampTest, TheLastLineMayBreakOff) {
+TEST(StampTest, AcceptsTruncatedLastLine) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:92"), HasSubstr("breaks off"))));
 }
-TEST(StampTest, RowsMayRepeat) {
+TEST(StampTest, AcceptsRepeatedRows) {
   const auto text = table(kHeader, 90, [](int k) {
     return k == 40 ? row(k, k / 30.0) + "\n" + row(k, k / 30.0) : row(k, k / 30.0);
   });
@@ -328,21 +327,21 @@ TEST(StampTest, RowsMayRepeat) {
   EXPECT_EQ(r.samples(), 90);
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("1 rows repeat"), HasSubstr("r.csv:43"))));
 }
-TEST(StampTest, AStampMayRepeatThoughTheValuesGoOn) {
+TEST(StampTest, AcceptsRepeatedStampWithNewValues) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, (k == 40 ? 39 : k) / 30.0); });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_TRUE(r.lost.empty());
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("one step later"), HasSubstr("r.csv:42"))));
 }
-TEST(StampTest, TheClockMayBePutBack) {
+TEST(StampTest, AcceptsClockSetBack) {
   const auto text = table(kHeader, 300, [](int k) { return row(k, k / 30.0 - (k >= 150 ? 1.0 : 0.0)); });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 300);
   EXPECT_NEAR(r.rate(), 30, 1e-6);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("r.csv:152"), HasSubstr("put back by 1 s"))));
 }
-TEST(StampTest, RowsOutOfOrderAreRefused) {
+TEST(StampTest, RefusesUnorderedRows) {
   const auto text = table(kHeader, 300, [](int k) {
     return row(k, (k == 150 ? 151 : k == 151 ? 150 : k) / 30.0);
   });
@@ -369,14 +368,14 @@ TEST(StampTest, TwoDecimals) {
     EXPECT_EQ(s.lost[100], 1);
   }
 }
-TEST(StampTest, VariableStepsBecomeEven) {
+TEST(StampTest, ResamplesVariableSteps) {
   const auto text = table(kHeader, 400, [](int k) { return row(k, 1e-4 * k * k / 2); });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_NEAR(r.V[static_cast<std::size_t>(r.samples() / 2)],
               1.02 + 1e-3 * std::sin(r.t[static_cast<std::size_t>(r.samples() / 2)]), 1e-6);
   EXPECT_THAT(r.notes, Contains(HasSubstr("joined by straight lines")));
 }
-TEST(StampTest, UtcIsKept) {
+TEST(StampTest, KeepsUtc) {
   const auto with = [](const char* heading, const char* zone) {
     return table(std::string(heading) + ",V_pu,theta_rad,P_pu,Q_pu\n", 60, [&](int k) {
       return fmt::format("2024-05-01 23:59:{:06.3f}{},1.02,0.1,0.4,0.1", k / 30.0, zone);
@@ -395,7 +394,7 @@ TEST(StampTest, UtcIsKept) {
   EXPECT_EQ(beginning(read(epoch)), "2024-05-01T23:59:00.500000Z");
 }
 
-// ---- files that are no CSV
+// ---- files other than CSV
 
 TEST(FormatTest, NamesIgnoredColumns) {
   const auto of = [](const std::string& bytes, const std::string& name) {

@@ -1,5 +1,5 @@
-// Frames that are no measurements, words for missing values, marks of thousands, and files that are no
-// record.
+// Frames that are no measurements, words for missing values, thousands separators, and files that are no
+// records.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr const char* kHeading = "t_s,V_pu,theta_rad,P_pu,Q_pu\n";
-/// A frame of a quiet swing.
+/// A frame of a slow swing.
 std::string frame(int k, double t) {
   return fmt::format("{:.7f},{:.7f},0.1,{:.7f},0.1", t, 1.02 + 1e-3 * std::sin(k / 30.0),
                      0.4 + 1e-3 * std::cos(k / 20.0));
@@ -34,7 +34,7 @@ std::vector<std::string> frame_faults(const std::string& text, const char* name 
   return test::messages([&] { parse_record(text, name, kTestBase); });
 }
 
-TEST(ZeroFrameTest, IsBridgedLikeALostFrame) {
+TEST(ZeroFrameTest, IsInterpolatedLikeALostFrame) {
   const Record r = parse_record(frames([](int k) {
                                   return k == 150 || k == 151 ? fmt::format("{:.7f},0,0,0,0\n", k / 30.0)
                                                               : frame(k, k / 30.0) + "\n";
@@ -66,10 +66,10 @@ TEST(ZeroFrameTest, LongGapsOfZerosAreRefused) {
       })),
       Contains(AllOf(HasSubstr("V_pu = 0"), HasSubstr("r.csv:152-161"), HasSubstr("no measurement"))));
 }
-TEST(RepeatedBlockTest, OfOverlappingArchivesIsLeftOut) {
+TEST(RepeatedBlockTest, OfOverlappingArchivesIsDropped) {
   const Record r = parse_record(frames([](int k) {
                                   std::string line = frame(k, k / 30.0) + "\n";
-                                  if (k == 199)  // the next archive begins two thirds of a second before
+                                  if (k == 199)  // the next archive starts two thirds of a second earlier
                                     for (int again = 180; again < 200; ++again)
                                       line += frame(again, again / 30.0) + "\n";
                                   return line;
@@ -81,7 +81,7 @@ TEST(RepeatedBlockTest, OfOverlappingArchivesIsLeftOut) {
   EXPECT_THAT(r.lost, IsEmpty());
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("20 rows repeat"), HasSubstr("r.csv:202"))));
 }
-TEST(RasterTest, RowsOffItAreLeftOut) {
+TEST(RasterTest, DropsRowsOffTheRaster) {
   for (const int odd : {0, 77, 299}) {
     const Record r =
         parse_record(frames([&](int k) {
@@ -95,13 +95,13 @@ TEST(RasterTest, RowsOffItAreLeftOut) {
                                         HasSubstr(fmt::format("r.csv:{}", odd + 2)))));
   }
 }
-TEST(RasterTest, LastFrameMayRepeat) {
+TEST(RasterTest, AcceptsRepeatedLastFrame) {
   const std::string text = frames([](int k) { return frame(k, k / 30.0) + "\n"; });
   const Record r = parse_record(text + frame(299, 299 / 30.0) + "\n", "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 300);
 }
 
-TEST(MissingWordTest, AreLostFrames) {
+TEST(MissingWordTest, MarksLostFrames) {
   for (const char* word :
        {"Non un numero", "NeuN", "Não é um número", "Non Numérique", "не число", "n. def.", "No Data", "Bad",
         "I/O Timeout", "#N/A", "-1.#IND", "-nan(ind)", "Keine Daten", "---", "Perdu"}) {
@@ -128,7 +128,7 @@ TEST(HeadingTest, DecidesTheSeparator) {
   std::ranges::replace(semicolons, '.', ',');
   expect_values(parse_record(semicolons, "r.csv", kTestBase));
 }
-TEST(NumberTest, MarksOfThousandsInQuotes) {
+TEST(NumberTest, ThousandsSeparatorsInQuotes) {
   const auto read = [](const char* heading, const char* row) {
     std::string all = heading;
     for (int k = 0; k < 90; ++k) all += fmt::format(fmt::runtime(row), k / 30.0);
@@ -162,7 +162,7 @@ TEST(UnitTest, SpellingsOfPmusAndHistorians) {
   EXPECT_THAT(frame_faults("t_s,V (kV peak),theta_rad,P_pu,Q_pu\n0,1,1,1,1\n"),
               ElementsAre(HasSubstr("'V (kV peak)'")));
 }
-TEST(OtherFileTest, IsNamedForWhatItIs) {
+TEST(OtherFileTest, NamesTheFileType) {
   EXPECT_THAT(frame_faults("SignalID,Timestamp,Value\nPPA:1,2026-03-01 14:05:20.000,339.5\n"
                            "PPA:2,2026-03-01 14:05:20.000,-0.18\n"),
               ElementsAre(AllOf(HasSubstr("a tall table"), HasSubstr("'SignalID'"),
@@ -174,7 +174,7 @@ TEST(OtherFileTest, IsNamedForWhatItIs) {
   EXPECT_THAT(frame_faults("# made by hand\n[plant]\nname = \"a\"\n", "plant.toml"),
               ElementsAre(AllOf(HasSubstr("a plant file"), HasSubstr("--model"), HasSubstr("--records"))));
 }
-TEST(OtherFileTest, CodesAreNamedAsSuch) {
+TEST(OtherFileTest, NamesCodes) {
   const Record r =
       parse_record(frames([](int k) {
                      return k == 150 ? std::string("5.0,1.02,0.1,1e308,0.1\n") : frame(k, k / 30.0) + "\n";

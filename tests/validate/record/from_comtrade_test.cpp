@@ -1,4 +1,4 @@
-// COMTRADE in all its forms, written here from the standard's layout (C37.111-1999 and -2013, 7 and 8).
+// COMTRADE in all its formats, written here from the standard's layout (C37.111-1999 and -2013, 7 and 8).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -54,11 +54,11 @@ TEST(RecordComtradeTest, WaveformsBecomePhasors) {
   EXPECT_DOUBLE_EQ(r.rate(), 60);
   EXPECT_EQ(r.samples(), 60);  // as many whole cycles
   EXPECT_THAT(r.notes, Contains(HasSubstr("window of one cycle")));
-  // The mean over a cycle of what moves at 0.5 Hz: 0.05 (2 pi 0.5/60)^2 / 24 and less; floats add 1e-6.
+  // Mean over a cycle of a movement at 0.5 Hz: at most 0.05 (2 pi 0.5/60)^2 / 24; floats add 1e-6.
   EXPECT_LT(largest_error(r, {}), 1e-5);
   EXPECT_DOUBLE_EQ(waveforms({}).read(kTestBase, {.phasor_rate = 240}).rate(), 240);
 }
-TEST(RecordComtradeTest, HarmonicsAndImbalanceDropOut) {
+TEST(RecordComtradeTest, RejectsHarmonicsAndImbalance) {
   const Machine m{.harmonic = 0.05, .negative = 0.03};
   // A cycle of exactly 80 samples is orthogonal to both.
   EXPECT_LT(largest_error(waveforms(m).read(), m), 1e-5);
@@ -68,9 +68,9 @@ TEST(RecordComtradeTest, OffNominalFrequency) {
   // 1 - sinc(0.5/60) = 1.1e-4 in V, twice that in P.
   EXPECT_LT(largest_error(waveforms(m).read(), m), 3e-4);
 }
-TEST(RecordComtradeTest, ACycleNeedNotHoldAWholeNumberOfSamples) {
-  // 3,000/s at 60 Hz: 50; 2,500/s: 41.67, of which the ends count in part; ripple of the order (2 pi/41.67)^2
-  // / 24.
+TEST(RecordComtradeTest, AcceptsFractionalSamplesPerCycle) {
+  // 3,000/s at 60 Hz: 50 samples a cycle; 2,500/s: 41.67, with partial weight at the ends; ripple of the
+  // order (2 pi/41.67)^2 / 24.
   EXPECT_LT(largest_error(waveforms({}, 3000, 3000).read(), {}), 1e-5);
   EXPECT_LT(largest_error(waveforms({}, 2500, 2500).read(), {}), 2e-3);
 }
@@ -87,7 +87,7 @@ TEST(RecordComtradeTest, SecondaryValuesVoltsAndSkew) {
     c.value = [=](double t) { return factor * primary(t); };
     c.skew_us = volt ? 0 : 100;
   }
-  // 100 us of skew would be 2.2 degrees if it were left alone: 0.015 pu of Q.
+  // An uncorrected skew of 100 us would be 2.2 degrees: 0.015 pu of Q.
   EXPECT_LT(largest_error(w.read(), {}), 1e-4);
 }
 TEST(RecordComtradeTest, PhasesInOtherSpellings) {
@@ -116,18 +116,18 @@ TEST(RecordComtradeTest, TimesFromStamps) {
   EXPECT_NEAR(w.read().rate(), 60, 1e-6);
   w = phasors();
   w.stamps_only = true;
-  w.multiplier = 1000;  // stamps in milliseconds: rounded, so put on the even grid
+  w.multiplier = 1000;  // stamps in milliseconds: rounded, so an even time grid is used
   const Record r = w.read();
   EXPECT_DOUBLE_EQ(r.rate(), 60);
   EXPECT_THAT(r.notes, Contains(HasSubstr("rounded to 1 ms")));
 }
-TEST(RecordComtradeTest, StampsAndRateThatDisagreeAreNoted) {
+TEST(RecordComtradeTest, NotesContradictingStampsAndRate) {
   Writer w = phasors();
   w.edit = [](auto& lines) { lines[9] = "30,90"; };
   EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was taken")));
 }
 
-/// A recorder that triggers fast and goes on slowly: what comes evenly is kept, at its times.
+/// A recorder with a fast rate after the trigger and a slow one later: evenly spaced values keep their times.
 TEST(RecordComtradeTest, SeveralRates) {
   Writer w = phasors();
   w.samples = 60 + 240 + 30;
@@ -149,11 +149,11 @@ TEST(RecordComtradeTest, WaveformsOfSeveralRates) {
   const Record two = w.read();
   EXPECT_EQ(two.samples(), 120);
   EXPECT_LT(largest_error(two, {}), 2e-5);
-  // Rates that follow the grid's frequency.
+  // Sampling rates that follow the grid's frequency.
   w.rates = {{4800, 2000}, {4812, 4000}, {4790, 7200}};
   const Record drawn = w.read();
-  EXPECT_LT(largest_error(drawn, {}), 1e-3);  // a cycle is no whole number of samples
-  // Rms values of the minute after, at 60/s, are no waveforms.
+  EXPECT_LT(largest_error(drawn, {}), 1e-3);  // a cycle has no whole number of samples
+  // RMS values of the following minute, at 60/s, are no waveforms.
   w.samples = 4800 + 60;
   w.rates = {{4800, 4800}, {60, 4860}};
   const Record fast = w.read();
@@ -215,7 +215,7 @@ TEST(RecordComtradeTest, MarkedSamplesAreMissing) {
   EXPECT_THAT(w.faults(),
               Contains(AllOf(HasSubstr("VA"), HasSubstr("marked missing"), HasSubstr("bytes 1600-"))));
 }
-TEST(RecordComtradeTest, WaveformsThatCannotBeUsed) {
+TEST(RecordComtradeTest, RefusesUnusableWaveforms) {
   Writer w = waveforms({});
   EXPECT_THAT(w.faults({200, 60, 0}), ElementsAre(HasSubstr("base_kv")));
   EXPECT_THAT(w.faults({200, 50, 138}), ElementsAre(AllOf(HasSubstr("60 Hz grid"), HasSubstr("for 50 Hz"))));
@@ -237,7 +237,7 @@ class ComtradeFileTest : public ::testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / fmt::format("comtrade-{}", ::getpid());
 };
-TEST_F(ComtradeFileTest, EitherFileOfThePairNamesIt) {
+TEST_F(ComtradeFileTest, AcceptsEitherFileOfThePair) {
   const Writer w = phasors(1999, "BINARY");
   write("e.cfg", w.cfg());
   write("e.dat", w.dat());
@@ -268,9 +268,8 @@ TEST_F(ComtradeFileTest, OneFile) {
               ElementsAre(HasSubstr("e.cff")));
 }
 
-TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
-  // The waveforms that a simulated fault means at a terminal, 64 samples a cycle, between samples linear in V
-  // and I.
+TEST(RecordComtradeTest, AcceptsSimulatedFaultRecorderWaveforms) {
+  // The waveforms of a simulated fault at a terminal, 64 samples a cycle, V and I linear between samples.
   const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, 2.1083);
   const Record fine = test::record_of(s, 1, 1);
   Writer w;
@@ -299,8 +298,7 @@ TEST(RecordComtradeTest, AFaultSeenByAFaultRecorderIsASoundRecord) {
   std::string told;
   for (const auto& f : check::check_record(r, {fine.base.mva, 60})) told += f.problem.sentence() + "\n";
   EXPECT_EQ(told, "");
-  // Away from the switchings phasors equal the simulated values: what the window averages moves by 1e-4 in a
-  // cycle.
+  // Away from the switchings phasors equal the simulated values; within a cycle they move by 1e-4.
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     if (r.t[k] > 1.9 && r.t[k] < 2.3) continue;
     EXPECT_NEAR(r.V[k], std::abs(at(r.t[k], false)), 3e-4) << r.t[k];

@@ -19,8 +19,8 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Bytes of the file that `write` makes: of its signature, and of descriptions on which HDF5 1.10 crashes
-/// (once it does not end).
+/// Bytes of the file written by `write`: of its signature, and of descriptions whose damage crashes HDF5 1.10
+/// (or, once, makes it loop endlessly).
 constexpr std::size_t kDamaged[] = {0, 6505, 6530, 6555, 6580, 6600, 10695, 10725};
 
 class RecordHdf5Test : public ::testing::Test {
@@ -74,7 +74,7 @@ TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
   EXPECT_THAT(faults(""), ElementsAre(AllOf(HasSubstr("several plants"), HasSubstr("GENROU 1, GENROU 7"))));
   EXPECT_THAT(faults("#GENROU 2"), ElementsAre(HasSubstr("no plant 'GENROU 2'")));
 }
-TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
+TEST_F(RecordHdf5Test, RefusesFilesWithoutARun) {
   write("swingbank-run-2");
   EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("no run")));
   write("swingbank-run-1", 4);
@@ -82,8 +82,8 @@ TEST_F(RecordHdf5Test, FilesThatAreNoRuns) {
   EXPECT_THAT(faults("-missing.h5"), ElementsAre(HasSubstr("run.h5-missing.h5")));
 }
 
-// 44 TB that are neither in the file nor in any memory.
-TEST_F(RecordHdf5Test, MoreSamplesThanTheFileHoldsAreTold) {
+// 44 TB, which neither the file nor any memory has.
+TEST_F(RecordHdf5Test, RefusesMoreSamplesThanTheFileContains) {
   write("swingbank-run-1");
   std::string bytes = read_bytes(file_);
   const auto text = [](std::uint64_t samples) {
@@ -99,8 +99,8 @@ TEST_F(RecordHdf5Test, MoreSamplesThanTheFileHoldsAreTold) {
                                 HasSubstr("5497558138880"))));
 }
 
-// HDF5 crashes on some of these, and on some it does not end.
-TEST_F(RecordHdf5Test, DamagedBytesAreTold) {
+// HDF5 crashes on some of these and loops endlessly on others.
+TEST_F(RecordHdf5Test, RefusesDamagedBytes) {
   write("swingbank-run-1");
   const std::string whole = read_bytes(file_);
   ::setenv("SWINGBANK_READER_SECONDS", "1", 1);
@@ -112,7 +112,7 @@ TEST_F(RecordHdf5Test, DamagedBytesAreTold) {
     std::ofstream(file_, std::ios::binary) << bytes;
     for (const std::string& sentence : faults("#GENROU 7")) {
       ++told;
-      // the address sanitizer ends a reader by a code before the signal does
+      // The address sanitizer ends a reader by an exit code before the signal does.
       for (const char* end : {"its reader was ended by a signal", "its reader ended with code"})
         crashed += sentence.find(end) != sentence.npos ? 1 : 0;
       EXPECT_THAT(sentence, AllOf(HasSubstr(" at "), HasSubstr("run.h5"), HasSubstr("): "))) << at;

@@ -1,4 +1,4 @@
-// MATLAB files, written here by libmatio as people export them, read as records.
+// MATLAB files, written here by libmatio in the usual export formats, read as records.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ matvar_t* cells(const char* name, const std::vector<std::string>& texts) {
     Mat_VarSetCell(list, static_cast<int>(k), text_variable(nullptr, texts[k]));
   return list;
 }
-/// One struct with the fields given.
+/// Returns a struct with the given fields.
 matvar_t* structure(const char* name, std::vector<const char*> names, const std::vector<matvar_t*>& fields) {
   std::size_t dims[] = {1, 1};
   matvar_t* s = Mat_VarCreateStruct(name, 2, dims, names.data(), static_cast<unsigned>(names.size()));
@@ -118,7 +118,7 @@ TEST_P(RecordMatTest, NamesWithoutUnitsAreMapped) {
                              {"Q", "Qgen [Mvar]"}}});
 }
 
-TEST_P(RecordMatTest, AMatrixHasItsListOfNames) {
+TEST_P(RecordMatTest, MatrixHasItsListOfNames) {
   std::vector<double> all;
   for (int c = 0; c < 5; ++c)
     for (const double v : column_of(c)) all.push_back(v);
@@ -128,7 +128,7 @@ TEST_P(RecordMatTest, AMatrixHasItsListOfNames) {
   expect_record();
 }
 
-TEST_P(RecordMatTest, AStructOfVectorsIsATerminal) {
+TEST_P(RecordMatTest, StructOfVectorsIsATerminal) {
   write({structure(
       "G1", {"time", "V_kV", "f_Hz", "P_MW", "Q_Mvar"},
       {vector_of("time", column_of(0)), vector_of("V_kV", column_of(1)), vector_of("f_Hz", column_of(2)),
@@ -155,7 +155,7 @@ TEST_P(RecordMatTest, ListsVariablesOfTheFile) {
                                               HasSubstr("comment (1x9)"))));
 }
 
-TEST_P(RecordMatTest, AFileCutShortIsRefused) {
+TEST_P(RecordMatTest, RefusesTruncatedFile) {
   write(vectors());
   const auto whole = std::filesystem::file_size(file_);
   for (const double part : {0.02, 0.5, 0.97}) {

@@ -1,4 +1,4 @@
-// Phasors of three phases in columns of text: they become the positive sequence, in whatever unit they stand.
+// Phasors of three phases in text columns: they become the positive sequence, in any unit.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,16 +19,16 @@ using ::testing::HasSubstr;
 
 constexpr double kDegreeOfPhasor = std::numbers::pi / 180;
 
-/// 1.02 pu at 10 degrees of 138 kV, 80 + j20 MW; `v`, `va`, `i`, `ia`: headings of magnitudes and angles,
-/// with the phase as {}.
+/// 1.02 pu at 10 degrees of 138 kV, 80 + j20 MW. `v`, `va`, `i`, `ia`: headings of magnitudes and angles; {}
+/// is replaced by the phase.
 struct Streamed {
   std::string v = "V{}_mag", va = "V{}_Ang", i = "I{}_mag", ia = "I{}_Ang";
-  double volts = 1e3, amperes = 1e3, degrees = 1;  ///< of kV, kA and degrees
+  double volts = 1e3, amperes = 1e3, degrees = 1;  ///< values per kV, kA and degree
   std::array<const char*, 3> phases = {"a", "b", "c"};
-  double order = -120;        ///< by which a phase follows the one before it
+  double order = -120;        ///< angle from one phase to the next
   bool between = false;       ///< voltages between phases
   double unbalance = 0;       ///< share of the negative sequence
-  std::string others = {};    ///< further headings; each has the value 60
+  std::string others = {};    ///< further headings; each column has the value 60
   std::size_t leave_out = 9;  ///< columns of this phase
 };
 std::string text_of(const Streamed& s) {
@@ -92,7 +92,7 @@ TEST(ThreePhasePhasors, NamesAndUnits) {
               AllOf(Contains(HasSubstr("'Va_mag' names no unit")), Contains(HasSubstr("taken for V.")),
                     Contains(HasSubstr("positive sequence of the phasors Va_mag, Vb_mag, Vc_mag"))));
 }
-TEST(ThreePhasePhasors, UnbalanceDropsOut) { expect_sequence({.unbalance = 0.05}); }
+TEST(ThreePhasePhasors, RejectUnbalance) { expect_sequence({.unbalance = 0.05}); }
 TEST(ThreePhasePhasors, VoltagesBetweenPhases) {
   for (const std::size_t missing : {9U, 2U}) {
     const Streamed s{.v = "V{}_kV",
@@ -109,14 +109,14 @@ TEST(ThreePhasePhasors, VoltagesBetweenPhases) {
     EXPECT_NEAR(r.theta[5], 10 * kDegreeOfPhasor, 1e-6);
   }
 }
-TEST(ThreePhasePhasors, GiveWayToThePositiveSequence) {
+TEST(ThreePhasePhasors, YieldToRecordedPositiveSequence) {
   const Streamed s{.others = ",V_kV,theta_deg,P_MW,Q_Mvar"};
   const Record r = parse_record(text_of(s), "r.csv", kTestBase);
   EXPECT_NEAR(r.V[5], 60.0 / 138, 1e-9);
   EXPECT_NEAR(r.P[5], 0.3, 1e-9);
   EXPECT_THAT(r.ignored, Contains("Vb_mag"));
 }
-TEST(ThreePhasePhasors, FaultsAreNamed) {
+TEST(ThreePhasePhasors, ReportFaults) {
   const auto faults = [](const Streamed& s) {
     return test::messages([&] { parse_record(text_of(s), "r.csv", kTestBase); });
   };

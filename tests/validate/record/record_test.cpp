@@ -63,28 +63,28 @@ TEST(RecordTest, UnitsAreInTheNames) {
   EXPECT_THAT(r.ignored, ElementsAre("status"));
 }
 
-TEST(RecordTest, HashIsOfTheBytes) {
+TEST(RecordTest, HashCoversTheBytes) {
   EXPECT_NE(parse_record(sound(), "a", {}).sha256, parse_record(sound(41), "a", {}).sha256);
 }
 
-TEST(RecordTest, MissingColumnsAreAllNamed) {
+TEST(RecordTest, ReportsAllMissingColumns) {
   EXPECT_THAT(faults_of("t_s,V_pu,f_pu,MW flow\n0,1,1,3\n"),
               ElementsAre(AllOf(HasSubstr("P_pu, P_MW"), HasSubstr("seen: 't_s', 'V_pu', 'f_pu', 'MW flow'"),
                                 HasSubstr("--columns")),
                           HasSubstr("Q_pu, Q_Mvar")));
 }
-TEST(RecordTest, ColumnsNeedAKnownUnit) {
+TEST(RecordTest, RequiresKnownUnits) {
   EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P,Q_MVA\n"),
               ElementsAre(AllOf(HasSubstr("'P'"), HasSubstr("P_pu, P_MW")), HasSubstr("'Q_MVA'")));
   EXPECT_THAT(faults_of("t_s,V_kV,theta_rad,P_pu,Q_pu\n"), ElementsAre(HasSubstr("base_kv")));
   EXPECT_THAT(faults_of("t_s,V_pu,theta_rad,P_pu,P_MW,Q_pu\n"),
               ElementsAre(HasSubstr("another column gives the same quantity")));
 }
-TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
+TEST(RecordTest, ReportsEveryFaultWithItsLine) {
   const std::string text = text_of(40, [](int k, std::string& line) {
     if (k == 5) line = "0.08,1.01,0.1,x5,0.2";
     if (k == 9) line = "0.16,1.01,0.1,0.5";
-    if (k == 20) line = "0.36,1.01,0.1,0.5,0.2";  // the time of the line before
+    if (k == 20) line = "0.36,1.01,0.1,0.5,0.2";  // the time of the previous line
     if (k == 30) line = "0.2,1.01,0.1,0.5,0.2";
   });
   const auto all = faults_of(text);
@@ -93,23 +93,23 @@ TEST(RecordTest, EveryFaultOfAFileIsToldWithItsLine) {
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("r.csv:21"), HasSubstr("repeated"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("r.csv:31"), HasSubstr("backwards"))));
 }
-TEST(RecordTest, AGapOfMoreThanAFifthOfASecondIsAFault) {
+TEST(RecordTest, RefusesGapAboveAFifthOfASecond) {
   const auto all = faults_of(text_of(60, [](int k, std::string& line) {
     if (k > 30) line = fmt::format("{},1.01,0.1,0.5,0.2", (k + 10) * 0.02);
   }));
   EXPECT_THAT(all, ElementsAre(AllOf(HasSubstr("a gap of 0.24 s"), HasSubstr("r.csv:32"),
                                      HasSubstr("11 are missing"), HasSubstr("--from"))));
 }
-TEST(RecordTest, TooShortOrEmpty) {
+TEST(RecordTest, RefusesShortOrEmptyRecord) {
   EXPECT_THAT(faults_of(sound(kMinSamples - 1)), ElementsAre(HasSubstr("29 samples")));
   EXPECT_TRUE(faults_of(sound(kMinSamples)).empty());
   EXPECT_THAT(faults_of(""), ElementsAre(HasSubstr("empty record")));
   EXPECT_THAT(test::messages([] { read_record("no/such/file.csv", {}); }),
               ElementsAre(HasSubstr("no/such/file.csv")));
 }
-TEST(RecordTest, ALongListOfFaultsIsCut) {
+TEST(RecordTest, ShortensLongListsOfFaults) {
   const auto all = faults_of(text_of(200, [](int k, std::string& line) {
-    if (k > 0 && k % 2 == 0) line += ",1";  // neighbours would be one sentence
+    if (k > 0 && k % 2 == 0) line += ",1";  // adjacent lines would share one message
   }));
   EXPECT_THAT(all, SizeIs(51));
   EXPECT_THAT(all.back(), HasSubstr("further faults"));

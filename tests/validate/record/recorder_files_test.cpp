@@ -1,4 +1,4 @@
-// COMTRADE files of recorders and relays, as they are found.
+// Original COMTRADE files of recorders and relays.
 #include <gmock/gmock.h>
 
 #include "tests/sim/reference/psse_folder.hpp"
@@ -11,8 +11,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// tests/README.md says where they are from: revisions that were never published, channel numbers that
-/// skip, Windows-1251.
+/// Sources: tests/README.md. They have unpublished revisions, gaps in the channel numbers, and Windows-1251.
 TEST(RecorderFiles, AreRead) {
   const auto at = sim::test::record_folder("comtrade_files");
   const auto read = [&](const char* cfg, const char* dat) {

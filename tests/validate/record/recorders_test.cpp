@@ -1,5 +1,5 @@
-// COMTRADE as recorders write it: what the configuration states wrongly, instrument transformers between
-// phases, several generators in one record.
+// COMTRADE in practice: wrong configuration entries, instrument transformers between phases, several
+// generators in one record.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using ::testing::Not;
 Record read(const std::string& cfg, const std::string& dat) {
   return record_of_comtrade(parse_comtrade(cfg, dat, "e.cfg", "e.dat"), "e.cfg", kTestBase, {});
 }
-/// Largest error of V, theta, P and Q against what phasors() writes.
+/// Largest error of V, theta, P and Q against the values written by phasors().
 double phasor_error(const Record& r) {
   double worst = r.samples() >= 60 ? 0 : 1;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
@@ -78,7 +78,7 @@ TEST(RecorderLeniency, LastSampleCutOff) {
     EXPECT_EQ(read(w.cfg(), dat + "\x1a").samples(), 90) << kind;
   }
 }
-TEST(RecorderLeniency, DataTypeIsThatOfTheData) {
+TEST(RecorderLeniency, TakesDataTypeFromTheData) {
   for (const char* kind : {"ASCII", "BINARY", "BINARY32", "FLOAT32"})
     for (const char* named : {"ASCII", "BINARY", "BINARY32"}) {
       Writer w = phasors(2013, kind);
@@ -92,7 +92,7 @@ TEST(RecorderLeniency, DataTypeIsThatOfTheData) {
         EXPECT_THAT(r.notes, Each(Not(HasSubstr("data type"))));
     }
 }
-TEST(RecorderLeniency, StampsThatPassTheLargestNumber) {
+TEST(RecorderLeniency, AcceptsOverflowingTimeStamps) {
   for (const char* kind : {"ASCII", "BINARY"}) {
     Writer w = phasors(1999, kind);
     w.stamps_only = true;
@@ -103,14 +103,14 @@ TEST(RecorderLeniency, StampsThatPassTheLargestNumber) {
     EXPECT_THAT(r.notes, Contains(HasSubstr("pass 2^32")));
   }
 }
-TEST(RecorderLeniency, RateAndStampsInDifferentUnitsAreRefused) {
+TEST(RecorderLeniency, RefusesRateAndStampsInDifferentUnits) {
   Writer w = phasors();
   w.edit = [](auto& lines) { lines[9] = "60000,90"; };
   EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("60000 per second, and time stamps of 60 per second"),
                                             HasSubstr("in another unit"))));
 }
 
-/// The voltages between phases of waveforms(), in place of those to neutral: ab, bc, ca.
+/// Replaces the phase-to-neutral voltages of waveforms() by those between phases: ab, bc, ca.
 Writer between_phases(const Machine& m, std::vector<int> pairs, bool reversed = false) {
   Writer w = waveforms(m);
   const std::vector<Channel> all = w.channels;
@@ -153,7 +153,7 @@ struct Naming {
   bool with_phase;
 };
 class RecorderNames : public ::testing::TestWithParam<Naming> {};
-TEST_P(RecorderNames, TellTheCircuits) {
+TEST_P(RecorderNames, IdentifyTheCircuits) {
   const Machine idle{.scale = 0.5};
   Writer w = waveforms({}), other = waveforms(idle);
   for (auto* writer : {&w, &other})
@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Naming{"joined", "{0}{1}{2}", true}, Naming{"behind", "{2}{0}{1}", false}),
     [](const auto& each) { return std::string(each.param.name); });
 
-TEST(RecorderWaves, PhasorsAreNoWaveforms) {
+TEST(RecorderWaves, RefusesPhasorsAsWaveforms) {
   Writer w = phasors();
   w.channels.push_back({"I1 MAG", "", "G7", "A", 0.1, 0, [](double) { return 300.0; }});
   EXPECT_LT(phasor_error(w.read()), kRounding);

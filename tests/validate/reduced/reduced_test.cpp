@@ -12,7 +12,7 @@
 namespace swingbank::validate::reduced {
 namespace {
 
-/// The example of README: four faults at a plant whose model has no exciter.
+/// The README's example: four faults at a plant whose model has no exciter.
 class Reduced : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -40,12 +40,12 @@ plant::PlantModel* Reduced::model_;
 event::WhitenedEvents* Reduced::events_;
 Reduction* Reduced::reduction_;
 
-TEST_F(Reduced, BothInputsFreeLeaveNothingButNoiseFromTheSubmittedModel) {
+TEST_F(Reduced, BothFreeInputsLeaveOnlyNoise) {
   EXPECT_LE(reduction_->inference().steps, 5);
   EXPECT_LT(reduction_->inference().reduced_chi2(), 1.05);
 }
 
-TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
+TEST_F(Reduced, MissingInputHasTheEvidence) {
   const auto free = fit::free_parameters(model_->plant, 0.3);
   const fit::Fit without = fit::fit(model_->under_test(), *events_, free, {.iterations = 0});
   const auto input = [&](event::InputKind kind) {
@@ -58,13 +58,13 @@ TEST_F(Reduced, TheMissingInputHasTheEvidenceAndTheOtherOneExplainsLittle) {
   for (std::size_t e = 0; e < events_->size(); ++e) {
     ASSERT_EQ(field.deviation[e].size(), static_cast<Eigen::Index>(field.of(e).t.size()));
     EXPECT_GT(field.deviation[e].minCoeff(), 0);
-    // the records determine a field voltage of some pu within a fifth
+    // The records determine a field voltage of some pu within 20 %.
     EXPECT_LT(field.deviation[e].mean(), 0.2 * std::abs(*std::ranges::max_element(field.of(e).value)));
   }
 }
 
-/// Noise alone asks for no input, once the exciter that made the records is there.
-TEST_F(Reduced, AnInputThatTheRecordsDoNotAskForHasNoEvidence) {
+/// With the true exciter in the model, noise alone gives no evidence for an input.
+TEST_F(Reduced, UnneededInputHasNoEvidence) {
   auto all = hypothesis::all_hypotheses(model_->under_test(), model_->library);
   auto h = *std::ranges::find(all, "SEXS", &hypothesis::Hypothesis::name);
   for (const auto& [name, value] : {std::pair("K", 100.0), {"TAoverTB", 0.1}, {"TB", 10.0}, {"TE", 0.05}}) {
@@ -81,20 +81,20 @@ TEST_F(Reduced, AnInputThatTheRecordsDoNotAskForHasNoEvidence) {
   }
 }
 
-/// What a reduced plant says of the inferred series itself is what the inference left, and no more.
-TEST_F(Reduced, TheInferredCourseCostsWhatTheInferenceLeft) {
+/// The cost of the inferred series itself equals the residual of the inference.
+TEST_F(Reduced, CostOfInferredSeriesEqualsItsResidual) {
   const ReducedPlant field(*reduction_, event::InputKind::field);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
   const double inferred = reduction_->inference().chi2,
                there = field.costs(reduction_->series(event::InputKind::field), still)[0],
                without = field.costs(none, still)[0];
-  EXPECT_LT(there, 1.01 * inferred);  // the plant follows: a step that the inference did not take
+  EXPECT_LT(there, 1.01 * inferred);  // tolerance: one last step that the inference did not take
   EXPECT_GT(there, 0.9 * inferred);
   EXPECT_GT(without, 3 * there);
 }
 
-/// The gradient of a series's cost is that of its differences, by the gain's number too.
-TEST_F(Reduced, TheBowlIsTheCostsOwn) {
+/// The gradient of the quadratic model equals central differences of the cost, also for the gain.
+TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   EXPECT_NEAR(reduction_->gain(event::InputKind::field).exponent, -1, 1e-3);
   EXPECT_NEAR(reduction_->gain(event::InputKind::torque).exponent, -1, 1e-3);
   for (const auto kind : {event::InputKind::field, event::InputKind::torque}) {
@@ -116,9 +116,9 @@ TEST_F(Reduced, TheBowlIsTheCostsOwn) {
   }
 }
 
-/// About a plant that has the exciter, the exciter's own values cost what the plant leaves, and nothing else
-/// does: its own response is what the whole plant makes.
-TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
+/// Linearised about a plant that has the exciter: the exciter's own response costs the plant's residual, and
+/// a zero series costs several times as much.
+TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
     std::vector<event::EventState> states;
@@ -134,7 +134,7 @@ TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
     const Eigen::VectorXd own = about.responses(event::InputKind::field, {h.plant}) -
                                 about.responses(event::InputKind::field, {model_->plant});
     EXPECT_NEAR((own - about.series(event::InputKind::field)).norm(), 0, 1e-9);
-    // the events' states alone may move, and stay near their prior means and within their ranges
+    // Only the events' states are free; they stay near their prior means and within their ranges.
     const double chi2 = about.inference().chi2;
     double freely = chi2;
     for (const EventSlopes& s : about.inference().events)
@@ -147,9 +147,9 @@ TEST_F(Reduced, AWholePlantCostsWhatItLeaves) {
   }
 }
 
-/// A change of the plant that is made freely costs what the parameter costs that it is a change of, and
-/// nothing changes where it is not made.
-TEST_F(Reduced, AFreeChangeIsAParameterMore) {
+/// A freely scaled change of the plant costs as much as the free parameter that it changes; a scale of zero
+/// changes nothing.
+TEST_F(Reduced, FreeChangeActsAsAParameter) {
   Inference about = reduction_->inference();
   const auto free = about.free;
   const auto moved = std::ranges::find_if(free, [&](const fit::FreeParameter& f) {
@@ -171,11 +171,11 @@ TEST_F(Reduced, AFreeChangeIsAParameterMore) {
                by_change = cost(with, all_held, {0});
   EXPECT_NEAR(fixed, cost(*reduction_, all_held, {}), 1e-6 * fixed);
   EXPECT_LT(by_parameter, fixed - 1000);
-  EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // slopes are that near
+  EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // accuracy of the linearisation
 }
 
-/// The exciter that made the records is identified alone, before anything else is known of it.
-TEST_F(Reduced, TheExciterThatMadeTheRecordsLeads) {
+/// The exciter that made the records is identified alone, without other prior knowledge.
+TEST_F(Reduced, TrueExciterRanksFirst) {
   std::vector<std::pair<double, std::string>> costs;
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS" && h.name != "IEEET1" && h.name != "ESST4B") continue;

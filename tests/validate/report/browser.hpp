@@ -1,5 +1,5 @@
 #pragma once
-// A page in headless Chromium, at the width of a telephone.
+// A page in headless Chromium, at the width of a mobile phone.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -15,8 +15,8 @@
 namespace swingbank::validate::test {
 
 struct Shown {
-  std::string complaints;  ///< lines that the page's scripts and the browser wrote to the console
-  nlohmann::json result;   ///< what the added script left in document.body.dataset.result
+  std::string complaints;  ///< console output of the page's scripts and of the browser
+  nlohmann::json result;   ///< value of document.body.dataset.result after the added script
 };
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -24,8 +24,8 @@ inline std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Shows the page with `script` added at its end. Throws if the browser does not run or the script leaves
-/// nothing.
+/// Renders the page with `script` added at its end. Throws if the browser does not run or the script sets no
+/// result.
 inline Shown show(const std::string& html, const std::string& script) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / fmt::format("swingbank_browser_{}", ::getpid());

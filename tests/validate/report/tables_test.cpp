@@ -78,7 +78,7 @@ std::vector<std::string> row(const Table& table, const std::string& label) {
   return cells;
 }
 
-TEST_F(TablesTest, MethodsStandAgainstLevelsOfNoise) {
+TEST_F(TablesTest, ComparesMethodsByNoiseLevel) {
   const auto noisy = [&](const std::string& network, double noise, double ratio, int seed = 1) {
     json r = result("V", network, 30, ratio);
     r["noise"] = noise;
@@ -104,7 +104,7 @@ TEST_F(TablesTest, MethodsStandAgainstLevelsOfNoise) {
                                                   "table-V-quick-rows6000-methods.csv")));
 }
 
-TEST(ThesisTablesTest, AgreesWithWhatTheThesisSaysOfItself) {
+TEST(ThesisTablesTest, AgreesWithTheText) {
   double five = 0;
   int five_count = 0, six_count = 0;
   for (const auto& c : kThesisCells) {
@@ -113,12 +113,12 @@ TEST(ThesisTablesTest, AgreesWithWhatTheThesisSaysOfItself) {
   }
   EXPECT_EQ(five_count, 10);
   EXPECT_EQ(six_count, 10);
-  // "the average of MSE is less than 0.05" (4.2) does not hold for its own table: it is 0.0526. Kept as
-  // printed.
+  // "the average of MSE is less than 0.05" (4.2) contradicts the thesis's own table, which gives 0.0526. Kept
+  // as printed.
   EXPECT_NEAR(five / 10, 0.0526, 0.0001);
 }
 
-TEST_F(TablesTest, PutsEachCellBesideThesisAndBaseline) {
+TEST_F(TablesTest, ComparesEachEntryWithThesisAndBaseline) {
   write("a", result("V", "cnn", 30, 0.1));
   const auto blocks = group_results(read());
   ASSERT_EQ(blocks.size(), 1u);
@@ -128,7 +128,7 @@ TEST_F(TablesTest, PutsEachCellBesideThesisAndBaseline) {
   EXPECT_THAT(score_table(blocks[0]).caption,
               AllOf(HasSubstr("seed 1"), HasSubstr("6000 rows"), HasSubstr("quick")));
 }
-TEST_F(TablesTest, ShowsMethodsBeyondTheThesisBesideItsBest) {
+TEST_F(TablesTest, ComparesNewMethodsWithTheBestOfTheThesis) {
   auto gru = result("IV", "closed-form", 0, 0.001);
   gru["epochs"] = 0;
   write("a", gru);
@@ -138,7 +138,7 @@ TEST_F(TablesTest, ShowsMethodsBeyondTheThesisBesideItsBest) {
   EXPECT_EQ(cells[8], "not trained");
   EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("below the thesis: closed form yes."));
 }
-TEST_F(TablesTest, UnseenGeneratorsStandAgainstThoseThatTrained) {
+TEST_F(TablesTest, ComparesUnseenWithTrainingGenerators) {
   for (const auto& [generator, mse, seen] : {std::tuple{30, 0.3, 0.2}, {39, 1.2, 0.3}}) {
     auto run = result("V", "mlp", generator, 0.1);
     run["mse"] = mse;
@@ -155,16 +155,16 @@ TEST_F(TablesTest, UnseenGeneratorsStandAgainstThoseThatTrained) {
   EXPECT_THAT(page, HasSubstr("| #39 | 4 |\n"));
   EXPECT_THAT(page, HasSubstr("| all together | 3 |\n"));
 }
-TEST_F(TablesTest, AnExperimentOfOnesOwnStandsUnderItsTitle) {
+TEST_F(TablesTest, UserExperimentHasItsTitle) {
   json r = result("ieee14_from_39", "mlp", 0, 0.4);
   r["title"] = "trained on IEEE 39, judged on IEEE 14";
   write("a", r);
-  write("b", result("mine", "mlp", 0, 0.4));  // of a release that did not say
+  write("b", result("mine", "mlp", 0, 0.4));  // of a release without this entry
   EXPECT_THAT(
       make_tables(read(), {}).markdown,
       AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, judged on IEEE 14\n"), HasSubstr("## mine\n")));
 }
-TEST_F(TablesTest, SeveralRecordsOfAPlantStandInATableOfTheirOwn) {
+TEST_F(TablesTest, SeveralRecordsOfAPlantHaveTheirOwnTable) {
   auto run = result("IV", "mlp", 0, 0.1);
   run["several"] = json::array(
       {{{"at_most", 1}, {"records", 1}, {"plants", 40}, {"mse_of_mean", 0.08}, {"mse_of_product", 0.07}},
@@ -181,13 +181,13 @@ TEST_F(TablesTest, SeveralRecordsOfAPlantStandInATableOfTheirOwn) {
   write("a", run);
   EXPECT_THROW(read(), InputError);
 }
-TEST_F(TablesTest, ACurveFitStandsBesideTheThesissProgramForThat) {
+TEST_F(TablesTest, ComparesCurveFitWithTheThesis) {
   auto fit = result("IV", "curve-fit", 0, 0.4);
   fit["epochs"] = 0;
   write("a", fit);
   EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("| curve fit | 2.6 | 2.16"));
 }
-TEST_F(TablesTest, MissingRunsAreNamedNotInvented) {
+TEST_F(TablesTest, NamesMissingRuns) {
   write("a", result("VI", "cnn", 31, 0.3));
   const auto blocks = group_results(read());
   const Table table = score_table(blocks[0]);
@@ -207,7 +207,7 @@ TEST_F(TablesTest, MeansAreOverTheSameRuns) {
   EXPECT_THAT(std::vector<std::string>(cells.begin(), cells.begin() + 5),
               ElementsAre("mean of 2", "1.08", "0.219", "5.4", "0.2"));  // (0.008 + 0.43)/2
 }
-TEST_F(TablesTest, TableFourHasARowPerNetwork) {
+TEST_F(TablesTest, TableFourHasOneRowPerNetwork) {
   write("a", result("IV", "gru", 0, 0.4));
   write("b", result("IV", "cnn", 0, 0.2));
   const Table table = score_table(group_results(read())[0]);
@@ -216,7 +216,7 @@ TEST_F(TablesTest, TableFourHasARowPerNetwork) {
   EXPECT_EQ(table.rows[1][1].text, "missing");  // LSTM
   EXPECT_EQ(table.rows[2][2].text, "0.0079");
 }
-TEST_F(TablesTest, ControlRunsAndOtherPresetsStandApart) {
+TEST_F(TablesTest, SeparatesControlRunsAndPresets) {
   auto other = result("V", "cnn", 30, 0.1);
   other["preset"] = "nightly";
   write("a", result("V", "cnn", 30, 0.1));
@@ -225,9 +225,9 @@ TEST_F(TablesTest, ControlRunsAndOtherPresetsStandApart) {
   const auto blocks = group_results(read());
   ASSERT_EQ(blocks.size(), 3u);
   EXPECT_TRUE(blocks[2].shuffled);
-  EXPECT_EQ(row(score_table(blocks[2]), "#30")[2], "–");  // the thesis shuffled nothing
+  EXPECT_EQ(row(score_table(blocks[2]), "#30")[2], "–");  // the thesis has no control runs
   const TablesReport report = make_tables(read(), {});
-  EXPECT_EQ(report.csv.size(), 8u);  // two of each block, one of each task
+  EXPECT_EQ(report.csv.size(), 8u);  // two for each block, one for each task
   EXPECT_THAT(report.markdown, AllOf(HasSubstr("Control runs"), HasSubstr("### Preset nightly, 6000 rows")));
 }
 TEST_F(TablesTest, ParametersShowMedianAndWorst) {
@@ -238,7 +238,8 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
-/// Runs on eighths of the rows whose error falls with their square root, 0.54 with all of them.
+/// Results with training on eighths of the rows; the error falls with their square root and is 0.54 with all
+/// rows.
 void write_sizes(const std::function<void(const std::string&, const json&)>& write) {
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     json r = result("V", "cnn", 30, 0.1 / std::sqrt(share));
@@ -248,7 +249,7 @@ void write_sizes(const std::function<void(const std::string&, const json&)>& wri
     write(std::to_string(share), r);
   }
 }
-TEST_F(TablesTest, SharesOfTheRowsAreThePointsOfAPowerLaw) {
+TEST_F(TablesTest, FitsPowerLawToTrainingSizes) {
   write_sizes([&](const auto& name, const auto& r) { write(name, r); });
   const auto series = scaling_series(read());
   ASSERT_EQ(series.size(), 1u);
@@ -265,7 +266,7 @@ TEST_F(TablesTest, SharesOfTheRowsAreThePointsOfAPowerLaw) {
               AllOf(HasSubstr("](tables/V-scaling.svg)"), HasSubstr("|  | CNN, without #30 |"),
                     HasSubstr("| training rows | 500 – 4000 |"), HasSubstr("0.54 (0.1) ¹")));
 }
-TEST(PowerLawTest, IntervalsAreStudents) {
+TEST(PowerLawTest, IntervalsUseStudentsDistribution) {
   // ln y = 1, 2, 4 at ln x = 0, 1, 2: slope 1.5, scatter sqrt(1/6), Student's quantile 12.706
   const double e = std::exp(1.0);
   const PowerLaw law({{1, e}, {e, e * e}, {e * e, std::exp(4.0)}});
@@ -277,7 +278,7 @@ TEST(PowerLawTest, IntervalsAreStudents) {
   ASSERT_TRUE(exact.reaches_interval(0.5));
   EXPECT_NEAR(exact.reaches_interval(0.5)->second, 10'000, 1e-3);
 }
-TEST_F(TablesTest, PicturesAreFilesOfTheMarkdownAndPartsOfThePage) {
+TEST_F(TablesTest, PlotsAreFilesForMarkdownAndInlineInHtml) {
   json r = result("V", "cnn", 30, 0.1);
   r["posterior"] = {{"test", {{"coverage_50", 0.45}, {"coverage_90", 0.92}, {"rows", 1000}}}};
   write("a", r);
@@ -289,7 +290,7 @@ TEST_F(TablesTest, PicturesAreFilesOfTheMarkdownAndPartsOfThePage) {
   }
   EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("as stated")));
 }
-TEST_F(TablesTest, FiguresOfDifferentMakersAreComparedWithAWord) {
+TEST_F(TablesTest, WarnsAboutResultsOfDifferentSoftware) {
   write("a", result("V", "cnn", 30, 0.1));
   auto other = result("V", "cnn", 31, 0.1);
   EXPECT_THAT(make_tables(read(), {}).markdown, Not(HasSubstr("different software")));
@@ -297,7 +298,7 @@ TEST_F(TablesTest, FiguresOfDifferentMakersAreComparedWithAWord) {
   write("b", other);
   EXPECT_THAT(make_tables(read(), {}).markdown, HasSubstr("different software or processors"));
 }
-TEST_F(TablesTest, FaultsOfResultsAreToldTogether) {
+TEST_F(TablesTest, ReportsAllFaultsOfResults) {
   auto broken = result("V", "cnn", 30, 0.1);
   broken.erase("ratio");
   broken["mse"] = "low";

@@ -1,4 +1,4 @@
-// Configs of the two networks, and what is said of their estimates.
+// Configs of the two networks, and the comparison of their estimates.
 #include "validate/retrain/retrain.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ struct Folder {
   ~Folder() { std::filesystem::remove_all(path); }
 };
 
-/// SEXS added with known values, as add_effect would give it: fitted to the first event, the second held out.
+/// SEXS added with known values, as by add_effect: fitted to the first event, the second held out.
 struct Example {
   plant::PlantModel before = example();
   std::vector<record::Record> records;
@@ -67,7 +67,7 @@ struct Example {
   }
 };
 
-TEST(Retrain, TheSecondDatasetHasTheEffectAndVariesWhatTheRecordsDecide) {
+TEST(Retrain, SecondDatasetContainsTheEffectAndVariesDeterminedParameters) {
   const Example x;
   const Folder folder;
   RetrainOptions options;
@@ -83,20 +83,20 @@ TEST(Retrain, TheSecondDatasetHasTheEffectAndVariesWhatTheRecordsDecide) {
   EXPECT_EQ(with.interval("vary.effects.SEXS.K"), std::pair(50.0, 200.0));
   for (Config* c : {&without, &with}) {
     EXPECT_EQ(c->require<std::int64_t>("draws"), 300);
-    EXPECT_EQ(c->interval("vary.box.H"), std::pair(1.0, 10.0));  // as the base config says
-    EXPECT_THAT(
-        c->require<std::vector<std::string>>("record.channels"),
-        ElementsAre("P", "Q", "V", "frequency", "speed", "Ifd"));  // recorded; Efd stands still without SEXS
+    EXPECT_EQ(c->interval("vary.box.H"), std::pair(1.0, 10.0));  // from the base config
+    EXPECT_THAT(c->require<std::vector<std::string>>("record.channels"),
+                ElementsAre("P", "Q", "V", "frequency", "speed",
+                            "Ifd"));  // recorded channels; Efd is constant without SEXS
     EXPECT_EQ(c->file("raw").filename(), "ieee14_genrou.raw");
     EXPECT_TRUE(c->file("raw").is_absolute());
   }
   Config experiment(sides[1].experiment);
   EXPECT_FALSE(experiment.has("table"));
   EXPECT_EQ(experiment.file("dataset").filename(), "dataset.toml");
-  EXPECT_EQ(experiment.require<double>("preset.retrain.end_s"), 10.0);  // 8 s behind the fault at 2 s
+  EXPECT_EQ(experiment.require<double>("preset.retrain.end_s"), 10.0);  // 8 s after the fault at 2 s
 }
 
-TEST(Retrain, WithoutADatasetThePlantStandsBehindLinesAtTheRecordsPoint) {
+TEST(Retrain, WithoutDatasetPlacesThePlantAtTheRecordsOperatingPoint) {
   const Example x;
   const Folder folder;
   const auto sides = write_retrain_configs(folder.path, x.before, x.added, x.records, {});
@@ -109,7 +109,7 @@ TEST(Retrain, WithoutADatasetThePlantStandsBehindLinesAtTheRecordsPoint) {
   EXPECT_EQ(plant->machine.p, x.before.plant.machine.p);
   EXPECT_EQ(plant->mva, x.before.plant.mva);
   const auto& start = x.added.prepared[0].start;
-  // the large machine's voltage was chosen for it; the power flow ends at 1e-8 pu or so
+  // The voltage of the large machine is chosen for that; the power flow converges to some 1e-8 pu.
   EXPECT_NEAR(plant->generation.real(), start.P, 1e-6);
   EXPECT_NEAR(plant->generation.imag(), start.Q, 1e-6);
   Problems problems;
@@ -145,7 +145,7 @@ calibrate::NetworkEstimate says(double H_one, double H_two, bool effect) {
   return e;
 }
 
-TEST(Retrain, ErrorsAreInDeviationsOfTheBoxOverUnseenEventsAlone) {
+TEST(Retrain, ErrorsAreScaledByThePriorAndUseUnseenEventsOnly) {
   const Example x;
   const calibrate::Truth truth = {{"GENROU.H", 6.54}, {"SEXS.K", 100.0}};
   const Retrained r = compare_networks({says(2, 3.54, false), says(9, 7.54, true)}, x.before, x.added, truth);
@@ -157,14 +157,14 @@ TEST(Retrain, ErrorsAreInDeviationsOfTheBoxOverUnseenEventsAlone) {
   ASSERT_EQ(r.parameters.size(), 2U);
   EXPECT_TRUE(r.parameters[1].own);
   EXPECT_NEAR(r.parameters[1].error[1], 10 / (150 / std::sqrt(12.0)), 1e-12);
-  // the plant with the exciter, H = 9 s of the event seen, is nearer than the one without it
+  // The plant with the exciter (H = 9 s from the fitted event) is nearer than the one without it.
   EXPECT_LT(r.events[1].rms[1], r.events[1].rms[0]);
   EXPECT_EQ(r.rms[1], r.events[1].rms[1]);
   EXPECT_THAT(terminal_report(r), HasSubstr("3 times less"));
   EXPECT_EQ(retrained_json(r)["parameters"].size(), 2U);
 }
 
-TEST(Retrain, NeedsAnUnseenEventAndASharedParameter) {
+TEST(Retrain, RequiresAnUnseenEventAndASharedParameter) {
   Example x;
   EXPECT_THAT(
       test::messages([&] {

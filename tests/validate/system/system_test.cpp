@@ -1,5 +1,4 @@
-// The whole grid against records of its terminals: the records are made by the same grid, as it is and
-// changed.
+// A whole grid against records of its terminals, simulated with the same grid, unchanged or modified.
 #include "validate/system/system.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +19,7 @@ namespace fs = std::filesystem;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// A folder with a system file and records, of one test's own.
+/// A temporary folder with a system file and records for each test.
 class SystemCompare : public ::testing::Test {
  protected:
   SystemCompare() {
@@ -32,11 +31,11 @@ class SystemCompare : public ::testing::Test {
   struct Truth {
     std::vector<std::string> attached;
     double t_on = 2, t_off = 2.1, noise = 2e-4, shift_V = 0;
-    int window = 0;       ///< samples to either side that a triangular filter takes in
-    int fine = 8;         ///< samples of the grid in one of the record
-    bool meters = false;  ///< frequency of a meter [Hz] in place of the angle
+    int window = 0;       ///< samples to either side in a triangular filter
+    int fine = 8;         ///< samples of the simulation per sample of the record
+    bool meters = false;  ///< a meter's frequency [Hz] in place of the angle
   };
-  /// Of every `fine`-th phasor, what is seen behind the filter.
+  /// Returns every `fine`-th phasor, filtered.
   static std::vector<Complex> seen(const std::vector<Complex>& fine, const Truth& truth) {
     std::vector<Complex> values;
     const int last = static_cast<int>(fine.size()) - 1;
@@ -58,7 +57,7 @@ class SystemCompare : public ::testing::Test {
       angle.push_back(angle.back() + std::remainder(std::arg(V[k]) - angle.back(), 2 * std::numbers::pi));
     return angle;
   }
-  /// What a meter makes of an angle [rad] at 60/s: the mean frequency over two intervals, with noise of 1
+  /// Returns a meter's frequency from an angle [rad] at 60/s: the mean over two intervals, with noise of 1
   /// mHz.
   static std::vector<double> metered(const std::vector<double>& angle, std::mt19937& random) {
     std::normal_distribution<double> noise(0, 1e-3);
@@ -70,8 +69,8 @@ class SystemCompare : public ::testing::Test {
     }
     return f;
   }
-  /// Records of plants 1, 2, 8 and bus 5 of IEEE 14 with governors and exciters, fault at bus 4; white noise
-  /// [pu].
+  /// Writes records of plants 1, 2, 8 and bus 5 of IEEE 14 with governors and exciters, fault at bus 4; white
+  /// noise [pu].
   void record(const Truth& truth) const {
     sim::grid::Grid grid =
         sim::grid::load_grid(test::source("configs/networks/ieee14_genrou.raw"),
@@ -126,7 +125,7 @@ class SystemCompare : public ::testing::Test {
           << (truth.meters ? frequency[k] : angle[k] + noise(random)) << '\n';
     }
   }
-  /// The file, with `from` replaced by `to`.
+  /// Writes the system file with `from` replaced by `to`.
   fs::path system(const std::string& from = "", const std::string& to = "") const {
     std::string text = R"(
 [system]
@@ -166,34 +165,34 @@ record = "bus5.csv"
     return folder / "system.toml";
   }
   const std::vector<std::string> same = {"all:TGOV1:R=0.05,T1=0.5", "all:SEXS"};
-  std::string instruments;  ///< a line of every terminal
+  std::string instruments;  ///< an additional line of every terminal
   fs::path folder;
 };
 
-TEST_F(SystemCompare, TheSameGridIsAdequate) {
+TEST_F(SystemCompare, SameGridIsAdequate) {
   record({.attached = same});
   const SystemCase s = load_system(system());
   const SystemComparison c = compare_system(s);
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   EXPECT_EQ(c.instants, (std::vector<double>{2.0, 2.1}));
-  ASSERT_EQ(c.terminals.size(), 4);  // in order of names: eight, five, one, two
+  ASSERT_EQ(c.terminals.size(), 4);  // sorted by name: eight, five, one, two
   std::vector<std::string> names;
   for (const auto& channel : c.terminals[3].channels) names.push_back(channel.name);
   EXPECT_EQ(names, (std::vector<std::string>{"V", "angle", "P", "Q"}));
-  EXPECT_EQ(c.terminals[2].channels[1].name, "frequency");  // the reference's own
+  EXPECT_EQ(c.terminals[2].channels[1].name, "frequency");  // the reference terminal's
   EXPECT_EQ(c.terminals[1].channels.size(), 2);             // a bus: V and angle
-  // nothing but the noise of 2e-4 that was added: its RMS scatters by 1/sqrt(2 * 601) = 3 %, four times that
-  // are allowed
+  // Only the added noise of 2e-4: its RMS scatters by 1/sqrt(2 * 601) = 3 %; the tolerance is four times
+  // that.
   for (const auto& channel : c.terminals[3].channels)
     if (channel.name != "angle") {
       EXPECT_NEAR(channel.whole.rms, 2e-4, 0.12 * 2e-4) << channel.name;
     }
-  // the angle's has that of the reference as well
+  // The angle also contains the noise of the reference.
   EXPECT_NEAR(c.terminals[3].channels[1].whole.rms, std::sqrt(2.0) * 2e-4, 0.12 * std::sqrt(2.0) * 2e-4);
   for (const auto& r : c.ranking) EXPECT_LT(r.worst, 1);
 }
 
-TEST_F(SystemCompare, MetersOfFrequencyWillDo) {
+TEST_F(SystemCompare, FrequencyMetersSuffice) {
   record({.attached = same, .noise = 1e-3, .meters = true});
   EXPECT_THAT(test::messages([&] { load_system(system()); }),
               Contains(HasSubstr("no angle in the record of one")));
@@ -209,8 +208,8 @@ TEST_F(SystemCompare, MetersOfFrequencyWillDo) {
   EXPECT_FALSE(wrong.adequacy.adequate);
   EXPECT_EQ(wrong.terminals[wrong.ranking.front().terminal].record.name, "two");
 }
-TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
-  // what a filter does to fast decays within the fault (0.002 pu of Q) lies below this noise
+TEST_F(SystemCompare, SameGridIsAdequate_BehindFilters) {
+  // The filter's effect on fast decays within the fault (0.002 pu of Q) lies below this noise.
   record({.attached = same, .t_on = 2.003, .t_off = 2.108, .noise = 1e-3, .window = 7});
   const SystemComparison c = compare_system(load_system(system("4:2.0:2.1", "4:2.003:2.108")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
@@ -219,11 +218,12 @@ TEST_F(SystemCompare, BehindFiltersTheSameGridIsAdequate) {
     EXPECT_LE(std::ranges::count(e.left_out, 1), 14) << e.record.name;
   }
 }
-/// 64 times as dense as the record, switched half-way between two samples: a triangle over two cycles.
+/// A simulation 64 times as dense as the record, switched half-way between two of its samples; a triangle
+/// over two cycles.
 constexpr double kTick = 1.0 / 3840, kOn = 7692.5 * kTick, kOff = 8096.5 * kTick;
 constexpr int kWindow = 63, kFineness = 64;
 
-TEST_F(SystemCompare, BehindDeclaredFiltersTheSameGridIsAdequateAtLittleNoise) {
+TEST_F(SystemCompare, SameGridIsAdequate_BehindDeclaredFiltersAtLowNoise) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto given = fmt::format("4:{:.7f}:{:.7f}", kOn, kOff);
   const SystemComparison undeclared = compare_system(load_system(system("4:2.0:2.1", given)));
@@ -232,17 +232,18 @@ TEST_F(SystemCompare, BehindDeclaredFiltersTheSameGridIsAdequateAtLittleNoise) {
   const SystemComparison c = compare_system(load_system(system("4:2.0:2.1", given)));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   for (const auto& e :
-       c.terminals) {  // a cycle of 50 Hz and a quarter of a sample to either side of two jumps
+       c.terminals) {  // a cycle of 50 Hz and a quarter of a sample to either side of two steps
     EXPECT_GE(std::ranges::count(e.left_out, 1), 4) << e.record.name;
     EXPECT_LE(std::ranges::count(e.left_out, 1), 6) << e.record.name;
   }
-  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as TheSameGridIsAdequate
+  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as SameGridIsAdequate
 }
-TEST_F(SystemCompare, DeclaredFiltersTellTheInstants) {
+TEST_F(SystemCompare, DeclaredFiltersGiveSwitchingTimes) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto found = system("[event]", "[event]\ninstants = \"found\"");
   const SystemComparison undeclared = compare_system(load_system(found));
-  EXPECT_NEAR(undeclared.instants[0], kOn, 2e-3);  // by what follows the smeared samples: 0.6 and 0.4 ms off
+  EXPECT_NEAR(undeclared.instants[0], kOn,
+              2e-3);  // from the samples after the filtered ones: 0.6 and 0.4 ms off
   EXPECT_NEAR(undeclared.instants[1], kOff, 2e-3);
   instruments = "instruments = [\"PMUFILTER\"]\n";
   const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
@@ -250,7 +251,7 @@ TEST_F(SystemCompare, DeclaredFiltersTellTheInstants) {
   EXPECT_NEAR(c.instants[0], kOn, 1e-4);
   EXPECT_NEAR(c.instants[1], kOff, 1e-4);
 }
-TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
+TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
   std::vector<std::string> changed = {"1:TGOV1:R=0.05,T1=0.5", "3:TGOV1:R=0.05,T1=0.5",
                                       "6:TGOV1:R=0.05,T1=0.5", "8:TGOV1:R=0.05,T1=0.5",
                                       "2:TGOV1:R=0.02,T1=0.2", "all:SEXS"};
@@ -274,36 +275,36 @@ TEST_F(SystemCompare, AChangedGovernorIsNamedFirstAlthoughAllTerminalsSwing) {
   EXPECT_THAT(system_html(s, c, {}), HasSubstr("P residual"));
 }
 
-TEST_F(SystemCompare, AnErrorOfTheGridIsNoPlantsFault) {
+TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   record({.attached = same});
-  // the simulation has the fault behind an impedance: the records know nothing of it
+  // The simulation has the fault behind an impedance, the records have not.
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
   const SystemComparison c = compare_system(s);
   EXPECT_FALSE(c.adequacy.adequate);
   EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
 }
 
-TEST_F(SystemCompare, InstantsAreFoundBetweenTheSamples) {
+TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
   record({.attached = same, .t_on = 2.013, .t_off = 2.107});
   const SystemComparison given = compare_system(load_system(system()));
   EXPECT_FALSE(given.adequacy.adequate);
   const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
-  // Half a sample is 8.3 ms; P and Q after the fault tell it to a twentieth of that.
+  // Half a sample is 8.3 ms; P and Q after the fault determine the time to 5 % of that.
   EXPECT_NEAR(c.instants[0], 2.013, 4e-4);
   EXPECT_NEAR(c.instants[1], 2.107, 4e-4);
 }
 
-TEST_F(SystemCompare, AnotherClockIsNoticed) {
+TEST_F(SystemCompare, DetectsClockOffset) {
   record({.attached = same, .t_on = 2.053, .t_off = 2.153});
   const SystemComparison c = compare_system(load_system(system()));
   EXPECT_FALSE(c.adequacy.adequate);
   EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's instants")));
-  // the plants are played in with their records' own jumps, so none of them is blamed
+  // The plants are played in with the steps of their own records, so no plant is named.
   EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
 }
 
-TEST_F(SystemCompare, ASteadyDifferenceIsJudgedOrTakenOff) {
+TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {
   record({.attached = same, .shift_V = 0.003});
   const SystemComparison judged = compare_system(load_system(system()));
   EXPECT_FALSE(judged.adequacy.adequate);
@@ -315,9 +316,9 @@ TEST_F(SystemCompare, ASteadyDifferenceIsJudgedOrTakenOff) {
   EXPECT_TRUE(shifted.adequacy.adequate) << shifted.adequacy.sentence;
 }
 
-TEST_F(SystemCompare, TerminalsMayHaveBeenSampledAtOtherInstants) {
+TEST_F(SystemCompare, AcceptsTerminalsSampledAtOtherTimes) {
   record({.attached = same});
-  // every second sample of plant 2, from the third on
+  // Every second sample of plant 2, from the third on.
   std::ifstream in(folder / "plant2.csv");
   std::string line, kept;
   for (int k = -1; std::getline(in, line); ++k)
@@ -330,7 +331,7 @@ TEST_F(SystemCompare, TerminalsMayHaveBeenSampledAtOtherInstants) {
               Contains(HasSubstr("angles sampled at other instants")));
 }
 
-TEST_F(SystemCompare, BadInputIsNamed) {
+TEST_F(SystemCompare, ReportsBadInput) {
   record({.attached = same});
   const std::pair<std::pair<const char*, const char*>, const char*> cases[] = {
       {{"4:2.0:2.1", "99:2.0:2.1"}, "no bus 99"},
@@ -353,7 +354,7 @@ TEST_F(SystemCompare, BadInputIsNamed) {
     EXPECT_THAT(test::messages([&, &change = change] { load_system(system(change.first, change.second)); }),
                 Contains(HasSubstr(words)))
         << change.first;
-  // before the run begins, and with nothing before it
+  // Before the start of the run, and without a pre-event.
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:-1:2.1"))); }),
               Contains(HasSubstr("a run starts at 0 s")));
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:0.01:2.1"))); }),

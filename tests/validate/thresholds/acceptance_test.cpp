@@ -1,4 +1,4 @@
-// Limits of fitness: presets, files and what is wrong with them, and the exit codes.
+// Limits of fitness: presets, files and their errors, and exit codes.
 #include "validate/thresholds/acceptance.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ std::string refused(const std::string& text) {
   return "";
 }
 
-TEST(Acceptance, TheDefaultIsThePresetForMeasuredReferences) {
+TEST(Acceptance, DefaultIsThePresetForMeasuredReferences) {
   const Acceptance a = read_acceptance("");
   EXPECT_EQ(a.name, "dtr-test");
   EXPECT_EQ(a.of(0, Phase::fault).mxe, dtr_test.fault_mxe.value);
@@ -34,7 +34,7 @@ TEST(Acceptance, TheDefaultIsThePresetForMeasuredReferences) {
   EXPECT_EQ(read_acceptance("dtr-simulation").of(0, Phase::post_fault).mae, 3);
 }
 
-TEST(Acceptance, AFileMayChangeAPreset) {
+TEST(Acceptance, FileModifiesAPreset) {
   const Acceptance a = parse_acceptance(
       std::string(kHead) +
           "preset = \"dtr-test\"\n[Q.fault]\nmxe = 15\n[left_out]\nafter_clearing = 0.5\n[movement]\nerror = 12\n",
@@ -48,7 +48,7 @@ TEST(Acceptance, AFileMayChangeAPreset) {
   EXPECT_EQ(a.after_fault, 0.02);
 }
 
-TEST(Acceptance, AllFaultsOfAFileAreToldAtOnce) {
+TEST(Acceptance, ReportsAllFaultsOfAFileAtOnce) {
   const std::string text = refused(std::string(kHead) +
                                    "preset = \"dtr-test\"\n[P.fault]\nmxe = nan\nme = 0\nmae = -1\nmax = 3\n"
                                    "[left_out]\nafter_fault = 0.2\n");
@@ -57,7 +57,7 @@ TEST(Acceptance, AllFaultsOfAFileAreToldAtOnce) {
     EXPECT_THAT(text, HasSubstr(part)) << text;
 }
 
-TEST(Acceptance, WithoutAPresetEveryLimitIsGiven) {
+TEST(Acceptance, RequiresEveryLimit_WithoutAPreset) {
   const std::string text = refused(kHead);
   for (const char* part : {"P.pre_fault.mxe", "P.fault.me", "Q.post_fault.mae"})
     EXPECT_THAT(text, HasSubstr(part));
@@ -65,7 +65,7 @@ TEST(Acceptance, WithoutAPresetEveryLimitIsGiven) {
   EXPECT_THAT(refused(std::string(kHead) + "preset = \"nerc\"\n"), HasSubstr("dtr-simulation"));
 }
 
-TEST(Acceptance, AnUnknownNameListsThePresets) {
+TEST(Acceptance, ListsThePresetsForUnknownName) {
   try {
     read_acceptance("nonesuch");
     FAIL() << "taken";
@@ -74,7 +74,7 @@ TEST(Acceptance, AnUnknownNameListsThePresets) {
   }
 }
 
-TEST(Acceptance, TheErrorNearestToItsLimitIsNamed) {
+TEST(Acceptance, NamesTheErrorNearestToItsLimit) {
   const Errors limits{8, 4, 7};
   EXPECT_EQ(nearest({4, -3.9, 1}, limits).name, "ME");
   EXPECT_EQ(exceeding({8, -4, 7}, limits), 0);
@@ -84,7 +84,7 @@ TEST(Acceptance, TheErrorNearestToItsLimitIsNamed) {
   EXPECT_EQ(nearest({nan, 0, 0}, limits).name, "MXE");
 }
 
-TEST(Acceptance, ExitCodesTellBothVerdicts) {
+TEST(Acceptance, ExitCodesEncodeBothVerdicts) {
   EXPECT_EQ(exit_code(true, true), 0);
   EXPECT_EQ(exit_code(false, false), 3);
   EXPECT_EQ(exit_code(false, true), 4);

@@ -1,4 +1,4 @@
-// Which criterion decides whether a model is adequate, at its limit and beside it.
+// The criterion that decides whether a model is adequate, at its limit and next to it.
 #include "validate/thresholds/adequacy.hpp"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ struct Event {
   double after, limit;
 };
 
-TEST(Adequacy, OneCellBeyondItsBoundIsEnough) {
+TEST(Adequacy, OneBinBeyondItsBoundIsEnough) {
   EXPECT_TRUE(judged_by_cells(0, 405).adequate);
   const Ruling one = judged_by_cells(1, 405);
   EXPECT_FALSE(one.adequate);
@@ -23,12 +23,12 @@ TEST(Adequacy, OneCellBeyondItsBoundIsEnough) {
   EXPECT_EQ(one.where, "of 405");
 }
 
-TEST(Adequacy, AnEventsLimitIsAtLeastWhatInterpolationLeaves) {
+TEST(Adequacy, EventLimitIsAtLeastTheInterpolationError) {
   EXPECT_DOUBLE_EQ(event_limit(0.01, 1.12), 1.12);
   EXPECT_DOUBLE_EQ(event_limit(0.1, 1.12), 1 + 3.09 * 0.1);
 }
 
-TEST(Adequacy, TheEventFurthestOffItsOwnLimitDecides) {
+TEST(Adequacy, EventWithTheLargestRatioToItsLimitDecides) {
   const std::vector<Event> events = {{"a", 1.19, 1.2}, {"b", 1.14, 1.12}, {"c", 1.3, 1.4}};
   const Ruling ruling = judged_by_events(events);
   EXPECT_FALSE(ruling.adequate);
@@ -39,7 +39,7 @@ TEST(Adequacy, TheEventFurthestOffItsOwnLimitDecides) {
   EXPECT_FALSE(judged_by_events(std::vector<Event>{{"b", 1.14, 1.12}, {"a", 1.1, 1.2}}).adequate);
 }
 
-TEST(Adequacy, AnEventThatCannotBeComparedIsNotAdequate) {
+TEST(Adequacy, IncomparableEventIsInadequate) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(judged_by_events(std::vector<Event>{{"a", nan, 1.2}, {"b", 1.0, 1.2}}).adequate);
 }
@@ -68,7 +68,7 @@ TEST(Adequacy, DiagnoseNamesTheFirstCriterionThatFails) {
   EXPECT_FALSE(by(r).adequate);
 }
 
-TEST(Adequacy, ANamedEffectDecidesByItsEvidence) {
+TEST(Adequacy, NamedEffectIsJudgedByItsEvidence) {
   const Ruling ruling = judged_by_evidence("SEXS", 1234.5);
   EXPECT_FALSE(ruling.adequate);
   EXPECT_EQ(ruling_json(ruling).at("criterion"), "named_effect");

@@ -1,4 +1,4 @@
-// Blind cases: what is in them, what is not, and whether the same seed gives the same one.
+// Blind cases: their content, what they must not reveal, and reproducibility by seed.
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -33,7 +33,7 @@ std::string all_csv(const BlindCase& made) {
   return text;
 }
 
-/// How far each parameter of the model is off.
+/// Expects every free parameter of the model to be off by the configured factor.
 void expect_misled(const BlindCase& made, const BlindConfig& config) {
   for (std::size_t k = 0; k < made.truth.machine.p.size(); ++k) {
     const double right = made.truth.machine.p[k];
@@ -60,15 +60,15 @@ TEST(BlindCase, HidesTheEffectInTheTruthOnly) {
   expect_misled(made, config);
 }
 
-TEST(BlindCase, SizeIsTheOneAskedFor) {
+TEST(BlindCase, ReachesTheRequestedSize) {
   const BlindCase made = make(tiny(), "FORCEDOSC", 6);
   ASSERT_EQ(made.hidden.size(), 1U);
   EXPECT_DOUBLE_EQ(made.hidden[0].wanted, 60.0);
-  EXPECT_NEAR(made.hidden[0].left, 60.0, 6.0);  // sizes are sought to 10 %
+  EXPECT_NEAR(made.hidden[0].left, 60.0, 6.0);  // sizes are found to 10 %
   EXPECT_GT(made.hidden[0].scale, 0.0);
 }
 
-TEST(BlindCase, NothingHiddenIsWrongParametersOnly) {
+TEST(BlindCase, HasOnlyWrongParameters_WhenNothingIsHidden) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "");
   EXPECT_TRUE(made.hidden.empty());
@@ -76,7 +76,7 @@ TEST(BlindCase, NothingHiddenIsWrongParametersOnly) {
   expect_misled(made, config);
 }
 
-TEST(BlindCase, SameSeedSameBytes) {
+TEST(BlindCase, IsReproducibleFromItsSeed) {
   const BlindConfig config = tiny();
   const BlindCase a = make(config, "sawtooth"), b = make(config, "sawtooth");
   EXPECT_EQ(all_csv(a), all_csv(b));
@@ -84,7 +84,7 @@ TEST(BlindCase, SameSeedSameBytes) {
   EXPECT_NE(all_csv(a), all_csv(make_blind_case(config, other)));
 }
 
-TEST(BlindCase, SwitchingsLieOffTheSamples) {
+TEST(BlindCase, SwitchingsLieBetweenSamples) {
   const BlindCase made = make(tiny(), "");
   ASSERT_EQ(made.events.size(), 3U);
   for (const auto& event : made.events)
@@ -94,7 +94,7 @@ TEST(BlindCase, SwitchingsLieOffTheSamples) {
     }
 }
 
-/// The largest move of V from sample to sample before the event.
+/// Largest change of V from sample to sample before the event.
 double largest_move(const record::Record& r, double until) {
   double most = 0;
   for (std::size_t k = 1; k < r.t.size() && r.t[k] < until; ++k)
@@ -102,7 +102,7 @@ double largest_move(const record::Record& r, double until) {
   return most;
 }
 
-TEST(BlindConditions, RateAndBeginningAreWhatTheySay) {
+TEST(BlindConditions, RateAndPreEventLengthAreAsStated) {
   BlindConfig config = tiny();
   config.conditions.rates = {30.0};
   config.conditions.short_share = 1.0;
@@ -115,9 +115,9 @@ TEST(BlindConditions, RateAndBeginningAreWhatTheySay) {
     EXPECT_GT(before, 0.2 - 1.0 / 30);
   }
 }
-TEST(BlindConditions, LoadsThatMoveShowInTheVoltage) {
+TEST(BlindConditions, AmbientLoadMovesTheVoltage) {
   BlindConfig config = tiny();
-  config.noise = {1e-9};  // of which a tenth is on V
+  config.noise = {1e-9};  // a tenth of it on V
   const BlindCase quiet = make(config, "");
   config.conditions.ambient_share = 1.0;
   config.conditions.ambient = {0.005, 0.005};
@@ -127,7 +127,7 @@ TEST(BlindConditions, LoadsThatMoveShowInTheVoltage) {
     EXPECT_GT(largest_move(moved.records[e], moved.events[e].switchings.front()), 1e-5);
   }
 }
-TEST(BlindConditions, ADipHasNoSwitchingAndLetsTheFrequencyFall) {
+TEST(BlindConditions, FrequencyDipHasNoSwitching) {
   BlindConfig config = tiny();
   config.noise = {1e-9};
   config.controlled_share = config.channels_share = 1.0;
@@ -136,15 +136,14 @@ TEST(BlindConditions, ADipHasNoSwitchingAndLetsTheFrequencyFall) {
   EXPECT_TRUE(made.events.back().switchings.empty());
   const record::Record& dip = made.records.back();
   EXPECT_GE(dip.t.back(), 26.5 - dip.step());  // 1.5 s, a dip of 20 s at least, 5 s
-  // at most 5 % of the load in 10 s: a sample moves by far less than a fault's 0.05 pu
+  // At most 5 % of the load in 10 s: the change per sample is far below a fault's 0.05 pu.
   EXPECT_LT(largest_move(dip, dip.t.back()), 0.005);
-  // 2 % of the load and more, on droops of some 0.05 pu, let the speed fall by some 0.001 pu; then it comes
-  // back
+  // At least 2 % of the load, at droops of some 0.05 pu, lowers the speed by some 0.001 pu; it then recovers.
   const double lowest = *std::ranges::min_element(dip.speed);
   EXPECT_LT(lowest, -3e-4);
   EXPECT_LT(std::abs(dip.speed.back()), -0.5 * lowest);
 }
-TEST(BlindConditions, AnotherMachineTakesTheValuesOfItsNames) {
+TEST(BlindConditions, OtherMachineTakesValuesByParameterName) {
   BlindConfig config = tiny();
   config.conditions.machines = {"GENSAL"};
   const BlindCase made = make(config, "");
@@ -153,7 +152,7 @@ TEST(BlindConditions, AnotherMachineTakesTheValuesOfItsNames) {
   EXPECT_THAT(made.conditions, testing::Contains("GENSAL"));
   expect_misled(made, config);
 }
-TEST(BlindConditions, AShareWithoutWhatItSpeaksOfIsRefused) {
+TEST(BlindConditions, RefusesShareWithoutItsValues) {
   const fs::path file = fs::path(testing::TempDir()) / ("conditions_" + std::to_string(::getpid()) + ".toml");
   std::ifstream in(test::source("configs/blind/tiny.toml"));
   std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -186,14 +185,14 @@ TEST(BlindConditions, AShareWithoutWhatItSpeaksOfIsRefused) {
   }
   fs::remove(file);
 }
-/// A converter plant's value of that name.
+/// Value of this name in a converter plant.
 double value(const sim::plant::Plant& plant, const std::string& effect, const char* parameter) {
   for (const sim::plant::Block& b : plant.controls)
     if (b.effect->name == effect) return b.p[static_cast<std::size_t>(b.effect->parameter_index(parameter))];
   ADD_FAILURE() << "no " << effect;
   return 0;
 }
-TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
+TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
   BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
   config.conditions.rates = {60.0};
   config.faults = config.frequency_events = 1;
@@ -211,21 +210,21 @@ TEST(BlindConverter, ASwitchOrAValueOfItsControlsIsHidden) {
   EXPECT_NEAR(value(wrong.truth, "REPCA1", "Ki"), std::pow(10.0, wrong.hidden[0].scale), 1e-12);
   EXPECT_THAT(wrong.hidden[0].kind->answers, testing::ElementsAre("REPCA1.Ki"));
 }
-/// A plant that feeds in a current has no voltage of its own beside a bolted fault.
-TEST(BlindConverter, AFaultLeavesAVoltageThatHasAnAngle) {
+/// A plant that injects a current has no voltage of its own next to a bolted fault.
+TEST(BlindConverter, FaultVoltageKeepsAnAngle) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
   const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
   for (const record::Record& record : made.records)
     EXPECT_GT(*std::ranges::min_element(record.V), 0.02 - 1e-3);  // ten times the noise
 }
-TEST(BlindConditions, NoneTakesNoDraw) {
+TEST(BlindConditions, ZeroShareUsesNoRandomNumbers) {
   const BlindConfig config = tiny();
   BlindConfig unused = config;
-  unused.conditions.ambient = {0.1, 0.1};  // with a share of 0
+  unused.conditions.ambient = {0.1, 0.1};  // its share is 0
   EXPECT_EQ(all_csv(make(config, "sawtooth")), all_csv(make(unused, "sawtooth")));
 }
 
-TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
+TEST(BlindCase, FolderDoesNotRevealTheTruth) {
   const BlindConfig config = tiny();
   const BlindCase made = make(config, "FORCEDOSC");
   const fs::path folder = fs::path(testing::TempDir()) / ("blind_case_" + std::to_string(::getpid()));
@@ -239,10 +238,10 @@ TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("FORCEDOSC")));
   }
   EXPECT_THAT(names, testing::ElementsAre("event1.csv", "event2.csv", "event3.csv", "model.toml"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "cases"), {}), 1);  // nothing half-written is left
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "cases"), {}), 1);  // no partial output
 
   const plant::PlantModel model = plant::load_plant_model(folder / "cases" / "c0001" / "model.toml");
-  EXPECT_EQ(model.plant.machine.p, made.model.machine.p);  // to the last bit
+  EXPECT_EQ(model.plant.machine.p, made.model.machine.p);  // exactly
   const record::Record record =
       record::read_record(folder / "cases" / "c0001" / "event1.csv", model.record_base);
   EXPECT_EQ(record.samples(), 361);
@@ -250,7 +249,7 @@ TEST(BlindCase, FolderHoldsNothingOfTheTruth) {
   fs::remove_all(folder);
 }
 
-TEST(BlindCase, NoiseIsTheStatedOne) {
+TEST(BlindCase, NoiseHasTheStatedDeviation) {
   record::Record record;
   record.P.assign(20'000, 0.0);
   record.Q = record.V = record.theta = record.speed = record.Ifd = record.P;
@@ -261,14 +260,14 @@ TEST(BlindCase, NoiseIsTheStatedOne) {
     for (const double value : x) sum += value * value;
     return std::sqrt(sum / static_cast<double>(x.size()));
   };
-  // 20,000 draws give a standard deviation to 0.5 %; four of these.
+  // 20,000 draws give a standard deviation to 0.5 %; the tolerance is four of these.
   EXPECT_NEAR(deviation(record.P), 0.006, 0.02 * 0.006);  // 0.2 % of 300 MVA on 100 MVA
   EXPECT_NEAR(deviation(record.V), 0.0002, 0.02 * 0.0002);
   EXPECT_NEAR(deviation(record.theta), 0.0002, 0.02 * 0.0002);
   EXPECT_NEAR(deviation(record.speed), 2e-5, 0.02 * 2e-5);
 }
 
-/// A run of constant phasors with a step of P at the middle.
+/// A run of constant phasors with a step of P in the middle.
 sim::reference::ReferenceRun step_of_power(double rate, int samples) {
   sim::reference::ReferenceRun run;
   run.rate = rate;
@@ -284,7 +283,7 @@ sim::reference::ReferenceRun step_of_power(double rate, int samples) {
   return run;
 }
 
-/// What instruments make of such a step at 960/s: two seconds, on 100 MVA.
+/// Such a step at 960/s as the instruments record it: two seconds, on 100 MVA.
 record::Record step_as_measured(const Conditions& conditions) {
   BlindEvent event;
   event.seconds = 2.0;
@@ -296,7 +295,8 @@ record::Record step_as_measured(const Conditions& conditions) {
 TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
   const record::Record plain = step_as_measured({.rate = 960.0});
   const record::Record filtered = step_as_measured({.rate = 960.0, .filter = Filter::class_p});
-  // 15 samples to either side at 16 samples a cycle; rounding of a weighted sum elsewhere.
+  // The window covers 15 samples to either side at 16 samples a cycle; elsewhere only the weighted sum
+  // rounds.
   for (int k = 0; k <= 1920; ++k) {
     const bool away = k < 1000 - 15 || k >= 1000 + 15;
     if (away) {
@@ -307,16 +307,16 @@ TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
   EXPECT_GT(filtered.P[990], 0.5 + 1e-4);
 }
 
-TEST(BlindRecord, FilterOfClassMIsAsLongAsTheStandardSays) {
+TEST(BlindRecord, ClassMFilterHasTheLengthOfTheStandard) {
   const record::Record filtered = step_as_measured({.rate = 60.0, .filter = Filter::class_m});
-  // order 164 at 16 samples a cycle: 85.4 ms to either side of the step at 1.0417 s, in samples of 1/60 s
+  // Order 164 at 16 samples a cycle: 85.4 ms to either side of the step at 1.0417 s, in samples of 1/60 s.
   const auto moved = [&](std::size_t k) { return std::abs(filtered.P[k] - 0.5); };
   EXPECT_LT(moved(57), 1e-12);  // 92 ms before: rounding of a weighted sum
   EXPECT_GT(moved(58), 1e-9);   // 75 ms before: a thousand times that
   EXPECT_NEAR(filtered.P[68], 0.7, 1e-12);
 }
 
-TEST(BlindEffects, OddOnesAreInNoList) {
+TEST(BlindEffects, UnlistedEffectsAreInNoList) {
   EXPECT_GE(unlisted_effects().size(), 5U);
   for (const auto& unlisted : unlisted_effects()) {
     EXPECT_EQ(sim::library::compiled().find(unlisted.name), nullptr) << unlisted.name;
@@ -324,7 +324,7 @@ TEST(BlindEffects, OddOnesAreInNoList) {
   }
 }
 
-TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
+TEST(BlindPlan, HasTheMixtureOfTheConfigInRandomOrder) {
   const BlindConfig config = load_blind_config(test::source("configs/blind/cases.toml"));
   const BlindPlan plan = plan_blind(config, {}, 500, 4, 0);
   int none = 0, listed = 0, unlisted = 0, pairs = 0, first_none = 0;
@@ -347,7 +347,7 @@ TEST(BlindPlan, IssueMixtureAndNoOrderThatTells) {
   for (std::size_t k = 0; k < plan.cases.size(); ++k) EXPECT_EQ(plan.cases[k].hidden, again.cases[k].hidden);
 }
 
-TEST(BlindPlan, UnknownKindsAreNamedTogether) {
+TEST(BlindPlan, ReportsAllUnknownKindsTogether) {
   const BlindConfig config = tiny();
   const auto all = test::messages([&] { plan_blind(config, {"SEX", "FORCED"}, 2, 1, 0); });
   ASSERT_EQ(all.size(), 2U);

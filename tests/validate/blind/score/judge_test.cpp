@@ -1,4 +1,4 @@
-// What a judge sees of a case.
+// The record of a case as the judge receives it.
 #include "validate/blind/score/judge.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the right plant leaves of the records that are seen [chi2 per value].
+/// Residual of the right plant in the recorded channels [chi2 per value].
 double left_by(const cases::BlindCase& made, const fs::path& folder) {
   SeenCase seen = read_seen_case(folder);
   seen.model.plant.machine.p = made.truth.machine.p;
@@ -22,7 +22,7 @@ double left_by(const cases::BlindCase& made, const fs::path& folder) {
   return fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).reduced_chi2();
 }
 
-TEST(SeenCase, TheUnitThatIsRecordedWithItIsTakenOff) {
+TEST(SeenCase, SubtractsTheSecondRecordedUnit) {
   cases::BlindConfig config = cases::load_blind_config(test::source("configs/blind/tiny.toml"));
   config.conditions.second_unit_share = 1.0;
   config.channels_share = 0.0;
@@ -32,7 +32,7 @@ TEST(SeenCase, TheUnitThatIsRecordedWithItIsTakenOff) {
   const fs::path run = fs::path(testing::TempDir()) / ("seen_case_" + std::to_string(::getpid()));
   fs::remove_all(run);
   cases::write_blind_case(made, config, "c0001", run / "c0001", run / "truth.json");
-  // instants alone are fitted, so that little more than noise is left where the right unit stands alone
+  // Only the switching times are fitted: the right unit alone leaves little more than noise.
   EXPECT_LT(left_by(made, run / "c0001"), 1.2);
   fs::remove(run / "c0001" / "point.toml");
   EXPECT_GT(left_by(made, run / "c0001"), 100.0);

@@ -1,4 +1,4 @@
-// Probabilities held against the truth, by hand.
+// Reliability of stated probabilities, computed by hand.
 #include "validate/blind/score/reliability.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ TEST(Reliability, CountsEightOfTenAsEightyPerCent) {
   EXPECT_NEAR(r.bins[4].mean, 0.8, 1e-12);
   EXPECT_EQ(r.bins[1].right.hits, 2);  // the second explanation, at 20 %
 }
-TEST(Reliability, TheErrorIsWhatIsSaidTooMuch) {
+TEST(Reliability, ErrorIsMeanOverconfidence) {
   std::vector<Forecast> all;
   for (int k = 0; k < 20; ++k) all.push_back(forecast(0.95, k < 10));
   const Reliability r = reliability(all);
@@ -30,15 +30,15 @@ TEST(Reliability, TheErrorIsWhatIsSaidTooMuch) {
   EXPECT_LT(r.error_low, 0.45);
   EXPECT_GT(r.error_high, 0.45);
 }
-TEST(Reliability, TheSetGrowsUntilItMakesUpNinetyFivePerCent) {
+TEST(Reliability, SetSumsToNinetyFivePerCent) {
   const Reliability r = reliability({forecast(0.97, true), forecast(0.97, false), forecast(0.6, false),
-                                     forecast(0.6, true, false)});  // the last one is none of the list
+                                     forecast(0.6, true, false)});  // the last truth is not in the list
   ASSERT_EQ(r.sets.size(), 1U);
   EXPECT_EQ(r.sets[0].second.holds.n, 3);
   EXPECT_EQ(r.sets[0].second.holds.hits, 2);
   EXPECT_NEAR(r.sets[0].second.mean_size, 4.0 / 3, 1e-12);
 }
-TEST(Reliability, WithoutProbabilitiesNothingIsSaid) {
+TEST(Reliability, IsEmpty_WithoutProbabilities) {
   EXPECT_EQ(reliability_markdown(reliability({Forecast{}})), "");
   EXPECT_THAT(reliability_markdown(reliability({forecast(0.8, true)})),
               testing::HasSubstr("| 70–90 % | 80 % | 100 % (1 of 1; 21–100 %) |"));

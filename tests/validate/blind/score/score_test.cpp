@@ -1,4 +1,4 @@
-// Scores of blind runs, from truths and verdicts written by hand.
+// Scores of blind runs from hand-written truths and verdicts.
 #include "validate/blind/score/score.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ class BlindScoring : public testing::Test {
 };
 
 TEST(BlindRate, WilsonInterval) {
-  // Values of the closed form by hand: 10 of 10 gives 1/(1 + z^2/10); 5 of 10 is symmetric about a half.
+  // Closed form by hand: 10 of 10 gives 1/(1 + z^2/10); 5 of 10 is symmetric about a half.
   const Rate all{10, 10}, half{5, 10}, none{};
   EXPECT_NEAR(all.low(), 0.72247, 1e-5);
   EXPECT_DOUBLE_EQ(all.high(), 1.0);
@@ -69,7 +69,7 @@ TEST_F(BlindScoring, CountsEachRate) {
   add({sexs}, {"missing", {"sexs"}, {}, "excitation", 1});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 2});
   add({sexs}, {"confusable", {"EXST1"}, {"EXST1", "SEXS"}, "excitation", 3});
-  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1});  // below 2 limits: not asked
+  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1});  // below 2 limits: excluded
   add({}, {"adequate", {}, {}, "none", 1});
   add({}, {"missing", {"SEXS"}, {}, "excitation", 1});
   add({{"saw", "mechanical", "saw", 5, false}}, {"unexplained", {}, {}, "mechanical", 1});
@@ -93,7 +93,7 @@ TEST_F(BlindScoring, CountsEachRate) {
   EXPECT_DOUBLE_EQ(s.longest_seconds, 9.0);
 }
 
-TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
+TEST_F(BlindScoring, CountsRightVerdictsByCondition) {
   const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, unlisted{"sawtooth", "mechanical", "ODD", 3, false};
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1}, false, {"30/s", "class M"});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 1}, false, {"30/s"});
@@ -101,7 +101,7 @@ TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
       {"30/s"});  // below 2 limits
   add({}, {"adequate", {}, {}, "none", 1}, false, {"30/s"});
   add({unlisted}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
-  add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // as outside the list
+  add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // counts as unlisted
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1});
   const BlindScore s = score();
   ASSERT_EQ(s.by_condition.size(), 2U);
@@ -116,7 +116,7 @@ TEST_F(BlindScoring, CountsWhatIsRightUnderEachCondition) {
   EXPECT_THAT(score_markdown(s), testing::HasSubstr("| class M | – | 100.0 % (1 of 1;"));
 }
 
-TEST_F(BlindScoring, AWrongValueIsToBeNamedAndNothingIsMissing) {
+TEST_F(BlindScoring, WrongValueMustBeNamedWithoutMissingEffect) {
   const Hidden gain{"Ki", "none", "REPCA1.Ki", 5, true, true};
   BlindVerdict named{"adequate", {}, {}, "none", 1};
   named.wrong = {"REPCA1.Ki"};
@@ -135,7 +135,7 @@ TEST_F(BlindScoring, AWrongValueIsToBeNamedAndNothingIsMissing) {
   EXPECT_EQ(s.by_condition.at("30/s").value.hits, 2);
   EXPECT_EQ(s.by_condition.at("30/s").one.n, 0);
 }
-TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {
+TEST_F(BlindScoring, PairIsInTheSet_WhenOneEntryNamesBoth) {
   const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, droop{"TGOV1", "mechanical", "TGOV1", 3};
   const auto in_set = [&](const BlindVerdict& verdict) {
     add({sexs, droop}, verdict);
@@ -152,7 +152,7 @@ TEST_F(BlindScoring, APairIsInTheSetWhereOneEntryNamesBoth) {
   EXPECT_EQ(s.rates.at("two effects: both named or in the set").hits, 1);
 }
 
-TEST_F(BlindScoring, ProbabilitiesAreHeldAgainstTheTruth) {
+TEST_F(BlindScoring, ComparesProbabilitiesWithTheTruth) {
   const Hidden sexs{"SEXS", "excitation", "SEXS", 5}, droop{"TGOV1", "mechanical", "TGOV1", 3};
   const auto says = [](std::vector<std::pair<std::string, double>> probabilities) {
     BlindVerdict v{"confusable", {"EXST1"}, {"SEXS"}, "excitation", 1};
@@ -174,7 +174,7 @@ TEST_F(BlindScoring, ProbabilitiesAreHeldAgainstTheTruth) {
   EXPECT_EQ(score_json(s)["probabilities"]["sets"]["P, Q only"]["mean_size"], 3.0);
   EXPECT_THAT(score_markdown(s), testing::HasSubstr("## Are the probabilities true?"));
 }
-TEST_F(BlindScoring, ProbabilitiesOutOfOrderAreRefused) {
+TEST_F(BlindScoring, RefusesUnorderedProbabilities) {
   BlindVerdict v{"missing", {"SEXS"}, {}, "excitation", 1};
   v.probabilities = {{"none of these", 0.1}, {"SEXS", 0.9}};
   add({{"SEXS", "excitation", "SEXS", 5}}, v);
@@ -183,14 +183,14 @@ TEST_F(BlindScoring, ProbabilitiesOutOfOrderAreRefused) {
   EXPECT_THAT(all[0], testing::HasSubstr("the most probable first"));
 }
 
-TEST_F(BlindScoring, RefusedOrUnexplainedIsNotRight) {
+TEST_F(BlindScoring, CountsUnexplainedVerdictAsWrong) {
   add({{"SEXS", "excitation", "SEXS", 5}}, {"unexplained", {"SEXS"}, {"SEXS"}, "excitation", 1}, true);
   const BlindScore s = score();
   EXPECT_EQ(s.rates.at("right first, with speed, Ifd").hits, 0);
   EXPECT_EQ(s.rates.at("right or in the set, with speed, Ifd").hits, 0);
 }
 
-TEST_F(BlindScoring, TableNamesWhatIsNotMet) {
+TEST_F(BlindScoring, TableMarksMissedTargets) {
   add({}, {"missing", {"SEXS"}, {}, "excitation", 1});
   const std::string text = score_markdown(score());
   EXPECT_THAT(text, testing::HasSubstr(
@@ -198,7 +198,7 @@ TEST_F(BlindScoring, TableNamesWhatIsNotMet) {
   EXPECT_THAT(text, testing::HasSubstr("| right first, P, Q only | – | 85 % | not measured |"));
 }
 
-TEST_F(BlindScoring, EveryFaultyVerdictIsNamed) {
+TEST_F(BlindScoring, ReportsEveryInvalidVerdict) {
   add({}, {"perhaps", {}, {}, "none", 1});
   add({}, {"adequate", {}, {}, "north", 1});
   const auto all = test::messages([&] { (void)score(); });
@@ -207,7 +207,7 @@ TEST_F(BlindScoring, EveryFaultyVerdictIsNamed) {
   EXPECT_THAT(all[1], testing::HasSubstr("'north'"));
 }
 
-TEST_F(BlindScoring, JudgesWhatIsNotJudgedYet) {
+TEST_F(BlindScoring, JudgesOnlyPendingCases) {
   add({}, {"adequate", {}, {}, "none", 1});
   fs::create_directories(run_ / "cases" / "c7");
   fs::create_directories(run_ / "cases" / "c8");
