@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
   plant::PlantModel model = plant::load_plant_model(argv[1]);
   const record::Record record = record::read_record(argv[2], model.record_base, model.reading);
   const double before = compare::compare_event(model, record).channels.front().whole.rms;
-  const sim::Effect& effect = model.library.add(sim::make_effect<CubicDamping>());
+  const sim::Effect& effect = model.library.add(sim::make_effect<example::CubicDamping>());
   sim::plant::insert_block(model.plant, {&effect, effect.default_parameters()});
   const double after = compare::compare_event(model, record).channels.front().whole.rms;
   std::printf("RMS error of P: %.5f pu, with %s %.5f pu\n", before, effect.name.data(), after);

@@ -60,6 +60,8 @@ cmp <(grep -oE 'mean .*|: [0-9]+ records' dataset | sed 's/mean //; s/ = / /') \
   <(grep -oE '[A-Za-z0-9]+: mean .*|: [0-9]+ records' dataset.py | sed 's/: mean / /') || fail "read_dataset and read_dataset.py differ"
 python read_databank bank.h5 >databank || fail "read_databank.py"
 /usr/bin/python3 -c 'import sys; assert float(sys.argv[1].split()[-1]) >= 0.7, sys.argv[1]' "$(cat databank)" || fail "databank"
-python read_run run.h5 | grep -q '^stable: 0 to 3 s' || fail "read_run.py"
-python read_record "$record" | grep -q '^901 samples at 60.00/s' || fail "read_record.py"
-python read_plant "$model" | grep -q '^GENROU.H = 6.54' || fail "read_plant.py"
+# printed LINE SCRIPT FILE
+printed() { python "${@:2}" >printed && grep -q "^$1" printed || fail "$2.py does not print '$1'"; }
+printed "stable: 0 to 3 s" read_run run.h5
+printed "901 samples at 60.00/s" read_record "$record"
+printed "GENROU.H = 6.54" read_plant "$model"

@@ -207,7 +207,7 @@ TEST(Calibrate, KeepsFixedParameters) {
   options.events.measured_states = false;
   options.draws = options.starts = 0;
   for (const auto& p : model.plant.machine.effect->parameters)
-    if (p.name != "H" && p.name != "Xdp" && p.neutral != 0.0)
+    if (p.name != "H" && p.name != "Xdp" && p.null_value != 0.0)
       options.fixed.push_back("GENROU." + std::string(p.name));
   const Calibration c = calibrate(model, example_records(model, 1), options);
   ASSERT_EQ(c.parameters.size(), 2U);
