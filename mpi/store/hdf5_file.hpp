@@ -19,7 +19,7 @@ namespace swingbank::mpi::store::h5 {
 std::recursive_mutex& lock();
 
 /// Set when an object could not be closed (full disk) or was left open. HDF5 1.10 then crashes or hangs in
-/// H5close, which MPI_Finalize and exit() also call.
+/// H5close, which the end of MPI and exit() also call.
 inline std::atomic<bool> close_failed = false;
 /// Stores the reason of the first failed close, because HDF5 discards it at its next call.
 void note_failed_close();

@@ -43,7 +43,7 @@ names = {re.split(r"[@ +~]", d)[0] for d in said["depends_on"]}
 text = open(f"{root}/cmake/dependencies.cmake").read() + open(f"{root}/train/CMakeLists.txt").read()
 asked = set(re.findall(r"find_package\((\w+)", text)) | set(re.findall(r"IMPORTED_TARGET (\S+?)\)", text))
 spack = {"Eigen3": "eigen", "SUNDIALS": "sundials", "spdlog": "spdlog", "fmt": "fmt", "tomlplusplus": "tomlplusplus",
-         "CLI11": "cli11", "nlohmann_json": "nlohmann-json", "Ceres": "ceres-solver", "PkgConfig": "pkgconfig", "matio": "matio",
+         "CLI11": "cli11", "nlohmann_json": "nlohmann-json", "Boost": "boost", "Ceres": "ceres-solver", "PkgConfig": "pkgconfig", "matio": "matio",
          "libxxhash": "xxhash", "libcrypto": "openssl", "MPI": "mpi", "HDF5": "hdf5", "Torch": "py-torch", "OpenMP": "cxx"}
 unknown = {a for a in asked if a not in spack}
 assert not unknown, f"CMake asks for {unknown}: say by which Spack package it is met"

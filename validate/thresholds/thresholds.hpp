@@ -20,7 +20,7 @@ struct Evidence {
   Threshold accepted{
       "evidence.accepted", 40, "chi2",
       "diagnose accepts an effect from here; the best of some thirty wrong ones had 20 at most in thirty "
-      "development cases with nothing hidden (decisions 16 and 18)"};
+      "development cases with nothing hidden (decisions 16 and 41)"};
   Threshold second{
       "evidence.second", 80, "chi2",
       "a pair of effects leaves that much less than every single one, in evidence and in chi2, because "
