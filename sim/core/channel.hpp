@@ -7,9 +7,10 @@
 namespace swingbank::sim {
 
 enum class Channel { delta, speed, P, Q, V, theta, Efd, Ifd, Tm };
+/// Name and definition of a recorded channel.
 struct ChannelRecord {
-  Channel channel;
-  std::string_view name, unit, meaning;
+  Channel channel;                       ///< value of the enumeration
+  std::string_view name, unit, meaning;  ///< name in configs and files; unit; definition
 };
 /// Channels in per unit on the machine's own base.
 inline constexpr std::array<ChannelRecord, 9> kChannels = {{

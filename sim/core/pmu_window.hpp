@@ -17,7 +17,7 @@ inline double class_p(double t, double half) { return 1.0 - std::fabs(t) / half;
 /// Reference filter of class M: reporting rate [1/s], cut-off frequency Ffr [Hz], order at 16 samples a
 /// cycle.
 struct MClass {
-  double reports, Ffr, order;
+  double reports, Ffr, order;  ///< reporting rate [1/s]; cut-off frequency [Hz]; order of the filter
   /// Returns half of the window's length [s]; `hz`: system frequency [Hz].
   [[nodiscard]] constexpr double half(double hz) const { return order / (32.0 * hz); }
 };
