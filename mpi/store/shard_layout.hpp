@@ -10,7 +10,7 @@ constexpr const char* kInt16Format = "swingbank-shard-2";  ///< records as 16-bi
 
 /// Numbers of rows and draws of the whole file, over all writers.
 struct ShardSize {
-  std::uint64_t rows, draws;
+  std::uint64_t rows, draws;  ///< numbers of rows and draws
 };
 
 /// Creates arrays and attributes; `data` gives the shape of a row and the attributes. Collective if the file
