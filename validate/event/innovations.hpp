@@ -15,9 +15,11 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// times `jump` (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
-  std::vector<char> doubtful = {};
+  ///< system matrices and covariances; jump: added covariance of w
+  std::vector<char> doubtful = {};  ///< [sample]: multiple of `jump`
 };
 
+/// Kalman filter that whitens coloured noise: its normalised innovations have unit variance.
 class Innovations {
  public:
   /// Runs the filter over `samples` samples of a record; those marked in `left_out` (empty: none) are not
