@@ -11,7 +11,7 @@ namespace swingbank::validate::fit {
 /// about the start.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
-  std::vector<Shape> shapes;
+  std::vector<Shape> shapes;                       ///< each one standard deviation
 };
 VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event);
 
