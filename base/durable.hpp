@@ -32,6 +32,7 @@ class NewFile {
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
+  /// Appends bytes.
   void write(const void* data, std::size_t bytes);
   /// Flushes the file and renames it to its final name.
   void publish();

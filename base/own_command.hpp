@@ -55,6 +55,7 @@ class Scratch {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
+  /// Returns the path of the folder.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
