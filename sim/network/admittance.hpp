@@ -11,7 +11,7 @@ namespace swingbank::sim::network {
 
 /// Admittances of a branch seen from one end [pu]: current into the branch = own V_here + other V_far.
 struct BranchEnd {
-  Complex own, other;
+  Complex own, other;  ///< own and transfer admittance [pu]
 };
 BranchEnd branch_end(const Branch& branch, bool at_from);
 

@@ -31,8 +31,9 @@ int insert_block(Plant& plant, Block block);
 
 /// One parameter of a plant.
 struct ParameterId {
-  int block = kMachineBlock;
-  int index = 0;  ///< into the parameter records of the block's effect
+  int block = kMachineBlock;  ///< number of the block
+  int index = 0;              ///< into the parameter records of the block's effect
+  /// Compares block, then index.
   friend auto operator<=>(const ParameterId&, const ParameterId&) = default;
 };
 /// Returns every parameter of a block, in the order of the effect's records.
@@ -48,6 +49,7 @@ std::optional<ParameterId> same_parameter(const Plant& other, const Plant& plant
 /// A parameter's name: "SEXS.K", or "K" where the effect is unambiguous.
 struct ParameterName {
   std::string effect, parameter;  ///< effect may be empty
+  /// Returns the name as text.
   [[nodiscard]] std::string text() const;
 };
 ParameterName read_parameter_name(std::string_view text);
