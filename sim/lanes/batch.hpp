@@ -36,7 +36,7 @@ struct Seed {
 
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
 struct Job {
-  std::uint64_t id = 0;
+  std::uint64_t id = 0;  ///< identifier chosen by the caller; without influence on the result
   /// The batch's grid at another operating point (grid/operating_point.hpp); null: unchanged. The job shares
   /// its ownership.
   std::shared_ptr<const grid::Grid> grid = {};
