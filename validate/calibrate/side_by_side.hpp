@@ -24,12 +24,13 @@ Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& mod
 /// event are fitted anew, so that methods differ in parameters only. The curve fit's own report is the
 /// exception.
 struct Way {
-  std::string name;
+  std::string name;  ///< name of the method
+  /// Estimate of one parameter.
   struct Value {
-    std::string parameter, unit;  ///< "GENROU.H", "s"
-    double value = 0, low = 0, high = 0;
+    std::string parameter, unit;          ///< "GENROU.H", "s"
+    double value = 0, low = 0, high = 0;  ///< estimate and 95 % interval [unit]
   };
-  std::vector<Value> values;
+  std::vector<Value> values;       ///< estimates of all parameters
   std::vector<EventScore> events;  ///< `after`: with these values
 };
 /// The model's own values, without intervals.

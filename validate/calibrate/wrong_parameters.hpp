@@ -10,10 +10,11 @@ namespace swingbank::validate::calibrate {
 
 /// Smallest set of parameters that must change for the model to explain the events.
 struct WrongParameters {
-  fit::SparseSelection found;
-  plant::PlantModel model;  ///< with these parameters changed and all others unchanged
-  double adequate = 0;      ///< limit of the reduced chi-square for noise alone
-  std::string sentence;
+  fit::SparseSelection found;  ///< selected parameters with their fit
+  plant::PlantModel model;     ///< with these parameters changed and all others unchanged
+  double adequate = 0;         ///< limit of the reduced chi-square for noise alone
+  std::string sentence;        ///< result in words
+  /// Whether the residual is noise with these parameters changed.
   [[nodiscard]] bool holds() const { return found.fit.reduced_chi2() <= adequate; }
 };
 
