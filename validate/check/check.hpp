@@ -12,10 +12,11 @@ namespace swingbank::validate::check {
 
 enum class Severity { refuse, warn };
 
+/// Finding of a check about a record.
 struct Finding {
   std::string kind;  ///< stable identifier: "too_short", "wrong_base", … (validate/check/README.md)
-  Severity severity = Severity::refuse;
-  Problem problem;
+  Severity severity = Severity::refuse;  ///< refuse: the record allows no verdict
+  Problem problem;                       ///< sentence to the user
 };
 
 /// Facts of the plant that the checks use. Only certain ones, because a wrong parameter must not refuse a

@@ -19,8 +19,9 @@ struct SignalFacts {
   double swing = 0;        ///< standard deviation about that line
 };
 
+/// Facts of a record's V, P and Q, and the time of its event.
 struct Signals {
-  SignalFacts V, P, Q;
+  SignalFacts V, P, Q;        ///< facts of each signal
   bool event = false;         ///< a signal leaves the noise
   bool slow = false;          ///< event without a step; it began before `onset`
   std::size_t onset = 0;      ///< last sample before the event
