@@ -18,7 +18,7 @@ std::string_view phase_name(Phase phase);  ///< "pre-fault"
 /// Maximum, mean and mean absolute error, modelled - measured [% of the machine's MVA]. As limits, `me`
 /// applies to the absolute value of the mean.
 struct Errors {
-  double mxe = 0, me = 0, mae = 0;
+  double mxe = 0, me = 0, mae = 0;  ///< maximum, mean and mean absolute error [% of MVA]
 };
 
 /// A set of limits for fit for purpose.

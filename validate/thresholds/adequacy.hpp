@@ -39,10 +39,10 @@ const CriterionRecord& criterion_record(Criterion criterion);
 
 /// One applied criterion, which decided a verdict.
 struct Ruling {
-  Criterion by = Criterion::reduced_chi2;
-  bool adequate = false;
-  double value = 0, limit = 0;  ///< [criterion_record(by).unit]
-  std::string where = {};       ///< record, bin or input; empty: all together
+  Criterion by = Criterion::reduced_chi2;  ///< applied criterion
+  bool adequate = false;                   ///< the value is within the limit
+  double value = 0, limit = 0;             ///< [criterion_record(by).unit]
+  std::string where = {};                  ///< record, bin or input; empty: all together
 };
 
 /// Returns the ruling by the error maps' bins: `exceeding` of `cells` exceed their limits.
