@@ -107,6 +107,7 @@ struct Type<std::uint8_t> {
 };
 /// \endcond
 
+/// Length of each dimension of an array.
 using Shape = std::vector<hsize_t>;
 
 class Contents;

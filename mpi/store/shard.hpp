@@ -53,13 +53,14 @@ struct ShardData : RowBlock {
   std::vector<std::int32_t> draw_redrawn;
 };
 
-constexpr std::size_t kFaultColumns = 5;
+constexpr std::size_t kFaultColumns = 5;    ///< bus number, t_on [s], t_off [s], r [pu], x [pu]
 constexpr std::size_t kScaleColumns = 2;    ///< offset, step
 constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// Remedy for a damaged shard.
 constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
 /// Outcome of a draw with inadmissible parameters, in /draws/outcome. The values 0 ... 3 are sim::Outcome.
 constexpr std::uint8_t kRefused = 4;
+/// Returns the name of an outcome in /draws/outcome, "stable".
 std::string_view draw_outcome_name(std::uint8_t outcome);
 
 /// Expected shape of a shard, from its dataset.
@@ -98,6 +99,7 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
                          const std::vector<std::uint8_t>& draw_outcome,
                          const std::vector<std::int32_t>& draw_redrawn);
+/// The same for a shard in memory.
 std::uint64_t shard_hash(const ShardData& data);
 /// Returns the number of draws by outcome, for outcomes that occur. Throws InputError with `file` for an
 /// invalid outcome.

@@ -5,7 +5,7 @@
 
 namespace swingbank::mpi::store {
 
-constexpr const char* kShardFormat = "swingbank-shard-1";
+constexpr const char* kShardFormat = "swingbank-shard-1";  ///< records as float32
 constexpr const char* kInt16Format = "swingbank-shard-2";  ///< records as 16-bit integers
 
 /// Numbers of rows and draws of the whole file, over all writers.
