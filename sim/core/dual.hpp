@@ -6,6 +6,7 @@
 
 namespace swingbank::sim {
 
+/// Returns `m ? a : b`, as for SIMD batches.
 inline double select(bool m, double a, double b) { return m ? a : b; }
 
 /// Value with its gradient with respect to N parameters; operators apply the sum, product and quotient rules.
@@ -62,6 +63,7 @@ inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& slope) {
   return r;
 }
 
+/// Returns x where m holds, else y, with the derivatives.
 template <class M, class T, int N>
 inline Dual<T, N> select(const M& m, const Dual<T, N>& x, const Dual<T, N>& y) {
   Dual<T, N> r;

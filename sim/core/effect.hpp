@@ -59,13 +59,16 @@ enum class Slot {
   load,                ///< a consumer at a bus
   measurement,         ///< between the grid and the record
 };
+/// All slots, in the order of Slot.
 inline constexpr std::array kSlots = {Slot::machine,       Slot::transformer,    Slot::compensator,
                                       Slot::setpoint,      Slot::governor,       Slot::shaft,
                                       Slot::stabiliser,    Slot::limiter,        Slot::exciter,
                                       Slot::plant_control, Slot::torque_control, Slot::pitch_control,
                                       Slot::aerodynamics,  Slot::drive_train,    Slot::electrical_control,
                                       Slot::load,          Slot::measurement};
+/// Returns the name of a slot, "governor".
 std::string_view slot_name(Slot slot);
+/// Whether the slot holds a control, which has ControlOps.
 constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::electrical_control; }
 /// Whether a control in this slot belongs to a converter. Set-points exist for both kinds of source.
 constexpr bool is_of_converter(Slot slot) {
@@ -76,6 +79,7 @@ constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
 
+/// Null value of a parameter that has none.
 constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 /// Placeholder in a parameter's record, before the bounds' source: the default has the effect's source.
 constexpr Source kAsEffect = {};
@@ -330,6 +334,7 @@ std::string_view kind_name(const Effect& effect);
 std::string slot_conflict(const Effect& source, const Effect& control);
 
 // ---- used by the generated registry only -------------------------------------------------------------
+/// \cond
 template <class M, class T>
 Ops<T> make_ops() {
   Ops<T> o;
@@ -416,5 +421,6 @@ Effect make_effect() {
   e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
   return e;
 }
+/// \endcond
 
 }  // namespace swingbank::sim

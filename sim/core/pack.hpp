@@ -19,6 +19,7 @@ namespace swingbank::sim {
 inline thread_local std::uint64_t pack_operations = 0;
 inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
 #else
+/// Counts operations of `lanes` lanes, in builds with SWINGBANK_COUNT_FLOPS only.
 inline void count_operations(int) {}
 #endif
 
@@ -185,6 +186,7 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
 template <int N>
 using Pack = Packed<double, N>;
 
+/// Returns the square root, lane by lane.
 template <class S, int N>
 inline Packed<S, N> sqrt(Packed<S, N> a) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -216,6 +218,7 @@ inline Packed<S, N> exp(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::exp(a[i]));
   return a;
 }
+/// Returns the natural logarithm, as exp() does.
 template <class S, int N>
 inline Packed<S, N> log(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::log(a[i]));

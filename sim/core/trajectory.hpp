@@ -9,7 +9,10 @@
 
 namespace swingbank::sim {
 
+/// End of a simulation: t_end reached, synchronism lost, a state not finite, or the step size below its
+/// minimum.
 enum class Outcome { stable, lost_synchronism, not_finite, step_too_small };
+/// Returns the name in reports and datasets, "lost_synchronism".
 constexpr std::string_view outcome_name(Outcome o) {
   constexpr std::string_view names[] = {"stable", "lost_synchronism", "not_finite", "step_too_small"};
   return names[static_cast<int>(o)];
