@@ -38,6 +38,7 @@ Record split(const std::string& line, int number, const std::string& file, Probl
 
 /// Returns true for a record that begins with 0 (ends_section) or Q (ends_file).
 bool ends_section(const Record& record);
+/// Returns true for a record that begins with Q.
 bool ends_file(const Record& record);
 
 /// Typed access to the fields of a record. Missing and non-numeric fields become problems, with file and

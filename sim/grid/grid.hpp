@@ -55,6 +55,7 @@ Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& 
 /// survey_dyd; its mva, Ra and X'd take precedence over those of the network's generators.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
+/// The same with options of the .dyr only. `frequency_hz`: system frequency [Hz] for a network without one.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const formats::DyrOptions& options = {}, std::optional<double> frequency_hz = {});
 

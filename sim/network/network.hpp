@@ -8,6 +8,7 @@
 
 namespace swingbank::sim::network {
 
+/// Type of a bus in the power flow: PQ, PV, slack or out of service. The values are those of PSS/E's IDE.
 enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
 
 /// Bus of a network.

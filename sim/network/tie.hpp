@@ -27,6 +27,7 @@ struct Tie {
 };
 /// Returns the ties of a topology.
 std::vector<Tie> ties(const Network& network, const Topology& topology = {});
+/// Returns whether the magnitude of the branch's impedance is at most kTieImpedance.
 [[nodiscard]] bool is_tie(const Branch& branch);
 
 }  // namespace swingbank::sim::network

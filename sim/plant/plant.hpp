@@ -67,6 +67,7 @@ struct OperatingOf {
   T Efd, Tm;         ///< constant if the exciter or governor slot is empty
   Signals<T> s;      ///< every signal at the operating point
 };
+/// Operating point in double precision.
 using Operating = OperatingOf<double>;
 
 /// Initialises one plant exactly (saturation included) from the voltage at its bus [pu] and generation [pu on
