@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::event {
 
+/// Dense matrix, row by row in memory.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// State-space model of coloured noise: \f$x_{k+1} = A x_k + w\f$, \f$e_k = C x_k + v\f$. Covariances: Q of
