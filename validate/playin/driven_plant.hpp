@@ -37,7 +37,8 @@ struct PiecewiseLinear {
 
 /// Outputs of the plant at each sample of the record.
 enum class Output { P, Q, speed, Efd, Ifd, Pm, gate, V };
-constexpr int kOutputs = 8;
+constexpr int kOutputs = 8;  ///< number of outputs
+/// Returns the name of an output, "Pm".
 std::string_view output_name(Output output);
 
 class Given;
