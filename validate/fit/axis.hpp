@@ -31,6 +31,7 @@ struct Axis {
   [[nodiscard]] double spread() const { return where.spread; }
 };
 
+/// Constructs the axis of a free parameter: start at its value, bounds from its search range.
 inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.id);
   const double start = parameter_value(plant, f.id);

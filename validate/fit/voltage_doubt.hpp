@@ -13,6 +13,7 @@ struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
   std::vector<Shape> shapes;                       ///< each one standard deviation
 };
+/// Computes the shapes of one event.
 VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event);
 
 }  // namespace swingbank::validate::fit
