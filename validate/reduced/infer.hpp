@@ -68,7 +68,7 @@ void add_changes(Inference& inference, const event::WhitenedEvents& events,
 
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
 /// other within a second; a turbine's power changes by a tenth of its rating in that time.
-inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;
+inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;  ///< field voltage; torque
 /// Returns the square root of the prior precision of each knot given the previous knot [1/pu].
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 
