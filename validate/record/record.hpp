@@ -35,6 +35,7 @@ enum class Component {
   governor,  ///< input speed, with Pref; Pm or the gate is compared
   machine,   ///< inputs V, its angle, Efd and Pm; P, Q and Ifd are compared
 };
+/// Returns the name of a component, "exciter".
 std::string_view component_name(Component component);
 
 /// An action of a staged test on the plant that the record's channels do not contain.
@@ -160,7 +161,7 @@ Record read_staged(const std::filesystem::path& file, const RecordBase& base, Re
 
 /// Returns the name of a staged event in plant files: "vref_step".
 std::string_view staged_name(StagedEvent::Kind kind);
-constexpr int kStagedKinds = 5;
+constexpr int kStagedKinds = 5;  ///< number of kinds of staged events
 
 /// Reads a record from the text of a CSV file; `name` denotes the file in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
