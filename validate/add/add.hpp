@@ -57,6 +57,7 @@ struct Removal {
   /// below.
   double evidence = 0;
 };
+/// Refits the model without one control.
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);
 

@@ -82,6 +82,7 @@ struct CalibratedParameter {
   double narrowed = 1;         ///< standard error with that event / without it
 };
 
+/// Verdict of a calibration.
 enum class Adequacy {
   adequate,         ///< residuals are within noise before and after the fit
   parameters_poor,  ///< residuals are within noise only after the fit

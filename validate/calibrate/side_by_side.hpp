@@ -35,6 +35,7 @@ struct Way {
 };
 /// The model's own values, without intervals.
 Way way_of_model(const Calibration& c);
+/// The calibrated values with their 95 % intervals.
 Way way_of(const Calibration& c);
 /// The curve fit's parameters, evaluated on the calibration's events.
 Way way_of(const CurveFit& f, const Calibration& c);
@@ -50,17 +51,23 @@ struct Distance {
   double relative = 0;          ///< RMS of (value - truth) / |truth|
   double mse = 0;               ///< mean of (value - truth)^2 in raw units, as in the thesis
 };
+/// Returns the errors of a method against the true values.
 Distance distance(const Way& way, const Truth& truth);
 
+/// Table of parameters: one column for each method.
 report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth);
+/// Table of events: reduced chi-square by each method.
 report::Table events_beside(const std::vector<Way>& ways);
 /// Both tables and, if the truth is known, each method's error.
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth);
+/// The same as JSON.
 nlohmann::json beside_json(const std::vector<Way>& ways, const Truth& truth);
 
 /// Report of a curve fit alone.
 std::string terminal_report(const CurveFit& f, const Truth& truth);
+/// The same as JSON.
 nlohmann::json curve_fit_json(const CurveFit& f, const Truth& truth);
+/// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantModel& from,
                                           const std::string& command_line);
 

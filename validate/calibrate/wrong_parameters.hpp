@@ -28,6 +28,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 std::string wrong_sentence(const fit::SparseSelection& found, double adequate);
 /// The sentence and a table: old and new value, interval, evidence, and share of the error.
 std::string wrong_text(const WrongParameters& w);
+/// The same as JSON.
 nlohmann::json wrong_json(const WrongParameters& w);
 
 }  // namespace swingbank::validate::calibrate

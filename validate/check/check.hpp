@@ -10,6 +10,7 @@
 
 namespace swingbank::validate::check {
 
+/// Consequence of a finding: the record is refused, or the user is warned.
 enum class Severity { refuse, warn };
 
 /// Finding of a check about a record.
@@ -28,6 +29,7 @@ struct PlantFacts {
                             ///< converter's control
   std::optional<sim::grid::Dispatch> dispatch = {};  ///< output of the unit in its case
 };
+/// Returns these facts of a model.
 PlantFacts plant_facts(const plant::PlantModel& model);
 
 /// Returns all findings about a record, refusals first. After a refusal, the record allows no verdict about

@@ -41,6 +41,7 @@ struct Signals {
 /// Returns the statistics of a record with at least kMinSamples finite samples.
 Signals record_signals(const record::Record& record);
 
+/// Returns the upper median of the values; 0 if there are none.
 double median_of(std::vector<double> values);
 
 }  // namespace swingbank::validate::check

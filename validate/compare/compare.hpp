@@ -75,6 +75,7 @@ struct ChannelUnit {
   double scale;      ///< units in 1 pu
   double floor;      ///< noise floor from interpolation, for records without noise [pu]
 };
+/// Returns the unit of an output, given the record's bases.
 ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base);
 
 /// Name, unit and evaluation rules of one channel.

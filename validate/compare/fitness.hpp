@@ -64,6 +64,7 @@ report::Table fitness_table(const Fitness& fitness);
 report::Table worst_fitness_table(const Fitness& fitness);
 /// Table of the measured deviation of P and Q per event, and the share that the model reproduces.
 report::Table movement_table(const Fitness& fitness);
+/// Returns the verdict with all errors and limits as JSON.
 nlohmann::json fitness_json(const Fitness& fitness);
 
 /// Text of the statistical verdict: "Statistically complete: yes." and the command's sentence.

@@ -43,6 +43,7 @@ struct CommandPage {
   report::Provenance provenance;           ///< inputs and software of the run
   std::string figures;                     ///< JSON
 };
+/// Returns the page as HTML.
 std::string command_html(const CommandPage& page);
 
 }  // namespace swingbank::validate::compare

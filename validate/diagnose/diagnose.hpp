@@ -25,6 +25,7 @@ enum class Verdict {
   unexplained,  ///< no known effect explains the records
   interrupted,  ///< stopped by the user; no hypothesis is judged
 };
+/// Returns the name of a verdict in the JSON.
 std::string_view verdict_name(Verdict verdict);
 
 /// Result of a diagnosis.

@@ -12,6 +12,7 @@ namespace swingbank::validate::hypothesis {
 
 /// Side of a plant on which an effect acts.
 enum class Side { none, mechanical, excitation, machine, measurement };
+/// Returns the name of a side in reports, "excitation".
 std::string_view side_name(Side side);
 
 /// A possible change of the model: an added or replaced effect, freed parameters, or a convention.

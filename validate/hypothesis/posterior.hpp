@@ -8,6 +8,7 @@ namespace swingbank::validate::hypothesis {
 
 /// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
+///< no effect; an unlisted effect
 
 /// An explanation of the records with its posterior probability.
 struct Explanation {

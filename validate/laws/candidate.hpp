@@ -16,6 +16,7 @@ namespace swingbank::validate::laws {
 struct LawSignal {
   std::string_view name, expression, words;  ///< name; expression in the TOML file; description
 };
+/// Signals that the search examines.
 inline constexpr std::array kLawSignals = {
     LawSignal{"speed", "speed", "the speed deviation"},
     LawSignal{"V", "V - V0", "the deviation of the terminal voltage from its value before the event"},

@@ -75,6 +75,7 @@ struct Scatter {
 /// Colour of a verdict.
 enum class Tone { good, found, bad };
 
+/// Origin of a page's figures: name and value of each line.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// Self-contained HTML page, built from top to bottom. Texts are escaped; SVG is not.
@@ -117,6 +118,7 @@ class Page {
 
 /// Table as Markdown and as CSV (RFC 4180).
 std::string markdown(const Table& table);
+/// Returns the table as CSV.
 std::string csv(const Table& table);
 /// Table as terminal text. Column widths count characters, not bytes; the first `left` columns are
 /// left-aligned.
@@ -124,6 +126,7 @@ std::string padded(const Table& table, std::size_t left = 2);
 
 /// Source text of the chart library.
 std::string_view dygraphs_script();
+/// Style sheet of the chart library.
 std::string_view dygraphs_style();
 
 }  // namespace swingbank::validate::report

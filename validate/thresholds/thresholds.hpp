@@ -43,7 +43,7 @@ struct Evidence {
       "evidence.same_fit", 0.5, "chi2",
       "a finished fit takes the place of a short one, which has no errors, unless it is worse by more"};
 };
-inline constexpr Evidence evidence;
+inline constexpr Evidence evidence;  ///< the thresholds in use
 
 /// Conversion of evidence to posterior probabilities (decision 41).
 struct Posterior {
@@ -62,7 +62,7 @@ struct Posterior {
   Threshold negligible{"posterior.negligible", 1e-4, "probability beside the leading one",
                        "what cannot become more probable is not fitted on (decision 61)"};
 };
-inline constexpr Posterior posterior;
+inline constexpr Posterior posterior;  ///< the thresholds in use
 
 /// Thresholds of the hold-out test of an effect on unseen events (decision 41).
 struct HeldOut {
@@ -93,7 +93,7 @@ struct HeldOut {
   Threshold foretold{"held_out.foretold", 0.5, "share of that event's chi2",
                      "and if the others, fitted without it, leave more of it than this"};
 };
-inline constexpr HeldOut held_out;
+inline constexpr HeldOut held_out;  ///< the thresholds in use
 
 /// Limits of a residual that counts as noise; adequacy.hpp lists the commands that use them.
 struct Adequacy {
@@ -124,7 +124,7 @@ struct Adequacy {
       "adequacy.false_alarm", 0.001, "probability",
       "with which noise alone exceeds any of the cells of all of compare's error maps together"};
 };
-inline constexpr Adequacy adequacy;
+inline constexpr Adequacy adequacy;  ///< the thresholds in use
 
 /// Values of the reduced chi-square above which something other than noise dominates a fit.
 struct Noise {
@@ -142,7 +142,7 @@ struct Noise {
       "up to this misfit calibrate takes back what noise of the voltage did; above it something else "
       "pulls harder (decision 17)"};
 };
-inline constexpr Noise noise;
+inline constexpr Noise noise;  ///< the thresholds in use
 
 /// Selection of the hypotheses that are fitted, and of the effort.
 struct Search {
@@ -158,7 +158,7 @@ struct Search {
   Threshold other_steps{"search.other_steps", 4, "chi2",
                         "two runs of one model may differ by this, because other states make other steps"};
 };
-inline constexpr Search search;
+inline constexpr Search search;  ///< the thresholds in use
 
 /// Search for user-defined models of the inferred input (decision 21).
 struct Laws {
@@ -186,7 +186,7 @@ struct Laws {
                           "a law in proportion to the start must be better by this than one that is not "
                           "(decision 21)"};
 };
-inline constexpr Laws laws;
+inline constexpr Laws laws;  ///< the thresholds in use
 
 /// `swingbank add`: the user has named the effect, so one hypothesis competes with one other. Diagnose
 /// requires four times the evidence because it selects the best of about thirty, some of which fit by chance.
@@ -201,7 +201,7 @@ struct Addition {
   Threshold stays{"addition.stays", 0, "chi2",
                   "an effect added before is taken out again if what came later leaves it no more"};
 };
-inline constexpr Addition addition;
+inline constexpr Addition addition;  ///< the thresholds in use
 
 /// Statements of calibrate and the tables on a parameter (decision 17).
 struct Parameters {
@@ -232,7 +232,7 @@ struct Parameters {
   Threshold beyond_prior{"parameters.beyond_prior", 2.5, "standard deviations of the belief",
                          "a fitted value further from the model's is noted"};
 };
-inline constexpr Parameters parameters;
+inline constexpr Parameters parameters;  ///< the thresholds in use
 
 /// Fit for purpose: engineering limits of a model's errors in each window, with the error measures of IEC
 /// 61400-27-2, which sets no limits itself. The limits are those of RTE's connection code, for a measured and
@@ -281,7 +281,7 @@ struct DtrTest {
   Threshold after_clearing{"dtr_test.after_clearing", 0.06, "s",
                            "not compared after the last switching (RTE, DTR fiche I16, reference measured)"};
 };
-inline constexpr DtrTest dtr_test;
+inline constexpr DtrTest dtr_test;  ///< the limits in use
 /// The same for a simulated reference.
 struct DtrSimulation {
   /// Limit of the maximum absolute error before the first switching [% of MVA].
@@ -327,7 +327,7 @@ struct DtrSimulation {
   Threshold after_clearing{"dtr_simulation.after_clearing", 0.06, "s",
                            "not compared after the last switching (RTE, DTR fiche I16, reference simulated)"};
 };
-inline constexpr DtrSimulation dtr_simulation;
+inline constexpr DtrSimulation dtr_simulation;  ///< the limits in use
 /// Limit of a channel's error relative to its movement. A limit in % of MVA alone passes a unit whose whole
 /// response is missing if that response is small.
 struct Movement {
@@ -345,6 +345,6 @@ struct Movement {
   Threshold least{"movement.least", 1, "% of MVA",
                   "a channel whose RMS movement is less is not held to movement.error"};
 };
-inline constexpr Movement movement;
+inline constexpr Movement movement;  ///< the limits in use
 
 }  // namespace swingbank::validate::thresholds
