@@ -46,8 +46,8 @@ struct SetpointStep {
 struct Event {
   std::vector<BusFault> faults;                     ///< three-phase faults
   std::vector<LineTrip> trips;                      ///< branch openings
-  std::vector<GeneratorTrip> generator_trips = {};  ///< generator trips
-  std::vector<LoadStep> load_steps = {};            ///< load steps
+  std::vector<GeneratorTrip> generator_trips = {};  ///< disconnections of generators or of parts of them
+  std::vector<LoadStep> load_steps = {};            ///< steps of constant-admittance loads
   std::vector<SetpointStep> setpoint_steps = {};    ///< steps of controls' references
 };
 

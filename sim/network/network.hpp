@@ -81,7 +81,7 @@ struct Generator {
 };
 /// A change to a case beyond reading it, with every place of the change.
 struct Remark {
-  std::string what;                 ///< the change
+  std::string what;                 ///< change, as text
   std::vector<std::string> places;  ///< places of the change
   /// Compares all members.
   friend bool operator==(const Remark&, const Remark&) = default;
@@ -92,11 +92,11 @@ struct Network {
   std::string title, origin;                  ///< origin: the file it was read from
   double base_mva = 100.0, frequency = 60.0;  ///< system base [MVA]; system frequency [Hz]
   std::vector<Bus> buses;                     ///< buses, star points included
-  std::vector<Load> loads;                    ///< loads
+  std::vector<Load> loads;                    ///< loads, dynamic ones included
   std::vector<Shunt> shunts;                  ///< fixed shunts, with the present step of each switched shunt
   std::vector<SwitchedShunt> switched;        ///< data of the switched shunts
   std::vector<Branch> branches;               ///< lines and transformers
-  std::vector<Generator> generators;          ///< generators
+  std::vector<Generator> generators;          ///< generators and converters
   std::vector<Remark> remarks;                ///< changes to the case
 
   /// Records that `what` was done at `place`.

@@ -6,7 +6,7 @@ namespace swingbank::sim::plant {
 
 /// Non-owning references; the caller keeps both objects alive.
 struct PlantUnderTest {
-  const Plant& plant;              ///< the plant
+  const Plant& plant;              ///< tested plant
   const Conventions& conventions;  ///< conventions of its parameters
 };
 

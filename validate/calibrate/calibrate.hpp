@@ -37,7 +37,7 @@ struct CalibrateOptions {
 /// Errors of one channel of one event in the fit, with the event's own switching times and start fitted.
 /// Commands show the errors of compare::error_table() instead.
 struct ChannelScore {
-  playin::Output channel;                ///< the channel
+  playin::Output channel;                ///< output that is compared
   std::string unit;                      ///< unit of the errors
   double scale = 1;                      ///< units in 1 pu of the record's base
   double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]

@@ -21,7 +21,7 @@ struct ReportChannel {
 };
 /// One event of the report.
 struct ReportEvent {
-  const event::FitEvent* event = nullptr;      ///< the event
+  const event::FitEvent* event = nullptr;      ///< event as it was fitted
   std::vector<compare::Window> windows;        ///< evaluation windows
   std::vector<ReportChannel> channels;         ///< measured channels
   double before = 0, after = 0;                ///< RMS of the whitened residual [noise standard deviations]

@@ -78,8 +78,8 @@ struct FitEvent {
 
 /// References to one event and its noise, both owned by WhitenedEvents.
 struct WhitenedEvent {
-  const FitEvent& event;    ///< the event
-  const EventNoise& noise;  ///< its noise
+  const FitEvent& event;    ///< event with its record
+  const EventNoise& noise;  ///< noise of its channels
 };
 
 /// A range of events with their noise. Copies share the events.
@@ -125,7 +125,7 @@ class WhitenedEvents {
 /// Iterator over the events of WhitenedEvents.
 class WhitenedEvents::Iterator {
  public:
-  using value_type = FitEvent;             ///< event
+  using value_type = FitEvent;             ///< element of the range
   using difference_type = std::ptrdiff_t;  ///< distance of two iterators
   using Place = std::vector<std::shared_ptr<const FitEvent>>::const_iterator;
   ///< position in the list of events

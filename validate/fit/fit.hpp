@@ -116,7 +116,7 @@ constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integr
 /// Target of a fit: a penalised cost of at most `cost` within `steps` steps, those of continued fits
 /// included.
 struct Goal {
-  double cost = std::numeric_limits<double>::infinity();  ///< penalised cost
+  double cost = std::numeric_limits<double>::infinity();  ///< chi2 with the penalty of the priors
   int steps = 0;                                          ///< maximum number of steps
 };
 

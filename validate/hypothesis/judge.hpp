@@ -24,7 +24,7 @@ struct HeldOut {
 
 /// A hypothesis with its fit and verdict.
 struct Judgement {
-  Hypothesis hypothesis;  ///< the hypothesis
+  Hypothesis hypothesis;  ///< judged hypothesis
   fit::Fit fit;           ///< to all events
   double gain = 0;  ///< 2 ln(Bayes factor): criterion of the base model less criterion with the hypothesis
   double size = 0;  ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]

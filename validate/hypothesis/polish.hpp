@@ -13,7 +13,7 @@ namespace swingbank::validate::hypothesis {
 
 /// A hypothesis whose block was identified alone.
 struct Identified {
-  Hypothesis hypothesis;                      ///< the hypothesis
+  Hypothesis hypothesis;                      ///< hypothesis that adds the block
   reduced::Trial trial;                       ///< its block and free parameters
   std::vector<reduced::Optimum> optima = {};  ///< best first
   /// Cost of the best optimum; after a fit of the whole plant, that of the fit.

@@ -52,7 +52,7 @@ struct LawCandidate {
   std::string words;              ///< description with {name} in place of a parameter's value
   std::string value, body;        ///< expression and tables of the TOML file
   std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes
-  std::vector<LawParameter> parameters;  ///< its parameters
+  std::vector<LawParameter> parameters;  ///< parameters, in the order of the TOML file
   double explained = 0;                  ///< coefficient of determination of the inferred input
   double score = 0;  ///< Bayesian information criterion of the regression; lower is better
   std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]

@@ -13,7 +13,7 @@ std::string escape(std::string_view text);
 
 /// Table cell: text, shade from 0 (good) to 1 (bad) or none (-1), and optional link target.
 struct Cell {
-  std::string text;       ///< text
+  std::string text;       ///< content without markup
   double shade = -1;      ///< 0 (good) to 1 (bad); -1: none
   std::string link = {};  ///< target of a link; empty: none
   /// Constructs a cell without shade.
@@ -41,7 +41,7 @@ struct Curves {
     std::vector<double> y;     ///< values at `x`; NaN interrupts the curve
   };
   std::vector<double> x;                         ///< common abscissa, ascending
-  std::vector<Series> series;                    ///< curves
+  std::vector<Series> series;                    ///< curves, drawn in this order
   std::vector<std::pair<double, double>> bands;  ///< shaded intervals of x
   double tolerance = 0;                          ///< shaded band y = -tolerance ... tolerance; 0: none
 };

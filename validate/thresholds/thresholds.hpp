@@ -9,7 +9,7 @@ namespace swingbank::validate::thresholds {
 /// A number that decides a verdict, with its name, unit and reason.
 struct Threshold {
   std::string_view name;  ///< stage.field
-  double value;           ///< value
+  double value;           ///< number that the verdict compares with [unit]
   std::string_view unit;  ///< unit of the value
   std::string_view why;   ///< the decision it controls, and its decision record (docs/decisions) or source
   /// Converts to the value.
