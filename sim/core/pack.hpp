@@ -110,10 +110,10 @@ struct Packed {
 template <class S, int N>
 requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   using Vector = typename VectorOf<S, sizeof(S) * N>::Type;  ///< vector of N numbers in a register
-  using InMemory =
-      typename VectorOf<S, sizeof(S) * N>::InMemory;  ///< the same in memory, aligned to one number
-  using Integer =
-      std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;  ///< signed integer of the size of S
+  /// The vector in memory, aligned to one number.
+  using InMemory = typename VectorOf<S, sizeof(S) * N>::InMemory;
+  /// Signed integer of the size of S.
+  using Integer = std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;
   using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;  ///< result of a comparison: all bits of a
                                                                  ///< true lane set
   static constexpr int lanes = N;                                ///< number of lanes N
