@@ -138,7 +138,7 @@ class WhitenedEvents::Iterator {
     ++at_;
     return *this;
   }
-  /// Advances to the next event; returns the new position, unlike a standard postfix increment.
+  /// Advances to the next event; returns the position before.
   Iterator operator++(int) { return Iterator(at_++); }
   /// Compares positions.
   friend bool operator==(const Iterator&, const Iterator&) = default;
