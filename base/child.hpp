@@ -18,6 +18,7 @@ int wait_for_child(pid_t child);
 
 /// Options of `run_program`.
 struct ProgramRun {
+  /// Treatment of standard output: shown to the user, discarded, or returned in the result.
   enum class Output { shown, dropped, taken };
   Output output = Output::dropped;  ///< treatment of standard output
   bool silent = false;              ///< discard standard error

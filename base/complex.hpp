@@ -4,6 +4,7 @@
 
 namespace swingbank {
 
+/// Complex number, for phasors, powers and impedances.
 using Complex = std::complex<double>;
 
 }  // namespace swingbank

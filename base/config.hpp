@@ -21,7 +21,8 @@ namespace swingbank {
 /// Closed interval of the allowed values of a number.
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  std::string unit = "";
+  ///< ends of the interval [unit]
+  std::string unit = "";  ///< unit in messages; empty: none
 };
 
 /// TOML file that is read key by key.
@@ -44,6 +45,7 @@ class Config {
   T optional(const std::string& key, T otherwise, const Range& range = {});
   /// Returns a text that must be one of `words`.
   std::string choice(const std::string& key, const std::vector<std::string>& words);
+  /// The same, with `otherwise` if the key is missing.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      const std::string& otherwise);
   /// Returns the path of a file; relative paths refer to the config's folder. Records a problem if no such
@@ -52,8 +54,11 @@ class Config {
   /// Returns an interval [low, high], low <= high.
   std::pair<double, double> interval(const std::string& key, const Range& range = {});
 
+  /// Returns whether the config has the key.
   [[nodiscard]] bool has(const std::string& key) const;
+  /// Returns whether the key's value is an array.
   [[nodiscard]] bool is_array(const std::string& key) const;
+  /// Returns whether the key's value is a text.
   [[nodiscard]] bool is_text(const std::string& key) const;
   /// Returns the keys of a table in alphabetical order; empty if there is no such table.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
@@ -66,9 +71,11 @@ class Config {
                const std::string& remedy);
   /// Accepts a key or a table with any content, so that raise() does not report it as unknown.
   void ignore(const std::string& key);
+  /// Whether no problem was recorded so far.
   [[nodiscard]] bool sound() const { return problems_.empty(); }
   /// Records every key that was never read as unknown, then throws InputError if there are problems.
   void raise();
+  /// Returns the path of the config.
   [[nodiscard]] const std::filesystem::path& name() const { return name_; }
 
  private:

@@ -23,6 +23,8 @@ void reserve(const std::filesystem::path& file, std::uint64_t bytes);
 void publish(const std::filesystem::path& file);
 /// Flushes the data that this machine has written to the temporary file. Throws InputError on failure.
 void flush_temporary(const std::filesystem::path& file);
+/// Flushes the entries of a folder, so that a rename in it survives a power failure. Throws InputError on
+/// failure.
 void flush_folder(const std::filesystem::path& folder);
 /// File that is written piece by piece. The destructor removes it unless it was published.
 class NewFile {
@@ -32,6 +34,7 @@ class NewFile {
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
+  /// Appends bytes.
   void write(const void* data, std::size_t bytes);
   /// Flushes the file and renames it to its final name.
   void publish();

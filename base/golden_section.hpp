@@ -4,7 +4,7 @@ namespace swingbank {
 
 /// Minimiser and minimum of a function.
 struct Minimum {
-  double at = 0, value = 0;
+  double at = 0, value = 0;  ///< minimiser and minimum
 };
 
 /// Computes a local minimum of `f` in [low, high] by golden-section search. Each step shortens the interval

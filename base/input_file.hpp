@@ -8,8 +8,8 @@
 
 namespace swingbank {
 
-/// Returns the folder of this program's example configs: <prefix>/share/swingbank/configs of an installation,
-/// or configs/ of the source tree for a build folder. Empty path if there is none.
+/// Returns the folder of this program's example configs: `<prefix>/share/swingbank/configs` of an
+/// installation, or configs/ of the source tree for a build folder. Empty path if there is none.
 std::filesystem::path example_configs();
 
 /// Returns the problem "<what> at <file> (<why>): <remedy>" for a file that cannot be read. For a relative

@@ -17,8 +17,8 @@ void note_input(const std::filesystem::path& file);
 
 /// File that the command is going to write or to remove.
 struct Output {
-  std::filesystem::path file;
-  std::string where;  ///< the option that names it or its folder
+  std::filesystem::path file;  ///< path of the file
+  std::string where;           ///< the option that names it or its folder
 };
 /// Throws InputError for each output that is the same file as an input, also through links, hard links and
 /// other spellings, and for two outputs that are the same file. Does nothing while the protection is off.

@@ -27,6 +27,7 @@ class OutputFolder {
 
   /// Returns the path of a result and registers it as written by this run.
   std::filesystem::path file(const std::string& name);
+  /// Returns the path of the folder.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   /// Treatment of results of an earlier run that this run has not overwritten.
   enum class Earlier { removed, stay };

@@ -20,8 +20,8 @@ inline std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-/// Returns the path of swingbank-<command> in this program's folder. Throws InputError with `remedy` if it is
-/// missing.
+/// Returns the path of `swingbank-<command>` in this program's folder. Throws InputError with `remedy` if it
+/// is missing.
 inline std::filesystem::path own_command(const std::string& command, const std::string& remedy) {
   const auto program = own_folder() / ("swingbank-" + command);
   if (::access(program.c_str(), X_OK) != 0)
@@ -55,6 +55,7 @@ class Scratch {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
+  /// Returns the path of the folder.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:

@@ -11,6 +11,7 @@ namespace swingbank {
 /// Progress counter that prints to standard error: at most every 0.2 s as a bar, every 5 s as lines.
 class Progress {
  public:
+  /// Form of the output; automatic: a bar on a terminal, otherwise lines.
   enum class Mode { automatic, bar, lines, none };
   /// Returns the values of --progress, in the order of Mode.
   static const std::vector<std::string>& words();
@@ -19,7 +20,9 @@ class Progress {
   ~Progress() { finish(); }
   /// Counts `count` more items; prints if the last output is old enough.
   void add(std::uint64_t count);
+  /// Completes the bar with its last state and a line feed. The destructor calls it.
   void finish();
+  /// Returns the time since construction [s].
   [[nodiscard]] double seconds() const;
   [[nodiscard]] double rate() const;  ///< items of this run per second [1/s]
 

@@ -7,14 +7,17 @@ namespace swingbank {
 /// \f[ \frac{\hat p + z^2/2n \pm z \sqrt{\hat p (1 - \hat p)/n + z^2/4n^2}}{1 + z^2/n}, \quad z = 1.96 \f]
 /// (Wilson 1927, J. Am. Stat. Assoc. 22, 209).
 struct Rate {
-  int hits = 0, n = 0;
+  int hits = 0, n = 0;  ///< number of hits; number of trials
+  /// Counts one trial.
   void count(bool hit) {
     ++n;
     hits += hit ? 1 : 0;
   }
+  /// Returns the proportion [-]; 0 for n = 0.
   [[nodiscard]] double value() const { return n > 0 ? static_cast<double>(hits) / n : 0.0; }
   /// Lower and upper end of the interval; 0 and 1 for n = 0.
   [[nodiscard]] double low() const;
+  /// Returns the upper end of the interval; see low().
   [[nodiscard]] double high() const;
 };
 

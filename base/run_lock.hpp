@@ -9,7 +9,7 @@ namespace swingbank {
 
 /// Words of the error for a lock that is held: "<what> at <where> (process 12 on host a holds it): <remedy>".
 struct LockWords {
-  std::string what, where, remedy;
+  std::string what, where, remedy;  ///< parts of the sentence, without the reason
 };
 
 /// Lock on a folder, held from construction to destruction.

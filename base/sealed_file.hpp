@@ -12,12 +12,12 @@ namespace swingbank {
 
 /// Kind of a file: its name in messages, its first bytes, and the remedy if it is damaged.
 struct SealedKind {
-  const char *what, *magic, *remedy;
+  const char *what, *magic, *remedy;  ///< name in messages; first bytes; remedy
 };
 
 /// Exception of a consumer that cannot use a file's content, with the reason.
 struct Unusable {
-  std::string why;
+  std::string why;  ///< reason for the message
 };
 
 /// Writes a file atomically. Throws InputError and leaves no temporary file if it cannot be written.

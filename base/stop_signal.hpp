@@ -38,6 +38,7 @@ inline void catch_stop_signals() {
       detail::stop_asked = 1;
     });
 }
+/// Returns whether a signal has asked to stop.
 inline bool stop_asked() { return detail::stop_asked != 0; }
 
 /// Exception of interruption_point(). Not a std::exception, so that no handler mistakes it for a failure.

@@ -27,6 +27,7 @@ class AttemptLog {
   AttemptLog& operator=(const AttemptLog&) = delete;
   /// Appends another property of the run.
   void tell(const std::string& name, const std::string& value);
+  /// Appends the end of the run. `outcome`: "made", "stopped" or "failed".
   void end(const std::string& outcome);
 
  private:

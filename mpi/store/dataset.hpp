@@ -18,11 +18,14 @@ namespace swingbank::mpi::store {
 struct DatasetHeader {
   std::string name = {};  ///< name of the config's file, "ieee39_genrou"; empty in older datasets
   std::string config_hash, kernel, software, machine_model;
+  ///< 16 hex digits; Batch::variant(); "swingbank 0.1.0"; "GENROU"
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
+  ///< seed of the random draws; number of draws in all and of a full shard
   double rate = 0.0;          ///< sampling rate [1/s]
   std::uint64_t samples = 0;  ///< samples per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
+  ///< names and units, in the order of the arrays' columns
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
   double frequency = 0.0;                             ///< nominal frequency [Hz]; 0 in older datasets
@@ -31,30 +34,31 @@ struct DatasetHeader {
   std::vector<std::string> held_names = {};    ///< fixed machine parameters outside of parameter_names
   std::vector<std::vector<double>> held = {};  ///< values of the fixed parameters of each generator
   bool int16 = false;                          ///< storage as 16-bit integers (quantise.hpp)
+  /// Returns the number of shards; the last one may hold fewer draws.
   [[nodiscard]] std::uint64_t shard_count() const { return (draws + draws_per_shard - 1) / draws_per_shard; }
 };
 
 /// Shard of a dataset according to header and journal.
 struct ShardInfo {
-  std::filesystem::path path;
-  std::uint64_t shard = 0;  ///< number in the dataset
-  std::uint64_t rows = 0;
+  std::filesystem::path path;   ///< HDF5 file
+  std::uint64_t shard = 0;      ///< number in the dataset
+  std::uint64_t rows = 0;       ///< number of rows
   std::uint64_t first_row = 0;  ///< index of its first row in the dataset
-  std::uint64_t bytes = 0;
-  std::string hash;  ///< shard hash, 16 hex digits
-  std::string config_hash;
-  ShardShape shape;
-  std::uint64_t draws = 0;
+  std::uint64_t bytes = 0;      ///< length of the file [bytes]
+  std::string hash;             ///< shard hash, 16 hex digits
+  std::string config_hash;      ///< hash of the config that the shard was generated from, 16 hex digits
+  ShardShape shape;             ///< shape of its arrays
+  std::uint64_t draws = 0;      ///< number of draws, stable or not
   std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
   std::string file_hash;                          ///< hash of the file's bytes
 };
 
 /// Dataset with its shards.
 struct Dataset : DatasetHeader {
-  std::filesystem::path path;
+  std::filesystem::path path;     ///< dataset folder
   std::string hash;               ///< XXH3-64 over the shard hashes in order of shard number, 16 hex digits
   std::vector<ShardInfo> shards;  ///< in order of shard number
-  std::uint64_t rows = 0;
+  std::uint64_t rows = 0;         ///< number of rows in all shards
   std::map<std::string, std::uint64_t> outcomes;          ///< draws by outcome
   std::map<std::string, std::uint64_t> operating_points;  ///< sum of the journal's counts over all shards
   bool complete = false;                                  ///< whether the journals list every shard
@@ -73,8 +77,8 @@ ShardInfo info_of(const DatasetHeader& header, const ShardData& data, std::uint6
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
 /// Shard that differs from its journal line, and the problem.
 struct BadShard {
-  std::uint64_t shard;
-  Problem problem;
+  std::uint64_t shard;  ///< number in the dataset
+  Problem problem;      ///< difference and remedy
 };
 /// Returns the problem of a shard of `folder`, if any: missing file, wrong length and, with `deep`, any
 /// difference that read_checked detects. Reads the file only with `deep`.

@@ -18,11 +18,13 @@ std::string read_asked(const std::filesystem::path& file, const std::vector<std:
 /// Caller's side: the objects in these bytes.
 class Contents {
  public:
+  /// An array with its type.
   struct Array {
-    std::string kind;  ///< "f4", "f8", "u8", "i4", "i2" or "u1": Type<T>::kKind
-    std::vector<std::uint64_t> shape;
-    std::string bytes;  ///< values; their length agrees with kind and shape
+    std::string kind;                  ///< "f4", "f8", "u8", "i4", "i2" or "u1": Type<T>::kKind
+    std::vector<std::uint64_t> shape;  ///< length of each dimension
+    std::string bytes;                 ///< values; their length agrees with kind and shape
   };
+  /// Content of an object: array, texts, real numbers or integer.
   using Value = std::variant<Array, std::vector<std::string>, std::vector<double>, std::uint64_t>;
   /// Parses the bytes. Throws InputError with `file` if they are invalid because the reader failed.
   static Contents parse(std::string_view bytes, const std::filesystem::path& file);

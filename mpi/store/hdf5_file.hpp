@@ -30,10 +30,14 @@ std::string untold_failed_close();
 /// Owner of an HDF5 identifier.
 class Handle {
  public:
+  /// HDF5 function that closes the object, for example H5Dclose.
   using Close = herr_t (*)(hid_t);
   Handle() = default;
+  /// Takes ownership of `id`; a negative `id` owns nothing.
   Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  /// Takes over the object of `other`, which then owns nothing.
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  /// Exchanges the objects; that of this handle is closed with `other`.
   Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
     std::swap(close_, other.close_);
@@ -50,7 +54,9 @@ class Handle {
   void abandon() {
     if (std::exchange(id_, -1) >= 0) close_failed = true;
   }
+  /// Returns the identifier; negative if there is none.
   [[nodiscard]] hid_t get() const { return id_; }
+  /// Whether an object is owned.
   explicit operator bool() const { return id_ >= 0; }
 
  private:
@@ -58,9 +64,11 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// HDF5 types of T: native in memory, little-endian in the file.
+/// HDF5 types of T: native type in memory(), little-endian type in file(), and as kKind the type's short
+/// name.
 template <class T>
 struct Type;
+/// \cond
 template <>
 struct Type<float> {
   static constexpr const char* kKind = "f4";
@@ -97,7 +105,9 @@ struct Type<std::uint8_t> {
   static hid_t memory() { return H5T_NATIVE_UINT8; }
   static hid_t file() { return H5T_STD_U8LE; }
 };
+/// \endcond
 
+/// Length of each dimension of an array.
 using Shape = std::vector<hsize_t>;
 
 class Contents;
@@ -119,12 +129,17 @@ class File {
   /// the ranks' states differ.
   void abandon() { file_.abandon(); }
 
+  /// Returns whether the file has an array or group of this name.
   [[nodiscard]] bool has(const std::string& object) const;
+  /// Returns the length of each dimension of an array.
   [[nodiscard]] Shape shape(const std::string& object) const;
   /// Returns Type<T>::kKind of an array's type in the file; empty if there is no such T. Not for open_apart.
   [[nodiscard]] std::string kind(const std::string& object) const;
+  /// Creates a group, "/draws".
   void create_group(const std::string& name);
+  /// Creates an array of this HDF5 type.
   void create(const std::string& object, hid_t file_type, const Shape& shape);
+  /// Creates an array of the file type of T.
   template <class T>
   void create(const std::string& object, const Shape& shape) {
     create(object, Type<T>::file(), shape);
@@ -133,7 +148,7 @@ class File {
   /// Source of a virtual array: an array of another file with `count` rows.
   struct Part {
     std::string file, object;  ///< file name relative to this file's folder
-    hsize_t count;
+    hsize_t count;             ///< number of rows
   };
   /// Creates a virtual array: the rows of other files, concatenated. Type and row shape are those of the same
   /// object of `example`.
@@ -154,34 +169,48 @@ class File {
     }
     transfer(object, first, count, Type<T>::memory(), values.data(), nullptr);
   }
+  /// Reads the whole array; resizes `values`.
   template <class T>
   void read(const std::string& object, std::vector<T>& values) const {
     const Shape s = shape(object);
     read(object, 0, s.empty() ? 0 : s[0], values);
   }
+  /// Writes rows first ... first+count-1 of the leading dimension.
   template <class T>
   void write(const std::string& object, hsize_t first, hsize_t count, const T* values) {
     transfer(object, first, count, Type<T>::memory(), nullptr, values);
   }
 
+  /// Writes a text as attribute of `object`.
   void attribute(const std::string& name, const std::string& value, const std::string& object = "/");
+  /// Writes a list of texts as attribute of `object`.
   void attribute(const std::string& name, const std::vector<std::string>& value,
                  const std::string& object = "/");
+  /// Writes an integer as attribute of `object`.
   void attribute(const std::string& name, std::uint64_t value, const std::string& object = "/");
+  /// Writes a real number as attribute of `object`.
   void attribute(const std::string& name, double value, const std::string& object = "/");
+  /// Writes a list of real numbers as attribute of `object`.
   void attribute(const std::string& name, const std::vector<double>& value, const std::string& object = "/");
-  /// Attributes of the root group.
+  /// Returns whether the root group has this attribute.
   [[nodiscard]] bool has_attribute(const std::string& name) const;
+  /// Returns a text attribute of the root group.
   [[nodiscard]] std::string text_attribute(const std::string& name) const;
+  /// Returns a list of texts from an attribute of the root group.
   [[nodiscard]] std::vector<std::string> texts_attribute(const std::string& name) const;
+  /// Returns an integer attribute of the root group.
   [[nodiscard]] std::uint64_t integer_attribute(const std::string& name) const;
+  /// Returns a real attribute of the root group.
   [[nodiscard]] double real_attribute(const std::string& name) const;
+  /// Returns a list of real numbers from an attribute of the root group.
   [[nodiscard]] std::vector<double> reals_attribute(const std::string& name) const;
 
   /// Throws InputError "<what> at <file>:<object> (<HDF5's reason>): <remedy>".
   [[noreturn]] void fail(const std::string& what, const std::string& object) const;
+  /// Throws InputError as fail(), with `why` as the reason.
   [[noreturn]] void fail_for(const std::string& why, const std::string& what,
                              const std::string& object) const;
+  /// Returns the number of values in one row: the product of all dimensions except the first.
   static hsize_t row_size(const Shape& shape);
 
  private:

@@ -14,15 +14,16 @@ namespace swingbank::mpi::store {
 
 /// Entry of a finished shard.
 struct JournalLine {
-  std::uint64_t shard = 0;
-  std::string file;  ///< relative to the dataset folder
-  std::uint64_t draws = 0, rows = 0, bytes = 0;
+  std::uint64_t shard = 0;                        ///< number in the dataset
+  std::string file;                               ///< relative to the dataset folder
+  std::uint64_t draws = 0, rows = 0, bytes = 0;   ///< numbers of draws and rows; length of the file [bytes]
   std::string hash;                               ///< shard hash, 16 hex digits
   std::string file_hash;                          ///< hash of the file's bytes (durable.hpp)
   std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
   /// Operating points of the blocks that begin in the shard: "used", and the rejected ones, "no_power_flow"
   /// and "implausible".
   std::map<std::string, std::uint64_t> operating_points = {};
+  /// Compares all members.
   bool operator==(const JournalLine&) const = default;
 };
 
@@ -35,7 +36,9 @@ JournalLine parse_journal_line(const std::string& text);
 /// without MPI.
 struct Part {
   std::uint64_t number = 1, of = 1;  ///< counted from 1
+  /// Whether the run generates all shards.
   [[nodiscard]] bool all() const { return of == 1; }
+  /// Whether the run generates this shard.
   [[nodiscard]] bool has(std::uint64_t shard) const { return shard % of == number - 1; }
   /// Returns "journal.jsonl" or, for a part, "journal-3-of-16.jsonl", so that each file has one writer.
   [[nodiscard]] std::string journal_name() const;
@@ -57,6 +60,7 @@ void strike_lines(const std::filesystem::path& folder, const std::vector<std::ui
 /// (run_lock.hpp).
 class Journal {
  public:
+  /// Opens or creates the journal. Throws InputError on failure.
   explicit Journal(std::filesystem::path file);
   ~Journal();
   Journal(const Journal&) = delete;

@@ -9,7 +9,7 @@
 
 namespace swingbank::mpi::store {
 
-constexpr const char* kManifestFile = "manifest.txt";
+constexpr const char* kManifestFile = "manifest.txt";  ///< file name in the dataset folder
 
 /// Writes the manifest of `lines`, which must be all entries of the folder's journals.
 void write_manifest(const std::filesystem::path& folder, const std::vector<JournalLine>& lines);

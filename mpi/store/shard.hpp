@@ -13,14 +13,15 @@ namespace swingbank::mpi::store {
 
 /// Attributes of the root group.
 struct ShardAttributes {
-  std::string config_hash;  ///< 16 hex digits
-  std::string kernel;       ///< Batch::variant()
-  std::string software;     ///< "swingbank 0.1.0"
-  std::uint64_t seed = 0;
+  std::string config_hash;    ///< 16 hex digits
+  std::string kernel;         ///< Batch::variant()
+  std::string software;       ///< "swingbank 0.1.0"
+  std::uint64_t seed = 0;     ///< seed of the dataset's random draws
   std::uint64_t shard = 0;    ///< number of the shard in its dataset
   double rate = 0.0;          ///< sampling rate [1/s]
   std::string machine_model;  ///< "GENROU"
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
+  ///< names and units, in the order of the arrays' columns
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
   bool operating_points = false;  ///< whether operating points vary, and with them the machine bases
@@ -30,6 +31,7 @@ struct ShardAttributes {
 /// Rows of a shard, one per stable generator record; every array is row-major.
 struct RowBlock {
   std::size_t rows = 0, channels = 0, samples = 0, parameter_count = 0;
+  ///< numbers of rows, channels, samples and parameters
   std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad, pu/s]
   std::vector<double> parameters;         ///< rows x parameters, in order of parameter_names
   std::vector<std::uint64_t> sample_id;   ///< rows
@@ -44,30 +46,33 @@ struct RowBlock {
 
 /// Content of a shard.
 struct ShardData : RowBlock {
-  ShardAttributes attributes;
+  ShardAttributes attributes;                 ///< attributes of the root group
   std::vector<std::uint64_t> draw_sample_id;  ///< every draw of the shard, stable or not
   std::vector<std::uint8_t> draw_outcome;     ///< outcome of every draw, 0 ... kRefused
   /// draws x kRedrawnColumns: rejected operating points of the draw's block; empty without operating points.
   std::vector<std::int32_t> draw_redrawn;
 };
 
-constexpr std::size_t kFaultColumns = 5;
+constexpr std::size_t kFaultColumns = 5;    ///< bus number, t_on [s], t_off [s], r [pu], x [pu]
 constexpr std::size_t kScaleColumns = 2;    ///< offset, step
 constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// Remedy for a damaged shard.
 constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
 /// Outcome of a draw with inadmissible parameters, in /draws/outcome. The values 0 ... 3 are sim::Outcome.
 constexpr std::uint8_t kRefused = 4;
+/// Returns the name of an outcome in /draws/outcome, "stable".
 std::string_view draw_outcome_name(std::uint8_t outcome);
 
 /// Expected shape of a shard, from its dataset.
 struct ShardShape {
   std::uint64_t rows = 0, channels = 0, samples = 0, parameters = 0;
+  ///< number of rows, channels, samples of a channel, and parameters
 };
 
 /// Arrays to read; the others remain empty.
 struct ShardFields {
   bool records = true, parameters = true, angle_valid = true, draws = true;
+  ///< waveforms; parameter values; validity of the angle; draws
 };
 
 /// Reads a whole shard. Throws InputError if the file is truncated, not a shard or inconsistent, or if its
@@ -94,6 +99,7 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
                          const std::vector<std::uint8_t>& draw_outcome,
                          const std::vector<std::int32_t>& draw_redrawn);
+/// The same for a shard in memory.
 std::uint64_t shard_hash(const ShardData& data);
 /// Returns the number of draws by outcome, for outcomes that occur. Throws InputError with `file` for an
 /// invalid outcome.

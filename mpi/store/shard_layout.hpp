@@ -5,12 +5,12 @@
 
 namespace swingbank::mpi::store {
 
-constexpr const char* kShardFormat = "swingbank-shard-1";
+constexpr const char* kShardFormat = "swingbank-shard-1";  ///< records as float32
 constexpr const char* kInt16Format = "swingbank-shard-2";  ///< records as 16-bit integers
 
 /// Numbers of rows and draws of the whole file, over all writers.
 struct ShardSize {
-  std::uint64_t rows, draws;
+  std::uint64_t rows, draws;  ///< numbers of rows and draws
 };
 
 /// Creates arrays and attributes; `data` gives the shape of a row and the attributes. Collective if the file

@@ -7,7 +7,7 @@
 
 namespace swingbank::mpi::store {
 
-constexpr const char* kVirtualFile = "dataset.h5";
+constexpr const char* kVirtualFile = "dataset.h5";  ///< file name in the dataset folder
 /// Largest number of shards for which the file is written; for more it would take over a minute
 /// (docs/reference/performance.md).
 constexpr std::uint64_t kMostVirtual = 100000;

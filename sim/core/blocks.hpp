@@ -45,7 +45,8 @@ inline T dead_band(const T& u, const T& width) {
 /// SE(E2)). Both factors zero: no saturation.
 template <class T>
 struct Quadratic {
-  T A{}, B{};
+  T A{}, B{};  ///< A [pu], threshold of V; B [1/pu], 0: no saturation
+  /// Returns the curve through the points (ea, sa) and (eb, sb), in either order; Se(V) = S at V = E [pu].
   static Quadratic through(const T& ea, const T& sa, const T& eb, const T& sb) {
     using std::sqrt;
     const auto swapped = eb < ea;  // the two points occur in either order in files

@@ -6,10 +6,12 @@
 
 namespace swingbank::sim {
 
+/// Recorded quantity; kChannels defines each value.
 enum class Channel { delta, speed, P, Q, V, theta, Efd, Ifd, Tm };
+/// Name and definition of a recorded channel.
 struct ChannelRecord {
-  Channel channel;
-  std::string_view name, unit, meaning;
+  Channel channel;                       ///< value of the enumeration
+  std::string_view name, unit, meaning;  ///< name in configs and files; unit; definition
 };
 /// Channels in per unit on the machine's own base.
 inline constexpr std::array<ChannelRecord, 9> kChannels = {{
@@ -23,7 +25,7 @@ inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::Ifd, "Ifd", "pu", "field current, 1 pu on the air-gap line"},
     {Channel::Tm, "Tm", "pu", "mechanical torque, or power where the convention says so"},
 }};
-inline constexpr int kChannelCount = static_cast<int>(kChannels.size());
+inline constexpr int kChannelCount = static_cast<int>(kChannels.size());  ///< number of channels
 /// Returns the record of the channel with this name, nullptr if there is none.
 constexpr const ChannelRecord* find_channel(std::string_view name) {
   for (const auto& c : kChannels)

@@ -59,13 +59,16 @@ enum class Slot {
   load,                ///< a consumer at a bus
   measurement,         ///< between the grid and the record
 };
+/// All slots, in the order of Slot.
 inline constexpr std::array kSlots = {Slot::machine,       Slot::transformer,    Slot::compensator,
                                       Slot::setpoint,      Slot::governor,       Slot::shaft,
                                       Slot::stabiliser,    Slot::limiter,        Slot::exciter,
                                       Slot::plant_control, Slot::torque_control, Slot::pitch_control,
                                       Slot::aerodynamics,  Slot::drive_train,    Slot::electrical_control,
                                       Slot::load,          Slot::measurement};
+/// Returns the name of a slot, "governor".
 std::string_view slot_name(Slot slot);
+/// Whether the slot holds a control, which has ControlOps.
 constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::electrical_control; }
 /// Whether a control in this slot belongs to a converter. Set-points exist for both kinds of source.
 constexpr bool is_of_converter(Slot slot) {
@@ -76,6 +79,7 @@ constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
 
+/// Null value of a parameter that has none.
 constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 /// Placeholder in a parameter's record, before the bounds' source: the default has the effect's source.
 constexpr Source kAsEffect = {};
@@ -86,12 +90,13 @@ constexpr Source kAsEffect = {};
 /// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
 /// defaults_from and bounds_from.
 struct Parameter {
-  std::string_view name;    ///< identifier in configs, HDF5 and tables: "Xdp"
-  std::string_view symbol;  ///< usual notation: "X'd"
-  std::string_view unit;    ///< "pu", "s"
-  double default_value, low, high, null_value;
-  std::string_view meaning;
-  Source default_from = {}, bounds_from = {};
+  std::string_view name;                        ///< identifier in configs, HDF5 and tables: "Xdp"
+  std::string_view symbol;                      ///< usual notation: "X'd"
+  std::string_view unit;                        ///< "pu", "s"
+  double default_value, low, high, null_value;  ///< default; usual range; null value (NaN: none) [unit]
+  std::string_view meaning;                     ///< definition, for tables and `swingbank effects`
+  Source default_from = {}, bounds_from = {};   ///< sources of the default and of the range
+  /// Whether the parameter is an integer choice (unit "code"), which is neither sampled nor fitted.
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
 
@@ -102,19 +107,20 @@ struct Elsewhere {
   int from = -1, to = -1, circuit = -1;  ///< branch whose flow is measured, at its first bus
 };
 
+/// One state variable of an effect, with its limits and its weight in step control.
 struct State {
-  std::string_view name, unit, meaning;
+  std::string_view name, unit, meaning;  ///< identifier, unit and definition
   /// Weight of the state's error in step control: a speed error counts through the angle it causes.
   double weight = 1.0;
   /// Indices of the coefficients with the non-windup limits, -1: none. The integrator clamps the state there:
   /// its derivative is zero while it points out of the limits.
-  int low = -1, high = -1;
+  int low = -1, high = -1;  ///< coefficient indices of lower and upper limit
   /// Coefficients that multiply the derivative: while both are zero, a state initialised by steady() does not
   /// move, whatever the signals. -1: none; a state that names none is always integrated.
   struct Movers {
-    int first = -1, second = -1;
+    int first = -1, second = -1;  ///< indices of the coefficients, -1: none
   };
-  Movers moved_by = {};
+  Movers moved_by = {};  ///< coefficients without which the state does not move
   /// Index of a coefficient that multiplies `weight` where it is above 1, -1: none.
   int weighed_by = -1;
   /// The derivative has kinks that `low` and `high` do not show: every step is checked as one with a kink.
@@ -127,7 +133,9 @@ struct Conventions {
   bool mechanical_power = true;  ///< governor sets power, torque is (Pm - D w)/(1 + w); else torque
   double frequency = 60.0;       ///< system frequency [Hz]
   double mva = 100.0;            ///< base of the machine [MVA], set by operating_point
+  /// Conventions of PSS/E at a system frequency [Hz].
   static constexpr Conventions psse(double hz = 60.0) { return {false, true, hz}; }
+  /// Conventions of ANDES at a system frequency [Hz].
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 
@@ -137,6 +145,7 @@ struct Conventions {
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
+  ///< voltage and current in the network frame [pu]; power out of the plant [pu]
 };
 
 /// Signals exchanged by the blocks of one plant, per unit on the machine's own base; r, i in the network
@@ -160,16 +169,16 @@ struct Signals {
   T t{};  ///< time [s]; at a switching time (instants()) its value on the side being integrated
   /// Voltage at the grid's side of the step-up transformer [pu]. Of a load, Vpr and Vpi are the voltage of
   /// the bus that it regulates (Consumer::regulated), else of its own bus.
-  T Vpr{}, Vpi{}, Vp{};
+  T Vpr{}, Vpi{}, Vp{};  ///< in the network frame, and its magnitude [pu]
   // Signals of converter controls only:
   /// References of P and of Q (or V, by the control's flags), relative to the operating point [pu].
-  T Pext{}, Qext{};
+  T Pext{}, Qext{};      ///< changes of the references of P and Q [pu]
   T Pneed{}, Qneed{};    ///< values of these references at the operating point, computed by steady() [pu]
   T wt{}, wg{}, wref{};  ///< speed of turbine and generator and its reference, minus 1 [pu]
   /// Blade pitch relative to the operating point (in steady(): absolute) [degrees]; aerodynamic power [pu].
-  T pitch{}, Paero{};
-  T Pord{};      ///< power order of the electrical control [pu]
-  Far<T> far{};  ///< remote measurement, read if the plant control names a bus or a branch
+  T pitch{}, Paero{};  ///< [degrees], [pu]
+  T Pord{};            ///< power order of the electrical control [pu]
+  Far<T> far{};        ///< remote measurement, read if the plant control names a bus or a branch
 };
 
 /// Equations of a machine: voltage `e` behind the constant impedance r + jx, both on the machine's base.
@@ -177,9 +186,12 @@ struct Signals {
 /// shared by the three calls of one evaluation.
 template <class T>
 struct MachineOps {
+  /// Parameters -> source impedance r + jx [pu on the machine's base].
   void (*source_impedance)(const T* p, T& r, T& x) = nullptr;
+  /// States -> internal voltage er + j ei in the network frame [pu].
   void (*emf)(const T* c, const T* x, T* m, T& er, T& ei) = nullptr;
   void (*electrical)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;  ///< Ir, Ii -> speed, Te, Ifd
+  /// States and signals -> derivatives dx of all states [1/s].
   void (*derivative)(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) = nullptr;
   /// From Vr, Vi, Ir, Ii: computes the states, s.Efd, s.Tm and the coefficients that depend on the operating
   /// point. Returns the reason of a failure, empty on success.
@@ -193,6 +205,7 @@ struct MachineOps {
 /// data of a user-defined model, else nullptr.
 template <class T>
 struct ControlOps {
+  /// States and signals -> outputs in the signals, and derivatives dx [1/s].
   void (*evaluate)(const void* law, const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
   /// From all signals at the operating point: computes states and references (kept in c). Returns the reason
   /// of a failure, empty on success.
@@ -211,6 +224,7 @@ struct ControlOps {
 /// Step-up transformer: ideal ratio (grid side / machine side) and impedance on the machine's base.
 template <class T>
 struct TransformerOps {
+  /// Parameters -> series impedance r + jx [pu on the machine's base] and ratio [pu].
   void (*impedance)(const T* p, T& r, T& x, T& ratio) = nullptr;
 };
 
@@ -219,20 +233,25 @@ struct TransformerOps {
 template <class T>
 struct LoadOps {
   void (*current)(const T* c, const T* x, Signals<T>& s) = nullptr;  ///< Vr, Vi -> Ir, Ii
+  /// States and bus voltage -> derivatives dx [1/s].
   void (*derivative)(const T* c, const T* x, const Signals<T>& s, T* dx) = nullptr;
+  /// Computes states and coefficients from the operating point. Returns the reason of a failure, empty on
+  /// success.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
 };
 
 /// Output of an instrument: uniform samples of voltage [pu], current out of the plant [pu] and reported
 /// frequency deviation [pu]. NaN marks a missing sample.
 struct Phasors {
-  double rate = 60.0, frequency = 60.0;  ///< samples per second; system frequency [Hz]
-  std::vector<std::complex<double>> V, I;
-  std::vector<double> df;
+  double rate = 60.0, frequency = 60.0;    ///< samples per second; system frequency [Hz]
+  std::vector<std::complex<double>> V, I;  ///< [sample]: voltage, current out of the plant [pu]
+  std::vector<double> df;                  ///< [sample]: reported frequency deviation [pu]
 };
 
+/// Equations of one effect for the scalar type T (double, SIMD batch or dual). Null: not part of its kind.
 template <class T>
 struct Ops {
+  /// Parameters p and conventions -> coefficients c; called once per simulation.
   void (*prepare)(const T* p, const Conventions& conventions, T* c) = nullptr;
   MachineOps<T> machine;          ///< filled where slot == machine
   ControlOps<T> control;          ///< filled where is_control(slot)
@@ -242,9 +261,10 @@ struct Ops {
 
 template <class Tuple>
 struct OpsFor;
+/// Equations of one effect for each scalar type of a tuple.
 template <class... T>
 struct OpsFor<std::tuple<T...>> {
-  using type = std::tuple<Ops<T>...>;
+  using type = std::tuple<Ops<T>...>;  ///< tuple of Ops<T>, one for each T
 };
 
 struct Recording;
@@ -254,28 +274,32 @@ struct Recording;
 /// named `by_id` has the id, followed by the regulated bus. After the first columns follow, for each of
 /// `beside` further shunts, whether it is switched and its id.
 struct ShuntRecord {
-  std::string_view of_first, by_id;
+  std::string_view of_first, by_id;          ///< model names of the two layouts, empty: none
   int regulated;                             ///< parameter with the regulated bus's number, the first column
   std::size_t columns;                       ///< before the further shunts
   std::size_t beside;                        ///< number of further shunts
   static constexpr std::size_t of_each = 2;  ///< fields of each further shunt
+  /// Returns the number of fields of the further shunts, which the reader skips.
   [[nodiscard]] constexpr std::size_t passed_over() const { return beside * of_each; }
 };
 
 /// One registered effect, with its types erased.
 struct Effect {
   std::string_view name, title, source, description, dyr_name;
-  Slot slot;
-  std::span<const Parameter> parameters;
-  std::span<const State> states;
-  std::span<const int> dyr_columns;   ///< parameter index of each .dyr column
-  int raw_resistance, raw_reactance;  ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
-  int coefficients, scratch;
-  int guards = 0;
-  bool converter = false;  ///< of a source: controlled current, no synchronous machine
+  ///< identity, documentation and PSS/E model name (empty: none)
+  Slot slot;                              ///< place in the plant
+  std::span<const Parameter> parameters;  ///< parameters, in the order of all parameter arrays
+  std::span<const State> states;          ///< state variables, in the order of all state arrays
+  std::span<const int> dyr_columns;       ///< parameter index of each .dyr column
+  int raw_resistance, raw_reactance;      ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
+  int coefficients, scratch;              ///< numbers of coefficients c and of scratch values m
+  int guards = 0;                         ///< number of functions that guard() computes
+  bool converter = false;                 ///< of a source: controlled current, no synchronous machine
   /// Layout of the .dyr records of a load that belong to switched shunts, else nullptr.
   const ShuntRecord* at_shunt = nullptr;
-  Elsewhere elsewhere = {};
+  Elsewhere elsewhere = {};  ///< parameters that select a remote measuring point
+  /// Adds singular parameter values, which no equation can take, to `problems`. `where`: prefix of the
+  /// messages.
   void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the violated ordering
   /// Returns a warning about values that ask for unmodelled behaviour, empty if there are none; nullptr: no
@@ -287,17 +311,19 @@ struct Effect {
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
   double (*memory)(const double* p);
-  OpsFor<Scalars>::type ops;
+  OpsFor<Scalars>::type ops;                  ///< equations for every scalar type
   std::shared_ptr<const void> law = nullptr;  ///< data of a user-defined model
   /// Returns estimates of all parameters by linear least squares from a record without noise, best first.
   /// Parameters that the record does not determine are taken from `known`. nullptr: no such method is known.
   std::vector<std::vector<double>> (*closed_form)(const Recording& record, const double* known) = nullptr;
 
+  /// Returns the equations for the scalar type T.
   template <class T>
   [[nodiscard]] const Ops<T>& get() const {
     return std::get<Ops<T>>(ops);
   }
   [[nodiscard]] int parameter_index(std::string_view parameter) const;  ///< -1 if unknown
+  /// Returns the defaults of all parameters, in their units.
   [[nodiscard]] std::vector<double> default_parameters() const;
 };
 
@@ -308,6 +334,7 @@ std::string_view kind_name(const Effect& effect);
 std::string slot_conflict(const Effect& source, const Effect& control);
 
 // ---- used by the generated registry only -------------------------------------------------------------
+/// \cond
 template <class M, class T>
 Ops<T> make_ops() {
   Ops<T> o;
@@ -394,5 +421,6 @@ Effect make_effect() {
   e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
   return e;
 }
+/// \endcond
 
 }  // namespace swingbank::sim

@@ -13,6 +13,7 @@ template <>
 const Ops<FloatPack>& Effect::get<FloatPack>() const;
 
 // ---- used by the generated table only ----------------------------------------------------------------
+/// \cond
 template <class M>
 Ops<FloatPack> make_float_ops() {
   using T = FloatPack;
@@ -31,5 +32,6 @@ Ops<FloatPack> make_float_ops() {
   }
   return o;
 }
+/// \endcond
 
 }  // namespace swingbank::sim

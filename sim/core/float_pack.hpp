@@ -5,6 +5,7 @@
 
 namespace swingbank::sim {
 
+/// Sixteen single-precision numbers.
 using FloatPack = Packed<float, 16>;
 
 /// Computes sine and cosine together, for |a| < 1e4 rad. Reduction by multiples of pi/2 in three parts;

@@ -11,6 +11,7 @@
 
 namespace swingbank::sim {
 
+/// Time constants of the frequency measurement: washout Tw and filter Tf.
 struct FrequencyFilter {
   double washout = 0.1;  ///< Tw [s], must differ from Tf
   double filter = 0.02;  ///< Tf [s]
@@ -19,6 +20,7 @@ struct FrequencyFilter {
 /// The filter, sample by sample. Angles are relative to the first one.
 class FrequencyLags {
  public:
+  /// Constructs the filter in steady state. rate: samples per second [1/s]; f0: nominal frequency [Hz].
   FrequencyLags(double rate, double f0, const FrequencyFilter& constants)
       : washout_(constants.washout, 1.0 / rate),
         filter_(constants.filter, 1.0 / rate),

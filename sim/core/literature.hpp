@@ -10,14 +10,18 @@ struct Work;
 
 /// A work and the place in it. For `derived`, `own` and `law` the place is the reason as text.
 struct Source {
-  const Work* work = nullptr;
-  std::string_view place;
+  const Work* work = nullptr;  ///< cited work; null: no source was given
+  std::string_view place;      ///< place in the work, or the reason
+  /// Whether a source with a place was given.
   [[nodiscard]] constexpr bool given() const { return work && !place.empty(); }
 };
 
+/// A cited work.
 struct Work {
   std::string_view id, author, edition, title, where;  ///< edition: year, version or commit
+  /// Citation of a place in the work.
   constexpr Source operator()(std::string_view place) const { return {this, place}; }
+  /// Whether it is a publication, not a reason.
   [[nodiscard]] constexpr bool published() const { return !title.empty(); }
 };
 

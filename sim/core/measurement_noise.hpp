@@ -12,10 +12,10 @@ namespace swingbank::sim {
 
 /// Standard deviations of one sample.
 struct MeasurementNoise {
-  double level = 0;  ///< L; 0: no noise
-  static constexpr double kOfSpeed = 0.05;
-  [[nodiscard]] double phasor() const { return level; }                               ///< [pu, rad]
-  [[nodiscard]] double speed() const { return kOfSpeed * level; }                     ///< [pu]
+  double level = 0;                                                ///< L; 0: no noise
+  static constexpr double kOfSpeed = 0.05;                         ///< speed's level as a fraction of L
+  [[nodiscard]] double phasor() const { return level; }            ///< [pu, rad]
+  [[nodiscard]] double speed() const { return kOfSpeed * level; }  ///< [pu]
   [[nodiscard]] double field(double value) const { return level * std::abs(value); }  ///< [pu]
 };
 

@@ -19,6 +19,7 @@ namespace swingbank::sim {
 inline thread_local std::uint64_t pack_operations = 0;
 inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
 #else
+/// Counts operations of `lanes` lanes, in builds with SWINGBANK_COUNT_FLOPS only.
 inline void count_operations(int) {}
 #endif
 
@@ -31,6 +32,7 @@ inline constexpr std::size_t kRegisterBytes = 32;
 inline constexpr std::size_t kRegisterBytes = 16;
 #endif
 
+/// \cond
 template <class S, std::size_t Bytes>
 struct VectorOf;  // spelled out per width: GCC 12 drops vector_size on a dependent width
 template <class S>
@@ -48,23 +50,31 @@ struct VectorOf<S, 64> {
   typedef S Type __attribute__((vector_size(64)));
   typedef S InMemory __attribute__((vector_size(64), aligned(sizeof(S)), may_alias));
 };
+/// \endcond
 
 /// Wider than a register: two halves. S is double or float.
 template <class S, int N>
 struct Packed {
-  using Half = Packed<S, N / 2>;
+  using Half = Packed<S, N / 2>;  ///< one half of the lanes
+  /// Result of a comparison, one truth value for each lane.
   struct Mask {
-    typename Half::Mask low, high;
+    typename Half::Mask low, high;  ///< masks of the two halves
   };
-  static constexpr int lanes = N;
-  static constexpr bool one_register = false;
-  Half low, high;
+  static constexpr int lanes = N;              ///< number of lanes N
+  static constexpr bool one_register = false;  ///< whether the value is one vector register
+  Half low, high;                              ///< lanes 0 ... N/2-1 and N/2 ... N-1
   Packed() = default;
+  /// Broadcasts a number to all lanes.
   Packed(double a) : low(a), high(a) {}  // NOLINT(google-explicit-constructor): broadcast
+  /// Joins two halves.
   Packed(Half l, Half h) : low(l), high(h) {}
+  /// Value of one lane.
   S operator[](int lane) const { return lane < N / 2 ? low[lane] : high[lane - N / 2]; }
+  /// Sets one lane.
   void set(int lane, double a) { lane < N / 2 ? low.set(lane, a) : high.set(lane - N / 2, a); }
+  /// Loads N numbers; `from` needs no alignment.
   static Packed load(const S* from) { return {Half::load(from), Half::load(from + N / 2)}; }
+  /// Stores N numbers; `to` needs no alignment.
   void store(S* to) const {
     low.store(to);
     high.store(to + N / 2);
@@ -72,52 +82,80 @@ struct Packed {
   /// Returns the mask in which lane l is set where bit l of `bits` is.
   static Mask mask(unsigned bits) { return {Half::mask(bits), Half::mask(bits >> (N / 2))}; }
 
+  /// Returns the lane-wise sum.
   friend Packed operator+(Packed a, Packed b) { return {a.low + b.low, a.high + b.high}; }
+  /// Returns the lane-wise difference.
   friend Packed operator-(Packed a, Packed b) { return {a.low - b.low, a.high - b.high}; }
+  /// Returns the lane-wise product.
   friend Packed operator*(Packed a, Packed b) { return {a.low * b.low, a.high * b.high}; }
+  /// Returns the lane-wise quotient.
   friend Packed operator/(Packed a, Packed b) { return {a.low / b.low, a.high / b.high}; }
+  /// Returns the lane-wise negation.
   friend Packed operator-(Packed a) { return {-a.low, -a.high}; }
+  /// Compares lane by lane.
   friend Mask operator<(Packed a, Packed b) { return {a.low < b.low, a.high < b.high}; }
+  /// Compares lane by lane.
   friend Mask operator>(Packed a, Packed b) { return {a.low > b.low, a.high > b.high}; }
+  /// Compares lane by lane.
   friend Mask operator<=(Packed a, Packed b) { return {a.low <= b.low, a.high <= b.high}; }
+  /// Returns a in the lanes set in m, b in the others.
   friend Packed select(Mask m, Packed a, Packed b) {
     return {select(m.low, a.low, b.low), select(m.high, a.high, b.high)};
   }
+  /// Whether any lane is above zero.
   friend bool any_positive(Packed a) { return any_positive(a.low) || any_positive(a.high); }
 };
 
 /// One register or less.
 template <class S, int N>
 requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
-  using Vector = typename VectorOf<S, sizeof(S) * N>::Type;
+  using Vector = typename VectorOf<S, sizeof(S) * N>::Type;  ///< vector of N numbers in a register
+  /// The vector in memory, aligned to one number.
   using InMemory = typename VectorOf<S, sizeof(S) * N>::InMemory;
+  /// Signed integer of the size of S.
   using Integer = std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;
-  using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;
-  static constexpr int lanes = N;
-  static constexpr bool one_register = true;
-  Vector v;
+  using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;  ///< result of a comparison: all bits of a
+                                                                 ///< true lane set
+  static constexpr int lanes = N;                                ///< number of lanes N
+  static constexpr bool one_register = true;                     ///< whether the value is one vector register
+  Vector v;                                                      ///< all lanes
   Packed() = default;
-  Packed(Vector a) : v(a) {}                             // NOLINT(google-explicit-constructor)
+  /// Wraps a vector.
+  Packed(Vector a) : v(a) {}  // NOLINT(google-explicit-constructor)
+  /// Broadcasts a number to all lanes.
   Packed(double a) : v(static_cast<S>(a) - Vector{}) {}  // NOLINT(google-explicit-constructor): broadcast
-  S operator[](int lane) const { return v[lane]; }
+  S operator[](int lane) const { return v[lane]; }       ///< value of one lane
+  /// Sets one lane.
   void set(int lane, double a) { v[lane] = static_cast<S>(a); }
-  // Loads and stores through a vector type: GCC copies a vector's bytes by way of integer registers.
+  /// Loads N numbers; `from` needs no alignment. Through a vector type, because GCC copies a vector's bytes
+  /// by way of integer registers.
   static Packed load(const S* from) { return Vector(*reinterpret_cast<const InMemory*>(from)); }
+  /// Stores N numbers; `to` needs no alignment.
   void store(S* to) const { *reinterpret_cast<InMemory*>(to) = v; }
+  /// Returns the mask in which lane l is set where bit l of `bits` is.
   static Mask mask(unsigned bits) {
     Mask lane_bit{};
     for (int l = 0; l < N; ++l) lane_bit[l] = Integer(1) << l;
     return (lane_bit & static_cast<Integer>(bits)) != 0;
   }
 
+  /// Returns the lane-wise sum.
   friend Packed operator+(Packed a, Packed b) { return counted(a.v + b.v); }
+  /// Returns the lane-wise difference.
   friend Packed operator-(Packed a, Packed b) { return counted(a.v - b.v); }
+  /// Returns the lane-wise product.
   friend Packed operator*(Packed a, Packed b) { return counted(a.v * b.v); }
+  /// Returns the lane-wise quotient.
   friend Packed operator/(Packed a, Packed b) { return counted(a.v / b.v); }
+  /// Returns the lane-wise negation.
   friend Packed operator-(Packed a) { return Packed(-a.v); }
+  /// Compares lane by lane.
   friend Mask operator<(Packed a, Packed b) { return a.v < b.v; }
+  /// Compares lane by lane.
   friend Mask operator>(Packed a, Packed b) { return a.v > b.v; }
+  /// Compares lane by lane.
   friend Mask operator<=(Packed a, Packed b) { return a.v <= b.v; }
+  /// Returns a in the lanes set in m, b in the others.
   friend Packed select(Mask m, Packed a, Packed b) { return Packed(m ? a.v : b.v); }
   /// Whether any lane is above zero.
   friend bool any_positive(Packed a) {
@@ -148,6 +186,7 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
 template <int N>
 using Pack = Packed<double, N>;
 
+/// Returns the square root, lane by lane.
 template <class S, int N>
 inline Packed<S, N> sqrt(Packed<S, N> a) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -179,6 +218,7 @@ inline Packed<S, N> exp(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::exp(a[i]));
   return a;
 }
+/// Returns the natural logarithm, as exp() does.
 template <class S, int N>
 inline Packed<S, N> log(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::log(a[i]));

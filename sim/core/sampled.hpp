@@ -15,6 +15,7 @@ namespace swingbank::sim {
 template <class T>
 class SampledCurve {
  public:
+  /// Constructs the curve. The samples `y` are referenced, not copied, and must outlive it.
   explicit SampledCurve(std::span<const T> y) : y_(y), slope_(y.size(), T{}) {
     for (std::ptrdiff_t k = 0; k < size(); ++k) {
       const bool left = k > 0 && !jump(k - 1), right = k + 1 < size() && !jump(k);

@@ -39,13 +39,17 @@ inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_s
 /// Quadratic saturation as a template policy of a machine: coefficients `a`, `b`, Se as a function of psi^2,
 /// and the test of the two factors. ExponentialSaturation has the same members.
 struct QuadraticSaturation {
-  static constexpr std::string_view impossible = "no quadratic passes through both",
-                                    remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";
+  static constexpr std::string_view
+      impossible = "no quadratic passes through both",                 ///< why two factors have no curve
+      remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";  ///< remedy in the error message
+  /// Whether a quadratic passes through both factors, or there is no saturation (S1.0 = 0).
   static bool possible(double s10, double s12) { return !(s10 > 0) || 1.2 * s12 > s10; }
+  /// Computes the coefficients `a` [pu] and `b` [1/pu] from S1.0 and S1.2.
   template <class T>
   static void prepare(const T& s10, const T& s12, T& a, T& b) {
     quadratic_saturation(s10, s12, a, b);
   }
+  /// Returns Se(psi) from psi^2 [pu^2].
   template <class T>
   static T factor(const T& a, const T& b, const T& flux_squared) {
     using std::sqrt;
@@ -53,15 +57,20 @@ struct QuadraticSaturation {
     return b * square(positive_part(psi - a)) / psi;
   }
 };
+/// Exponential saturation Se = S1.0 psi^x as a template policy of a machine; coefficients a = S1.0, b = x.
 struct ExponentialSaturation {
-  static constexpr std::string_view impossible = "no power of the flux passes through both",
-                                    remedy = "give S1.2 > 0, or S1.0 = 0 for no saturation";
+  static constexpr std::string_view
+      impossible = "no power of the flux passes through both",  ///< why two factors have no curve
+      remedy = "give S1.2 > 0, or S1.0 = 0 for no saturation";  ///< remedy in the error message
+  /// Whether a power of the flux passes through both factors, or there is no saturation (S1.0 = 0).
   static bool possible(double s10, double s12) { return !(s10 > 0) || s12 > 0; }
+  /// Computes the coefficients a = S1.0 and b = x from S1.0 and S1.2.
   template <class T>
   static void prepare(const T& s10, const T& s12, T& a, T& b) {
     a = s10;
     b = saturation_exponent(s10, s12);
   }
+  /// Returns Se(psi) from psi^2 [pu^2].
   template <class T>
   static T factor(const T& a, const T& b, const T& flux_squared) {
     return exponential_saturation(a, b, flux_squared);

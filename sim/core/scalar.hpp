@@ -11,20 +11,22 @@ namespace swingbank::sim {
 
 /// Number of sensitivities carried by one dual.
 constexpr int kDirections = 8;
-using D8 = Dual<double, kDirections>;
-using P4 = Pack<4>;
-using P8 = Pack<8>;
+using D8 = Dual<double, kDirections>;  ///< double with sensitivities
+using P4 = Pack<4>;                    ///< four doubles
+using P8 = Pack<8>;                    ///< eight doubles
 /// Scenarios in one batch with sensitivities. More than one register's worth would not fit the L1 cache.
 constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
-using DualPack = Dual<Pack<kDualLanes>, kDirections>;
+using DualPack = Dual<Pack<kDualLanes>, kDirections>;  ///< SIMD batch with sensitivities
 
 /// Every scalar type that an effect is instantiated for. New types are added only here.
 using Scalars = std::tuple<double, P4, P8, D8, DualPack>;
 
+/// Computes sine and cosine of a [rad].
 inline void sincos(double a, double& s, double& c) {
   s = std::sin(a);
   c = std::cos(a);
 }
+/// The same with derivatives.
 template <class T, int N>
 inline void sincos(const Dual<T, N>& a, Dual<T, N>& s, Dual<T, N>& c) {
   T sa, ca;
@@ -32,12 +34,14 @@ inline void sincos(const Dual<T, N>& a, Dual<T, N>& s, Dual<T, N>& c) {
   s = chain(a, sa, ca);
   c = chain(a, ca, T(0.0) - sa);
 }
+/// Returns the square root, with derivatives.
 template <class T, int N>
 inline Dual<T, N> sqrt(const Dual<T, N>& a) {
   using std::sqrt;
   const T f = sqrt(a.a);
   return chain(a, f, T(0.5) / f);
 }
+/// Returns the four-quadrant arctangent [rad], with derivatives.
 template <class T, int N>
 inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   using std::atan2;
@@ -47,25 +51,30 @@ inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
   for (int i = 0; i < N; ++i) r.d[i] = (x.a * y.d[i] - y.a * x.d[i]) * q;
   return r;
 }
+/// Returns the exponential, with derivatives.
 template <class T, int N>
 inline Dual<T, N> exp(const Dual<T, N>& a) {
   using std::exp;
   const T f = exp(a.a);
   return chain(a, f, f);
 }
+/// Returns the natural logarithm, with derivatives.
 template <class T, int N>
 inline Dual<T, N> log(const Dual<T, N>& a) {
   using std::log;
   return chain(a, log(a.a), T(1.0) / a.a);
 }
+/// Returns a^2.
 template <class T>
 inline T square(const T& a) {
   return a * a;
 }
+/// Returns max(a, 0).
 template <class T>
 inline T positive_part(const T& a) {
   return select(a > T(0.0), a, T(0.0));
 }
+/// Returns a, limited to low ... high.
 template <class T>
 inline T clamp(const T& a, const T& low, const T& high) {
   return select(a < low, low, select(high < a, high, a));
@@ -74,10 +83,12 @@ inline T clamp(const T& a, const T& low, const T& high) {
 /// Returns the plain value of any scalar (lane 0 of a pack). Only for messages and for branches in double
 /// code.
 inline double value_of(double a) { return a; }
+/// The same for a SIMD batch: the first lane.
 template <class S, int N>
 inline double value_of(const Packed<S, N>& a) {
   return a[0];
 }
+/// The same for a dual: the value.
 template <class T, int N>
 inline double value_of(const Dual<T, N>& a) {
   return value_of(a.a);
@@ -86,6 +97,7 @@ inline double value_of(const Dual<T, N>& a) {
 /// Whether any lane is above zero. Used to skip terms that no lane needs; lanes without the term must add
 /// zero.
 inline bool any_positive(double a) { return a > 0.0; }
+/// The same for a dual: its value.
 template <class T, int N>
 inline bool any_positive(const Dual<T, N>& a) {
   return any_positive(a.a);

@@ -9,7 +9,10 @@
 
 namespace swingbank::sim {
 
+/// End of a simulation: t_end reached, synchronism lost, a state not finite, or the step size below its
+/// minimum.
 enum class Outcome { stable, lost_synchronism, not_finite, step_too_small };
+/// Returns the name in reports and datasets, "lost_synchronism".
 constexpr std::string_view outcome_name(Outcome o) {
   constexpr std::string_view names[] = {"stable", "lost_synchronism", "not_finite", "step_too_small"};
   return names[static_cast<int>(o)];
@@ -18,33 +21,37 @@ constexpr std::string_view outcome_name(Outcome o) {
 /// Allocator on cache-line boundaries, so that a pack of samples is one whole line.
 template <class T>
 struct CacheAligned {
-  using value_type = T;
-  static constexpr std::align_val_t kLine{64};
+  using value_type = T;                         ///< element type, as the allocator requirements demand
+  static constexpr std::align_val_t kLine{64};  ///< cache line [bytes]
   CacheAligned() = default;
+  /// Converts from the allocator of another element type; allocators have no state.
   template <class U>
   CacheAligned(const CacheAligned<U>&) {
   }  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
+  /// Memory for n elements, on a cache line.
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }  ///< releases memory from allocate()
+  /// All allocators are equal.
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };
 
 /// Samples at t = k/rate, k = 0..samples-1. At a switching time the sample is the value just before it,
 /// unless the options request the value after it.
 struct Trajectory {
-  double rate = 0.0;  ///< [1/s]
-  int samples = 0;
-  int stride = 0;           ///< distance between rows of `values`, at least `samples`
-  std::vector<int> plants;  ///< indices of the recorded plants in the grid
-  std::vector<Channel> channels;
+  double rate = 0.0;              ///< [1/s]
+  int samples = 0;                ///< number of samples of each row
+  int stride = 0;                 ///< distance between rows of `values`, at least `samples`
+  std::vector<int> plants;        ///< indices of the recorded plants in the grid
+  std::vector<Channel> channels;  ///< recorded channels, the same for each plant
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   int directions = 0;                                ///< number of sensitivity parameters
   /// Sensitivities, as `values`, one block per parameter: see slope().
   std::vector<double, CacheAligned<double>> slopes;
-  Outcome outcome = Outcome::stable;
-  double stopped_at = 0.0;      ///< [s]: t_end, or the time at which synchronism was lost
-  double largest_spread = 0.0;  ///< largest change of a rotor angle difference since the start [rad]
+  Outcome outcome = Outcome::stable;  ///< how the simulation ended
+  double stopped_at = 0.0;            ///< [s]: t_end, or the time at which synchronism was lost
+  double largest_spread = 0.0;        ///< largest change of a rotor angle difference since the start [rad]
 
+  /// Returns the number of rows, plants times channels.
   [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
   /// Allocates every row. With `whole_lines` each row starts on a cache line.
   void allocate(bool whole_lines) {
@@ -59,16 +66,21 @@ struct Trajectory {
                                                        plant * static_cast<int>(channels.size()) + channel) *
                                stride;
   }
+  /// The same, read only.
   [[nodiscard]] const double* slope(int direction, int plant, int channel) const {
     return const_cast<Trajectory*>(this)->slope(direction, plant, channel);
   }
+  /// Returns row i = plant * channels + channel: `samples` values in the channel's unit.
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }
+  /// The same, read only.
   [[nodiscard]] const double* row(int i) const {
     return values.data() + static_cast<std::ptrdiff_t>(i) * stride;
   }
+  /// Returns the samples of a channel of a plant, both as indices into `plants` and `channels`.
   [[nodiscard]] double* at(int plant, int channel) {
     return row(plant * static_cast<int>(channels.size()) + channel);
   }
+  /// The same, read only.
   [[nodiscard]] const double* at(int plant, int channel) const {
     return row(plant * static_cast<int>(channels.size()) + channel);
   }

@@ -14,16 +14,19 @@ namespace swingbank::sim::direct {
 struct FreeParameter {
   int index = 0;  ///< index in the effect's parameters
   double low = 0, high = 0, mean = 0, deviation = 0;
+  ///< bounds; mean and standard deviation [unit of the parameter]
 };
 /// Returns a prior with mean and variance of the uniform distribution between the bounds.
 FreeParameter uniform_parameter(int index, double low, double high);
 
+/// Maximum a posteriori estimate of the parameters.
 struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
   double chi_square = 0;  ///< reduced chi-square of the innovations; about 1 for a correct model
   double cost = 0;        ///< sum of squares of whitened innovations and prior
-  int iterations = 0;
+  int iterations = 0;     ///< number of iterations over all rounds
 };
+/// Effort of the maximum a posteriori estimate.
 struct LikelihoodOptions {
   int rounds = 20;        ///< number of linearisations
   int iterations = 8;     ///< in each round

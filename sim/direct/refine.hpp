@@ -10,12 +10,14 @@
 
 namespace swingbank::sim::direct {
 
+/// Least-squares estimate of the parameters.
 struct Refined {
-  std::vector<double> p;  ///< all parameters of the effect
-  double rms_error = 0;   ///< root mean square of the residuals [pu]
-  int iterations = 0;
+  std::vector<double> p;       ///< all parameters of the effect
+  double rms_error = 0;        ///< root mean square of the residuals [pu]
+  int iterations = 0;          ///< number of iterations, including rejected steps
   std::vector<int> idle = {};  ///< positions in `free` without influence on the fluxes; kept
 };
+/// Effort of the least-squares estimate.
 struct RefineOptions {
   int iterations = 25;   ///< including rejected steps
   double longest = 6.0;  ///< length of the segment [s]

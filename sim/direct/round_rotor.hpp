@@ -11,8 +11,9 @@ namespace swingbank::sim::direct {
 /// Parameters in GENROU's notation. X''d and Ra are given; all others are estimated.
 struct RoundRotor {
   double Tdop = 0, Tdopp = 0, Tqop = 0, Tqopp = 0, H = 0, D = 0, Xd = 0, Xq = 0, Xdp = 0, Xqp = 0;
-  double Xdpp = 0, Xl = 0, S10 = 0, S12 = 0;
-  double angle = 0;  ///< rotor relative to terminal at the first sample [rad]
+  ///< [s] time constants and H; [pu] the others
+  double Xdpp = 0, Xl = 0, S10 = 0, S12 = 0;  ///< [pu]
+  double angle = 0;                           ///< rotor relative to terminal at the first sample [rad]
   double rms_error =
       0;  ///< sum of the logarithms of the chain's residuals; compares candidates of one record
 };

@@ -4,6 +4,7 @@
 
 namespace swingbank::sim::direct {
 
+/// Estimated inertia constant H and damping D.
 struct Swing {
   double H = 0, D = 0;  ///< [s], [pu]
   double residual = 0;  ///< root mean square of the residual, relative to the integrated torque's

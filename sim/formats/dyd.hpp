@@ -44,8 +44,8 @@ std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string
 
 /// Bus of a record's unit.
 struct DydPlace {
-  std::string bus_name;
-  double kv = 0;  ///< nominal voltage of the bus [kV]
+  std::string bus_name;  ///< name of the bus
+  double kv = 0;         ///< nominal voltage of the bus [kV]
 };
 /// Returns one record as a line of a .dyd. A model without a counterpart becomes a problem at `where`.
 std::string dyd_line(const DyrRecord& record, const DydMachine& machine, const DydPlace& place,

@@ -30,9 +30,11 @@ struct RawOptions {
   /// Drop duplicate equipment, equipment at a missing bus, and references to a missing impedance correction
   /// table or to an empty voltage band.
   bool drop_refused = false;
-  Repeated repeated = Repeated::refused;
+  Repeated repeated = Repeated::refused;  ///< duplicate equipment
   RawOptions() = default;
+  /// Constructs the options from system frequency [Hz] (none: from the file) and version (0: not given).
   RawOptions(std::optional<double> hz, int rev = 0) : frequency_hz(hz), version(rev) {}
+  /// Constructs the options from the system frequency [Hz].
   RawOptions(double hz) : frequency_hz(hz) {}
 };
 
@@ -78,9 +80,9 @@ network::Network parse_raw(const std::string& text, const std::string& name, con
 
 /// The readable part of a case, for the extraction of single units.
 struct RawSurvey {
-  network::Network network;
+  network::Network network;                      ///< readable part of the network
   std::vector<int> generator_line, branch_line;  ///< first line of each record in the file
-  std::vector<Problem> faults;
+  std::vector<Problem> faults;                   ///< faults, with their lines
 };
 /// Reads a .raw or .rawx as read_raw does, but continues after faults and returns them. Data that concern
 /// only the network, not its units, are not completed. Throws InputError without a header of a known version.
@@ -101,14 +103,14 @@ std::string raw_text(const network::Network& network, int version, const std::st
 
 /// One record of a .dyr file, with unconverted model parameters.
 struct DyrRecord {
-  int bus;                ///< bus number
-  std::string model, id;  ///< model in capitals
-  std::vector<double> values;
-  int line;                  ///< first line in the file
-  std::string user{};        ///< name of a user-written model (model USRMDL and variants), otherwise empty
-  Problems faults{};         ///< non-numeric parameters; relevant only if the model is used
-  std::vector<int> empty{};  ///< empty parameters, counted from 1; their value is zero
-  std::size_t codes = 0;     ///< user-written models: number of PSS/E codes at the beginning of `values`
+  int bus;                     ///< bus number
+  std::string model, id;       ///< model in capitals
+  std::vector<double> values;  ///< parameters, in the order of the file
+  int line;                    ///< first line in the file
+  std::string user{};          ///< name of a user-written model (model USRMDL and variants), otherwise empty
+  Problems faults{};           ///< non-numeric parameters; relevant only if the model is used
+  std::vector<int> empty{};    ///< empty parameters, counted from 1; their value is zero
+  std::size_t codes = 0;       ///< user-written models: number of PSS/E codes at the beginning of `values`
   /// Text in place of the bus number (`bus` is 0): an extended bus name, or equipment without a bus (dc
   /// lines, FACTS devices), which has no id.
   std::string equipment{};
@@ -116,9 +118,9 @@ struct DyrRecord {
   /// A quoted, non-numeric parameter. Its value is 0; a model that accepts no text there reports `fault`.
   struct Text {
     std::size_t at;  ///< index into `values`
-    Problems fault;
+    Problems fault;  ///< the error, for a model that accepts no text there
   };
-  std::vector<Text> texts{};
+  std::vector<Text> texts{};  ///< its text parameters
 };
 /// Treatment of unavailable models of a .dyr. Names are case-insensitive; a user-written model may be given
 /// by its own name or as USRMDL.
@@ -149,8 +151,8 @@ std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& nam
 
 /// The readable records of a .dyr, and the errors of the other text.
 struct DyrSurvey {
-  std::vector<DyrRecord> records;
-  std::vector<Problem> faults;  ///< without those of DyrRecord::faults
+  std::vector<DyrRecord> records;  ///< records, in the order of the file
+  std::vector<Problem> faults;     ///< without those of DyrRecord::faults
 };
 /// Reads a .dyr, but returns its errors. Throws InputError only if the file cannot be read at all.
 DyrSurvey survey_dyr(const std::filesystem::path& file);

@@ -14,15 +14,15 @@ namespace swingbank::sim::formats::psse {
 
 /// One field of a record.
 struct Field {
-  std::string text;  ///< without quotes, and without blanks at both ends
-  bool quoted = false;
+  std::string text;     ///< without quotes, and without blanks at both ends
+  bool quoted = false;  ///< whether it was written in quotes
 };
 /// One record, or one line of a record. An empty unquoted field means the default.
 struct Record {
-  int line = 0;        ///< in the file, from 1
-  bool ended = false;  ///< true if it ends with '/'
-  std::vector<Field> fields;
-  std::string place = {};  ///< place for messages, if it is not a line of the file
+  int line = 0;               ///< in the file, from 1
+  bool ended = false;         ///< true if it ends with '/'
+  std::vector<Field> fields;  ///< fields in order
+  std::string place = {};     ///< place for messages, if it is not a line of the file
 };
 
 /// Returns the lines of a text file without their line ends. Throws InputError if it cannot be read.
@@ -38,23 +38,30 @@ Record split(const std::string& line, int number, const std::string& file, Probl
 
 /// Returns true for a record that begins with 0 (ends_section) or Q (ends_file).
 bool ends_section(const Record& record);
+/// Returns true for a record that begins with Q.
 bool ends_file(const Record& record);
 
 /// Typed access to the fields of a record. Missing and non-numeric fields become problems, with file and
 /// line.
 class Fields {
  public:
+  /// Constructs the access; `record` and `problems` must outlive it. `file`: name in messages.
   Fields(const Record& record, std::string file, Problems& problems)
       : record_(record), file_(std::move(file)), problems_(problems) {}
   /// Returns the value of field `i`, or the fallback (zero without one) if there is no valid value. Without a
   /// fallback the field is required.
   int integer(std::size_t i, const char* name, std::optional<int> fallback = {});
+  /// Returns the value of field `i`, as integer() does.
   long double number(std::size_t i, const char* name, std::optional<long double> fallback = {});
+  /// Returns the text of field `i`, or the fallback if the field is missing or empty.
   std::string text(std::size_t i, const std::string& fallback) const;
+  /// Returns the line of the record in the file, from 1.
   [[nodiscard]] int line() const { return record_.line; }
+  /// Returns the place of the record for messages, "FILE:LINE".
   [[nodiscard]] std::string where() const {
     return record_.place.empty() ? file_ + ":" + std::to_string(record_.line) : record_.place;
   }
+  /// Returns the number of fields.
   [[nodiscard]] std::size_t size() const { return record_.fields.size(); }
 
  private:

@@ -13,6 +13,7 @@ namespace swingbank::sim::grid {
 /// Texts in the syntax of sim/formats/event_text.hpp.
 struct EventTexts {
   std::vector<std::string> faults, trips, generator_trips, load_steps, vref_steps, pref_steps;
+  ///< one text for each option
   std::string fault_type = "3ph";  ///< 3ph, or slg, ll, llg for a single unbalanced fault
   std::string z0;                  ///< "R:X", zero-sequence impedance of the grid at that fault [pu]
 };

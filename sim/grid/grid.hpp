@@ -16,13 +16,13 @@ namespace swingbank::sim::grid {
 
 /// A network with its power flow, plants, dynamic loads and the library of their effects.
 struct Grid {
-  network::Network network;
-  network::PowerFlow flow;
-  Conventions conventions;
-  std::vector<plant::Plant> plants;
-  std::vector<plant::Consumer> loads;
-  network::PowerFlowOptions flow_options;
-  library::EffectLibrary library;  ///< owns the user-defined models of its plants; source of attach()
+  network::Network network;                ///< network of the case
+  network::PowerFlow flow;                 ///< solved power flow, the operating point
+  Conventions conventions;                 ///< conventions of the simulator
+  std::vector<plant::Plant> plants;        ///< plants, in the order of their generators
+  std::vector<plant::Consumer> loads;      ///< loads with a dynamic model
+  network::PowerFlowOptions flow_options;  ///< options with which `flow` was solved
+  library::EffectLibrary library;          ///< owns the user-defined models of its plants; source of attach()
 
   /// Returns the sorted indices into Network::loads of the loads with a dynamic model.
   [[nodiscard]] std::vector<int> modelled_loads() const;
@@ -30,11 +30,11 @@ struct Grid {
 
 /// Treatment of an incomplete case. Every change is recorded in Network::remarks.
 struct CaseOptions {
-  formats::DyrOptions dyr;
-  formats::RawOptions raw;
-  bool net_generators = false;   ///< generators without a machine model become negative loads (PSS/E: GNET)
-  bool start_from_file = false;  ///< the file's voltages are the operating point, whatever their mismatch
-  network::PowerFlowOptions flow;
+  formats::DyrOptions dyr;         ///< treatment of unavailable models
+  formats::RawOptions raw;         ///< treatment of the network's file
+  bool net_generators = false;     ///< generators without a machine model become negative loads (PSS/E: GNET)
+  bool start_from_file = false;    ///< the file's voltages are the operating point, whatever their mismatch
+  network::PowerFlowOptions flow;  ///< options of the power flow
   /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).
   Lacking complete_records = Lacking::refused;
   bool drop_refused = false;  ///< drop records of the .dyr that their model does not accept
@@ -55,6 +55,7 @@ Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& 
 /// survey_dyd; its mva, Ra and X'd take precedence over those of the network's generators.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
+/// The same with options of the .dyr only. `frequency_hz`: system frequency [Hz] for a network without one.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const formats::DyrOptions& options = {}, std::optional<double> frequency_hz = {});
 

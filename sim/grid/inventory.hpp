@@ -13,22 +13,25 @@ namespace swingbank::sim::grid {
 struct ModelCount {
   std::string name, kind;  ///< kind: its slot, "" if the model is unknown
   int records = 0, units = 0, first_line = 0;
+  ///< number of records; of their units; line of the first record
   int faulty = 0;     ///< faulty records of a known model
   std::string fault;  ///< error of the first of these
+  /// Returns the number of unusable records.
   [[nodiscard]] int uncovered() const { return kind.empty() ? records : faulty; }
 };
 
 /// A unit of the case and its models.
 struct UnitCount {
-  int bus = 0;
-  std::string id, bus_name;
-  double mva = 0;
-  bool in_service = true;
+  int bus = 0;                         ///< bus number
+  std::string id, bus_name;            ///< id of the unit; name of its bus
+  double mva = 0;                      ///< machine base [MVA]
+  bool in_service = true;              ///< status in the case
   std::vector<std::string> models;     ///< names in the .dyr
   std::vector<std::string> uncovered;  ///< unusable ones among them
   bool machine = false;                ///< true if one of the models is a usable machine
   bool classical = false;              ///< true if that machine has no field winding: GENCLS
   int field_records = 0;               ///< number of controls that act through the field voltage
+  /// Whether the unit has a machine model and all its models are usable.
   [[nodiscard]] bool covered() const { return machine && uncovered.empty(); }
 };
 

@@ -16,8 +16,8 @@ namespace swingbank::sim::grid {
 
 /// Selects a unit of a case and the treatment of its records.
 struct UnitChoice {
-  std::filesystem::path raw, dyr;
-  int bus = 0;
+  std::filesystem::path raw, dyr;           ///< files of the network and of the dynamic records
+  int bus = 0;                              ///< bus number
   std::string id = {};                      ///< may be empty if the bus has one unit in service
   std::optional<double> frequency_hz = {};  ///< system frequency if the network's file has none [Hz]
   int raw_version = 0;                      ///< version of a .raw without REV; 0: not given
@@ -34,19 +34,20 @@ struct UnitChoice {
 struct Dispatch {
   double P = 0, Q = 0;  ///< [MW], [Mvar]
   double V = 0;         ///< [pu]
+  /// Compares all members.
   friend bool operator==(const Dispatch&, const Dispatch&) = default;
 };
 
 /// A unit without a network: `bus` and `generator` of its plant are -1.
 struct Unit {
-  plant::Plant plant;
-  int bus = 0;
-  std::string id, bus_name;
-  double frequency = 60.0, system_mva = 100.0;
-  std::optional<Dispatch> dispatch = {};  ///< none if out of service or without a voltage in the case
-  double kv = 0.0;                        ///< nominal voltage of the measured bus [kV]; 0: not given
-  std::vector<std::string> defaults;      ///< names of effects that have default values
-  std::vector<std::string> notes;         ///< sentences on interpreted and on dropped data
+  plant::Plant plant;                           ///< plant with its parameters
+  int bus = 0;                                  ///< number of the measured bus
+  std::string id, bus_name;                     ///< id of the unit; name of its bus
+  double frequency = 60.0, system_mva = 100.0;  ///< [Hz], [MVA]
+  std::optional<Dispatch> dispatch = {};        ///< none if out of service or without a voltage in the case
+  double kv = 0.0;                              ///< nominal voltage of the measured bus [kV]; 0: not given
+  std::vector<std::string> defaults;            ///< names of effects that have default values
+  std::vector<std::string> notes;               ///< sentences on interpreted and on dropped data
 };
 
 /// Reads one unit. Throws InputError with the errors of this unit's records only: unknown bus or unit,

@@ -16,10 +16,10 @@ namespace swingbank::sim::lanes {
 
 /// Options of a batch; `t_end` in seconds, `rate` in samples per second.
 struct BatchOptions {
-  double t_end = 15.0, rate = 120.0;
-  double tolerance = 1e-6;        ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;        ///< recorded plants; empty: all
-  std::vector<Channel> channels;  ///< recorded channels; empty: all of kChannels
+  double t_end = 15.0, rate = 120.0;  ///< end of the simulation [s]; samples per second [1/s]
+  double tolerance = 1e-6;            ///< error per step, weighted maximum norm over the states
+  std::vector<int> plants;            ///< recorded plants; empty: all
+  std::vector<Channel> channels;      ///< recorded channels; empty: all of kChannels
   int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 02); 0: the widest in double of this build
   /// Loss of synchronism: a run ends when the angle between two rotors of one island has changed by this
   /// much.
@@ -29,24 +29,26 @@ struct BatchOptions {
 
 /// A sensitivity parameter. The step control weights the sensitivity times `scale` like the value itself.
 struct Seed {
-  int plant;
+  int plant;                     ///< index of the plant in the grid
   plant::ParameterId parameter;  ///< parameter of the machine, the transformer or a control
   double scale;                  ///< [unit of the parameter]
 };
 
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
 struct Job {
-  std::uint64_t id = 0;
+  std::uint64_t id = 0;  ///< identifier chosen by the caller; without influence on the result
   /// The batch's grid at another operating point (grid/operating_point.hpp); null: unchanged. The job shares
   /// its ownership.
   std::shared_ptr<const grid::Grid> grid = {};
-  network::Event event;
+  network::Event event;  ///< faults, switchings and steps of the simulation
+  /// Parameter values of one block.
   struct BlockValues {
     int plant, block;            ///< index of the plant, and number of the block (sim/plant/parameter_id.hpp)
     std::vector<double> values;  ///< in record order
+    /// Compares all members.
     friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };
-  std::vector<BlockValues> parameters = {};
+  std::vector<BlockValues> parameters = {};  ///< blocks whose values differ from the grid's
   std::vector<Seed> seeds = {};  ///< at most kDirections; used only with BatchOptions::sensitivities
 };
 

@@ -26,6 +26,7 @@ class EffectLibrary {
   [[nodiscard]] std::vector<const Effect*> all() const;
   /// Returns the names of all effects (of one slot) for error messages: "GENCLS, GENROU".
   [[nodiscard]] std::string names() const;
+  /// The same for the effects of one slot.
   [[nodiscard]] std::string names(Slot slot) const;
   /// Adds an effect and returns the stored copy. Throws InputError if the name is taken.
   const Effect& add(Effect effect);

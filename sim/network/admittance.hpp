@@ -11,8 +11,9 @@ namespace swingbank::sim::network {
 
 /// Admittances of a branch seen from one end [pu]: current into the branch = own V_here + other V_far.
 struct BranchEnd {
-  Complex own, other;
+  Complex own, other;  ///< own and transfer admittance [pu]
 };
+/// Returns the admittances seen from the `from` end, or from the `to` end.
 BranchEnd branch_end(const Branch& branch, bool at_from);
 
 /// Where the series impedances of ties (tie.hpp) are: in the matrix, or left out for separate equations.
@@ -45,6 +46,7 @@ struct ReducedNetwork {
   Eigen::MatrixXcd y;         ///< kept x kept [pu on base_mva]
   std::vector<int> grounded;  ///< positions in `kept` with zero voltage
 };
+/// Computes the reduction. `without`: sorted indices of loads that are left out.
 ReducedNetwork reduce(const Network& network, const PowerFlow& flow, const Topology& topology,
                       const std::vector<int>& kept, const std::vector<int>& without = {});
 

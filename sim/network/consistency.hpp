@@ -19,7 +19,7 @@ void isolate_idle_stars(Network& network, const std::set<int>& stars);
 void settle_stars(Network& network, const std::set<int>& stars);
 /// Equipment with an identity that the file has already used; it is kept under a new id.
 struct Duplicate {
-  enum class Kind { load, shunt, generator, branch } kind;
+  enum class Kind { load, shunt, generator, branch } kind;  ///< kind of equipment
   std::vector<int> buses;  ///< numbers of its buses; two or three for a branch
   std::string id{};        ///< the new one
   std::string text{};      ///< for remarks
@@ -45,7 +45,7 @@ void settle_islands(Network& network);
 
 /// Equipment without a model in Swingbank: kind, name and buses.
 struct Device {
-  std::string name, where;
+  std::string name, where;          ///< kind; name
   std::vector<int> buses;           ///< indices
   std::vector<double> scheduled{};  ///< scheduled consumption [pu] at each; NaN: unknown
 };

@@ -11,15 +11,15 @@ namespace swingbank::sim::network {
 /// Three-phase fault at a bus from t_on to t_off [s] through the impedance z [pu on base_mva]; z = 0 is
 /// bolted (V = 0).
 struct BusFault {
-  int bus;  ///< index
-  double t_on, t_off;
-  Complex z{};
+  int bus;             ///< index
+  double t_on, t_off;  ///< start and end [s]
+  Complex z{};         ///< fault impedance [pu on base_mva]
 };
 /// A branch that opens at t_open [s] and, if t_close is given, closes again at t_close.
 struct LineTrip {
-  int branch;  ///< index
-  double t_open;
-  std::optional<double> t_close;
+  int branch;                     ///< index
+  double t_open;                  ///< time of opening [s]
+  std::optional<double> t_close;  ///< time of reclosing [s]; none: the branch stays open
 };
 /// Permanent disconnection of a generator or of a part of it. The plant then represents several units, some
 /// of which are lost; the others continue unchanged.
@@ -31,10 +31,10 @@ struct GeneratorTrip {
 /// Consumption added at a bus (removed if negative): the constant admittance that draws `power` at the
 /// voltage before the event.
 struct LoadStep {
-  int bus;        ///< index
-  Complex power;  ///< P + jQ [pu on base_mva]
-  double t_on;    ///< [s]
-  std::optional<double> t_off;
+  int bus;                      ///< index
+  Complex power;                ///< P + jQ [pu on base_mva]
+  double t_on;                  ///< [s]
+  std::optional<double> t_off;  ///< end [s]; none: permanent
 };
 /// Step of a control's reference, added to earlier steps.
 struct SetpointStep {
@@ -42,12 +42,13 @@ struct SetpointStep {
   double time;          ///< [s]
   double dVref, dPref;  ///< [pu]
 };
+/// All disturbances of one simulation; each list may be empty.
 struct Event {
-  std::vector<BusFault> faults;
-  std::vector<LineTrip> trips;
-  std::vector<GeneratorTrip> generator_trips = {};
-  std::vector<LoadStep> load_steps = {};
-  std::vector<SetpointStep> setpoint_steps = {};
+  std::vector<BusFault> faults;                     ///< three-phase faults
+  std::vector<LineTrip> trips;                      ///< branch openings
+  std::vector<GeneratorTrip> generator_trips = {};  ///< disconnections of generators or of parts of them
+  std::vector<LoadStep> load_steps = {};            ///< steps of constant-admittance loads
+  std::vector<SetpointStep> setpoint_steps = {};    ///< steps of controls' references
 };
 
 /// State of the network between two switching times.
@@ -58,20 +59,23 @@ struct Topology {
   std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
   /// Generators that have lost a part, with the part still connected; sorted, disjoint from `tripped`.
   std::vector<std::pair<int, double>> partly_tripped = {};
+  /// Compares all members.
   friend bool operator==(const Topology&, const Topology&) = default;
   /// Returns the connected share of a generator's units, 0 to 1.
   [[nodiscard]] double connected(int generator) const;
 };
 /// Change of one generator's references during a segment [pu].
 struct Setpoint {
-  int generator;
-  double dVref, dPref;
+  int generator;        ///< index into Network::generators
+  double dVref, dPref;  ///< sum of the steps so far [pu]
+  /// Compares all members.
   friend bool operator==(const Setpoint&, const Setpoint&) = default;
 };
+/// Interval between two switching times, in which the network is constant.
 struct Segment {
-  double start;  ///< [s]; the first starts at 0
-  Topology topology;
-  std::vector<Setpoint> setpoints = {};
+  double start;                          ///< [s]; the first starts at 0
+  Topology topology;                     ///< state of the network
+  std::vector<Setpoint> setpoints = {};  ///< reference changes in force
 };
 /// Returns the segments in order of time; simultaneous switchings form one segment. `instants`: further
 /// switching times, those of effects [s]. Throws InputError if an event ends before it starts, starts before

@@ -12,6 +12,7 @@
 
 namespace swingbank::sim::network {
 
+/// Type of a short circuit.
 enum class FaultType { three_phase, line_to_ground, two_phase, two_phase_to_ground };
 /// Returns the fault type for "3ph", "slg", "ll" or "llg"; empty for any other text.
 std::optional<FaultType> fault_type(const std::string& name);

@@ -8,17 +8,20 @@
 
 namespace swingbank::sim::network {
 
+/// Type of a bus in the power flow: PQ, PV, slack or out of service. The values are those of PSS/E's IDE.
 enum class BusType { load = 1, generator = 2, slack = 3, isolated = 4 };
 
+/// Bus of a network.
 struct Bus {
-  int number;  ///< number in the file; elsewhere a bus is an index into Network::buses
-  std::string name;
-  double kv;  ///< nominal voltage [kV]
-  BusType type;
-  double vm, va;  ///< voltage in the file, start of the power flow [pu, rad]
-  int area = 1, zone = 1, owner = 1;
+  int number;                         ///< number in the file; elsewhere a bus is an index into Network::buses
+  std::string name;                   ///< name in the file
+  double kv;                          ///< nominal voltage [kV]
+  BusType type;                       ///< type in the power flow
+  double vm, va;                      ///< voltage in the file, start of the power flow [pu, rad]
+  int area = 1, zone = 1, owner = 1;  ///< numbers in the file
   /// Bus numbers of the three-winding transformer with this star point; zeros: a bus of the file.
   std::array<int, 3> star_of{};
+  /// Whether the bus is the star point of a three-winding transformer.
   [[nodiscard]] bool is_star() const { return star_of[0] != 0; }
 };
 /// Origin of a load.
@@ -31,20 +34,21 @@ enum class LoadKind {
 /// Consumption P + jQ [pu] with constant-power, constant-current and constant-admittance parts at 1 pu
 /// voltage: S = power + current V + admittance V^2.
 struct Load {
-  int bus;
-  std::string id;
-  Complex power, current, admittance;
-  int area = 1, zone = 1, owner = 1;  ///< load models of a .dyr may refer to these instead of a bus
-  LoadKind kind = LoadKind::load;
+  int bus;                             ///< bus index
+  std::string id;                      ///< id in the file
+  Complex power, current, admittance;  ///< [pu on base_mva] at 1 pu voltage
+  int area = 1, zone = 1, owner = 1;   ///< load models of a .dyr may refer to these instead of a bus
+  LoadKind kind = LoadKind::load;      ///< origin of the load
 };
+/// Fixed shunt at a bus.
 struct Shunt {
-  int bus;
-  std::string id;
-  Complex admittance;
+  int bus;             ///< bus index
+  std::string id;      ///< id in the file
+  Complex admittance;  ///< admittance [pu on base_mva]
 };
 /// A shunt that is switched in steps to keep a voltage within a band.
 struct SwitchedShunt {
-  int bus;
+  int bus;                    ///< bus index
   std::string id;             ///< of the shunt in Network::shunts
   double present;             ///< present susceptance [pu]
   int regulated;              ///< index of the regulated bus
@@ -53,22 +57,23 @@ struct SwitchedShunt {
 };
 /// Line or two-winding transformer: pi section with an ideal tap (ratio, phase shift) on the `from` side.
 struct Branch {
-  int from, to;
-  std::string circuit;
+  int from, to;                      ///< bus indices
+  std::string circuit;               ///< circuit id in the file
   double r, x, b;                    ///< series impedance, total charging [pu]
   double tap = 1.0, shift = 0.0;     ///< [-, rad]
   Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
-  bool in_service = true;
-  bool transformer = false;  ///< section of the .raw; the equations are the same
+  bool in_service = true;            ///< status in the file
+  bool transformer = false;          ///< section of the .raw; the equations are the same
 };
+/// Generator or converter at a bus, as the power flow represents it.
 struct Generator {
-  int bus;
-  std::string id;
-  double p, q;    ///< dispatch [pu on base_mva]
-  double vset;    ///< voltage set-point, of bus `regulated` if given [pu]
-  double mva;     ///< machine base
-  double zr, zx;  ///< ZSORCE [pu on mva]
-  bool in_service = true;
+  int bus;                               ///< bus index
+  std::string id;                        ///< id in the file
+  double p, q;                           ///< dispatch [pu on base_mva]
+  double vset;                           ///< voltage set-point, of bus `regulated` if given [pu]
+  double mva;                            ///< machine base
+  double zr, zx;                         ///< ZSORCE [pu on mva]
+  bool in_service = true;                ///< status in the file
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]
   double rt = 0.0, xt = 0.0;             ///< step-up transformer between machine and bus [pu on mva]; 0: none
   int regulated = -1;                    ///< index of the regulated bus; -1: its own
@@ -76,21 +81,23 @@ struct Generator {
 };
 /// A change to a case beyond reading it, with every place of the change.
 struct Remark {
-  std::string what;
-  std::vector<std::string> places;
+  std::string what;                 ///< change, as text
+  std::vector<std::string> places;  ///< places of the change
+  /// Compares all members.
   friend bool operator==(const Remark&, const Remark&) = default;
 };
 
+/// Case of the power flow: buses and equipment, in per unit on base_mva.
 struct Network {
-  std::string title, origin;  ///< origin: the file it was read from
-  double base_mva = 100.0, frequency = 60.0;
-  std::vector<Bus> buses;
-  std::vector<Load> loads;
-  std::vector<Shunt> shunts;
-  std::vector<SwitchedShunt> switched;
-  std::vector<Branch> branches;
-  std::vector<Generator> generators;
-  std::vector<Remark> remarks;  ///< changes to the case
+  std::string title, origin;                  ///< origin: the file it was read from
+  double base_mva = 100.0, frequency = 60.0;  ///< system base [MVA]; system frequency [Hz]
+  std::vector<Bus> buses;                     ///< buses, star points included
+  std::vector<Load> loads;                    ///< loads, dynamic ones included
+  std::vector<Shunt> shunts;                  ///< fixed shunts, with the present step of each switched shunt
+  std::vector<SwitchedShunt> switched;        ///< data of the switched shunts
+  std::vector<Branch> branches;               ///< lines and transformers
+  std::vector<Generator> generators;          ///< generators and converters
+  std::vector<Remark> remarks;                ///< changes to the case
 
   /// Records that `what` was done at `place`.
   void remark(const std::string& what, const std::string& place);

@@ -12,21 +12,23 @@ struct SteppedShunt {
   double susceptance;   ///< [pu]
   bool in_band = true;  ///< whether the regulated voltage reached its band
 };
+/// Solution of the power flow.
 struct PowerFlow {
   std::vector<Complex> voltage;  ///< per bus [pu]
   std::vector<Complex>
-      generation;  ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
-  int iterations = 0;
+      generation;         ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
+  int iterations = 0;     ///< number of Newton iterations
   double mismatch = 0.0;  ///< largest power mismatch [pu]
   /// Buses whose generators are at a reactive limit and do not regulate their voltage.
   std::vector<int> at_limit = {};
-  std::vector<SteppedShunt> stepped = {};
+  std::vector<SteppedShunt> stepped = {};  ///< switched shunts that were stepped
 };
+/// Options of the power flow.
 struct PowerFlowOptions {
-  double tolerance = 1e-12;  ///< [pu]
-  int limit = 30;            ///< Newton iterations
-  bool reactive_limits = true;
-  bool step_shunts = false;  ///< step switched shunts until the regulated voltages lie in their bands
+  double tolerance = 1e-12;     ///< [pu]
+  int limit = 30;               ///< Newton iterations
+  bool reactive_limits = true;  ///< apply the generators' reactive limits
+  bool step_shunts = false;     ///< step switched shunts until the regulated voltages lie in their bands
 };
 /// Solves the power flow.
 /// - A generator regulates the voltage of its bus, or of `regulated`. Several that regulate one remote bus

@@ -22,11 +22,12 @@ void raise_impedance(Network& network, double& r, double& x, const std::string& 
 
 /// A tie in service: V_from / ratio - V_to = z I. I flows into bus `to`, I / conj(ratio) out of bus `from`.
 struct Tie {
-  int from, to;  ///< bus indices
-  Complex ratio, z;
+  int from, to;      ///< bus indices
+  Complex ratio, z;  ///< turns ratio [-]; series impedance z [pu]
 };
 /// Returns the ties of a topology.
 std::vector<Tie> ties(const Network& network, const Topology& topology = {});
+/// Returns whether the magnitude of the branch's impedance is at most kTieImpedance.
 [[nodiscard]] bool is_tie(const Branch& branch);
 
 }  // namespace swingbank::sim::network

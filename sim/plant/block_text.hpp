@@ -13,8 +13,8 @@ void set_parameters(Block& block, const std::string& text, const std::string& wh
 
 /// An effect to add to one plant ("all": to every plant).
 struct Attachment {
-  std::string plant;
-  Block block;  ///< effect == nullptr: the text was invalid
+  std::string plant;  ///< name of the plant, or "all"
+  Block block;        ///< effect == nullptr: the text was invalid
 };
 /// Reads "PLANT:EFFECT[:PARAM=VALUE,...]" with the effects of `library`. Parameters that are not named keep
 /// their defaults. Unknown names and values that check() refuses are added to `problems`.

@@ -22,9 +22,11 @@ namespace swingbank::sim::plant {
 /// the step-up transformer (r, x) [pu on the machine's base], and the transformer's ratio.
 enum Joint { joint_rm, joint_xm, joint_ratio, joint_r, joint_x, kJoint };
 
+/// Equations of one plant: machine, transformer and controls, in the order of their evaluation.
 template <class T>
 class PlantEquations {
  public:
+  /// Collects the equations of the plant's effects and the layout of their states and coefficients.
   explicit PlantEquations(const Plant& plant) : machine_(plant.machine.effect->get<T>().machine) {
     const Effect& machine = *plant.machine.effect;
     scratch_ = machine.scratch;
@@ -46,13 +48,17 @@ class PlantEquations {
       coefficients_ += block.effect->coefficients;
     }
   }
+  /// Returns the number of states.
   [[nodiscard]] int states() const { return states_; }
+  /// Returns the number of coefficients.
   [[nodiscard]] int coefficients() const { return coefficients_; }
+  /// Returns the number of scratch values.
   [[nodiscard]] int scratch() const { return scratch_; }
   /// Whether the plant consists of a machine with constant impedance only.
   [[nodiscard]] bool machine_alone() const { return controls_.empty() && !has_transformer_ && !nonlinear(); }
   /// Whether the current is a nonlinear function of emf and voltage: see current().
   [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
+  /// Whether any state has a non-windup limit.
   [[nodiscard]] bool limited() const { return !limits_.empty(); }
   /// Number of guard functions. Their signs give the side of each jump of the equations.
   [[nodiscard]] int guards() const { return guards_; }
@@ -67,6 +73,7 @@ class PlantEquations {
   }
   /// Computes Ir, Ii from Vr, Vi at the terminal, after emf(). Requires nonlinear().
   void current(const T* c, const T* x, T* m, Signals<T>& s) const { machine_.current(c, x, m, s); }
+  /// Returns the impedance seen from the grid: r, then x [pu on the machine's base].
   [[nodiscard]] const T* impedance(const T* c) const { return c + joint_ + joint_r; }
   /// Returns the impedance of the machine alone.
   [[nodiscard]] const T* machine_impedance(const T* c) const { return c + joint_ + joint_rm; }
@@ -196,6 +203,7 @@ class PlantEquations {
     vr = has_transformer_ ? s.Vpr : s.Vr;
     vi = has_transformer_ ? s.Vpi : s.Vi;
   }
+  /// Returns the magnitude of the voltage vr + j vi at the grid's side.
   [[nodiscard]] T grid_magnitude(const Signals<T>& s, const T& vr, const T& vi) const {
     using std::sqrt;
     return has_transformer_ ? sqrt(vr * vr + vi * vi + T(1e-24)) : s.V;

@@ -11,15 +11,20 @@ namespace swingbank::sim::plant {
 /// The load's own coefficients, after its effect's: impedance at the operating point [pu on Consumer::mva].
 enum LoadJoint { load_r, load_x, kLoadJoint };
 
+/// Equations of one dynamic load.
 template <class T>
 class LoadEquations {
  public:
+  /// Collects the equations of the load's effect.
   explicit LoadEquations(const Consumer& load)
       : ops_(load.block.effect->get<T>().load),
         joint_(load.block.effect->coefficients),
         states_(static_cast<int>(load.block.effect->states.size())) {}
+  /// Returns the number of states.
   [[nodiscard]] int states() const { return states_; }
+  /// Returns the number of coefficients.
   [[nodiscard]] int coefficients() const { return joint_ + kLoadJoint; }
+  /// Returns the impedance at the operating point: r, then x [pu on Consumer::mva].
   [[nodiscard]] const T* impedance(const T* c) const { return c + joint_; }
   /// Computes the current Ir, Ii into the bus from Vr, Vi.
   void current(const T* c, const T* x, Signals<T>& s) const { ops_.current(c, x, s); }

@@ -9,7 +9,7 @@ namespace swingbank::sim::plant {
 
 /// An ordering of two parameters, by index in a block's effect.
 struct Ordering {
-  int greater = 0, smaller = 0;
+  int greater = 0, smaller = 0;  ///< indices of the two parameters in the effect
   /// Whether a model may violate it: true for X''d, X''q > Xl. The split of a subtransient reactance at the
   /// leakage is not observable at the terminal, the equations hold either way, and public cases have machines
   /// with X''d below Xl.

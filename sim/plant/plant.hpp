@@ -11,8 +11,8 @@ namespace swingbank::sim::plant {
 
 /// An effect with its parameter values, in the order of effect->parameters.
 struct Block {
-  const Effect* effect = nullptr;
-  std::vector<double> p;
+  const Effect* effect = nullptr;  ///< effect; null: none
+  std::vector<double> p;           ///< parameter values, in the units of the effect's records
 };
 /// Remote measuring point of a plant control in the network (Elsewhere of its effect).
 struct FarPlace {
@@ -23,21 +23,21 @@ struct FarPlace {
 /// Two-port between the plant's grid side and the point where its control measures. Voltage and current there
 /// are a V + b I and c V + d I [pu on the machine's base].
 struct TwoPort {
-  Complex a = 1.0, b = 0.0, c = 0.0, d = 1.0;
+  Complex a = 1.0, b = 0.0, c = 0.0, d = 1.0;  ///< chain parameters [pu]
 };
 /// One generating plant: machine, transformer, controls, measurements.
 struct Plant {
-  std::string name;    ///< "30" or "30/2": bus number, and id where a bus has several machines
-  int bus = -1;        ///< index into Network::buses
-  double mva = 100.0;  ///< machine base
-  Complex generation;  ///< P + jQ at the operating point [pu on the network's base]
-  Block machine;
-  Block transformer;            ///< none: effect == nullptr; the bus is then the machine's terminal
-  std::vector<Block> controls;  ///< in order of Slot
-  std::vector<Block> measurements;
-  int generator = -1;  ///< index into Network::generators
-  FarPlace far_place;
-  std::optional<TwoPort> beyond;  ///< none: the control measures at the grid side
+  std::string name;                 ///< "30" or "30/2": bus number, and id where a bus has several machines
+  int bus = -1;                     ///< index into Network::buses
+  double mva = 100.0;               ///< machine base
+  Complex generation;               ///< P + jQ at the operating point [pu on the network's base]
+  Block machine;                    ///< synchronous machine or converter
+  Block transformer;                ///< none: effect == nullptr; the bus is then the machine's terminal
+  std::vector<Block> controls;      ///< in order of Slot
+  std::vector<Block> measurements;  ///< instruments between grid and record
+  int generator = -1;               ///< index into Network::generators
+  FarPlace far_place;               ///< remote measuring point of its plant control
+  std::optional<TwoPort> beyond;    ///< none: the control measures at the grid side
   /// The remote measurement at the operating point [pu; power and current on `mva`]. Empty if the control
   /// measures at the plant.
   std::optional<Far<double>> far;
@@ -50,7 +50,7 @@ struct Consumer {
   int regulated = -1;   ///< index of the bus whose voltage it regulates; -1: its own, or none
   double mva = 100.0;   ///< base of its parameters
   Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
-  Block block;
+  Block block;          ///< effect and parameters of the load
 };
 
 /// Returns the switching times of the plant's effects, sorted [s].
@@ -67,6 +67,7 @@ struct OperatingOf {
   T Efd, Tm;         ///< constant if the exciter or governor slot is empty
   Signals<T> s;      ///< every signal at the operating point
 };
+/// Operating point in double precision.
 using Operating = OperatingOf<double>;
 
 /// Initialises one plant exactly (saturation included) from the voltage at its bus [pu] and generation [pu on

@@ -7,7 +7,8 @@
 
 namespace swingbank::sim::plant::dp54 {
 
-constexpr int kStages = 7;
+constexpr int kStages = 7;  ///< number of stages; the last one is the first of the next step
+/// Coefficients of the stages; the last row holds the fifth-order weights.
 constexpr double a[7][6] = {{},
                             {1.0 / 5},
                             {3.0 / 40, 9.0 / 40},
@@ -15,10 +16,12 @@ constexpr double a[7][6] = {{},
                             {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
                             {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                             {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+/// Times of the stages, as a fraction of the step.
 constexpr double c[7] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
 /// Fifth-order minus fourth-order weights.
 constexpr double error[7] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
                              -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+/// Coefficients of the continuous extension.
 constexpr double dense[7] = {-12715105075.0 / 11282082432.0,  0.0,
                              87487479700.0 / 32700410799.0,   -10690763975.0 / 1880347072.0,
                              701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0,
@@ -29,6 +32,7 @@ constexpr double dense[7] = {-12715105075.0 / 11282082432.0,  0.0,
 /// theta < 0.8 gives at most 0.0011 J h^2 in `error` (none at 0.42), while the step's true error is up to
 /// 0.02 J h^2. One of the two differences, times h, is at least 0.6 J h^2 for 0.2 < theta < 0.9.
 constexpr double c5 = 8.0 / 9;
+/// Weights of the stages' derivatives in the two differences.
 constexpr double kink[2][7] = {
     {-1.0 / (0.3 * 0.8), 0.0, 1.0 / (0.3 * 0.5 * 0.7), -1.0 / (0.8 * 0.5 * 0.2), 0.0, 0.0, 1.0 / (0.7 * 0.2)},
     {0.0, 0.0, -1.0 / (0.5 * (c5 - 0.3) * 0.7), 1.0 / (0.5 * (c5 - 0.8) * 0.2),

@@ -6,8 +6,8 @@ namespace swingbank::sim::plant {
 
 /// Non-owning references; the caller keeps both objects alive.
 struct PlantUnderTest {
-  const Plant& plant;
-  const Conventions& conventions;
+  const Plant& plant;              ///< tested plant
+  const Conventions& conventions;  ///< conventions of its parameters
 };
 
 }  // namespace swingbank::sim::plant

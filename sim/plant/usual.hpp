@@ -19,8 +19,9 @@ std::string usual_text(const Effect& effect, int parameter);
 /// pu)".
 std::vector<std::string> unusual_texts(const Block& block, const std::string& where);
 
+/// Interval in which a search may move a parameter.
 struct SearchRange {
-  double low, high;
+  double low, high;  ///< ends of the interval [unit of the parameter]
 };
 /// Returns the search range of a parameter with the value `value` in its model. A value outside the usual
 /// range extends the range beyond itself by the range's width. The extension does not cross zero unless the

@@ -8,13 +8,14 @@
 
 namespace swingbank::sim::reference {
 
+/// Options of a reference simulation.
 struct ReferenceOptions {
-  double t_end = 15.0, rate = 120.0;
-  double rtol = 1e-8, atol = 1e-10;  ///< error per step of each unknown
-  std::vector<int> plants;           ///< empty: all
-  std::vector<Channel> channels;     ///< empty: all of kChannels
-  std::vector<int> buses;            ///< buses with recorded voltage, by index in the network
-  bool after_switching = false;      ///< at a switching time record the value just after it
+  double t_end = 15.0, rate = 120.0;  ///< end of the simulation [s]; samples per second [1/s]
+  double rtol = 1e-8, atol = 1e-10;   ///< error per step of each unknown
+  std::vector<int> plants;            ///< empty: all
+  std::vector<Channel> channels;      ///< empty: all of kChannels
+  std::vector<int> buses;             ///< buses with recorded voltage, by index in the network
+  bool after_switching = false;       ///< at a switching time record the value just after it
   /// Two criteria end a run, both within each present island of the grid. First: largest change of a rotor
   /// angle difference since the start [rad].
   double lose_at = constants::pi;

@@ -15,27 +15,28 @@ struct AddOptions {
 struct AddedEvent {
   calibrate::EventScore score;  ///< before: given model; after: with the effect
   double refitted = 0;          ///< reduced chi-square without the effect, everything else refitted
+  /// Whether the event's reduced chi-square is lower with the effect.
   [[nodiscard]] bool improves() const { return score.after < refitted; }
 };
 
 /// Result of an addition.
 struct Addition {
-  hypothesis::Hypothesis hypothesis;
-  plant::PlantModel model;  ///< with the effect and the fitted values
+  hypothesis::Hypothesis hypothesis;  ///< the added effect with its free parameters
+  plant::PlantModel model;            ///< with the effect and the fitted values
   /// All free parameters, those of the effect first; from calibrate if the residual is noise.
   std::vector<fit::FittedParameter> parameters;
-  int own = 0;  ///< number of parameters of the effect
-  std::vector<AddedEvent> events;
+  int own = 0;                     ///< number of parameters of the effect
+  std::vector<AddedEvent> events;  ///< scores of all events, in the order given
   /// Difference of criterion(), without minus with the effect, over the seen events; compared with
   /// thresholds::addition.strong.
   double evidence = 0;
-  bool earns = false;         ///< the evidence is strong, and no unseen event is worse with the effect
-  bool adequate = false;      ///< the residual is noise in every event
-  thresholds::Ruling ruling;  ///< the criterion that decided `adequate`
-  std::string sentence;
-  event::WhitenedEvents prepared;
-  fit::Fit without, with;
-  double seconds = 0;
+  bool earns = false;              ///< the evidence is strong, and no unseen event is worse with the effect
+  bool adequate = false;           ///< the residual is noise in every event
+  thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
+  std::string sentence;            ///< result in words
+  event::WhitenedEvents prepared;  ///< the events with their noise model
+  fit::Fit without, with;          ///< fits to the seen events without and with the effect
+  double seconds = 0;              ///< processing time [s]
 };
 
 /// Returns the hypothesis of that name, ignoring case and blanks. Throws InputError with the effects that can
@@ -50,12 +51,13 @@ Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis
 /// Result of the removal of one control (index into Plant::controls): its evidence with everything else
 /// refitted, and the model without it.
 struct Removal {
-  std::string effect;
-  plant::PlantModel model;
+  std::string effect;       ///< name of the removed effect
+  plant::PlantModel model;  ///< model without it, refitted
   /// Difference of criterion(), without minus with the effect. The effect is removed at addition.stays or
   /// below.
   double evidence = 0;
 };
+/// Refits the model without one control.
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);
 
@@ -63,9 +65,9 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
 struct Completion {
   std::vector<Addition> added;   ///< in order of addition
   std::vector<Removal> removed;  ///< later removed ones of `added`
-  plant::PlantModel model;
-  bool adequate = false;
-  std::string sentence;
+  plant::PlantModel model;       ///< completed model
+  bool adequate = false;         ///< the residual is noise in every event
+  std::string sentence;          ///< result in words
 };
 /// Diagnoses the model and adds one effect at a time, at most `most` effects. After each addition, the
 /// effects added before must still earn their place. The held-out events are excluded from diagnoses and

@@ -13,15 +13,16 @@ namespace swingbank::validate::calibrate {
 
 /// Additional start of the search, with its name in reports.
 struct GivenStart {
-  std::string name;
-  sim::plant::Plant plant;
+  std::string name;         ///< name in reports
+  sim::plant::Plant plant;  ///< plant with the start values
 };
 
+/// Effort, priors and data of a calibration.
 struct CalibrateOptions {
   double spread = thresholds::parameters.spread;  ///< relative prior standard deviation of the parameters
   int draws = 24;  ///< random parameter sets evaluated as starts, unless the closed form fits well enough
   int starts = 2;  ///< number of the best draws that are refined
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;                     ///< seed of the random draws
   std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;             ///< names of fixed parameters, e.g. "GENROU.Xl"
   std::vector<GivenStart> given;              ///< starts in addition to the model's own values and the draws
@@ -29,32 +30,34 @@ struct CalibrateOptions {
   std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
   /// Least limit of the reduced chi-square; it allows for interpolation of the played-in voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
-  event::FitEventOptions events = {};
-  event::Progress progress = {};
+  event::FitEventOptions events = {};  ///< preparation of the records
+  event::Progress progress = {};       ///< recipient of progress messages; empty: none
 };
 
 /// Errors of one channel of one event in the fit, with the event's own switching times and start fitted.
 /// Commands show the errors of compare::error_table() instead.
 struct ChannelScore {
-  playin::Output channel;
-  std::string unit;
+  playin::Output channel;                ///< output that is compared
+  std::string unit;                      ///< unit of the errors
   double scale = 1;                      ///< units in 1 pu of the record's base
   double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]
   double over_noise = 0;                 ///< rms_after / standard deviation of the noise in the fit's weights
 };
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
-  std::string record;
-  bool seen = true;              ///< false: held out; only the event's own state was fitted
-  double before = 0, after = 0;  ///< reduced chi-square
-  double limit = 0;              ///< limit of the reduced chi-square for noise alone
-  double colour = 0;             ///< lag-1 autocorrelation of the pre-event residual
-  std::vector<ChannelScore> channels;
+  std::string record;                  ///< name of the record
+  bool seen = true;                    ///< false: held out; only the event's own state was fitted
+  double before = 0, after = 0;        ///< reduced chi-square
+  double limit = 0;                    ///< limit of the reduced chi-square for noise alone
+  double colour = 0;                   ///< lag-1 autocorrelation of the pre-event residual
+  std::vector<ChannelScore> channels;  ///< errors of each channel
+  /// Whether the reduced chi-square after the calibration is within its limit.
   [[nodiscard]] bool adequate() const { return thresholds::within_limit(after, limit); }
 };
 
 /// Poorly identified direction in parameter space: moving along it hardly changes the simulated response.
 struct Blur {
+  /// Component of the direction along one parameter.
   struct Member {
     int parameter;  ///< index into Calibration::parameters
     double change;  ///< change for one standard deviation along the direction [unit of the parameter]
@@ -66,10 +69,11 @@ struct Blur {
 
 /// Simulated event that was not recorded, with the parameter errors that it would give.
 struct Candidate {
-  std::string what;
+  std::string what;           ///< description of the event
   std::vector<double> error;  ///< standard error of each parameter with this event added [unit]
 };
 
+/// Calibrated parameter with the contributions to its error.
 struct CalibratedParameter {
   fit::FittedParameter fit;    ///< error and interval include the widening for coloured residuals
   double curvature_error = 0;  ///< standard error from the curvature alone, for white noise [unit]
@@ -78,6 +82,7 @@ struct CalibratedParameter {
   double narrowed = 1;         ///< standard error with that event / without it
 };
 
+/// Verdict of a calibration.
 enum class Adequacy {
   adequate,         ///< residuals are within noise before and after the fit
   parameters_poor,  ///< residuals are within noise only after the fit
@@ -91,25 +96,26 @@ struct StartScore {
   bool agrees = false;           ///< reached the best optimum
 };
 
+/// Result of a calibration.
 struct Calibration {
-  plant::PlantModel model;  ///< with the fitted values
-  Adequacy adequacy = Adequacy::adequate;
-  thresholds::Ruling ruling;  ///< criterion and figures behind `adequacy`
-  std::string sentence;
-  std::vector<CalibratedParameter> parameters;
-  Eigen::MatrixXd correlation;
-  std::vector<Blur> blurs;
-  std::vector<Candidate> candidates;
-  std::vector<EventScore> events;
-  double before = 0, after = 0, limit = 0;  ///< reduced chi-square of the fitted events
-  int starts = 0, agreeing = 0;     ///< number of refined starts; number that reached the best optimum
-  std::vector<StartScore> started;  ///< each refined start, in the order tried
-  bool converged = false;
+  plant::PlantModel model;                      ///< with the fitted values
+  Adequacy adequacy = Adequacy::adequate;       ///< verdict
+  thresholds::Ruling ruling;                    ///< criterion and figures behind `adequacy`
+  std::string sentence;                         ///< verdict in words
+  std::vector<CalibratedParameter> parameters;  ///< free parameters
+  Eigen::MatrixXd correlation;                  ///< correlation of the estimates [parameter][parameter]
+  std::vector<Blur> blurs;                      ///< poorly identified directions
+  std::vector<Candidate> candidates;            ///< simulated events of a further measurement
+  std::vector<EventScore> events;               ///< scores of all events, in the order given
+  double before = 0, after = 0, limit = 0;      ///< reduced chi-square of the fitted events
+  int starts = 0, agreeing = 0;         ///< number of refined starts; number that reached the best optimum
+  std::vector<StartScore> started;      ///< each refined start, in the order tried
+  bool converged = false;               ///< the search ended at a minimum
   double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
   fit::Fit fit;                         ///< fit of the events that are not held out
   std::vector<fit::EventState> states;  ///< of every event, at the fitted parameters
   event::WhitenedEvents prepared;       ///< every event, in the order given
-  double seconds = 0;
+  double seconds = 0;                   ///< processing time [s]
 };
 
 /// Calibrates `model` on the records that are not held out. Throws InputError: no events, unknown names in

@@ -11,14 +11,16 @@
 
 namespace swingbank::validate::calibrate {
 
+/// Effort and data of a curve fit.
 struct CurveFitOptions {
   std::vector<std::string> held_out;   ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;      ///< names of fixed parameters, e.g. "GENROU.Xl"
   event::FitEventOptions events = {};  ///< measured_states is ignored: only P and Q are fitted
-  int iterations = 200;
+  int iterations = 200;                ///< maximum number of iterations
   double adequate = thresholds::adequacy.reduced_chi2;  ///< as CalibrateOptions::adequate
 };
 
+/// Result of an unweighted least-squares fit of P and Q, for comparison with such tools.
 struct CurveFit {
   plant::PlantModel model;  ///< with the fitted values
   /// Intervals from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values - parameters) \f$, as such tools
@@ -27,11 +29,11 @@ struct CurveFit {
   std::vector<EventScore> events;        ///< with prepared switching times and start, which are not fitted
   double rms_before = 0, rms_after = 0;  ///< of P and Q over the fitted events [pu on the record's base]
   /// Reduced chi-square of the fitted events; largest limit of one of them.
-  double before = 0, after = 0, limit = 0;
-  int iterations = 0;
+  double before = 0, after = 0, limit = 0;   ///< before and after the fit; limit
+  int iterations = 0;                        ///< number of iterations
   bool converged = false, adequate = false;  ///< adequate: every event within its limit
-  std::string sentence;
-  double seconds = 0;
+  std::string sentence;                      ///< result in words
+  double seconds = 0;                        ///< processing time [s]
 };
 
 /// Fits the records that are not held out. Throws InputError as calibrate().

@@ -12,19 +12,22 @@ namespace swingbank::validate::calibrate {
 /// Content of an estimate file.
 struct NetworkEstimate {
   std::string file, network, kind, machine, dataset;  ///< file: the JSON; network: path of its weights
+  /// Estimate of one parameter.
   struct Parameter {
     std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); "GENROU"; "s"
     double value = 0;                ///< mean over the records [unit]
     double spread = 0,
            scatter = 0;        ///< RMS error on validation records; deviation between the records [unit]
     double low = 0, high = 0;  ///< training range [unit]; equal: the parameter was constant
+    /// Whether the parameter varied in the training data.
     [[nodiscard]] bool learnt() const { return high > low; }
     /// Parameter name alone, e.g. "K".
     [[nodiscard]] std::string plain() const { return sim::plant::read_parameter_name(name).parameter; }
     /// Name with its effect, e.g. "SEXS.K".
     [[nodiscard]] std::string full() const { return sim::plant::ParameterName{effect, plain()}.text(); }
   };
-  std::vector<Parameter> parameters;
+  std::vector<Parameter> parameters;  ///< estimated parameters
+  /// A record that the estimate is based on.
   struct Seen {
     std::string record, sha256;  ///< name, and hash of its bytes
     std::vector<double> values;  ///< estimates from this record alone, in the order of `parameters`

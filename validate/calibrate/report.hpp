@@ -18,10 +18,13 @@ std::string aligned(const report::Table& table);
 
 /// Verdict, tables, parameters that are not identified, and events that would identify them.
 std::string terminal_report(const Calibration& c);
+/// Returns the calibration as JSON.
 nlohmann::json calibration_json(const Calibration& c);
+/// Returns the scores of one event as JSON.
 nlohmann::json event_json(const EventScore& e);
 /// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const Calibration& c, const std::string& command_line);
+/// Returns the verdict in the JSON.
 std::string adequacy_name(Adequacy adequacy);
 /// Sentence that describes a poorly identified direction.
 std::string describe(const Calibration& c, const Blur& blur);

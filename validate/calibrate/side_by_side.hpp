@@ -24,16 +24,18 @@ Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& mod
 /// event are fitted anew, so that methods differ in parameters only. The curve fit's own report is the
 /// exception.
 struct Way {
-  std::string name;
+  std::string name;  ///< name of the method
+  /// Estimate of one parameter.
   struct Value {
-    std::string parameter, unit;  ///< "GENROU.H", "s"
-    double value = 0, low = 0, high = 0;
+    std::string parameter, unit;          ///< "GENROU.H", "s"
+    double value = 0, low = 0, high = 0;  ///< estimate and 95 % interval [unit]
   };
-  std::vector<Value> values;
+  std::vector<Value> values;       ///< estimates of all parameters
   std::vector<EventScore> events;  ///< `after`: with these values
 };
 /// The model's own values, without intervals.
 Way way_of_model(const Calibration& c);
+/// The calibrated values with their 95 % intervals.
 Way way_of(const Calibration& c);
 /// The curve fit's parameters, evaluated on the calibration's events.
 Way way_of(const CurveFit& f, const Calibration& c);
@@ -49,17 +51,23 @@ struct Distance {
   double relative = 0;          ///< RMS of (value - truth) / |truth|
   double mse = 0;               ///< mean of (value - truth)^2 in raw units, as in the thesis
 };
+/// Returns the errors of a method against the true values.
 Distance distance(const Way& way, const Truth& truth);
 
+/// Table of parameters: one column for each method.
 report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth);
+/// Table of events: reduced chi-square by each method.
 report::Table events_beside(const std::vector<Way>& ways);
 /// Both tables and, if the truth is known, each method's error.
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth);
+/// The same as JSON.
 nlohmann::json beside_json(const std::vector<Way>& ways, const Truth& truth);
 
 /// Report of a curve fit alone.
 std::string terminal_report(const CurveFit& f, const Truth& truth);
+/// The same as JSON.
 nlohmann::json curve_fit_json(const CurveFit& f, const Truth& truth);
+/// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantModel& from,
                                           const std::string& command_line);
 

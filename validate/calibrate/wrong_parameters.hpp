@@ -10,10 +10,11 @@ namespace swingbank::validate::calibrate {
 
 /// Smallest set of parameters that must change for the model to explain the events.
 struct WrongParameters {
-  fit::SparseSelection found;
-  plant::PlantModel model;  ///< with these parameters changed and all others unchanged
-  double adequate = 0;      ///< limit of the reduced chi-square for noise alone
-  std::string sentence;
+  fit::SparseSelection found;  ///< selected parameters with their fit
+  plant::PlantModel model;     ///< with these parameters changed and all others unchanged
+  double adequate = 0;         ///< limit of the reduced chi-square for noise alone
+  std::string sentence;        ///< result in words
+  /// Whether the residual is noise with these parameters changed.
   [[nodiscard]] bool holds() const { return found.fit.reduced_chi2() <= adequate; }
 };
 
@@ -27,6 +28,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 std::string wrong_sentence(const fit::SparseSelection& found, double adequate);
 /// The sentence and a table: old and new value, interval, evidence, and share of the error.
 std::string wrong_text(const WrongParameters& w);
+/// The same as JSON.
 nlohmann::json wrong_json(const WrongParameters& w);
 
 }  // namespace swingbank::validate::calibrate

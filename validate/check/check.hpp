@@ -10,12 +10,14 @@
 
 namespace swingbank::validate::check {
 
+/// Consequence of a finding: the record is refused, or the user is warned.
 enum class Severity { refuse, warn };
 
+/// Finding of a check about a record.
 struct Finding {
   std::string kind;  ///< stable identifier: "too_short", "wrong_base", … (validate/check/README.md)
-  Severity severity = Severity::refuse;
-  Problem problem;
+  Severity severity = Severity::refuse;  ///< refuse: the record allows no verdict
+  Problem problem;                       ///< sentence to the user
 };
 
 /// Facts of the plant that the checks use. Only certain ones, because a wrong parameter must not refuse a
@@ -27,6 +29,7 @@ struct PlantFacts {
                             ///< converter's control
   std::optional<sim::grid::Dispatch> dispatch = {};  ///< output of the unit in its case
 };
+/// Returns these facts of a model.
 PlantFacts plant_facts(const plant::PlantModel& model);
 
 /// Returns all findings about a record, refusals first. After a refusal, the record allows no verdict about

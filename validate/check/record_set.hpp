@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::check {
 
+/// Records of one command with their warnings.
 struct RecordSet {
   std::vector<record::Record> records;  ///< in the order given
   std::vector<std::vector<std::string>>

@@ -19,8 +19,9 @@ struct SignalFacts {
   double swing = 0;        ///< standard deviation about that line
 };
 
+/// Facts of a record's V, P and Q, and the time of its event.
 struct Signals {
-  SignalFacts V, P, Q;
+  SignalFacts V, P, Q;        ///< facts of each signal
   bool event = false;         ///< a signal leaves the noise
   bool slow = false;          ///< event without a step; it began before `onset`
   std::size_t onset = 0;      ///< last sample before the event
@@ -40,6 +41,7 @@ struct Signals {
 /// Returns the statistics of a record with at least kMinSamples finite samples.
 Signals record_signals(const record::Record& record);
 
+/// Returns the upper median of the values; 0 if there are none.
 double median_of(std::vector<double> values);
 
 }  // namespace swingbank::validate::check

@@ -16,7 +16,7 @@ namespace swingbank::validate::compare {
 
 /// Errors in one time window; residual = modelled - measured.
 struct WindowError {
-  int samples = 0;
+  int samples = 0;                 ///< number of compared samples
   double rms = 0, mean = 0;        ///< [pu on the record's base]
   double worst = 0, worst_at = 0;  ///< largest |residual| [pu] and its time [s]
   double in_noise = 0;             ///< rms / noise; NaN if the record has no noise
@@ -40,13 +40,13 @@ enum class DriveBy {
 };
 /// Result of compare_event().
 struct EventComparison {
-  record::Record record;
-  std::vector<playin::Switching> switchings;
-  bool detected = false;  ///< switching times were detected in the record, not given
-  bool fitted = false;    ///< switching times were fitted within their sample intervals
-  std::vector<Window> windows;
-  playin::Playback playback;
-  std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
+  record::Record record;                      ///< record, cut to the compared samples
+  std::vector<playin::Switching> switchings;  ///< switching times that were used
+  bool detected = false;                      ///< switching times were detected in the record, not given
+  bool fitted = false;                        ///< switching times were fitted within their sample intervals
+  std::vector<Window> windows;                ///< evaluation windows, in order of time
+  playin::Playback playback;                  ///< response of the model
+  std::vector<ChannelComparison> channels;    ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
   /// Marks samples within a filtered step of the instrument, which are not compared. Empty: none.
   std::vector<char> left_out = {};
   /// Per channel: possible residuals due to errors of the played-in quantities, one standard deviation each
@@ -55,9 +55,10 @@ struct EventComparison {
   std::vector<std::string> notes;  ///< notes for the reader: uncertain switching times, drift, unread columns
 };
 
+/// Options of a comparison.
 struct CompareOptions {
-  DriveBy drive = DriveBy::voltage;
-  double jump_threshold = playin::kJumpThreshold;
+  DriveBy drive = DriveBy::voltage;                ///< inputs of the playback
+  double jump_threshold = playin::kJumpThreshold;  ///< threshold of playin::detect_switchings [pu]
   /// Fits detected switching times to P and Q within their sample intervals, because the record does not
   /// determine them any better. At 30/s half an interval is 17 ms; in a fault this error alone left eight
   /// times the noise of a correct model. If the fit brings no improvement, the interval's middle is kept.
@@ -70,19 +71,20 @@ struct CompareOptions {
 
 /// Unit of a channel in reports, and its noise floor.
 struct ChannelUnit {
-  std::string name;
-  double scale;  ///< units in 1 pu
-  double floor;  ///< noise floor from interpolation, for records without noise [pu]
+  std::string name;  ///< unit, "MW"
+  double scale;      ///< units in 1 pu
+  double floor;      ///< noise floor from interpolation, for records without noise [pu]
 };
+/// Returns the unit of an output, given the record's bases.
 ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base);
 
 /// Name, unit and evaluation rules of one channel.
 struct ChannelRule {
-  std::string name, unit;
-  double scale;         ///< units in 1 pu
-  double floor;         ///< noise floor from interpolation, for records without noise [pu]
-  bool starts_at_mean;  ///< the model starts at this channel's pre-event mean
-  bool judged = true;
+  std::string name, unit;  ///< name of the channel; its unit
+  double scale;            ///< units in 1 pu
+  double floor;            ///< noise floor from interpolation, for records without noise [pu]
+  bool starts_at_mean;     ///< the model starts at this channel's pre-event mean
+  bool judged = true;      ///< whether the verdict uses the channel
   std::string_view skip =
       {};           ///< window without evaluation, because its noise differs from the pre-event noise
   double size = 1;  ///< nominal value: the machine's MVA for a power, else 1 [pu]
@@ -111,7 +113,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
 
 /// Statistical verdict: whether the residuals are within noise.
 struct Adequacy {
-  bool adequate = false;
+  bool adequate = false;         ///< the residual is noise in every bin
   int cells = 0, exceeding = 0;  ///< bins of all maps and whole records; bins above their bound
   int vague = 0;                 ///< bins in which noise alone may exceed the channel's nominal value
   std::string sentence;          ///< verdict, criterion and the bin nearest to its bound or furthest above it

@@ -10,14 +10,14 @@ namespace swingbank::validate::compare {
 
 /// Time window from < t <= to; the first one includes its start.
 struct Window {
-  std::string name;
-  double from, to;  ///< [s]
+  std::string name;  ///< "pre-fault", "fault", "post-fault", ...
+  double from, to;   ///< [s]
 };
 
 /// Frequency band from <= f < to [Hz].
 struct Band {
-  std::string_view name;
-  double from, to;
+  std::string_view name;  ///< name in reports
+  double from, to;        ///< limits [Hz]
 };
 /// Bands of slow responses (governor, set points), inter-area modes, local modes, and faster responses.
 std::span<const Band> error_bands();
@@ -49,14 +49,17 @@ struct MapCell {
   /// contains only a part of the noise.
   double normalised = std::numeric_limits<double>::quiet_NaN();
   double bound = std::numeric_limits<double>::quiet_NaN();  ///< of `normalised` for noise; see set_bounds()
+  /// Whether the window is too short for the band.
   [[nodiscard]] bool empty() const { return values == 0; }
   /// Returns the RMS that noise alone may reach [pu].
   [[nodiscard]] double allowed() const { return normalised > 0 ? rms / normalised * bound : 0.0; }
+  /// Whether the normalised RMS exceeds the bound for noise.
   [[nodiscard]] bool exceeds() const { return !empty() && normalised > bound; }
 };
 
 /// Error map of one channel of one event.
 struct ErrorMap {
+  /// Bins of one window.
   struct Row {
     MapCell all;                 ///< every frequency, the mean included
     std::vector<MapCell> bands;  ///< as error_bands()
@@ -66,6 +69,7 @@ struct ErrorMap {
   int freedom = 0;        ///< degrees of freedom of the noise estimate; 0: the noise is known
 };
 
+/// Options of an error map.
 struct ErrorMapOptions {
   int quiet = 0;  ///< pre-event samples whose mean is the model's start; 0: the start is exact
   /// The model starts at the first window's mean, so that mean carries no information.

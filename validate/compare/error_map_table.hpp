@@ -10,10 +10,10 @@ namespace swingbank::validate::compare {
 
 /// Error map with the names and units of its figures.
 struct LabelledMap {
-  std::string event, channel, unit;
-  double scale = 1;  ///< units in 1 pu
-  const std::vector<Window>* windows = nullptr;
-  const ErrorMap* map = nullptr;
+  std::string event, channel, unit;              ///< names of event and channel; unit of the RMS
+  double scale = 1;                              ///< units in 1 pu
+  const std::vector<Window>* windows = nullptr;  ///< windows of the map
+  const ErrorMap* map = nullptr;                 ///< errors of this channel
 };
 
 /// Table with one row per event, channel and window: RMS in units, then the normalised RMS over all

@@ -13,11 +13,11 @@ namespace swingbank::validate::compare {
 
 /// Errors of one channel of one event in one window.
 struct JudgedErrors {
-  std::string event, channel;
-  thresholds::Phase phase = thresholds::Phase::pre_fault;
-  int samples = 0;
-  thresholds::Errors errors, limits;  ///< [% of MVA]
-  bool switched = true;               ///< the event has a switching; without one it has no fault window
+  std::string event, channel;                              ///< names of event and channel
+  thresholds::Phase phase = thresholds::Phase::pre_fault;  ///< phase whose limits apply
+  int samples = 0;                                         ///< number of compared samples
+  thresholds::Errors errors, limits;                       ///< [% of MVA]
+  bool switched = true;  ///< the event has a switching; without one it has no fault window
   /// Name of the window, e.g. "post-fault"; "start of record" or "rest of record" without a switching.
   [[nodiscard]] std::string_view window() const;
 };
@@ -25,19 +25,20 @@ struct JudgedErrors {
 /// Deviation of P or Q from its pre-event mean after the last switching, and the model's error relative to
 /// it.
 struct Movement {
-  std::string event, channel, unit;
-  double measured = 0;  ///< RMS of the measured deviation [unit]
-  double error = 0;     ///< RMS of modelled - measured [% of `measured`]
-  double share = 0;     ///< least-squares share of the measured deviation in the simulated one [%]
-  double limit = 0;     ///< limit of `error` [%]
+  std::string event, channel, unit;  ///< names of event and channel; unit of `measured`
+  double measured = 0;               ///< RMS of the measured deviation [unit]
+  double error = 0;                  ///< RMS of modelled - measured [% of `measured`]
+  double share = 0;  ///< least-squares share of the measured deviation in the simulated one [%]
+  double limit = 0;  ///< limit of `error` [%]
+  /// Whether the error exceeds its limit; NaN counts as exceeding.
   [[nodiscard]] bool exceeds() const { return !(error <= limit); }
 };
 
 /// Verdict on fitness for purpose.
 struct Fitness {
-  thresholds::Acceptance by;
-  double mva = 0;  ///< machine base: 100 % of the errors [MVA]
-  std::vector<JudgedErrors> rows;
+  thresholds::Acceptance by;        ///< applied limits
+  double mva = 0;                   ///< machine base: 100 % of the errors [MVA]
+  std::vector<JudgedErrors> rows;   ///< errors of P and Q in each window of each event
   std::vector<Movement> movements;  ///< channels with a large enough deviation (thresholds::movement)
   std::string not_judged;           ///< reason why nothing was judged; empty if judged
   /// Every error is within its limit, and at least one was judged.
@@ -63,6 +64,7 @@ report::Table fitness_table(const Fitness& fitness);
 report::Table worst_fitness_table(const Fitness& fitness);
 /// Table of the measured deviation of P and Q per event, and the share that the model reproduces.
 report::Table movement_table(const Fitness& fitness);
+/// Returns the verdict with all errors and limits as JSON.
 nlohmann::json fitness_json(const Fitness& fitness);
 
 /// Text of the statistical verdict: "Statistically complete: yes." and the command's sentence.

@@ -11,7 +11,7 @@ namespace swingbank::validate::compare {
 
 /// Value of a parameter before and after a command.
 struct PageParameter {
-  std::string block, symbol, unit;
+  std::string block, symbol, unit;                  ///< block and symbol of the parameter; its unit
   double before = 0, after = 0, low = 0, high = 0;  ///< low, high: 95 % interval; NaN: not estimated
   double decided = 0;                               ///< share determined by the records; NaN: not estimated
   std::string note = {};                            ///< "at its bound"
@@ -34,15 +34,16 @@ void glossary_part(report::Page& page);
 
 /// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
-  std::string title, subtitle;
-  bool complete = false;
-  std::string sentence;
-  std::vector<Played> played;
-  std::vector<PageParameter> parameters;
-  std::vector<std::string> unseen, tried;
-  report::Provenance provenance;
-  std::string figures;  ///< JSON
+  std::string title, subtitle;             ///< heading; line below it
+  bool complete = false;                   ///< statistically complete: the residual is noise
+  std::string sentence;                    ///< verdict in words
+  std::vector<Played> played;              ///< models with their comparisons, in order
+  std::vector<PageParameter> parameters;   ///< table of parameters; may be empty
+  std::vector<std::string> unseen, tried;  ///< results on unseen events; tried hypotheses
+  report::Provenance provenance;           ///< inputs and software of the run
+  std::string figures;                     ///< JSON
 };
+/// Returns the page as HTML.
 std::string command_html(const CommandPage& page);
 
 }  // namespace swingbank::validate::compare

@@ -9,10 +9,11 @@
 
 namespace swingbank::validate::compare {
 
+/// A model with its comparison to each record.
 struct Played {
   std::string name;                     ///< "submitted", "calibrated"
   std::vector<EventComparison> events;  ///< empty if the model cannot follow them
-  Fitness fitness;
+  Fitness fitness;                      ///< verdict on fitness for purpose
 };
 
 /// Plays the records into the model and judges its fitness. If the model cannot follow a record, `events` is

@@ -25,12 +25,13 @@ enum class Verdict {
   unexplained,  ///< no known effect explains the records
   interrupted,  ///< stopped by the user; no hypothesis is judged
 };
+/// Returns the name of a verdict in the JSON.
 std::string_view verdict_name(Verdict verdict);
 
 /// Result of a diagnosis.
 struct Diagnosis {
-  Verdict verdict = Verdict::adequate;
-  hypothesis::Side side = hypothesis::Side::none;
+  Verdict verdict = Verdict::adequate;             ///< kind of the result
+  hypothesis::Side side = hypothesis::Side::none;  ///< side of the plant at fault
   thresholds::Ruling ruling;            ///< the criterion that decided whether the model is adequate
   std::string sentence;                 ///< the verdict, for a grid engineer
   std::vector<std::string> effects;     ///< name of one effect, or names of several that act together
@@ -48,7 +49,7 @@ struct Diagnosis {
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
   event::WhitenedEvents events;               ///< with the noise model of all fits
   sim::Conventions conventions;               ///< of the model
-  double seconds = 0;
+  double seconds = 0;                         ///< processing time [s]
 };
 
 /// Limits, effort and callbacks of a diagnosis.
@@ -60,8 +61,8 @@ struct DiagnoseOptions {
   int threads = 0;                     ///< 0: number of cores
   event::FitEventOptions events = {};  ///< preparation of the records
   int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events
-  int firsts = 2;  ///< number of first effects of pairs, if no hypothesis is accepted alone
-  event::Progress progress;
+  int firsts = 2;            ///< number of first effects of pairs, if no hypothesis is accepted alone
+  event::Progress progress;  ///< recipient of progress messages; empty: none
   /// Called with each preliminary result: the residual, the side, then the leading hypothesis. May be empty.
   std::function<void(const std::string& sentence)> told = {};
   /// Returns whether the user has asked to stop. Completed fits are kept once the given model is fitted. May

@@ -13,17 +13,17 @@ namespace swingbank::validate::diagnose {
 /// One measured channel of one event, with the refitted model before and after the addition of the missing
 /// effect.
 struct ReportChannel {
-  std::string name, unit;
+  std::string name, unit;                       ///< name of the channel; its unit
   double scale = 1, noise = 0;                  ///< conversion from 1 pu; noise standard deviation [pu]
   std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
-  compare::ErrorMap map_before, map_after;
-  double inside_before = 0, inside_after = 0;  ///< share of samples inside the 99 % band of the noise
+  compare::ErrorMap map_before, map_after;      ///< error maps without and with the addition
+  double inside_before = 0, inside_after = 0;   ///< share of samples inside the 99 % band of the noise
 };
 /// One event of the report.
 struct ReportEvent {
-  const event::FitEvent* event = nullptr;
-  std::vector<compare::Window> windows;
-  std::vector<ReportChannel> channels;
+  const event::FitEvent* event = nullptr;      ///< event as it was fitted
+  std::vector<compare::Window> windows;        ///< evaluation windows
+  std::vector<ReportChannel> channels;         ///< measured channels
   double before = 0, after = 0;                ///< RMS of the whitened residual [noise standard deviations]
   double unseen_before = 0, unseen_after = 0;  ///< the same from a fit without this event; NaN: not tried
 };
@@ -31,7 +31,7 @@ struct ReportEvent {
 struct ReportFigures {
   const fit::Fit* after = nullptr;  ///< null: no addition
   std::string after_name;           ///< for example "SEXS", "the inferred field voltage"
-  std::vector<ReportEvent> events;
+  std::vector<ReportEvent> events;  ///< one for each event
 };
 /// Returns the figures. `after` is the best hypothesis if one was accepted, otherwise the user-defined model
 /// that was found, otherwise the inferred input with the lower chi2. Refers to `diagnosis`, which must

@@ -12,9 +12,11 @@ namespace swingbank::validate::event {
 /// Shape of voltage steps as the instrument records them: all filtered (spread), or none.
 enum class Jumps { either, sharp, spread };
 
+/// Options of the preparation of records for fitting.
 struct FitEventOptions {
   bool measured_states = true;  ///< compare speed, Efd and Ifd too, if recorded
   double jump_threshold = playin::kJumpThreshold;
+  ///< threshold of playin::detect_switchings [pu]
   double pre_event = 1.0;       ///< length of the steady window of a record without switchings [s]
   Jumps jumps = Jumps::either;  ///< either: determined from the records (jumps_of)
   double mva = 0;               ///< rating of all machines whose power the records contain; 0: the model's

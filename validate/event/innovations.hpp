@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::event {
 
+/// Dense matrix, row by row in memory.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// State-space model of coloured noise: \f$x_{k+1} = A x_k + w\f$, \f$e_k = C x_k + v\f$. Covariances: Q of
@@ -15,9 +16,11 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// times `jump` (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
-  std::vector<char> doubtful = {};
+  ///< system matrices and covariances; jump: added covariance of w
+  std::vector<char> doubtful = {};  ///< [sample]: multiple of `jump`
 };
 
+/// Kalman filter that whitens coloured noise: its normalised innovations have unit variance.
 class Innovations {
  public:
   /// Runs the filter over `samples` samples of a record; those marked in `left_out` (empty: none) are not

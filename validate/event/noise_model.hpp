@@ -19,6 +19,7 @@ struct EventNoise {
   void whiten(RowMatrix& e) const;
 };
 
+/// Noise estimate of several events. Copies share the estimate.
 class NoiseModel {
  public:
   /// Constructs an empty model: no noise has been estimated.
@@ -26,7 +27,9 @@ class NoiseModel {
   /// Constructs a distinct estimate from the noise of each event.
   explicit NoiseModel(std::vector<EventNoise> events)
       : measured_(std::make_shared<const std::vector<EventNoise>>(std::move(events))) {}
+  /// Noise of one event.
   [[nodiscard]] const EventNoise& of(std::size_t event) const { return measured_->at(event); }
+  /// Number of events.
   [[nodiscard]] std::size_t size() const { return measured_ ? measured_->size() : 0; }
   /// Returns whether both are the same estimate; equal numbers do not suffice.
   friend bool operator==(const NoiseModel&, const NoiseModel&) = default;

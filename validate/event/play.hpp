@@ -19,11 +19,13 @@ struct EventState {
   std::vector<double> turns = {};  ///< of the angle at each of them [rad]; empty: as they were found
   /// Offsets of the operating point [pu on the record's base] and of the initial angle [rad] and speed [pu].
   /// For an exciter or a governor, P is the offset of Efd or Pm, and the others are unused.
-  double P = 0, Q = 0, angle = 0, speed = 0;
+  double P = 0, Q = 0, angle = 0, speed = 0;        ///< [pu], [pu], [rad], [pu]
   playin::PiecewiseLinear torque = {}, field = {};  ///< added to Tm and Efd [pu]
+  /// Returns the added torque, or the added field voltage for any other kind.
   [[nodiscard]] playin::PiecewiseLinear& input(InputKind kind) {
     return kind == InputKind::torque ? torque : field;
   }
+  /// The same, read only.
   [[nodiscard]] const playin::PiecewiseLinear& input(InputKind kind) const {
     return kind == InputKind::torque ? torque : field;
   }

@@ -21,16 +21,17 @@ struct Collector {
 
 /// Another unit behind the point, whose model is assumed correct.
 struct OtherUnit {
-  plant::PlantModel model;
-  double share = 0;     ///< share of the power at the units' bus before the event; 0: P and Q apply
-  double P = 0, Q = 0;  ///< before the event [MW, Mvar]
+  plant::PlantModel model;  ///< model of the unit with its plant file's values
+  double share = 0;         ///< share of the power at the units' bus before the event; 0: P and Q apply
+  double P = 0, Q = 0;      ///< before the event [MW, Mvar]
 };
 
+/// Point of measurement that is not a unit's terminal: sections up to the unit, and other units behind it.
 struct MeasuredPoint {
-  std::string file;
+  std::string file;                  ///< point file it was read from
   std::vector<Collector> collector;  ///< sections in series, beginning at the point
   plant::PlantModel tried;  ///< with the others it determines the switching times within a sample interval
-  std::vector<OtherUnit> others;
+  std::vector<OtherUnit> others;  ///< units beside the tested one
 };
 
 /// Reads a point file (configs/plants/README.md) for the unit whose plant file is `tried`. Throws InputError

@@ -5,6 +5,7 @@
 
 namespace swingbank::validate::event {
 
+/// Phase of a command, for progress messages.
 enum class Phase {
   playing,  ///< playback of events for the report
   // calibrate, and add
@@ -17,25 +18,25 @@ enum class Phase {
   effect_left_out,  ///< each event without the effect
   effect_added,     ///< each event with the effect
   // sparse parameter selection
-  every_parameter,
-  parameter_subsets,
-  subsets_less_one,
+  every_parameter,    ///< fit of all parameters
+  parameter_subsets,  ///< fits of growing sets
+  subsets_less_one,   ///< fits of the chosen set without one parameter
   // diagnose, and add in part
-  base,
-  missing_input,
-  screening,
-  quick_fits,
-  full_fits,
-  noise_again,
-  unseen_events,
-  laws,
+  base,           ///< fit of the base model
+  missing_input,  ///< inference of torque and field voltage
+  screening,      ///< screening of the hypotheses
+  quick_fits,     ///< short fits
+  full_fits,      ///< fits to convergence
+  noise_again,    ///< refits after a new estimate of the noise
+  unseen_events,  ///< hold-out tests
+  laws,           ///< user-defined models
   // diagnose, with a second effect beside the best one
-  second_screening,
-  second_quick_fits,
-  second_full_fits,
-  pair_exchanges,
-  pair_crossings,
-  pair_unseen_events,
+  second_screening,    ///< screening
+  second_quick_fits,   ///< short fits
+  second_full_fits,    ///< fits to convergence
+  pair_exchanges,      ///< pairs with another first effect
+  pair_crossings,      ///< pairs of effects from two pairs
+  pair_unseen_events,  ///< hold-out tests
 };
 
 /// Callback with the phase, the current item (may be empty), and the numbers of completed and of all items.

@@ -11,10 +11,10 @@ namespace swingbank::validate::fit {
 
 /// A free parameter in the coordinate of the search: z = 0 at the start, steps of order 1.
 struct Axis {
-  FreeParameter where;
+  FreeParameter where;      ///< the parameter, with its prior
   double start, low, high;  ///< of the parameter, in its unit
-  bool logarithmic;
-  double unit;  ///< parameter units per unit of z; linear axis only
+  bool logarithmic;         ///< whether the search moves the parameter's logarithm
+  double unit;              ///< parameter units per unit of z; linear axis only
   /// Returns the parameter's value, rounded to 40 binary digits. Parameters at the same bound are then equal
   /// whatever their start values.
   [[nodiscard]] double value(double z) const {
@@ -23,12 +23,15 @@ struct Axis {
     const int digits = 39 - std::ilogb(v);
     return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
   }
+  /// Returns d value / d z at z [unit of the parameter].
   [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
+  /// Returns z of a parameter value.
   [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
   /// Prior standard deviation of z.
   [[nodiscard]] double spread() const { return where.spread; }
 };
 
+/// Constructs the axis of a free parameter: start at its value, bounds from its search range.
 inline Axis make_axis(const sim::plant::Plant& plant, const FreeParameter& f) {
   const sim::Parameter& record = parameter_record(plant, f.id);
   const double start = parameter_value(plant, f.id);

@@ -17,8 +17,8 @@ using event::EventState, event::InputKind;
 /// A parameter that may move. `spread` is its prior standard deviation: relative if the parameter is positive
 /// by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
 struct FreeParameter {
-  sim::plant::ParameterId id;
-  double spread = 0.3;
+  sim::plant::ParameterId id;  ///< parameter of the plant
+  double spread = 0.3;         ///< relative or absolute, see above
 };
 
 /// Returns the parameters of a block that a fit may move. Codes, parameters at zero or at their null value,
@@ -32,7 +32,7 @@ std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<
 
 /// Fit of one event: its state, response and residual.
 struct EventFit {
-  EventState state;
+  EventState state;                        ///< estimate of the event's own state
   double chi2 = 0;                         ///< sum of squared whitened residuals
   int values = 0;                          ///< number of compared values
   std::vector<std::vector<double>> model;  ///< [channel][sample]
@@ -45,14 +45,15 @@ struct EventFit {
 
 /// A fitted parameter with standard error and 95 % interval.
 struct FittedParameter {
-  FreeParameter where;
-  std::string block, name, unit;
-  double start = 0, value = 0;
-  double error = 0;          ///< standard error from the curvature [unit]; NaN if the fit is singular
-  double low = 0, high = 0;  ///< 95 % interval [unit], within the physical bounds
+  FreeParameter where;            ///< the parameter, with its prior
+  std::string block, name, unit;  ///< names of block and parameter; unit
+  double start = 0, value = 0;    ///< value before and after the fit [unit]
+  double error = 0;               ///< standard error from the curvature [unit]; NaN if the fit is singular
+  double low = 0, high = 0;       ///< 95 % interval [unit], within the physical bounds
   /// At the end of its range, or at an ordering constraint (X''d > Xl). The interval is then not valid.
   bool at_bound = false;
   std::string held_by = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
+  /// Returns "block.parameter".
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
   /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value; 1:
   /// the records alone determine it.
@@ -61,11 +62,11 @@ struct FittedParameter {
 
 /// Result of a fit to several events.
 struct Fit {
-  sim::plant::Plant plant;  ///< with the fitted values
-  std::vector<FittedParameter> parameters;
-  std::vector<EventFit> events;
-  event::NoiseModel noise;          ///< noise model in which chi2 is computed
-  double chi2 = 0, prior_cost = 0;  ///< chi2 of the data, and of the priors
+  sim::plant::Plant plant;                  ///< with the fitted values
+  std::vector<FittedParameter> parameters;  ///< free parameters, in the order of the request
+  std::vector<EventFit> events;             ///< fits of the events, in their order
+  event::NoiseModel noise;                  ///< noise model in which chi2 is computed
+  double chi2 = 0, prior_cost = 0;          ///< chi2 of the data, and of the priors
   int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
   /// that the records do not determine contributes 0. NaN without errors.
@@ -74,9 +75,10 @@ struct Fit {
   /// structure. It explains nothing, so data_cost() and criterion() add it back. 0 until
   /// correct_noise_transfer().
   double transfer_deficit = 0;
-  int iterations = 0;
-  bool converged = false;
-  std::string failed;  ///< reason why the start could not be evaluated; empty: it could
+  int iterations = 0;      ///< number of iterations
+  bool converged = false;  ///< whether the search ended at a minimum
+  std::string failed;      ///< reason why the start could not be evaluated; empty: it could
+  /// Returns the reduced chi-square of all events [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
@@ -114,13 +116,13 @@ constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integr
 /// Target of a fit: a penalised cost of at most `cost` within `steps` steps, those of continued fits
 /// included.
 struct Goal {
-  double cost = std::numeric_limits<double>::infinity();
-  int steps = 0;
+  double cost = std::numeric_limits<double>::infinity();  ///< chi2 with the penalty of the priors
+  int steps = 0;                                          ///< maximum number of steps
 };
 
 /// Effort, tolerances and start of a fit.
 struct FitOptions {
-  int iterations = 30;
+  int iterations = 30;               ///< maximum number of iterations
   double tolerance = kFitTolerance;  ///< of the integration; see event::Playing
   /// The search integrates with an error allowance for states that the channels do not show, and with
   /// linearised sensitivities (event::Playing). The sensitivities are corrected by secant updates (Broyden)

@@ -6,8 +6,8 @@ namespace swingbank::validate::fit {
 
 /// An oscillation of one frequency, with its own amplitude and phase in each event.
 struct Line {
-  playin::Output channel = playin::Output::P;
-  double frequency = 0;  ///< [Hz]
+  playin::Output channel = playin::Output::P;  ///< channel in which it was found
+  double frequency = 0;                        ///< [Hz]
   /// Reduction of chi2 less the penalty for its amplitudes and for the number of examined frequencies and
   /// channels. Negative for most residuals of noise.
   double explains = 0;

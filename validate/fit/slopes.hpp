@@ -18,7 +18,7 @@ struct EventSlopes {
   /// Half the gradient of the event's cost with respect to the parameters, minimised over its state with its
   /// priors.
   Eigen::VectorXd score;
-  int channels = 0;
+  int channels = 0;  ///< number of compared channels
 };
 
 /// Computes the sensitivities of one event. The event's own state (switching times, operating point, initial

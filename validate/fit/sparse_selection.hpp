@@ -24,7 +24,7 @@ struct WrongParameter {
 
 /// Parameters `instead` that, changed together in place of `named`, explain the records equally well.
 struct Alternative {
-  std::vector<std::string> named, instead;
+  std::vector<std::string> named, instead;  ///< full names of the parameters
 };
 
 /// Result of the sparse parameter selection.
@@ -45,7 +45,7 @@ struct SparseOptions {
   /// set move within it while sets are compared (spike and slab; George and McCulloch, J. Am. Stat. Assoc.
   /// 88, 1993, p. 881). The returned fit keeps them at their given values.
   double right = 0.01;
-  event::Progress progress = {};
+  event::Progress progress = {};  ///< recipient of progress messages; empty: none
   /// Called between sets; if it returns true, no parameter is named.
   std::function<bool()> stop = {};
   /// A fit of every parameter to these events with this noise model and with errors. Null: the fit is made

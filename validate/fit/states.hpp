@@ -19,9 +19,10 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
 inline constexpr double kSwitchScale = 1e-3;
 /// One unit of an angle jump [rad], and its prior standard deviation in such units. An error of one fifth in
 /// a reactance causes a jump error of this size.
-inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;
+inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurnScale]
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
+/// Kind of each state, in this order.
 inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
     playin::Direction::Kind::P, playin::Direction::Kind::Q, playin::Direction::Kind::angle,
     playin::Direction::Kind::speed};

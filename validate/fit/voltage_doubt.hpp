@@ -11,8 +11,9 @@ namespace swingbank::validate::fit {
 /// about the start.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
-  std::vector<Shape> shapes;
+  std::vector<Shape> shapes;                       ///< each one standard deviation
 };
+/// Computes the shapes of one event.
 VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event);
 
 }  // namespace swingbank::validate::fit

@@ -11,8 +11,8 @@ namespace swingbank::validate::hypothesis {
 
 /// A possible record, and the expected number of effects in the set after it.
 struct NextRecord {
-  std::string what;  ///< "field current in one more event like ev1"
-  double expected = 0;
+  std::string what;     ///< "field current in one more event like ev1"
+  double expected = 0;  ///< expected number of effects in the set
 };
 /// Possible measurements and the present size of the set.
 struct Decision {

@@ -12,23 +12,25 @@ namespace swingbank::validate::hypothesis {
 
 /// Side of a plant on which an effect acts.
 enum class Side { none, mechanical, excitation, machine, measurement };
+/// Returns the name of a side in reports, "excitation".
 std::string_view side_name(Side side);
 
 /// A possible change of the model: an added or replaced effect, freed parameters, or a convention.
 struct Hypothesis {
-  std::string name;       ///< "SEXS", "GENROU:S10,S12", "EXST1 in place of SEXS"
-  std::string what;       ///< "exciter SEXS (simplified excitation system)"
-  std::string with = {};  ///< name of the effect added before; empty: none
-  Side side = Side::none;
-  bool replaces = false;    ///< it replaces the control in its slot
-  int slot = -1;            ///< slot that the effect fills (sim::Slot); -1: none
-  sim::plant::Plant plant;  ///< the base model with the hypothesis added, at its first start values
-  sim::Conventions conventions;
+  std::string name;              ///< "SEXS", "GENROU:S10,S12", "EXST1 in place of SEXS"
+  std::string what;              ///< "exciter SEXS (simplified excitation system)"
+  std::string with = {};         ///< name of the effect added before; empty: none
+  Side side = Side::none;        ///< side of the plant that it changes
+  bool replaces = false;         ///< it replaces the control in its slot
+  int slot = -1;                 ///< slot that the effect fills (sim::Slot); -1: none
+  sim::plant::Plant plant;       ///< the base model with the hypothesis added, at its first start values
+  sim::Conventions conventions;  ///< conventions with the hypothesis
   std::vector<fit::FreeParameter> free;     ///< parameters of the hypothesis
   std::vector<std::vector<double>> starts;  ///< start values of `free`, tried in order
   bool drawn = false;                       ///< the starts after the first are random draws about it
   /// Further values of `free`; each is optimised if the effect is identified alone.
   std::vector<std::vector<double>> further = {};
+  /// Returns references to plant and conventions; the hypothesis must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 

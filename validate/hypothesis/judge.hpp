@@ -12,20 +12,20 @@ namespace swingbank::validate::hypothesis {
 
 /// Hold-out result of one event, from the model fitted to the other events with and without an effect.
 struct HeldOut {
-  std::string record;
+  std::string record;            ///< name of the record
   double before = 0, after = 0;  ///< reduced chi-square
   /// Growth of the fit's cost per value when this event joins the fit. It is the event's chi2 less the part
   /// due to parameters that the other events do not determine.
-  double cost_before = 0, cost_after = 0;
-  int values = 0;  ///< number of compared values
+  double cost_before = 0, cost_after = 0;  ///< cost per value without and with the effect
+  int values = 0;                          ///< number of compared values
   /// Returns the effect's reduction of the cost of the whole event; negative if the cost rises.
   [[nodiscard]] double saves() const { return (cost_before - cost_after) * values; }
 };
 
 /// A hypothesis with its fit and verdict.
 struct Judgement {
-  Hypothesis hypothesis;
-  fit::Fit fit;     ///< to all events
+  Hypothesis hypothesis;  ///< judged hypothesis
+  fit::Fit fit;           ///< to all events
   double gain = 0;  ///< 2 ln(Bayes factor): criterion of the base model less criterion with the hypothesis
   double size = 0;  ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
   std::vector<HeldOut> held_out;  ///< empty: not judged
@@ -35,9 +35,9 @@ struct Judgement {
   /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest,
   /// and the reduction of chi2 from the best single control. Empty: no reduction is large enough.
   std::string companion = {};
-  double companion_gain = 0;
-  bool accepted = false;
-  std::string why_not;  ///< reason for rejection; empty if accepted
+  double companion_gain = 0;  ///< reduction of chi2 by the companion
+  bool accepted = false;      ///< all criteria of acceptance are met
+  std::string why_not;        ///< reason for rejection; empty if accepted
 };
 
 /// Returns the plant parameters that a refit may move, then the hypothesis's own parameters.
@@ -45,9 +45,9 @@ std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
 
 /// Events of the judgement, and the limits of acceptance.
 struct Trial {
-  const event::WhitenedEvents& events;
-  double spread;    ///< prior standard deviation of the model's parameters
-  double adequate;  ///< reduced chi-square up to which the residual counts as noise
+  const event::WhitenedEvents& events;  ///< events with their noise model
+  double spread;                        ///< prior standard deviation of the model's parameters
+  double adequate;                      ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
   /// Noise transfer of the base model: a lower noise transfer is no evidence. Null: it is ignored.
   const fit::NoiseTransfer* noise_transfer = nullptr;

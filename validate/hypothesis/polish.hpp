@@ -13,17 +13,18 @@ namespace swingbank::validate::hypothesis {
 
 /// A hypothesis whose block was identified alone.
 struct Identified {
-  Hypothesis hypothesis;
-  reduced::Trial trial;
+  Hypothesis hypothesis;                      ///< hypothesis that adds the block
+  reduced::Trial trial;                       ///< its block and free parameters
   std::vector<reduced::Optimum> optima = {};  ///< best first
   /// Cost of the best optimum; after a fit of the whole plant, that of the fit.
   double cost = std::numeric_limits<double>::infinity();
   std::vector<fit::Fit> fits = {};  ///< of the whole plant
   bool polished = false;            ///< the fits are complete
   std::string companion = {};       ///< see Judgement
-  double companion_gain = 0;
+  double companion_gain = 0;        ///< see Judgement
   /// Returns the best fit; null if there is none or all failed.
   [[nodiscard]] const fit::Fit* best() const;
+  /// Returns the input that the block drives: torque, or the field voltage.
   [[nodiscard]] event::InputKind input() const {
     return hypothesis.side == Side::mechanical ? event::InputKind::torque : event::InputKind::field;
   }
@@ -32,11 +33,14 @@ struct Identified {
 /// Joint fits of the whole plant for identified hypotheses on one base model.
 class Polish {
  public:
+  /// Reduction of the events for one linearisation point.
   using Reduced = std::shared_ptr<const reduced::Reduction>;
+  /// Prepares the fits. `base_model` must outlive this object.
   explicit Polish(const BaseModel& base_model);
 
   /// Free parameters of the base model.
   [[nodiscard]] const std::vector<fit::FreeParameter>& free() const { return free_; }
+  /// Returns the selection of this input alone.
   [[nodiscard]] static reduced::Inputs only(event::InputKind kind) {
     return {.torque = kind == event::InputKind::torque, .field = kind == event::InputKind::field};
   }

@@ -8,10 +8,11 @@ namespace swingbank::validate::hypothesis {
 
 /// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
+///< no effect; an unlisted effect
 
 /// An explanation of the records with its posterior probability.
 struct Explanation {
-  std::string name;
+  std::string name;     ///< name of the effect, or kNothingMissing, kNoneOfThese
   double evidence = 0;  ///< 2 ln(Bayes factor) over the given model, less the threshold for additions [chi2]
   int place = -1;       ///< index of the effect in the source list; -1: no effect
   double probability = 0;  ///< set by posterior()

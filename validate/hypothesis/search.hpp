@@ -16,24 +16,26 @@ namespace swingbank::validate::hypothesis {
 
 /// Base model of a search: a structure to which a hypothesis may be added.
 struct BaseModel {
-  const event::WhitenedEvents& events;
-  sim::plant::Plant plant;  ///< with the nominal values, the centres of the priors
-  sim::Conventions conventions;
+  const event::WhitenedEvents& events;         ///< events with their noise model
+  sim::plant::Plant plant;                     ///< with the nominal values, the centres of the priors
+  sim::Conventions conventions;                ///< conventions of the model
   const sim::library::EffectLibrary& library;  ///< source of the effects
   const fit::Fit& fit;                         ///< of this base model
   /// Parameters of effects added before, with their IDs in `plant`.
   std::vector<fit::FreeParameter> own = {};
   std::string with = {};                          ///< name of the effect added before; empty: the given model
   double spread = thresholds::parameters.spread;  ///< prior standard deviation of the model's parameters
-  int threads = 1;
+  int threads = 1;                                ///< number of threads
   /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
   std::function<bool()> stop = {};
   /// Inferred inputs that are free in time with this base model; null: not yet inferred.
-  const reduced::FreeInput *torque = nullptr, *field = nullptr;
+  const reduced::FreeInput *torque = nullptr, *field = nullptr;  ///< inferred inputs
   /// Called with the state of each hypothesis's fit, interrupted ones included, from any thread. May be
   /// empty.
   std::function<void(const fit::Fit&)> reached = {};
+  /// Returns whether the user has asked to stop.
   [[nodiscard]] bool stopped() const { return stop && stop(); }
+  /// Returns references to plant and conventions; the base model must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// Returns the part of a plant that the events record.
   [[nodiscard]] record::Component component() const {
@@ -88,7 +90,7 @@ struct Cross {
   std::string joins;          ///< name of the effect taken from the better pair
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
   std::string stays;          ///< name of the effect taken from the other pair
-  const Judgement* stays_in;
+  const Judgement* stays_in;  ///< the other pair
   /// Evidence of both pairs less that of their partners' pair; reductions of chi2 are assumed to add up.
   double expected;
 };

@@ -14,8 +14,9 @@ namespace swingbank::validate::laws {
 
 /// A signal that a user-defined model may use, as deviation from its value at the operating point.
 struct LawSignal {
-  std::string_view name, expression, words;
+  std::string_view name, expression, words;  ///< name; expression in the TOML file; description
 };
+/// Signals that the search examines.
 inline constexpr std::array kLawSignals = {
     LawSignal{"speed", "speed", "the speed deviation"},
     LawSignal{"V", "V - V0", "the deviation of the terminal voltage from its value before the event"},
@@ -37,23 +38,23 @@ struct LawTrace {
 
 /// A parameter of a user-defined model with its value and range.
 struct LawParameter {
-  std::string name, unit;
-  double value = 0, low = 0, high = 0;
-  bool gain = false;  ///< the model has no output if it is zero
-  std::string meaning;
+  std::string name, unit;               ///< name and unit
+  double value = 0, low = 0, high = 0;  ///< value and range [unit]
+  bool gain = false;                    ///< the model has no output if it is zero
+  std::string meaning;                  ///< meaning for the TOML file
 };
 
 /// A candidate: text of the user-defined model, and its parameters.
 struct LawCandidate {
-  fit::InputKind kind = fit::InputKind::torque;
+  fit::InputKind kind = fit::InputKind::torque;  ///< input that the model drives
   std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
   std::string signal;             ///< name in kLawSignals, "time" or "time since the voltage moved"
   std::string words;              ///< description with {name} in place of a parameter's value
   std::string value, body;        ///< expression and tables of the TOML file
   std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes
-  std::vector<LawParameter> parameters;
-  double explained = 0;  ///< coefficient of determination of the inferred input
-  double score = 0;      ///< Bayesian information criterion of the regression; lower is better
+  std::vector<LawParameter> parameters;  ///< parameters, in the order of the TOML file
+  double explained = 0;                  ///< coefficient of determination of the inferred input
+  double score = 0;  ///< Bayesian information criterion of the regression; lower is better
   std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]
 };
 

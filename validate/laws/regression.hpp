@@ -13,11 +13,14 @@ using TimeSeries = std::vector<std::vector<double>>;
 /// Regression of the inferred input of all events on candidate time series.
 class LawRegression {
  public:
+  /// Prepares the regression on the inferred inputs of all events.
   explicit LawRegression(const std::vector<LawTrace>& traces);
 
+  /// Result of a regression.
   struct Answer {
-    Eigen::VectorXd factors;
+    Eigen::VectorXd factors;  ///< factor of each column
     double explained = 0, score = 0;
+    ///< coefficient of determination; Bayesian information criterion, lower is better
     Eigen::VectorXd time_series;  ///< at all knots, event after event
   };
   /// Regresses the input on `columns`. `numbers`: number of parameters selected for the columns, besides
@@ -35,8 +38,9 @@ class LawRegression {
     }
     return at_knots(time_series);
   }
-  /// [event][knot]
+  /// Splits a time series over all knots by event: [event][knot].
   [[nodiscard]] std::vector<std::vector<double>> by_event(const Eigen::VectorXd& all) const;
+  /// Returns the inferred inputs.
   [[nodiscard]] const std::vector<LawTrace>& traces() const { return traces_; }
 
  private:

@@ -13,11 +13,11 @@ namespace swingbank::validate::laws {
 
 /// A user-defined model that was fitted to the records and judged.
 struct LawFinding {
-  LawCandidate law;  ///< with the fitted values
-  std::shared_ptr<const sim::Effect> effect;
-  hypothesis::Judgement judgement;  ///< its plant contains the model
-  std::string words;                ///< description with fitted values, units and intervals
-  std::string toml;                 ///< TOML file for `swingbank add NAME --law FILE`
+  LawCandidate law;                           ///< with the fitted values
+  std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
+  hypothesis::Judgement judgement;            ///< its plant contains the model
+  std::string words;                          ///< description with fitted values, units and intervals
+  std::string toml;                           ///< TOML file for `swingbank add NAME --law FILE`
 };
 
 /// Result of a search for user-defined models.
@@ -28,7 +28,8 @@ struct LawSearch {
   std::vector<LawCandidate> ranked;
   /// Fitted to the records; accepted ones first, then in descending order of evidence.
   std::vector<LawFinding> findings;
-  double seconds = 0;
+  double seconds = 0;  ///< processing time [s]
+  /// Returns the best finding if it was accepted, else null.
   [[nodiscard]] const LawFinding* found() const {
     return !findings.empty() && findings.front().judgement.accepted ? &findings.front() : nullptr;
   }
@@ -36,12 +37,12 @@ struct LawSearch {
 
 /// Result of a diagnosis without an accepted effect.
 struct Unexplained {
-  const plant::PlantModel& model;
-  hypothesis::Trial trial;
-  const fit::Fit& base;
-  const std::vector<hypothesis::HeldOut>& held_out_base;
-  const reduced::FreeInput &torque, &field;
-  int threads = 1;
+  const plant::PlantModel& model;                         ///< the given model
+  hypothesis::Trial trial;                                ///< events and limits of acceptance
+  const fit::Fit& base;                                   ///< fit of the given model
+  const std::vector<hypothesis::HeldOut>& held_out_base;  ///< hold-out results of the given model
+  const reduced::FreeInput &torque, &field;               ///< inferred inputs
+  int threads = 1;                                        ///< number of threads
 };
 
 /// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if

@@ -21,6 +21,7 @@ std::string dyd_text(const PlantModel& model, const std::vector<std::string>& he
 /// Returns the names of the blocks that are new or whose values differ from `before`.
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
 
+/// Result of write_dyr_beside().
 struct WrittenDyr {
   std::string line;            ///< message: the written file, or the reason why none was written
   std::filesystem::path file;  ///< empty if none was written

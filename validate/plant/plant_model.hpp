@@ -14,11 +14,12 @@
 
 namespace swingbank::validate::plant {
 
+/// Plant with its records' bases and the sources of its effects.
 struct PlantModel {
-  std::string name, origin;  ///< origin: the file it was read from
-  std::string sha256;        ///< of that file's bytes
-  sim::plant::Plant plant;   ///< its generation is set from each record
-  sim::Conventions conventions;
+  std::string name, origin;                      ///< origin: the file it was read from
+  std::string sha256;                            ///< of that file's bytes
+  sim::plant::Plant plant;                       ///< its generation is set from each record
+  sim::Conventions conventions;                  ///< conventions of the simulator that the parameters are for
   record::RecordBase record_base;                ///< bases of "pu" in the records of this plant
   record::ReadOptions reading;                   ///< columns and time range of its records
   std::vector<std::filesystem::path> laws = {};  ///< law files that define some of its effects
@@ -34,6 +35,7 @@ struct PlantModel {
   std::optional<sim::plant::Plant> whole = {};
   /// Suspicious entries of the file that do not refuse it, with their lines.
   std::vector<std::string> warnings = {};
+  /// Returns references to plant and conventions; the model must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
   /// Compiled effects and those of `laws`. The plant's blocks point into it, so a copy of the plant must not
   /// outlive the model and its copies.

@@ -12,6 +12,7 @@ namespace swingbank::validate::playin {
 /// Returns a machine without equations and parameters: current, speed, field current and stabiliser output
 /// are those of the run's record (Given).
 const sim::Effect& recorded_machine();
+/// Returns whether the plant's machine is recorded_machine().
 bool is_recorded(const sim::plant::Plant& plant);
 
 /// Returns whether an effect of that slot is part of the component.

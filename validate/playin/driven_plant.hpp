@@ -20,7 +20,7 @@ struct OperatingPoint {
   Complex voltage;      ///< at t = 0 of the record [pu]
   double P = 0, Q = 0;  ///< [pu on the record's base]
   /// Recorded inputs of a component, on the record's base; speed as deviation from nominal.
-  double Efd = 0, Ifd = 0, Pm = 0, speed = 0, Vs = 0, Vref = 0, Pref = 0;
+  double Efd = 0, Ifd = 0, Pm = 0, speed = 0, Vs = 0, Vref = 0, Pref = 0;  ///< [pu]
   double drift = 0;  ///< rate of theta [rad/s]; 0 if it does not exceed the noise
 };
 
@@ -29,13 +29,16 @@ struct PiecewiseLinear {
   std::vector<double> t, value;  ///< t [s], increasing
   std::vector<double> knots =
       {};  ///< knots of the hat functions that are its sensitivity parameters [s]; empty: t
+  /// Returns the value at time `at` [s].
   [[nodiscard]] double operator()(double at) const;
+  /// Returns the knots of the hat functions [s].
   [[nodiscard]] const std::vector<double>& hats() const { return knots.empty() ? t : knots; }
 };
 
 /// Outputs of the plant at each sample of the record.
 enum class Output { P, Q, speed, Efd, Ifd, Pm, gate, V };
-constexpr int kOutputs = 8;
+constexpr int kOutputs = 8;  ///< number of outputs
+/// Returns the name of an output, "Pm".
 std::string_view output_name(Output output);
 
 class Given;
@@ -46,12 +49,12 @@ class Past;
 /// zero and V is the plant's own. P, Q and Pm of the response are per unit on the record's base, the other
 /// outputs on the machine's.
 struct Drive {
-  const sim::plant::Plant* plant = nullptr;
-  sim::Conventions conventions = {};
-  const record::Record* record = nullptr;
-  const VoltageCurve* curve = nullptr;
-  Complex voltage_factor = 1;  ///< factor on the curve
-  OperatingPoint start = {};
+  const sim::plant::Plant* plant = nullptr;  ///< plant that is simulated
+  sim::Conventions conventions = {};         ///< conventions of the simulator
+  const record::Record* record = nullptr;    ///< record whose voltage is played in
+  const VoltageCurve* curve = nullptr;       ///< played-in voltage
+  Complex voltage_factor = 1;                ///< factor on the curve
+  OperatingPoint start = {};                 ///< operating point before the event
   const Given* given =
       nullptr;  ///< further inputs of a component (given.hpp); null: constant at their initial values
   double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
@@ -72,6 +75,7 @@ struct Drive {
 
 /// Sensitivity parameter; `scale` is its unit, and sensitivities are per such unit.
 struct Direction {
+  /// Kind of a sensitivity parameter.
   enum class Kind {
     parameter,  ///< `parameter` of the plant
     switching,  ///< switching time `index` of the curve [s]
@@ -83,23 +87,27 @@ struct Direction {
     torque,     ///< hat function `index` of Drive::torque [pu]
     field,      ///< hat function `index` of Drive::field [pu]
   };
-  Kind kind;
+  Kind kind;                               ///< kind of the parameter
   sim::plant::ParameterId parameter = {};  ///< of Kind::parameter
   int index = 0;                           ///< of a switching time or knot
-  double scale = 1.0;
+  double scale = 1.0;                      ///< unit of the parameter, in the kind's own unit
+  /// Compares all members.
   friend bool operator==(const Direction&, const Direction&) = default;
 };
 
 /// Response [output][sample] and sensitivities [parameter][output][sample]; outputs without requested
 /// sensitivities have none.
 struct Response {
-  std::vector<double> value[kOutputs];
+  std::vector<double> value[kOutputs];  ///< [output][sample]; units as for Drive
+  /// Sensitivities to one parameter.
   struct Slope {
     std::vector<double> value[kOutputs];
+    ///< [output][sample], per unit of the parameter; empty: not requested
   };
-  std::vector<Slope> slopes;
+  std::vector<Slope> slopes;     ///< [parameter], in the order of the request
   std::vector<Complex> voltage;  ///< played-in voltage at each sample [pu]
   int steps = 0;                 ///< number of integration steps
+  /// Returns the samples of an output.
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };
 
@@ -117,6 +125,7 @@ struct Seen {
   double speed, Ifd;  ///< [pu]
   double Efd, Tm;     ///< at the machine, added inputs included [pu]
 };
+/// Inputs of a plant's controls along a run.
 struct SeenAlong {
   Seen standing;           ///< at the operating point, in steady state
   std::vector<Seen> seen;  ///< along the run
@@ -128,7 +137,7 @@ SeenAlong seen_along(const Drive& run, std::span<const double> times = {});
 /// Linearised plant about a run's start: \f$x' = A x + B u\f$, \f$y = C x + D u\f$ with u = (relative change
 /// of V, change of theta [rad]) and y = all outputs in the units of Response.
 struct LinearPlant {
-  Eigen::MatrixXd A, B, C, D;
+  Eigen::MatrixXd A, B, C, D;  ///< system, input, output and feedthrough matrix
 };
 /// Linearises the plant about the run's start. Throws InputError if the operating point has no steady state.
 LinearPlant linearise(const Drive& run);

@@ -16,8 +16,9 @@ class Given {
 
   /// Signals at t [s] on the record's base: deviations from the start, except P and Q.
   struct At {
-    double P = 0, Q = 0, speed = 0, Ifd = 0, Vs = 0, Vref = 0, Efd = 0, Pm = 0, Pref = 0;
+    double P = 0, Q = 0, speed = 0, Ifd = 0, Vs = 0, Vref = 0, Efd = 0, Pm = 0, Pref = 0;  ///< [pu]
   };
+  /// Returns the signals at t [s] in a segment of the voltage curve.
   [[nodiscard]] At operator()(int segment, double t) const;
   /// Returns the steady-state values before the event.
   static At standing(const OperatingPoint& start);

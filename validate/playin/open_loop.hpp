@@ -13,6 +13,7 @@ namespace swingbank::validate::playin {
 /// Output of a plant's controls.
 enum class Made { field, torque };
 
+/// Open-loop simulation of a plant's controls: the machine's signals are given, and no output feeds back.
 class OpenLoop {
  public:
   /// Times of the response: `times` from the first switching time on (without switchings, all), and both
@@ -28,7 +29,7 @@ class OpenLoop {
   /// signals should be known there.
   [[nodiscard]] static std::vector<double> looks(const std::vector<double>& times);
 
-  [[nodiscard]] const std::vector<TimePoint>& times() const { return times_; }
+  [[nodiscard]] const std::vector<TimePoint>& times() const { return times_; }  ///< times of the response
   /// Returns Efd or Tm [pu] at [time point][plant] for plants with the recorded machine
   /// (playin/component.hpp) that differ in values only. A column is NaN if its plant has no steady state at
   /// the start, and not finite if the integration fails.

@@ -10,6 +10,7 @@
 
 namespace swingbank::validate::playin {
 
+/// Options of a playback.
 struct PlayInOptions {
   double tolerance = 1e-10;  ///< error per step, relative to 1 + |state|
   double pre_event = 1.0;    ///< length of the pre-event window of a record without switchings [s]
@@ -26,8 +27,8 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
 /// Response of the model at the record's samples up to `until`; per unit on the record's base, Efd and Ifd on
 /// the machine's.
 struct Playback {
-  OperatingPoint start;
-  std::vector<double> P, Q, speed, Efd, Ifd, Pm, gate;
+  OperatingPoint start;                                 ///< operating point before the event
+  std::vector<double> P, Q, speed, Efd, Ifd, Pm, gate;  ///< outputs [sample] [pu]
   std::vector<double>
       V;  ///< at the machine's terminal, or the plant's if P and Q are the inputs (play_in_power)
   std::vector<double> theta;  ///< if P and Q are the inputs; unwrapped [rad]

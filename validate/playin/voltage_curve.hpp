@@ -10,11 +10,11 @@ namespace swingbank::validate::playin {
 
 /// Change of the network with a step of the voltage. Samples at `time` itself count as before it.
 struct Switching {
-  double time = 0;         ///< [s]
-  double uncertainty = 0;  ///< it lies within time ± uncertainty [s]; 0: known
-  bool has_before = false, has_after = false;
-  Complex before{}, after{};  ///< one-sided voltages at `time` [pu], if known
-  double turn = 0;            ///< correction of an angle that was not measured, from here on [rad]
+  double time = 0;                             ///< [s]
+  double uncertainty = 0;                      ///< it lies within time ± uncertainty [s]; 0: known
+  bool has_before = false, has_after = false;  ///< whether `before` and `after` are known
+  Complex before{}, after{};                   ///< one-sided voltages at `time` [pu], if known
+  double turn = 0;  ///< correction of an angle that was not measured, from here on [rad]
 };
 
 /// Step of the voltage in one sample interval above which it counts as a switching [pu].
@@ -39,6 +39,7 @@ class VoltageCurve {
   /// remain in their segment. Throws as the constructor.
   [[nodiscard]] VoltageCurve moved(const record::Record& record, std::vector<Switching> switchings) const;
 
+  /// Number of segments.
   [[nodiscard]] int segments() const { return static_cast<int>(segments_->size()); }
   /// Returns the end of a segment [s], which is the start of the next.
   [[nodiscard]] double end(int segment) const {
@@ -47,6 +48,7 @@ class VoltageCurve {
   }
   /// Returns the voltage phasor [pu] of the given segment at t [s].
   [[nodiscard]] Complex operator()(int segment, double t) const;
+  /// Returns the switchings, which separate the segments.
   [[nodiscard]] const std::vector<Switching>& switchings() const { return switchings_; }
 
  private:

@@ -10,12 +10,13 @@
 
 namespace swingbank::validate::record {
 
+/// Analog channel of a COMTRADE record with its samples.
 struct ComtradeChannel {
-  std::string id, phase, component, unit;
-  double a = 1, b = 0;                ///< value = a x + b [unit]
-  double skew = 0;                    ///< delay of sampling after the time stamp [s]
-  double primary = 1, secondary = 1;  ///< ratings of the instrument transformer
-  bool secondary_values = false;      ///< a x + b refers to the secondary side
+  std::string id, phase, component, unit;  ///< identifier; phase; circuit component; unit of `values`
+  double a = 1, b = 0;                     ///< value = a x + b [unit]
+  double skew = 0;                         ///< delay of sampling after the time stamp [s]
+  double primary = 1, secondary = 1;       ///< ratings of the instrument transformer
+  bool secondary_values = false;           ///< a x + b refers to the secondary side
   std::vector<double> values;  ///< on the primary side [unit]; NaN where the file marks a missing value
 };
 
@@ -25,8 +26,9 @@ struct ComtradeStretch {
   std::size_t first = 0, end = 0;  ///< half-open range of samples
 };
 
+/// Content of a COMTRADE record (IEEE Std C37.111): configuration and analog samples.
 struct Comtrade {
-  std::string station, device;
+  std::string station, device;             ///< names of the station and of the recorder
   int revision = 0;                        ///< 1991, 1999 or 2013
   double nominal = 0;                      ///< nominal frequency of the grid [Hz]
   std::string start;                       ///< date and time of the first sample, as written
@@ -34,8 +36,8 @@ struct Comtrade {
   std::vector<double> t;                   ///< [s]; 0 at the first sample
   std::vector<ComtradeStretch> stretches;  ///< in order; empty if time stamps determine the times
   double resolution = 0;  ///< rounding of the time stamps [s]; 0 if a rate determines the times
-  std::vector<ComtradeChannel> channels;
-  std::vector<std::string> notes;
+  std::vector<ComtradeChannel> channels;  ///< analog channels, in the order of the configuration
+  std::vector<std::string> notes;         ///< contradictions between the files that were resolved
 
   std::string file;                 ///< name of the data file in messages
   std::vector<std::size_t> places;  ///< line (ASCII) or first byte of each sample

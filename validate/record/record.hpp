@@ -20,7 +20,7 @@ struct RecordBase {
   double kv = 0.0;          ///< base of voltages in kV, line to line; 0: columns in kV are refused
   /// Field voltage and current, in the record's unit (other pu base, V or A), that equal 1 pu of the model
   /// (air-gap line). 0: the record uses the model's pu, and columns in V or A are refused.
-  double efd = 0.0, ifd = 0.0;
+  double efd = 0.0, ifd = 0.0;  ///< field voltage and current that equal 1 pu
 };
 
 /// Source of a record's angle. An angle integrated from a frequency lacks the step at each switching; a
@@ -35,10 +35,12 @@ enum class Component {
   governor,  ///< input speed, with Pref; Pm or the gate is compared
   machine,   ///< inputs V, its angle, Efd and Pm; P, Q and Ifd are compared
 };
+/// Returns the name of a component, "exciter".
 std::string_view component_name(Component component);
 
 /// An action of a staged test on the plant that the record's channels do not contain.
 struct StagedEvent {
+  /// Kind of a staged event.
   enum class Kind {
     vref_step,       ///< step of the voltage reference by `size` [pu]
     pref_step,       ///< step of the governor's reference by `size` [pu on base.mva of the record]
@@ -46,19 +48,21 @@ struct StagedEvent {
     open_circuit,    ///< breaker open during the whole record
     load_rejection,  ///< breaker opens at `time`
   };
-  Kind kind = Kind::vref_step;
+  Kind kind = Kind::vref_step;                                       ///< kind of the event
   double time = 0, until = std::numeric_limits<double>::infinity();  ///< start and end of the step [s]
-  double size = 0;
+  double size = 0;                                                   ///< size of the step, see Kind
   std::string record = {};  ///< file name of the record that it applies to; empty: all
+  /// Whether the event disconnects the plant from the grid.
   [[nodiscard]] bool opens_breaker() const { return kind >= Kind::open_circuit; }
+  /// Compares all members.
   friend bool operator==(const StagedEvent&, const StagedEvent&) = default;
 };
 
 /// Samples at one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
-  std::string name;    ///< file name without folder
-  std::string sha256;  ///< of the file's bytes (of a COMTRADE record: .cfg, then .dat)
-  RecordBase base;
+  std::string name;                  ///< file name without folder
+  std::string sha256;                ///< of the file's bytes (of a COMTRADE record: .cfg, then .dat)
+  RecordBase base;                   ///< bases of the per-unit values
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
   std::vector<double> P, Q;          ///< output of the machine [pu on base.mva]
@@ -75,8 +79,8 @@ struct Record {
   std::string start;               ///< time stamp of t = 0 as written, if any
   std::optional<double> epoch;     ///< UTC of t = 0 [s since 1970-01-01], if known
   std::vector<std::string> notes;  ///< changes made on reading that affect the interpretation of results
-  std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if the angle was computed
-  AngleSource angle = AngleSource::measured;
+  std::vector<double> theta_as_written;       ///< [rad], before unwrapping; empty if the angle was computed
+  AngleSource angle = AngleSource::measured;  ///< source of theta
   bool per_unit_power = true;              ///< P and Q, or the current, were written in pu; false: in MW or A
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
   Component component = Component::plant;  ///< tested part of the plant
@@ -89,13 +93,17 @@ struct Record {
   /// Returns the event that opens the breaker; nullptr if there is none, or if the tested component is not
   /// connected to the grid.
   [[nodiscard]] const StagedEvent* breaker() const;
+  /// Whether the breaker is open during the whole record.
   [[nodiscard]] bool open_circuit() const {
     return breaker() && breaker()->kind == StagedEvent::Kind::open_circuit;
   }
   /// Returns the time of the first staged event [s]; infinity if there is none.
   [[nodiscard]] double first_staged() const;
+  /// Returns the number of samples.
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
+  /// Returns the sample interval [s].
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
+  /// Returns the sampling rate [1/s].
   [[nodiscard]] double rate() const { return 1.0 / step(); }
 };
 
@@ -117,6 +125,7 @@ constexpr double kLongestGap = 0.2;
 /// leading "-" reverses the sign.
 using ColumnMap = std::map<std::string, std::string>;
 
+/// Options of reading a record.
 struct ReadOptions {
   std::string terminal{};  ///< terminal to read, if the file contains several
   ColumnMap columns{};     ///< columns chosen by the user; the others are recognised by name
@@ -152,7 +161,7 @@ Record read_staged(const std::filesystem::path& file, const RecordBase& base, Re
 
 /// Returns the name of a staged event in plant files: "vref_step".
 std::string_view staged_name(StagedEvent::Kind kind);
-constexpr int kStagedKinds = 5;
+constexpr int kStagedKinds = 5;  ///< number of kinds of staged events
 
 /// Reads a record from the text of a CSV file; `name` denotes the file in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,

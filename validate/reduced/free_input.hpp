@@ -10,7 +10,7 @@ namespace swingbank::validate::reduced {
 
 /// An inferred input with its evidence.
 struct FreeInput {
-  event::InputKind kind = event::InputKind::none;
+  event::InputKind kind = event::InputKind::none;  ///< torque or field voltage
   /// Fit of the plant with the input, which the events' states hold; without parameters. `failed`: the plant
   /// cannot be simulated.
   fit::Fit fit;
@@ -22,6 +22,7 @@ struct FreeInput {
 
   /// Reduced chi-square; infinite if the plant cannot be simulated.
   [[nodiscard]] double reduced_chi2() const;
+  /// Returns the inferred input of an event [pu].
   [[nodiscard]] const playin::PiecewiseLinear& of(std::size_t event) const {
     return fit.events[event].state.input(kind);
   }

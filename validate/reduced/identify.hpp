@@ -11,9 +11,9 @@ namespace swingbank::validate::reduced {
 
 /// A candidate: the plant with the block at its prior mean, and the free parameters of the block.
 struct Trial {
-  sim::plant::Plant plant;
-  std::vector<fit::FreeParameter> free;
-  std::uint64_t stream = 0;  ///< stream of the random draws, which depend on nothing else
+  sim::plant::Plant plant;               ///< plant with the block
+  std::vector<fit::FreeParameter> free;  ///< free parameters of the block, with their priors
+  std::uint64_t stream = 0;              ///< stream of the random draws, which depend on nothing else
   /// Further draws specific to the block: ordered pickup levels of a limiter, times within the record's
   /// length.
   std::vector<std::vector<double>> draws = {};

@@ -22,43 +22,44 @@ struct Knots {
 /// [value][parameter]. Plant parameters are on the axes of a fit (fit/axis.hpp), the event's state is in its
 /// own units (fit/states.hpp), inputs are in pu.
 struct EventSlopes {
-  Knots knots;
+  Knots knots;                                  ///< knots of the inputs
   Eigen::MatrixXd plant, state, torque, field;  ///< no columns for an input that is not free
   Eigen::MatrixXd changes;                      ///< columns of add_changes()
   /// Posterior standard deviations of the inputs at the knots [pu]; set by infer_smooth() only.
-  Eigen::VectorXd torque_deviation, field_deviation;
-  Eigen::VectorXd residual;
-  Eigen::VectorXd state_at;  ///< estimate of the state, in its units
+  Eigen::VectorXd torque_deviation, field_deviation;  ///< [knot]
+  Eigen::VectorXd residual;                           ///< [value], model - measured, whitened
+  Eigen::VectorXd state_at;                           ///< estimate of the state, in its units
 };
 
 /// Selects the free inputs.
 struct Inputs {
-  bool torque = false, field = false;
+  bool torque = false, field = false;  ///< whether the torque and the field voltage are free
 };
 
 /// Result of an inference: inputs, parameters and event states, with residuals and Jacobians at that point.
 struct Inference {
-  Inputs inputs;
+  Inputs inputs;  ///< free inputs
   /// `base`: the submitted plant with the estimated values. `plant`: the simulated plant, which may have an
   /// additional block.
-  sim::plant::Plant base, plant;
+  sim::plant::Plant base, plant;          ///< submitted and simulated plant
   std::vector<fit::FreeParameter> free;   ///< of `base`
   Eigen::VectorXd offset;                 ///< of the free parameters from their prior means, on their axes
   std::vector<event::EventState> states;  ///< including both inputs
-  std::vector<EventSlopes> events;
-  event::NoiseModel noise;
-  double chi2 = 0;
+  std::vector<EventSlopes> events;        ///< residuals and Jacobians of the events
+  event::NoiseModel noise;                ///< noise model of the residuals
+  double chi2 = 0;                        ///< sum of squared whitened residuals
   /// -2 log evidence by Laplace's approximation, up to a constant common to all inferences of these events.
   double criterion = 0;
-  double intensity = 1.0;  ///< intensity of the inputs' random walk, relative to the prior's [-]
-  int values = 0, steps = 0;
+  double intensity = 1.0;     ///< intensity of the inputs' random walk, relative to the prior's [-]
+  int values = 0, steps = 0;  ///< number of compared values; number of Gauss-Newton steps
+  /// Returns the reduced chi-square [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
 /// A change of the simulated plant outside its free parameters: a parameter at its null value, an error of an
 /// instrument.
 struct Change {
-  sim::plant::Plant from, to;
+  sim::plant::Plant from, to;  ///< plant before and after the change
 };
 /// Adds a Jacobian column for each change to an inference: residuals with `to` minus residuals with `from`,
 /// at the states of the inference. A column is zero if one of the two plants cannot be simulated.
@@ -67,7 +68,7 @@ void add_changes(Inference& inference, const event::WhitenedEvents& events,
 
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
 /// other within a second; a turbine's power changes by a tenth of its rating in that time.
-inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;
+inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;  ///< field voltage; torque
 /// Returns the square root of the prior precision of each knot given the previous knot [1/pu].
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 
@@ -86,7 +87,7 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedE
 /// Two inferences: at the prior intensity of the inputs' random walk, and at the most probable intensity. The
 /// second starts from the first. Its intensity is small if the records require no input.
 struct SmoothInference {
-  Inference prior, smooth;
+  Inference prior, smooth;  ///< at the prior intensity, and at the most probable one
 };
 /// Computes both inferences. `from`: a fit of the tested plant without inputs whose residuals are nearly
 /// linear in the inputs; the first inference is then the linearisation at this fit. Null: both start at the

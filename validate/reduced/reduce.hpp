@@ -16,9 +16,12 @@ namespace swingbank::validate::reduced {
 /// Reduction of all events for the inputs of an inference.
 class Reduction {
  public:
+  /// Reduces the events of `events` to the inputs and parameters of the inference.
   Reduction(Inference inference, const event::WhitenedEvents& events, const sim::Conventions& conventions);
 
+  /// Returns the inference that is reduced.
   [[nodiscard]] const Inference& inference() const { return inference_; }
+  /// Returns the conventions of the plant.
   [[nodiscard]] const sim::Conventions& conventions() const { return conventions_; }
   /// One event.
   struct Event {
@@ -31,8 +34,9 @@ class Reduction {
     /// Rows of the same factor with columns [state | plant | changes | torque | field | residual], which
     /// determine the state.
     Eigen::MatrixXd by_state;
-    Knots knots;
+    Knots knots;  ///< knots of the inputs
   };
+  /// Returns the reduced events, in the order of the inference.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   /// Number of changes besides the plant's parameters (add_changes).
   [[nodiscard]] Eigen::Index changes() const { return inference_.events.front().changes.cols(); }
@@ -57,8 +61,9 @@ class Reduction {
   /// The plant parameter that scales an input, and its exponent.
   struct Gain {
     Eigen::Index number = -1;  ///< index of the parameter; -1: none
-    double exponent = 0;
+    double exponent = 0;       ///< exponent of the parameter in the input
   };
+  /// Returns the parameter that scales an input, and its exponent.
   [[nodiscard]] Gain gain(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_gain_ : field_gain_;
   }
@@ -94,14 +99,16 @@ class ReducedPlant {
   /// the gain's parameter and the parameters of the Jacobian `slopes` [knot][parameter]; all other plant
   /// parameters are eliminated.
   struct Quadratic {
-    Eigen::MatrixXd curvature;
-    Eigen::VectorXd gradient;
+    Eigen::MatrixXd curvature;  ///< half the Hessian
+    Eigen::VectorXd gradient;   ///< half the gradient
   };
+  /// Computes the quadratic model of the cost of one time series. `gain`: change of the gain's parameter.
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
                                     const Eigen::MatrixXd& slopes) const;
   /// Returns the changes of the plant parameters that minimise the cost of a time series, without those of
   /// add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
+  /// Returns the parameter that scales the input, and its exponent.
   [[nodiscard]] Reduction::Gain gain() const { return gain_; }
 
  private:

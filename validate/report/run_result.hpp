@@ -12,14 +12,14 @@ namespace swingbank::validate::report {
 
 /// Error of one estimated parameter.
 struct ParameterScore {
-  std::string name, unit;
-  double mse = 0, variance = 0;
+  std::string name, unit;          ///< name of the parameter; its unit
+  double mse = 0, variance = 0;    ///< mean squared error and variance over the test rows [unit^2]
   std::optional<double> relative;  ///< mse / variance; none for a constant parameter
 };
 /// Coverage of the posterior intervals with probability `nominal`.
 struct Coverage {
   double nominal = 0, observed = 0;  ///< shares of 1
-  double rows = 0;
+  double rows = 0;                   ///< number of evaluated rows
 };
 /// Errors of estimates from several test records of the same plant.
 struct SeveralRecords {
@@ -28,28 +28,31 @@ struct SeveralRecords {
   double mse_of_mean = 0;                ///< MSE of the mean of the records' estimates, raw units
   std::optional<double> mse_of_product;  ///< MSE of the product of the posteriors; none: no posteriors
 };
+/// Content of a run's result file.
 struct RunResult {
-  std::filesystem::path file;
-  std::string table, network, preset;
-  std::string title;  ///< of the experiment; empty in results without one
-  std::int64_t seed = 0;
-  double noise = 0;   ///< level of measurement noise; 0: none
-  int generator = 0;  ///< bus of the generator left out; 0: none
-  int judged = 0;     ///< bus of another generator used for evaluation, to select a recipe; 0: none
-  std::string dataset, dataset_hash, config_hash;
-  double share = 1;  ///< share of the training rows used
+  std::filesystem::path file;          ///< the result file
+  std::string table, network, preset;  ///< table and network of the run; named recipe
+  std::string title;                   ///< of the experiment; empty in results without one
+  std::int64_t seed = 0;               ///< seed of the run
+  double noise = 0;                    ///< level of measurement noise; 0: none
+  int generator = 0;                   ///< bus of the generator left out; 0: none
+  int judged = 0;  ///< bus of another generator used for evaluation, to select a recipe; 0: none
+  std::string dataset, dataset_hash, config_hash;  ///< folder of the dataset; its hashes
+  double share = 1;                                ///< share of the training rows used
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;
-  double seconds = 0, seconds_per_epoch = 0;
-  double core_seconds = 0;  ///< processor time of all threads
+  ///< numbers of rows and epochs
+  double seconds = 0, seconds_per_epoch = 0;  ///< duration of the training [s]
+  double core_seconds = 0;                    ///< processor time of all threads
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
+  ///< mean over the parameters, all and varying ones; of the training mean; mse / baseline_mse
   double seen = 0;     ///< MSE on rows of training generators or operating points; NaN: nothing was trained
   double H_ratio = 0;  ///< ratio for H alone; NaN if H is constant
-  std::vector<ParameterScore> parameters;
-  std::vector<Coverage> coverage;       ///< empty: the method gives no intervals
-  std::vector<SeveralRecords> several;  ///< empty: no plant has three test records
-  bool shuffled = false;
-  int threads = 1;
-  std::string software, blas;
+  std::vector<ParameterScore> parameters;  ///< scores of the parameters
+  std::vector<Coverage> coverage;          ///< empty: the method gives no intervals
+  std::vector<SeveralRecords> several;     ///< empty: no plant has three test records
+  bool shuffled = false;                   ///< control run with shuffled labels
+  int threads = 1;                         ///< number of threads
+  std::string software, blas;              ///< version of Swingbank; BLAS library
   /// Software and BLAS of the run. Reports note comparisons between different ones.
   [[nodiscard]] std::string maker() const { return software + ", " + blas; }
 };

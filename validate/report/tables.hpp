@@ -11,11 +11,11 @@ namespace swingbank::validate::report {
 
 /// Runs of one table with the same network, preset, dataset, noise level and seed.
 struct TableBlock {
-  std::string table, network, preset, dataset;
-  std::int64_t rows = 0, seed = 0;
-  double noise = 0;
-  bool shuffled = false;
-  std::vector<RunResult> runs;  ///< in order of the generator
+  std::string table, network, preset, dataset;  ///< common properties of the runs
+  std::int64_t rows = 0, seed = 0;              ///< rows of the dataset; seed of the runs
+  double noise = 0;                             ///< level of measurement noise
+  bool shuffled = false;                        ///< control runs with shuffled labels
+  std::vector<RunResult> runs;                  ///< in order of the generator
 };
 /// Groups the runs and sorts them by table, control runs last, then network, preset, dataset, rows, noise and
 /// seed.
@@ -29,6 +29,7 @@ Table parameter_table(const TableBlock& block);
 /// Folder of the Markdown's pictures, relative to its file.
 inline constexpr const char* kPictureFolder = "tables";
 
+/// Tables of the results as Markdown, page and CSV.
 struct TablesReport {
   std::string markdown, html;                            ///< same content; only the page embeds the pictures
   std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content: one per table with results

@@ -12,13 +12,14 @@ namespace swingbank::validate::thresholds {
 /// Windows of an event: before the first switching, between the first and the last one, and after the last
 /// one.
 enum class Phase { pre_fault, fault, post_fault };
+/// All phases, in order of time.
 inline constexpr std::array kPhases = {Phase::pre_fault, Phase::fault, Phase::post_fault};
 std::string_view phase_name(Phase phase);  ///< "pre-fault"
 
 /// Maximum, mean and mean absolute error, modelled - measured [% of the machine's MVA]. As limits, `me`
 /// applies to the absolute value of the mean.
 struct Errors {
-  double mxe = 0, me = 0, mae = 0;
+  double mxe = 0, me = 0, mae = 0;  ///< maximum, mean and mean absolute error [% of MVA]
 };
 
 /// A set of limits for fit for purpose.
@@ -47,6 +48,7 @@ struct Nearest {
   double error = 0, limit = 0;  ///< [% of MVA]; absolute value of the mean
   double ratio = 0;             ///< error / limit; infinite if the error is not finite
 };
+/// Returns the error with the largest ratio to its limit.
 Nearest nearest(const Errors& errors, const Errors& limits);
 /// Returns how many of the three errors exceed their limits; NaN counts as exceeding.
 int exceeding(const Errors& errors, const Errors& limits);

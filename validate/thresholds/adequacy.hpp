@@ -35,14 +35,15 @@ struct CriterionRecord {
   std::string_view unit;            ///< of value and limit
   std::string_view while_adequate;  ///< relation of value to limit while the model is adequate
 };
+/// Returns the record of a criterion.
 const CriterionRecord& criterion_record(Criterion criterion);
 
 /// One applied criterion, which decided a verdict.
 struct Ruling {
-  Criterion by = Criterion::reduced_chi2;
-  bool adequate = false;
-  double value = 0, limit = 0;  ///< [criterion_record(by).unit]
-  std::string where = {};       ///< record, bin or input; empty: all together
+  Criterion by = Criterion::reduced_chi2;  ///< applied criterion
+  bool adequate = false;                   ///< the value is within the limit
+  double value = 0, limit = 0;             ///< [criterion_record(by).unit]
+  std::string where = {};                  ///< record, bin or input; empty: all together
 };
 
 /// Returns the ruling by the error maps' bins: `exceeding` of `cells` exceed their limits.
@@ -82,6 +83,6 @@ Ruling judged_by_evidence(const std::string& effect, double evidence);
 
 /// Exit codes of a command that judges a model (acceptance.hpp): neither statistically complete nor fit for
 /// purpose; fit for purpose only; statistically complete only.
-inline constexpr int kNotAdequate = 3, kFitOnly = 4, kNotFit = 5;
+inline constexpr int kNotAdequate = 3, kFitOnly = 4, kNotFit = 5;  ///< in this order
 
 }  // namespace swingbank::validate::thresholds

@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::thresholds {
 
+/// Returns all thresholds, in the order of their definition.
 std::vector<Threshold> all_thresholds();
 /// [{"name", "value", "unit", "why"}]
 nlohmann::json thresholds_json();
