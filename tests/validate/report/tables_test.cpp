@@ -272,7 +272,8 @@ TEST(PowerLawTest, IntervalsUseStudentsDistribution) {
   const PowerLaw law({{1, e}, {e, e * e}, {e * e, std::exp(4.0)}});
   EXPECT_NEAR(law.exponent(), 1.5, 1e-12);
   EXPECT_NEAR(law.exponent_interval().second - 1.5, 12.706204736174694 * std::sqrt(1.0 / 6 / 2), 1e-9);
-  EXPECT_NEAR(std::log(law.interval(e).second / law.at(e)), 12.706204736174694 * std::sqrt(1.0 / 6 / 3), 1e-9);
+  EXPECT_NEAR(std::log(law.interval(e).second / law.at(e)), 12.706204736174694 * std::sqrt(1.0 / 6 / 3),
+              1e-9);
   EXPECT_FALSE(law.reaches_interval(1.0));  // a slope of 0 cannot be ruled out
   const PowerLaw exact({{1, 8}, {10, 4}, {100, 2}, {1000, 1}});
   ASSERT_TRUE(exact.reaches_interval(0.5));
