@@ -373,8 +373,8 @@ class Check : Findings {
       if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
         continue;
       // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
-      const bool sound = same.reactance > 0 && (same.residual < m.sound + 2 * noise ||
-                                                same.residual < 5 * fit.residual);
+      const bool sound =
+          same.reactance > 0 && (same.residual < m.sound + 2 * noise || same.residual < 5 * fit.residual);
       // Of two mistakes that explain the steps almost equally well, the first in the list is the more common
       // one.
       if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;

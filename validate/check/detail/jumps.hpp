@@ -22,7 +22,7 @@ std::vector<Jump> clear_jumps(const record::Record& record);
 /// Least-squares fit of the steps to dV = -jX dI.
 struct JumpFit {
   double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' in a sound record
-  double residual = 1;          ///< residual share of sum |dV|^2: below 0.01 for sound records
+  double residual = 1;   ///< residual share of sum |dV|^2: below 0.01 for sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a step [pu^2]
 };
 /// Fits the steps with P and Q taken `delay` samples later than the voltage. NaN if the current does not
