@@ -8,10 +8,12 @@ install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_he
 install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
 install(FILES ${made}/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME swingbank)
 install(TARGETS swingbank ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+get_property(links GLOBAL PROPERTY SWINGBANK_COMMAND_LINKS)
+install(PROGRAMS ${links} DESTINATION ${CMAKE_INSTALL_BINDIR})
 # The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them: swingbank chooses the
 # one for the processor.
 install(CODE "foreach(level x86-64-v3 x86-64-v4)
-  file(GLOB wide \"$<TARGET_FILE_DIR:swingbank>/\${level}/swingbank-*\")
+  file(GLOB wide \"$<TARGET_FILE_DIR:swingbank>/\${level}/swingbank[-_]*\")
   if(wide)
     file(INSTALL \${wide} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/\${level}\" USE_SOURCE_PERMISSIONS)
   endif()

@@ -53,27 +53,47 @@ add_library(swingbank_train INTERFACE)
 target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
 target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
-# swingbank_command(name SUMMARY "one line" USES rooms... [GROUP "heading"] [SOURCES files...] [KIND train]):
-# jobs/<name>.cpp becomes bin/swingbank-<name>.
-# Only here is the summary defined: `swingbank --help` lists it under the heading, the command gets it as
-# SWINGBANK_SUMMARY. A command without a heading is internal and not listed.
-function(swingbank_command name)
-  cmake_parse_arguments(A "" "SUMMARY;KIND;GROUP" "USES;SOURCES" ${ARGN})
-  string(REPLACE "-" "_" file ${name})
-  list(TRANSFORM A_USES REPLACE / _)
-  list(TRANSFORM A_USES PREPEND swingbank_)
-  add_executable(swingbank-${name} ${file}.cpp ${A_SOURCES})
-  target_link_libraries(swingbank-${name} PRIVATE swingbank_cold swingbank_command_line ${A_USES})
-  target_compile_definitions(swingbank-${name} PRIVATE SWINGBANK_SUMMARY="${A_SUMMARY}" SWINGBANK_VERSION="${PROJECT_VERSION}")
+# swingbank_program(name [KIND train]): bin/<name>, one program with several commands (jobs/run_command.cpp).
+function(swingbank_program name)
+  cmake_parse_arguments(A "" "KIND" "" ${ARGN})
+  add_executable(${name} run_command.cpp)
+  target_link_libraries(${name} PRIVATE swingbank_cold swingbank_command_line)
+  target_compile_definitions(${name} PRIVATE SWINGBANK_VERSION="${PROJECT_VERSION}")
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  # Each command names its helpers as it likes.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   if(NOT A_KIND STREQUAL "train")
-    swingbank_precompile(swingbank-${name} cold)
+    swingbank_precompile(${name} cold)
   endif()
-  set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", \"${A_GROUP}\"},\n")
-  set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS swingbank-${name})
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS ${name})
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_MULTI_COMMAND_PROGRAMS ${name})
 endfunction()
 
-# Writes the table of all commands, in the order they were declared, for the dispatcher.
-function(swingbank_command_table)
+# swingbank_command(name IN program SUMMARY "one line" GROUP "heading" USES modules... [SOURCES files...]):
+# jobs/<name>.cpp becomes a command of the program, started as bin/swingbank-<name>. `swingbank --help` lists the summary
+# under the heading. The target swingbank-<name> builds the program.
+function(swingbank_command name)
+  cmake_parse_arguments(A "" "IN;SUMMARY;GROUP" "USES;SOURCES" ${ARGN})
+  string(REPLACE - _ file ${name})
+  list(TRANSFORM A_USES REPLACE / _)
+  list(TRANSFORM A_USES PREPEND swingbank_)
+  target_sources(${A_IN} PRIVATE ${file}.cpp ${A_SOURCES})
+  target_link_libraries(${A_IN} PRIVATE ${A_USES})
+  add_custom_target(swingbank-${name} DEPENDS ${A_IN})
+  file(MAKE_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+  file(CREATE_LINK ${A_IN} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name} SYMBOLIC)
+  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", ${file}_command},\n")
+  set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", \"${A_GROUP}\"},\n")
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_COMMAND_LINKS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name})
+endfunction()
+
+# Writes the tables of the commands, in the order of their declaration: all for the dispatcher, and those of each program.
+function(swingbank_command_tables)
   get_property(table GLOBAL PROPERTY SWINGBANK_COMMANDS)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/commands.inc CONTENT "${table}" @ONLY)
+  get_property(programs GLOBAL PROPERTY SWINGBANK_MULTI_COMMAND_PROGRAMS)
+  foreach(program ${programs})
+    get_target_property(table ${program} SWINGBANK_COMMANDS)
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${program}/commands_of_program.inc CONTENT "${table}" @ONLY)
+  endforeach()
 endfunction()

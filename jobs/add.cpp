@@ -7,6 +7,7 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/results.hpp"
 #include "jobs/retrain_run.hpp"
 #include "validate/add/report.hpp"
@@ -249,9 +250,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::add_command(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank add");
   Arguments a;
   declare(line, a);
   if (!line.parse(argc, argv)) return line.end();

@@ -9,6 +9,7 @@
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/item_progress.hpp"
 #include "mpi/ranks/item_queue.hpp"
 #include "mpi/ranks/session.hpp"
@@ -201,8 +202,7 @@ int on_ranks(int argc, char** argv, const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank blind-test");
+int swingbank::jobs::blind_test_command(CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("--config", o.config, "what --make draws from: configs/blind/cases.toml, tiny.toml");
   line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();

@@ -8,6 +8,7 @@
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/results.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
@@ -310,9 +311,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::calibrate_command(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank calibrate");
   Arguments a;
   declare(line, a);
   if (!line.parse(argc, argv)) return line.end();

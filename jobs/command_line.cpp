@@ -172,6 +172,7 @@ CommandLine::CommandLine(const std::string& summary, const std::string& name)
       ->group("Help");
 }
 CommandLine::~CommandLine() = default;
+void CommandLine::describe(const std::string& text) { parser_->app.description(text); }
 
 Option CommandLine::add(const std::string& names, std::string& value, const std::string& meaning) {
   return add(parser_->app.add_option(names, value), meaning);

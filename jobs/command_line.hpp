@@ -42,6 +42,8 @@ class CommandLine {
   /// `name`: "swingbank add".
   CommandLine(const std::string& summary, const std::string& name);
   ~CommandLine();
+  /// Replaces the summary at the head of the help, where a command needs more than one line.
+  void describe(const std::string& text);
 
   Option add(const std::string& names, std::string& value, const std::string& meaning);
   Option add(const std::string& names, std::filesystem::path& value, const std::string& meaning);

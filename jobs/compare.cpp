@@ -6,6 +6,7 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
+#include "jobs/commands.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
@@ -150,9 +151,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::compare_command(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank compare");
   Arguments a;
   declare(line, a);
   if (!line.parse(argc, argv)) return line.end();

@@ -3,9 +3,9 @@
 
 #include "base/input_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 
-int main(int argc, char** argv) {
-  swingbank::jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank configs");
+int swingbank::jobs::configs_command(CommandLine& line, int argc, char** argv) {
   line.example("cp -r \"$(swingbank configs)\" .");
   line.footer("Paths inside a config refer to the folder of that config.");
   if (!line.parse(argc, argv)) return line.end();

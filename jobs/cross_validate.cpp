@@ -2,6 +2,7 @@
 // mpirun or srun share the folds; a Slurm array task takes one with --fold.
 #include "train/run/cross_validate.hpp"
 
+#include "jobs/commands.hpp"
 #include "jobs/training_options.hpp"
 #include "train/run/processes.hpp"
 
@@ -46,8 +47,7 @@ int train_nested(const train::data::ShardStream& stream, train::run::RunRequest 
 }
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank cross-validate");
+int swingbank::jobs::cross_validate_command(CommandLine& line, int argc, char** argv) {
   TrainingOptions options;
   std::string fold = "all", judged;
   int processes = 0;

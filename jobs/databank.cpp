@@ -12,6 +12,7 @@
 #include "base/inputs_kept.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "mpi/draw/databank_file.hpp"
 
 namespace {
@@ -67,11 +68,10 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
 }
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(
+int swingbank::jobs::databank_command(CommandLine& line, int argc, char** argv) {
+  line.describe(
       "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
-      "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5",
-      "swingbank databank");
+      "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5");
   std::string config, out;
   mpi::draw::Overrides overrides;
   std::uint64_t points = 0;

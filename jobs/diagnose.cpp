@@ -5,6 +5,7 @@
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/fleet_run.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/diagnose/text.hpp"
@@ -122,9 +123,8 @@ void declare(jobs::CommandLine& line, Command& c) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::diagnose_command(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank diagnose");
   Command c;
   declare(line, c);
   if (!line.parse(argc, argv)) return line.end();

@@ -9,6 +9,7 @@
 
 #include "base/json.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/effect_coverage.hpp"
 #include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
@@ -260,11 +261,10 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
 }
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(
+int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
+  line.describe(
       "Lists the effects the simulator knows, by the place they take; with a NAME, its block diagram, "
-      "equations, parameters, states and source.",
-      "swingbank effects");
+      "equations, parameters, states and source.");
   std::vector<std::string> names, laws, dyr_files;
   Shape shape;
   const jobs::Option effects = line.add("NAME", names, "effects, e.g. GENROU SEXS");

@@ -4,6 +4,7 @@
 #include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/event_records.hpp"
 #include "validate/plant/plant_dyr.hpp"
 
@@ -48,8 +49,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank export");
+int swingbank::jobs::export_command(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.group("Input");
   line.add("--model", a.plant, "plant file (configs/plants/README.md)").required();

@@ -16,6 +16,7 @@
 #include "base/durable.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/software.hpp"
 #include "mpi/draw/card.hpp"
 #include "mpi/draw/shard_maker.hpp"
@@ -181,19 +182,18 @@ std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::generate_command(CommandLine& line, int argc, char** argv) {
   mpi::ranks::MpiSession session(&argc, &argv);
   const bool first = session.rank() == 0;
   spdlog::set_default_logger(spdlog::stderr_color_mt("generate"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-  jobs::CommandLine line(
+  line.describe(
       "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/reference/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
       "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts made, the same bytes.\n"
       "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
-      "run it again.",
-      "swingbank generate");
+      "run it again.");
   Command command;
   declare(line, command);
   return mpi::ranks::run_on_all_ranks(session, [&] {

@@ -10,6 +10,7 @@
 
 #include "base/json.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 
 namespace {
 
@@ -138,8 +139,7 @@ void print_json(const Inventory& inventory) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank inventory");
+int swingbank::jobs::inventory_command(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.add("--raw,--epc", a.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();

@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "mpi/store/summary.hpp"
 
 namespace {
@@ -32,15 +33,14 @@ int run(const std::vector<std::string>& from, const std::string& into, Progress:
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::merge_command(CommandLine& line, int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("merge"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-  jobs::CommandLine line(
+  line.describe(
       "Joins datasets of one config, made in parts on machines that share no disk, into one folder.\n"
       "  swingbank merge node1/data node2/data node3/data --out data\n"
       "Each shard is copied and compared with its journal; killed, it goes on when run again.\n"
-      "Exit codes: 0 all shards are there, 1 a folder or shard at fault, 2 shards are still missing.",
-      "swingbank merge");
+      "Exit codes: 0 all shards are there, 1 a folder or shard at fault, 2 shards are still missing.");
   std::vector<std::string> from;
   std::string into;
   int mode = 0;

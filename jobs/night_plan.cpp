@@ -12,6 +12,7 @@
 
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/night_work.hpp"
 
 namespace {
@@ -100,8 +101,7 @@ void run(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine line(SWINGBANK_SUMMARY, "swingbank night-plan");
+int swingbank::jobs::night_plan_command(CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("experiments", o.experiments, "files of configs/experiments").required();
   line.add("--preset", o.preset, "preset of the experiments").shows_default();

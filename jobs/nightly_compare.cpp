@@ -26,6 +26,7 @@
 #include "base/median.hpp"
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 
 namespace {
 
@@ -187,8 +188,7 @@ void print_report(const std::string& date, std::vector<Change> changes) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  swingbank::jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank nightly-compare");
+int swingbank::jobs::nightly_compare_command(CommandLine& line, int argc, char** argv) {
   std::string folder, date;
   line.add("folder", folder, "folder of nights, as jobs/nightly.sh writes it").required();
   line.add("--night", date, "YYYY-MM-DD (default: the last one)");

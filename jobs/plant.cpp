@@ -6,6 +6,7 @@
 #include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "validate/plant/plant_file.hpp"
 
 namespace {
@@ -65,8 +66,7 @@ int run(Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank plant");
+int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.group("Input");
   line.add("--raw,--epc", a.unit.raw,

@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/record_for_network.hpp"
 #include "train/runtime/blas_kernels.hpp"
@@ -185,8 +186,7 @@ int run(const Options& o) {
 }
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank predict");
+int swingbank::jobs::predict_command(CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("--network", o.network, "file.network that train or cross-validate wrote, or a folder with one")
       .required();

@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
   std::string kind, file;
   std::vector<std::string> names;
   if (argc < 3) {  // with a file, arguments are not parsed: names of files may begin with a dash
-    jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank read-hdf5");
+    jobs::CommandLine line("read an HDF5 or MATLAB file for another command, which its crash does not affect",
+                           "swingbank read-hdf5");
     line.add("KIND", kind, "what the file is").required().one_of({"hdf5", "mat"});
     line.add("FILE", file, "what is read; the answer is bytes, or a list of problems with exit code 3")
         .required();

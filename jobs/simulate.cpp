@@ -12,6 +12,7 @@
 #include "base/durable.hpp"
 #include "base/inputs_kept.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/formats/event_text.hpp"
@@ -365,8 +366,7 @@ int simulate(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank simulate");
+int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) {
   Options o;
   line.group("Input");
   line.add("--raw,--epc", o.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")

@@ -1,5 +1,5 @@
-// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, so that each command
-// links only the libraries that it uses.
+// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, a symbolic link to the program
+// that contains the command (run_command.cpp).
 #include <fmt/format.h>
 #include <unistd.h>
 

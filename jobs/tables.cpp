@@ -8,6 +8,7 @@
 
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 
 namespace {
 
@@ -31,8 +32,7 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank tables");
+int swingbank::jobs::tables_command(CommandLine& line, int argc, char** argv) {
   std::vector<std::string> folders;
   std::string out;
   line.add("results", folders, "folders with the JSON files of train and cross-validate").required();

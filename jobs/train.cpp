@@ -1,9 +1,9 @@
 // swingbank train: trains one network on a dataset split 60/20/20 by databank point (Table IV).
+#include "jobs/commands.hpp"
 #include "jobs/training_options.hpp"
 
-int main(int argc, char** argv) {
+int swingbank::jobs::train_command(CommandLine& line, int argc, char** argv) {
   using namespace swingbank;
-  jobs::CommandLine line(SWINGBANK_SUMMARY, "swingbank train");
   TrainingOptions options;
   const auto check = [&](const train::run::RunRequest& request) {
     if (request.experiment.leave_one_out)

@@ -10,6 +10,7 @@
 #include "base/progress.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
 #include "mpi/store/shard_check.hpp"
 #include "mpi/store/summary.hpp"
 
@@ -37,14 +38,13 @@ int run(const std::string& folder, int processes, Progress::Mode mode) {
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+int swingbank::jobs::verify_command(CommandLine& line, int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("verify"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-  jobs::CommandLine line(
+  line.describe(
       "Reads every shard of a dataset and compares it with journal and header: hash, shapes, rows, outcomes.\n"
       "  swingbank verify data/gencls\n"
-      "Exit codes: 0 whole and complete, 1 a shard at fault, 2 whole so far and unfinished.",
-      "swingbank verify");
+      "Exit codes: 0 whole and complete, 1 a shard at fault, 2 whole so far and unfinished.");
   std::string folder;
   int processes = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())), mode = 0;
   line.add("folder", folder, "the dataset's folder").required();
