@@ -78,8 +78,7 @@ build_all() {
   cd "$source_folder"
   local log=build/$preset-configure.log
   mkdir -p build
-  if ! cmake --preset "$preset" -DSWINGBANK_TESTS="$( ((tests)) && echo ON || echo OFF)" \
-    -DSWINGBANK_BENCH="$( ((tests)) && [[ $preset != sanitize ]] && echo ON || echo OFF)" >"$log" 2>&1; then
+  if ! cmake --preset "$preset" -DSWINGBANK_TESTS="$( ((tests)) && echo ON || echo OFF)" >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     echo "configuration failed at preset $preset (log $source_folder/$log): see the lines above" >&2
     return 1
@@ -93,7 +92,7 @@ build_all() {
 # build_level NAME: the programs for one instruction set, in a separate folder
 build_level() {
   local folder=build/portable-$1 log=build/portable-$1-configure.log
-  if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" 2>&1; then
+  if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     echo "configuration failed at instruction set $1 (log $source_folder/$log): see the lines above" >&2
     return 1

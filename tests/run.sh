@@ -2,15 +2,15 @@
 # Installs missing packages, builds and runs the tests.
 #   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, and
-#                     the SIMD batches under the sanitizers, one instruction set per night: more than an hour
-#                     (jobs/nightly.sh runs it)
+#     --night         only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
+#                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
+#                     per night: more than an hour (jobs/nightly.sh runs it)
 #     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)
 #     --ci            as on the integration machine: warnings are errors, scripts and formatting are checked, SIMD code is
-#                     compiled for AVX2 on any processor, each fuzz target runs for 10 s (in the nightly run for minutes),
-#                     and the tests of the modules that read files run under both sanitizers
+#                     compiled for AVX2 on any processor, and the fuzz targets of the text formats run for 5 s each; the
+#                     benchmarks are not built
 # PSS/E's records are read from $SWINGBANK_REFERENCE, else from ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -36,6 +36,18 @@ failed=()
 
 say() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
 
+# phase NAME: begins a phase; the summary at the end lists how long each took.
+phases=() phase_began=0
+phase() {
+  end_phase
+  phases+=("$*")
+  say "$*"
+}
+end_phase() {
+  ((!${#phases[@]})) || phases[-1]+=": $((SECONDS - phase_began)) s"
+  phase_began=$SECONDS
+}
+
 check_reference() {
   local folder=${SWINGBANK_REFERENCE:-$source_folder/../shared/reference}
   if [[ ! -d $folder/psse ]]; then
@@ -47,11 +59,13 @@ check_reference() {
   export SWINGBANK_REFERENCE
 }
 
-# The build of the fuzz targets also contains the tests of the modules that read a user's files.
+# The tests of the modules that read a user's files, in the build of the fuzz targets.
 run_readers() {
   local folder=$source_folder/build/fuzz left_out='*Full.*:*Night.*'
   ((with_psse)) || left_out+=":*${of_others//|/*:*}*"
-  cmake --build "$folder" --target tests_of_readers >"$folder.log" 2>&1 || { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
+  mkdir -p "$folder"
+  cmake --preset fuzz -S "$source_folder" >"$folder.log" 2>&1 && cmake --build "$folder" --target tests_of_readers >>"$folder.log" 2>&1 ||
+    { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
   printf '%s\0' "$folder"/bin/test_* |
     xargs -0 -P "$(nproc)" -I{} bash -c '"$1" --gtest_brief=1 "--gtest_filter=-$2" || { echo "failed: $1" >&2; exit 1; }' _ {} "$left_out"
 }
@@ -90,7 +104,7 @@ one_definition() {
 each_alone() {
   local folder=$source_folder/build/alone log=$source_folder/build/alone.log
   cmake --preset release -S "$source_folder" -B "$folder" -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
-    -DCMAKE_CXX_FLAGS_RELEASE=-O0 -DSWINGBANK_TESTS=OFF -DSWINGBANK_BENCH=OFF >"$log" &&
+    -DCMAKE_CXX_FLAGS_RELEASE=-O0 -DSWINGBANK_TESTS=OFF >"$log" &&
     cmake --build "$folder" -- -k 0 >>"$log" 2>&1 && return
   grep -m 12 -E 'error:|FAILED' "$log" >&2
   return 1
@@ -126,24 +140,21 @@ run_sanitized() {
 }
 
 ((!with_psse)) || check_reference
-say "packages and build ($preset)"
+phase "packages and build ($preset)"
 bash "$source_folder/jobs/setup.sh" --preset "$preset" --tests
 if ((ci)); then
-  say "scripts and formatting"
+  phase "scripts and formatting"
   check_scripts || failed+=(shellcheck)
   check_format || failed+=(clang-format)
 fi
 if ((ci)); then
-  say "packs for AVX2"
+  phase "packs for AVX2"
   for_avx2 || failed+=(avx2)
-  say "fuzz targets"
-  bash "$source_folder/tests/fuzz/run.bash" 10 || failed+=(fuzz)
-  say "readers' tests under the sanitizers"
-  LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1 \
-    run_readers || failed+=(readers)
+  phase "fuzz targets of the text formats"
+  bash "$source_folder/tests/fuzz/run.bash" 5 raw matpower epc dyd sealed || failed+=(fuzz)
 fi
 if ((sanitize)); then
-  say "fast tier under the sanitizers"
+  phase "fast tier under the sanitizers"
   run_sanitized
 fi
 # tier NAME. Scripts of the full tier run one of each folder at a time, those of the nightly tier alone. Those of the
@@ -152,26 +163,32 @@ tier() {
   local jobs
   jobs=$(nproc)
   [[ $1 != fast ]] || ((++jobs))
-  say "tier $1"
+  phase "tier $1"
   run_tests "$1" "$build" -L "^$1\$" -j "$jobs"
 }
 if ((night)); then
-  say "one definition of each name"
+  phase "one definition of each name"
   one_definition || failed+=(one_definition)
-  say "each source alone"
+  phase "each source alone"
   each_alone || failed+=(each_alone)
-  say "threads"
+  phase "readers' tests under the sanitizers"
+  LSAN_OPTIONS=suppressions=$source_folder/tests/leaks.txt:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1 \
+    run_readers || failed+=(readers)
+  phase "threads"
   threads || failed+=(threads)
   # One instruction set per night: without ccache its build takes some ten minutes of two cores.
   levels=(x86-64-v2 x86-64-v3 x86-64-v4)
   level=${levels[10#$(date +%j) % ${#levels[@]}]}
-  say "lanes under the sanitizers, $level"
+  phase "lanes under the sanitizers, $level"
   bash "$source_folder/tests/sim/sanitized.bash" "$level" || failed+=(sanitized)
   tier night
 else
   tier fast
   ((fast_only)) || tier full
 fi
+end_phase
+printf '\n== time of each phase\n'
+printf '%s\n' "${phases[@]}"
 if ((${#failed[@]})); then
   cat "$source_folder"/build/fuzz/found/*/summary.txt 2>/dev/null || true
   say "failed: ${failed[*]}"

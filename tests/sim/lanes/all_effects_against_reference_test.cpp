@@ -216,7 +216,7 @@ TEST(AllEffectsAgainstReferenceNight, FiveHundredRandomEventsInFloat) { run_in_f
 
 TEST(AllEffectsAgainstReference, TwentyRandomEvents) { run_events(20, 20211); }
 
-TEST(AllEffectsAgainstReferenceFull, HundredRandomEvents) { run_events(100, 20212); }
+TEST(AllEffectsAgainstReferenceFull, FortyRandomEvents) { run_events(40, 20212); }
 
 /// SWINGBANK_SEED in the environment draws other events.
 TEST(AllEffectsAgainstReferenceNight, ThousandRandomEvents) {
