@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/capitals.hpp"
 #include "base/json.hpp"
+#include "base/nearest_word.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/commands.hpp"
 #include "jobs/effect_coverage.hpp"
@@ -160,41 +162,16 @@ Json as_json(const Effect& e) {
   return j;
 }
 
-/// Returns the case-insensitive edit distance of two words (optimal string alignment).
-std::size_t letters_apart(std::string_view a, std::string_view b) {
-  const auto same = [&](std::size_t i, std::size_t j) {
-    return std::toupper(static_cast<unsigned char>(a[i - 1])) ==
-           std::toupper(static_cast<unsigned char>(b[j - 1]));
-  };
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same(i, j) ? 0 : 1)});
-      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j))
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
 /// Returns the five names nearest to `name`, nearest first.
 std::string nearest_names(const library::EffectLibrary& library, const std::string& name) {
   std::vector<std::pair<std::size_t, std::string_view>> list;
-  for (const Effect* e : library.all()) list.emplace_back(letters_apart(name, e->name), e->name);
+  for (const Effect* e : library.all())
+    list.emplace_back(edit_distance(capitals(name), capitals(e->name)), e->name);
   std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
   list.resize(std::min<std::size_t>(list.size(), 5));
   std::string names;
   for (const auto& one : list) names += (names.empty() ? "" : ", ") + std::string(one.second);
   return names;
-}
-
-std::string in_capitals(std::string name) {
-  std::ranges::transform(name, name.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return name;
 }
 
 /// Returns whether a name begins like a model of inverters, wind or storage.
@@ -228,7 +205,7 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
     chosen.push_back(library.find(name));
-    const std::string typed = in_capitals(name);
+    const std::string typed = capitals(name);
     const bool begun =
         std::ranges::any_of(library.all(), [&](const Effect* e) { return e->name.starts_with(typed); });
     if (!chosen.back() && is_inverter(typed) && !begun)
