@@ -1,5 +1,5 @@
-// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, a symbolic link to the program
-// that contains the command (run_command.cpp).
+// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, a symbolic link to
+// the program that contains the command (run_command.cpp).
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/nearest_word.hpp"
+#include "base/own_command.hpp"
 
 namespace {
 
@@ -32,8 +33,6 @@ const std::vector<Command> kDeclared = {
 };
 
 constexpr std::string_view kPrefix = "swingbank-";
-
-fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 /// Returns the available commands: declared ones first, then any other swingbank-* program in the folder.
 std::vector<Command> found_commands(const fs::path& folder) {
@@ -139,7 +138,7 @@ int run(const fs::path& folder, const std::string& name, char** arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const fs::path folder = own_folder();
+  const fs::path folder = swingbank::jobs::own_folder();
   const auto commands = found_commands(folder);
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty()) {
