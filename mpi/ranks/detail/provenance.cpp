@@ -14,6 +14,12 @@ namespace swingbank::mpi::ranks {
 
 namespace {
 
+#ifdef __clang__
+constexpr const char* kCompiler = "Clang " __clang_version__;
+#else
+constexpr const char* kCompiler = "GCC " __VERSION__;
+#endif
+
 std::string host() {
   std::array<char, 256> name{};
   ::gethostname(name.data(), name.size() - 1);
@@ -49,9 +55,8 @@ std::string hdf5_library() {
 }  // namespace
 
 std::map<std::string, std::string> made_by(const std::string& software) {
-  return {{"software", software},   {"compiler", "GCC " __VERSION__},
-          {"mpi", mpi_library()},   {"hdf5", hdf5_library()},
-          {"host", host()},         {"processor", processor()},
+  return {{"software", software},   {"compiler", kCompiler}, {"mpi", mpi_library()},
+          {"hdf5", hdf5_library()}, {"host", host()},        {"processor", processor()},
           {"system", system_name()}};
 }
 
