@@ -181,6 +181,7 @@ bool File::has(const std::string& object) const {
 }
 
 std::string File::kind(const std::string& object) const {
+  if (contents_) return found<Contents::Array>(object, "cannot open the array").kind;
   const Handle set(H5Dopen2(file_.get(), object.c_str(), H5P_DEFAULT), H5Dclose);
   if (!set) fail("cannot open the array", object);
   const Handle type(H5Dget_type(set.get()), H5Tclose);
