@@ -129,7 +129,7 @@ void describe(const record::Record& r, const std::vector<double>& y, const Signa
 }
 
 /// Returns the differences of consecutive values.
-std::vector<double> smooth_steps(const std::vector<double>& y) {
+std::vector<double> differences(const std::vector<double>& y) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < y.size(); ++k) steps.push_back(y[k + 1] - y[k]);
   return steps;
@@ -151,7 +151,7 @@ std::vector<double> smoothed(const std::vector<double>& y, std::size_t m) {
 double angle_per_frequency(const record::Record& r, const std::vector<double>& theta) {
   const std::vector<double>& f = r.f.empty() ? r.speed : r.f;
   if (f.size() != theta.size() || f.size() < 40) return 0;
-  std::vector<double> rate = smooth_steps(theta), mid;
+  std::vector<double> rate = differences(theta), mid;
   for (double& v : rate) v /= r.step() * constants::turn * r.base.frequency;
   // Steps and wraps of the angle are not rates: exclude the largest.
   std::vector<double> size(rate.size());
@@ -182,9 +182,9 @@ void describe_angle(const record::Record& r, Signals& s) {
   const std::vector<double>& theta = r.theta_as_written.empty() ? r.theta : r.theta_as_written;
   s.first_angle = theta.front();
   s.theta_level = median_in(s.event ? until(theta, s.onset) : std::span<const double>(theta));
-  std::vector<double> steps = smooth_steps(theta);
+  std::vector<double> steps = differences(theta);
   for (const double d : steps) s.wraps_of_360 = s.wraps_of_360 || (std::abs(d) > 320 && std::abs(d) < 400);
-  const std::vector<double> turns = smooth_steps(r.theta);
+  const std::vector<double> turns = differences(r.theta);
   s.angle_rate =
       median_in(s.event && s.onset >= 2 ? until(turns, s.onset - 1) : std::span<const double>(turns)) /
       r.step();
