@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/json.hpp"
+#include "validate/compare/compare.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -70,6 +71,14 @@ constexpr const char* kCaption =
     "short for the band.";
 
 }  // namespace
+
+std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
+  std::vector<LabelledMap> maps;
+  for (const auto& e : events)
+    for (const auto& c : e.channels)
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+  return maps;
+}
 
 std::string times_noise(double ratio) {
   if (!std::isfinite(ratio)) return "–";

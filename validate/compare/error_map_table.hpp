@@ -8,6 +8,8 @@
 
 namespace swingbank::validate::compare {
 
+struct EventComparison;
+
 /// Error map with the names and units of its figures.
 struct LabelledMap {
   std::string event, channel, unit;              ///< names of event and channel; unit of the RMS
@@ -15,6 +17,9 @@ struct LabelledMap {
   const std::vector<Window>* windows = nullptr;  ///< windows of the map
   const ErrorMap* map = nullptr;                 ///< errors of this channel
 };
+
+/// Returns the map of each channel of each event, which must outlive the result.
+std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events);
 
 /// Table with one row per event, channel and window: RMS in units, then the normalised RMS over all
 /// frequencies and per band. A star marks values above their bound, "–" a band for which the window is too

@@ -18,14 +18,6 @@
 namespace swingbank::validate::compare {
 namespace {
 
-std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
-  std::vector<LabelledMap> maps;
-  for (const auto& e : events)
-    for (const auto& c : e.channels)
-      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
-  return maps;
-}
-
 /// Returns every parameter of a plant with its value.
 std::vector<PageParameter> parameters_of(const sim::plant::Plant& plant) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();

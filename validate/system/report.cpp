@@ -17,13 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<compare::LabelledMap> maps_of(const std::vector<compare::EventComparison>& terminals) {
-  std::vector<compare::LabelledMap> maps;
-  for (const auto& e : terminals)
-    for (const auto& c : e.channels)
-      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
-  return maps;
-}
 /// Renames events to terminals in a table and its caption.
 report::Table of_terminals(report::Table table) {
   for (auto& h : table.header)
@@ -149,7 +142,7 @@ void add_terminal(report::Page& page, const SystemCase& s, const SystemCompariso
     residual.series.push_back({channel.name + " residual", "#0b5cad", false, in_units(channel.residual)});
     page.curves(residual);
   }
-  if (c.terminals.size() > 1) page.table(of_terminals(compare::map_table(maps_of({e}))));
+  if (c.terminals.size() > 1) page.table(of_terminals(compare::map_table(compare::maps_of({e}))));
 }
 
 }  // namespace
@@ -180,7 +173,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
   out += report::padded(summary(c.terminals));
   out += "\nNormalised RMS per window and band" +
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
-  const auto maps = maps_of(c.terminals);
+  const auto maps = compare::maps_of(c.terminals);
   out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));
   out += "* = above the joint noise limit\n\nBefore the event, model less record:\n";
   out += report::padded(initial_table(s, c));
@@ -237,7 +230,7 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
                c.adequacy.adequate ? report::Tone::good : report::Tone::bad);
   for (const auto& note : c.notes) page.note(note);
   page.table(ranking_table(s, c));
-  const auto maps = maps_of(c.terminals);
+  const auto maps = compare::maps_of(c.terminals);
   page.table(
       of_terminals(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps)));
   page.table(summary(c.terminals));
