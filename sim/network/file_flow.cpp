@@ -11,8 +11,6 @@
 #include "sim/network/tie.hpp"
 
 namespace swingbank::sim::network {
-namespace {}  // namespace
-
 namespace {
 
 std::vector<Complex> voltages_of_file(const Network& network) {
