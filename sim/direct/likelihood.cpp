@@ -24,7 +24,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 class Posterior : public ceres::CostFunction {
  public:
   Posterior(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
-            std::span<const FreeParameter> free)
+            std::span<const ParameterPrior> free)
       : machine_(machine), record_(record), p_(p), free_(free) {
     set_num_residuals(static_cast<int>(innovation_count(record) + free.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(unknowns()));
@@ -104,12 +104,12 @@ class Posterior : public ceres::CostFunction {
   const Effect& machine_;
   const NoisyRecord& record_;
   std::vector<double> p_;
-  std::span<const FreeParameter> free_;
+  std::span<const ParameterPrior> free_;
   Filtered now_;
 };
 
 /// Performs the search within one linearisation. Returns the cost before it.
-double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter> free,
+double improve(Posterior& posterior, VectorXd& z, std::span<const ParameterPrior> free,
                const LikelihoodOptions& options, MostProbable& found) {
   constexpr double kLikelihoodSettled = 1e-6;  // relative change of the cost, a sum of thousands of squares
   ceres::Problem::Options borrowed;
@@ -128,7 +128,7 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const FreeParameter>
 }
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
-                    std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+                    std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr double kSameAnswer = 0.02;  // change of the cost between two linearisations
   // Reduced chi-square and relative change of the cost of a search caught in a corner of the box.
   constexpr double kLost = 1.15, kCreeps = 0.005;
@@ -151,7 +151,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
   return found;
 }
 
-std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<const FreeParameter> free) {
+std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<const ParameterPrior> free) {
   constexpr std::uint64_t kSeed = 1;
   for (std::size_t k = 0; k < free.size(); ++k)
     p[static_cast<std::size_t>(free[k].index)] =
@@ -161,7 +161,7 @@ std::vector<double> drawn(std::vector<double> p, std::uint32_t draw, std::span<c
 
 }  // namespace
 
-FreeParameter uniform_parameter(int index, double low, double high) {
+ParameterPrior uniform_prior(int index, double low, double high) {
   return {index, low, high, 0.5 * (low + high), (high - low) / std::sqrt(12.0)};
 }
 
@@ -170,7 +170,7 @@ bool has_likelihood(const Effect& machine) {
 }
 
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
-                           std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+                           std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   const NoisyRecord noisy = noisy_record(record, options.longest);
   if (noisy.samples() < kShortestStretch) return {start, 0, std::numeric_limits<double>::infinity(), 0};
   return search(machine, noisy, start, free, options);
@@ -178,7 +178,7 @@ MostProbable most_probable(const Effect& machine, const Recording& record, std::
 
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
-                              std::span<const FreeParameter> free, const LikelihoodOptions& options) {
+                              std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr std::uint32_t kStartsDrawn = 12;
   // The reduced chi-square cannot reveal a wrong local optimum. For thousands of samples the sum scatters by
   // a hundred, and a wrong optimum may cost only ten more than the right one. Therefore two starts must
@@ -205,7 +205,7 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
 }
 
 std::vector<double> error_bound(const Effect& machine, const Recording& record,
-                                const std::vector<double>& truth, std::span<const FreeParameter> free,
+                                const std::vector<double>& truth, std::span<const ParameterPrior> free,
                                 const LikelihoodOptions& options) {
   const NoisyRecord noisy = noisy_record(record, options.longest);
   if (noisy.samples() < kShortestStretch) {  // prior only

@@ -11,13 +11,13 @@
 namespace swingbank::sim::direct {
 
 /// Prior of a parameter: bounds, and mean and standard deviation of a normal distribution.
-struct FreeParameter {
+struct ParameterPrior {
   int index = 0;  ///< index in the effect's parameters
   double low = 0, high = 0, mean = 0, deviation = 0;
   ///< bounds; mean and standard deviation [unit of the parameter]
 };
 /// Returns a prior with mean and variance of the uniform distribution between the bounds.
-FreeParameter uniform_parameter(int index, double low, double high);
+ParameterPrior uniform_prior(int index, double low, double high);
 
 /// Maximum a posteriori estimate of the parameters.
 struct MostProbable {
@@ -40,18 +40,18 @@ bool has_likelihood(const Effect& machine);
 /// Returns the estimate from one start. The record must state its noise and should state the event's start. A
 /// segment of fewer than kShortestStretch samples after the event returns the start.
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
-                           std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
+                           std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
 /// Returns the best estimate from several starts: the candidates, the prior's mean, then random draws, until
 /// two starts agree in cost.
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
-                              std::span<const FreeParameter> free, const LikelihoodOptions& options = {});
+                              std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
 
 /// Returns the variances of the free parameters by the Bayesian Cramer-Rao bound at the true parameters. The
 /// record is free of noise and states the level that it will have. The operating point and the parameters of
 /// `free` are unknown.
 std::vector<double> error_bound(const Effect& machine, const Recording& record,
-                                const std::vector<double>& truth, std::span<const FreeParameter> free,
+                                const std::vector<double>& truth, std::span<const ParameterPrior> free,
                                 const LikelihoodOptions& options = {});
 
 }  // namespace swingbank::sim::direct

@@ -73,7 +73,7 @@ class Rows {
         free_.push_back(index);
         low_.push_back(d.parameter_low[k]);
         high_.push_back(d.parameter_high[k]);
-        unknown_.push_back(sim::direct::uniform_parameter(index, low_.back(), high_.back()));
+        unknown_.push_back(sim::direct::uniform_prior(index, low_.back(), high_.back()));
       }
     }
   }
@@ -111,7 +111,7 @@ class Rows {
     return r;
   }
   /// Returns the parameters with the box as the only prior.
-  [[nodiscard]] std::vector<sim::direct::FreeParameter> anywhere() const {
+  [[nodiscard]] std::vector<sim::direct::ParameterPrior> anywhere() const {
     auto all = unknown_;
     for (auto& f : all) f.deviation = kNoPrior * (f.high - f.low);
     return all;
@@ -175,7 +175,7 @@ class Rows {
   std::map<std::int32_t, std::vector<double>> known_;  ///< by generator: constant parameters, else defaults
   std::vector<double> low_, high_;
   std::vector<int> index_, free_;
-  std::vector<sim::direct::FreeParameter> unknown_;
+  std::vector<sim::direct::ParameterPrior> unknown_;
 };
 
 }  // namespace

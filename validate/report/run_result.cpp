@@ -53,7 +53,7 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
   if (!list.is_array()) return o.fault("per_parameter", "it is no list");
   for (const auto& item : list) {
     Object p(item, where + " per_parameter", problems);
-    ParameterScore score;
+    ParameterResult score;
     p.get("name", score.name);
     p.get("unit", score.unit);
     p.get("mse", score.mse);

@@ -11,7 +11,7 @@
 namespace swingbank::validate::report {
 
 /// Error of one estimated parameter.
-struct ParameterScore {
+struct ParameterResult {
   std::string name, unit;          ///< name of the parameter; its unit
   double mse = 0, variance = 0;    ///< mean squared error and variance over the test rows [unit^2]
   std::optional<double> relative;  ///< mse / variance; none for a constant parameter
@@ -47,12 +47,12 @@ struct RunResult {
   ///< mean over the parameters, all and varying ones; of the training mean; mse / baseline_mse
   double seen = 0;     ///< MSE on rows of training generators or operating points; NaN: nothing was trained
   double H_ratio = 0;  ///< ratio for H alone; NaN if H is constant
-  std::vector<ParameterScore> parameters;  ///< scores of the parameters
-  std::vector<Coverage> coverage;          ///< empty: the method gives no intervals
-  std::vector<SeveralRecords> several;     ///< empty: no plant has three test records
-  bool shuffled = false;                   ///< control run with shuffled labels
-  int threads = 1;                         ///< number of threads
-  std::string software, blas;              ///< version of Swingbank; BLAS library
+  std::vector<ParameterResult> parameters;  ///< scores of the parameters
+  std::vector<Coverage> coverage;           ///< empty: the method gives no intervals
+  std::vector<SeveralRecords> several;      ///< empty: no plant has three test records
+  bool shuffled = false;                    ///< control run with shuffled labels
+  int threads = 1;                          ///< number of threads
+  std::string software, blas;               ///< version of Swingbank; BLAS library
   /// Software and BLAS of the run. Reports note comparisons between different ones.
   [[nodiscard]] std::string maker() const { return software + ", " + blas; }
 };

@@ -31,7 +31,7 @@ Recording with_noise(Recording r, double level, std::uint64_t seed) {
 struct Judged {
   double ratio = 0, chi_square = 0;
 };
-Judged judge(const std::string& system, std::span<const FreeParameter> free, double level) {
+Judged judge(const std::string& system, std::span<const ParameterPrior> free, double level) {
   const auto grid = test::configured_grid(system, Conventions::psse());
   Judged all;
   double count = 0;
@@ -60,8 +60,8 @@ Judged judge(const std::string& system, std::span<const FreeParameter> free, dou
 
 // For ten records with two unknowns each, the mean of squared normal numbers has a standard deviation of 0.3.
 TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
-  const std::vector<FreeParameter> free = {uniform_parameter(0, 1, 10), uniform_parameter(1, 0, 8),
-                                           uniform_parameter(3, 0.05, 0.6)};
+  const std::vector<ParameterPrior> free = {uniform_prior(0, 1, 10), uniform_prior(1, 0, 8),
+                                            uniform_prior(3, 0.05, 0.6)};
   for (const double level : {0.001, 0.005}) {
     const Judged j = judge("ieee39_dataset_gencls", free, level);
     EXPECT_NEAR(j.chi_square, 1, 0.03) << level;
@@ -71,12 +71,12 @@ TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
 
 // Round-rotor machines: thirteen unknowns each, several of them strongly correlated.
 TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
-  const std::vector<FreeParameter> free = {
-      uniform_parameter(0, 2, 10),     uniform_parameter(1, 0.05, 0.2),   uniform_parameter(2, 0.5, 1.2),
-      uniform_parameter(3, 0.08, 0.2), uniform_parameter(4, 1, 10),       uniform_parameter(5, 0, 3),
-      uniform_parameter(6, 0.8, 2.5),  uniform_parameter(7, 0.8, 2.4),    uniform_parameter(8, 0.32, 0.6),
-      uniform_parameter(9, 0.45, 0.8), uniform_parameter(11, 0.05, 0.24), uniform_parameter(12, 0.01, 0.3),
-      uniform_parameter(13, 0.1, 1)};
+  const std::vector<ParameterPrior> free = {
+      uniform_prior(0, 2, 10),     uniform_prior(1, 0.05, 0.2),   uniform_prior(2, 0.5, 1.2),
+      uniform_prior(3, 0.08, 0.2), uniform_prior(4, 1, 10),       uniform_prior(5, 0, 3),
+      uniform_prior(6, 0.8, 2.5),  uniform_prior(7, 0.8, 2.4),    uniform_prior(8, 0.32, 0.6),
+      uniform_prior(9, 0.45, 0.8), uniform_prior(11, 0.05, 0.24), uniform_prior(12, 0.01, 0.3),
+      uniform_prior(13, 0.1, 1)};
   const Judged j = judge("ieee39_dataset_genrou", free, 0.001);
   EXPECT_NEAR(j.chi_square, 1, 0.03);
   EXPECT_LT(j.ratio, 1.6);
