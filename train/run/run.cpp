@@ -133,15 +133,38 @@ void require_records(const data::ShardStream& stream, const RunRequest& r) {
                       "generate the dataset on a disk, or choose a network that reads series alone"});
 }
 
-struct DirectRun {
-  const std::filesystem::path& file;
-  const std::string& name;
-  const json& identity;
-  const data::RowSplit& split;
-  const data::TargetScale& scale;
+/// What a request determines before any work: name and identity of the result, rows, scale of the targets.
+struct PreparedRun {
+  std::string name;
+  std::filesystem::path file;  ///< result
+  json identity;               ///< two runs with equal identities give the same result
+  data::RowSplit split;
+  data::TargetScale scale;
 };
+
+data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
+                                                                    r.seed, r.judged, recipe.set_aside})
+                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
+                                               : data::split_by_point(labels, r.seed);
+  if (r.test_rows) thin(split.test, *r.test_rows);
+  if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
+  return split;
+}
+
+PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
+  require_records(stream, r);
+  const data::Labels& labels = stream.labels();
+  data::RowSplit split = split_of(labels, r);
+  data::TargetScale scale =
+      data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
+  const std::string name = run_name(r);
+  return {name, r.out / (name + ".json"), identity(stream, r), std::move(split), std::move(scale)};
+}
+
 /// Runs a method without training. No checkpoints: such a run takes minutes at most.
-RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, const DirectRun& d) {
+RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, const PreparedRun& d) {
   if (r.shuffle_labels)
     throw InputError({"a control run of " + r.network, "--shuffle-labels", "it is not trained on labels",
                       "leave it out, or choose a network"});
@@ -330,34 +353,23 @@ class NetworkRun {
 }  // namespace
 
 RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
-  const std::string name = run_name(r);
-  const auto file = r.out / (name + ".json"), locks = r.out / "checkpoints";
-  const json run_identity = identity(stream, r);
-  if (already_done(file, run_identity)) return RunOutcome::already_done;
+  const PreparedRun prepared = prepare(stream, r);
+  if (already_done(prepared.file, prepared.identity)) return RunOutcome::already_done;
+  const auto locks = r.out / "checkpoints";
   make_folder(r.out);
   make_folder(locks);
-  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
   // Runs of other noise levels wait for their common network.
-  const std::chrono::seconds patience =
-      recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
+  const std::chrono::seconds patience = r.experiment.training(r.preset, r.network).noise_levels
+                                            ? std::chrono::hours(12)
+                                            : std::chrono::seconds(5);
   RunLock lock(locks / (training_name(r) + ".lock"),
-               {"a second run", file.string(), "wait for it to end, or choose another --out"}, patience);
-  if (already_done(file, run_identity)) return RunOutcome::already_done;
-
-  const data::Labels& labels = stream.labels();
-  data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
-                                                                    r.seed, r.judged, recipe.set_aside})
-                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
-                                               : data::split_by_point(labels, r.seed);
-  if (r.test_rows) thin(split.test, *r.test_rows);
-  if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
-  const data::TargetScale scale =
-      data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
-  require_records(stream, r);
-  if (direct::is_method(r.network)) return run_direct(stream, r, {file, name, run_identity, split, scale});
-  NetworkRun network(stream, r, split, scale);
+               {"a second run", prepared.file.string(), "wait for it to end, or choose another --out"},
+               patience);
+  if (already_done(prepared.file, prepared.identity)) return RunOutcome::already_done;
+  if (direct::is_method(r.network)) return run_direct(stream, r, prepared);
+  NetworkRun network(stream, r, prepared.split, prepared.scale);
   if (!network.train()) return RunOutcome::stopped;
-  network.judge_to(file);
+  network.judge_to(prepared.file);
   lock.withdraw(true);
   return RunOutcome::done;
 }
