@@ -18,7 +18,7 @@ namespace swingbank::mpi::store {
 struct DatasetHeader {
   std::string name = {};  ///< name of the config's file, "ieee39_genrou"; empty in older datasets
   std::string config_hash, kernel, software, machine_model;
-  ///< 16 hex digits; Batch::variant(); "swingbank 0.1.0"; "GENROU"
+  ///< 16 hex digits; Batch::variant(); "swingbank 0.2.0"; "GENROU"
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
   ///< seed of the random draws; number of draws in all and of a full shard

@@ -15,7 +15,7 @@ namespace swingbank::mpi::store {
 struct ShardAttributes {
   std::string config_hash;    ///< 16 hex digits
   std::string kernel;         ///< Batch::variant()
-  std::string software;       ///< "swingbank 0.1.0"
+  std::string software;       ///< "swingbank 0.2.0"
   std::uint64_t seed = 0;     ///< seed of the dataset's random draws
   std::uint64_t shard = 0;    ///< number of the shard in its dataset
   double rate = 0.0;          ///< sampling rate [1/s]
