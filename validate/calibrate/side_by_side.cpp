@@ -200,8 +200,8 @@ report::Table events_beside(const std::vector<Way>& ways) {
 
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   std::string text =
-      "Side by side, chi2 per value (every event with its own switching times and start; only the parameters "
-      "differ):\n" +
+      "Comparison, reduced chi-square (each event with its own switching times and start; only "
+      "the parameters differ):\n" +
       aligned(events_beside(ways)) + "\n" + aligned(parameters_beside(ways, truth));
   if (truth.empty()) return text;
   text += "\n";
@@ -209,7 +209,8 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
     const Distance d = distance(way, truth);
     text += fmt::format("{}: {:.3g} % rms from the truth, mean squared error {:.3g} (raw units)", way.name,
                         100 * d.relative, d.mse);
-    if (has_interval(way)) text += fmt::format(", {} of {} intervals hold the truth", d.held, d.intervals);
+    if (has_interval(way))
+      text += fmt::format(", {} of {} intervals contain the true value", d.held, d.intervals);
     text += "\n";
   }
   return text;
@@ -259,7 +260,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
   const Distance d = distance(way, truth);
   return text + fmt::format(
                     "\n{:.3g} % rms from the truth, mean squared error {:.3g} (raw units), {} of {} "
-                    "intervals hold the truth\n",
+                    "intervals contain the true value\n",
                     100 * d.relative, d.mse, d.held, d.intervals);
 }
 

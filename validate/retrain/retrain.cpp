@@ -136,8 +136,7 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
   const auto unseen = std::ranges::count(r.events, false, &RetrainedEvent::seen);
   Problems problems;
   if (unseen == 0)
-    problems.add("no event held out", "--retrain",
-                 "networks are judged on events that the effect was not fitted to",
+    problems.add("no event held out", "--retrain", "networks are judged on held-out events",
                  "hold out at least one with --hold-out");
   if (shared == 0)
     problems.add("no parameter that both networks learnt", estimates[0].network, "nothing can be compared",
