@@ -150,7 +150,7 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
                 const add::Addition& done, const std::vector<record::Record>& records) {
   const auto networks = retrain(a, programs, before, done, records);
   if (!networks) {
-    fmt::print(stderr, "stopped on a signal; run the same command again to go on\n");
+    fmt::print(stderr, "stopped on a signal; run the same command again to continue\n");
     return jobs::kStopped;
   }
   nlohmann::json result = retrain::retrained_json(*networks);

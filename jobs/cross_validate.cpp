@@ -61,11 +61,11 @@ int main(int argc, char** argv) {
            "per core; 1 where mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
-      throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
+      throw InputError({"this experiment leaves no generator out", options.experiment, "see its split",
                         "use swingbank train"});
     if (processes < 0)
-      throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work",
-                        "use 1 or more"});
+      throw InputError({fmt::format("{} processes", processes), "--processes",
+                        "at least one process is needed", "use 1 or more"});
     static_cast<void>(folds_of(fold, request.experiment));
     if (!judged.empty()) static_cast<void>(folds_of(judged, request.experiment, "--judge-on"));
   };

@@ -140,7 +140,7 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
     const auto [mean, scatter] = over_records(all, i);
     text +=
         fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.spread, scatter, p.unit,
-                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "held, not learnt");
+                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
   }
   return text +
          "spread: root mean square error on records of a generator (or values) it was not trained on; scatter: between these "
@@ -171,7 +171,7 @@ int run(const Options& o) {
   if (!o.out.empty()) require_inputs_kept({{o.out, "--out"}});
   if (o.event && all.size() > 1)
     throw InputError(
-        {"one instant for several records", "--event", "each has its own", "give one record at a time"});
+        {"one event time for several records", "--event", "each has its own", "give one record at a time"});
   for (auto& e : all) {
     e.input = network_input(e.record, model, network.info(), o.event);
     e.estimate = network.estimate(e.input.values, o.noise);

@@ -83,7 +83,7 @@ status=0
 grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the bent model does not say so"
 grep -q "^next: .*swingbank diagnose --model $model" "$work/text" || fail "it does not say what is next"
 "$swingbank" compare --model "$work/poor/model-not-adequate.toml" --records "$one" --out "$work/bent" >/dev/null 2>"$work/notes" || (($? == 3))
-grep -q 'comes of a calibration that did not hold' "$work/notes" || fail "a bent model is taken without a word"
+grep -q 'is the result of a calibration that was not adequate' "$work/notes" || fail "a bent model is taken without a word"
 grep -q 'Structure not adequate' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
 
 out=$work/out
@@ -105,7 +105,7 @@ misused "method" "method" calibrate --records "$one" --method guess
 misused "spread" "spread" calibrate --records "$one" --spread -1
 refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
 refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
-refuses "slot taken" "no room" add GENCLS --records "$one"
+refuses "slot taken" "no free place" add GENCLS --records "$one"
 refuses "no effect named" "until-adequate" add --records "$one"
 refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"
 refuses "one event, held out" "every event is held out" add SEXS --records "$one" --hold-out avr_ev1

@@ -30,7 +30,7 @@ grep -q '^| V | cnn | 0 | 30 .* within noise |$' "$work/report" || fail "2 % cal
 
 BLAS=other night 2026-01-05 0.204 0.100
 compare
-grep -q '^| V | cnn | 0 | 30 .* within noise, by other software or kernels than the night before |$' "$work/report" ||
+grep -q '^| V | cnn | 0 | 30 .* within noise, with other software or kernels than the night before |$' "$work/report" ||
   fail "other kernels without a word: $(cat "$work/report")"
 rm -r "$work/nights/2026-01-05"
 

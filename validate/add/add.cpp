@@ -59,7 +59,7 @@ class Bench {
         [&](std::size_t e) {
           fit::Fit f = fit::fit(tested, all_.alone(e), {});
           if (!f.failed.empty())
-            throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
+            throw InputError({"playback of the record fails", all_[e].record.name, f.failed,
                               "check the model's parameters and the record's base and units"});
           fits[e] = std::move(f.events.front());
         },

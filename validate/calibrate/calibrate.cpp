@@ -27,7 +27,7 @@ fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
                const event::WhitenedEvents& event) {
   fit::Fit f = fit::fit({plant, model.conventions}, event, {});
   if (!f.failed.empty())
-    throw InputError({"the model cannot follow the record", event.front().record.name, f.failed,
+    throw InputError({"playback of the record fails", event.front().record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   return f;
 }

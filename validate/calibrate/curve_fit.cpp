@@ -143,7 +143,7 @@ class CurveFitting {
     try {
       return as_played(setting_, plant, events_, e);
     } catch (const InputError& error) {
-      throw InputError({"the model cannot follow the record", events_[e].record.name,
+      throw InputError({"playback of the record fails", events_[e].record.name,
                         error.problems().front().sentence(),
                         "check the model's parameters and the record's base and units"});
     }

@@ -16,7 +16,7 @@ using record::Component;
 using sim::Slot;
 
 struct RecordedMachine {
-  static constexpr std::string_view name = "RECORDED", title = "a machine that does what was recorded",
+  static constexpr std::string_view name = "RECORDED", title = "a machine with the recorded signals",
                                     source = "the record", description = "";
   static constexpr Slot slot = Slot::machine;
   static constexpr sim::State states[] = {{"delta", "rad", "stands still"}, {"speed", "pu", "stands still"}};

@@ -181,7 +181,7 @@ TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "TGOV"); }),
               ElementsAre(EndsWith("did you mean TGOV1?")));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1"); }),
-              ElementsAre(AllOf(HasSubstr("no room"), HasSubstr("exciter"))));
+              ElementsAre(AllOf(HasSubstr("no free place"), HasSubstr("exciter"))));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),
               ElementsAre(HasSubstr("belongs to one event")));
 }

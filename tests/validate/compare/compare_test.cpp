@@ -293,7 +293,7 @@ TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
     EXPECT_LT(c.whole.in_noise, 10) << c.name;  // with the middles of the intervals: 5.2, 2.9
   ASSERT_FALSE(e.notes.empty());
   EXPECT_THAT(e.notes.front(), HasSubstr("the fit within these intervals failed"));
-  EXPECT_THAT(e.notes.front(), HasSubstr("play-in stops"));
+  EXPECT_THAT(e.notes.front(), HasSubstr("playback failed"));
 }
 TEST(CompareTest, ReportsInadequateModel) {
   std::vector<EventComparison> events = {example_event({2.0, 2.1})};
