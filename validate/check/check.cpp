@@ -382,7 +382,7 @@ class Check : Findings {
     }
     if (best && apart())
       warn("time_skew", "steps of voltage and current up to a sample apart", "one of them is late",
-           "mend its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
+           "correct its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
     else if (best)
       refuse(best->kind, "steps of voltage and current that are inconsistent with a machine", best->why,
              best->remedy);
