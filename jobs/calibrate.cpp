@@ -292,7 +292,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   const jobs::Option network = line.add("--network", a.network,
                                         "trained network (file.network, or a folder with one): its estimate "
                                         "is one of the starts, and is shown beside the fit");
-  line.add("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote").excludes(network);
+  line.add("--start", a.start, "the same from the output of 'swingbank predict --out FILE'")
+      .excludes(network);
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
   line.group("Expert");
   line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);

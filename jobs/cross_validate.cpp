@@ -52,10 +52,9 @@ int main(int argc, char** argv) {
   std::string fold = "all", judged;
   int processes = 0;
   line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
-  line.add(
-      "--judge-on", judged,
-      "bus number of a generator to judge on in place of the one left out, which then takes no part: to choose "
-      "recipes by; all: each of the others in turn");
+  line.add("--judge-on", judged,
+           "bus number of a generator to judge on instead of the excluded one, which is then not "
+           "used (for the choice of recipes); all: each of the others in turn");
   line.add("--processes", processes,
            "processes that share the folds, each with its part of the threads (default: one "
            "per core; 1 where mpirun or srun started several)");

@@ -88,8 +88,8 @@ int main(int argc, char** argv) {
            "number of parameters, else with the other's default values; may be repeated")
       .one_value_a_mention();
   line.add_choice("--complete-records", a.complete_records, {"no", "zero", "standard"},
-                  "records that are shorter than their model get these values at their end, longer ones lose "
-                  "what is beyond it; each value is named");
+                  "records that are shorter than their model are completed with these values, longer ones "
+                  "are truncated; each value is named");
   line.group("Input");
   line.add("--measured-at", a.measured_at,
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "

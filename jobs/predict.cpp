@@ -133,7 +133,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
 }
 
 std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
-  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "spread",
+  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "RMSE",
                                  "scatter", "unit", "learnt within");
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
     const auto& p = n.parameters[i];
@@ -143,8 +143,8 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
                     p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
   }
   return text +
-         "spread: root mean square error on records of a generator (or values) it was not trained on; scatter: between these "
-         "records\n";
+         "RMSE: root mean square error on generators (or values) outside the training data; "
+         "scatter: standard deviation between these records\n";
 }
 
 /// Returns the 90 % credible intervals of the parameters for each record.
@@ -155,7 +155,7 @@ std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimat
       if (const auto& x = e.estimate.intervals[i])
         text += fmt::format(
             "{}{:<16}{:>12.4g}{:>12.4g}{:>12.4g}  {}\n",
-            text.empty() ? fmt::format("\n{:<16}{:>12}{:>12}{:>12}\n", "believed", "5 %", "50 %", "95 %")
+            text.empty() ? fmt::format("\n{:<16}{:>12}{:>12}{:>12}\n", "quantiles", "5 %", "50 %", "95 %")
                          : std::string(),
             n.parameters[i].name, x->low, x->median, x->high, e.record.name);
   return text;

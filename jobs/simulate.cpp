@@ -412,8 +412,8 @@ int main(int argc, char** argv) {
                 "where the operating point lies beyond a control's limit, move the limit there and name it");
   line.group("Models");
   line.add("--complete-records", o.complete_records,
-           "records of the .dyr that are shorter than their model get these values at their end, longer "
-           "ones lose what is beyond it; each is named")
+           "records of the .dyr that are shorter than their model are completed with these values, "
+           "longer ones are truncated; each is named")
       .one_of({"no", "zero", "standard"})
       .shows_default();
   line.add_flag("--drop-refused", o.drop_refused,
@@ -469,7 +469,7 @@ int main(int argc, char** argv) {
   line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
   line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
   line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
-  line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
+  line.add("--changes", o.changes, "text file of all changes to the case, one line per change");
   line.group("Expert");
   line.add("--integrator", o.integrator,
            "reference: IDA on the unreduced equations; lanes: the engine of generate")

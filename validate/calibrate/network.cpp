@@ -50,7 +50,7 @@ NetworkEstimate read_estimate(const std::filesystem::path& file) {
     } catch (const json::exception&) {  // reported below
     }
   }
-  throw InputError({"no estimate of a network", file.string(), "it is not what predict writes",
+  throw InputError({"no estimate of a network", file.string(), "it is not an output file of predict",
                     "make one with 'swingbank predict --out FILE'"});
 }
 

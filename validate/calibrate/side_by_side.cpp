@@ -40,7 +40,7 @@ void require_base(double mva, const plant::PlantModel& model, const std::string&
 Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
   note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
-  const InputError wrong({"no truth", file.string(), "it is not what blind-test seals",
+  const InputError wrong({"no truth", file.string(), "it is not a truth file of blind-test",
                           "give a plant file (.toml) or a truth of blind-test (.json)"});
   if (!j.is_object() || !j.contains("true_plant")) throw wrong;
   Truth truth;

@@ -65,7 +65,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
     problems.add(fault->what, comtrade.file,
                  fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
                              names[1], names[2]),
-                 fault->remedy + " (the channels' names and phases stand in the .cfg)");
+                 fault->remedy + " (the .cfg defines the channels' names and phases)");
   // Times and angles refer to the record's first sample, which may not be used.
   const double begin = comtrade.t.front();
   Sequence sequence;

@@ -114,7 +114,7 @@ int plant_named(Config& c, const std::string& key, const std::string& name, cons
 void check_bus_record(const record::Record& r, Problems& problems) {
   const double level = std::accumulate(r.V.begin(), r.V.end(), 0.0) / static_cast<double>(r.V.size());
   if (level < 0.5 || level > 1.5)
-    problems.add(fmt::format("V = {:.4g} pu on average", level), r.name, "a bus stands near 1 pu",
+    problems.add(fmt::format("V = {:.4g} pu on average", level), r.name, "bus voltages are near 1 pu",
                  "name the column by its unit (V_kV with record.base_kv), or give per-unit values");
 }
 

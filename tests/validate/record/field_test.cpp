@@ -312,7 +312,7 @@ TEST(LostFramesTest, StepWithinTheGapIsReported) {
   });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_TRUE(r.V[100] == 1.02 || r.V[100] == 0.7);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("jumps where frames are missing")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("has a step where frames are missing")));
 }
 TEST(StampTest, AcceptsTruncatedLastLine) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";

@@ -372,7 +372,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
         continue;
       }
       problems.add(fmt::format("column '{}'", name), where,
-                   "the plant file does not say what 1 pu (air-gap line) of it is",
+                   "the plant file does not define 1 pu (air-gap line) of it",
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
     }

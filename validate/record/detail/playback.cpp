@@ -76,7 +76,7 @@ class Playback {
     const auto open = text_.find('['), close = text_.find(']', open), brace = text_.find('{', close);
     const auto end = text_.find('}', brace);
     if (brace == std::string_view::npos || end == std::string_view::npos) {
-      problems_.add("play-in signals without values", name_, "fields stand in [ ], values in { }",
+      problems_.add("play-in signals without values", name_, "fields are enclosed in [ ], values in { }",
                     "export it again");
       problems_.raise();
     }
