@@ -277,7 +277,7 @@ class Identifying {
                                   h.input() == InputKind::torque ? "torque" : "field voltage");
         } else if (leader) {
           j.behind = h.cost - leader->cost;
-          j.why_not = fmt::format("chi2 when identified alone is higher by {:.0f} than with {}", j.behind,
+          j.why_not = fmt::format("chi2 of its identification is higher by {:.0f} than with {}", j.behind,
                                   leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;

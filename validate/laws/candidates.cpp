@@ -122,7 +122,7 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate&
     order += fmt::format("{}\"w{} < w{}\"", k == 2 ? "" : ", ", k - 1, k);
   }
   law.requirements = order;
-  law.words = "an odd piecewise linear function of {x} through " + points + "";
+  law.words = "an odd function of {x} through " + points + ", linear in between";
 }
 /// Writes the TOML expression and the description of each shape. `y`: name of the filtered signal.
 void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
