@@ -53,9 +53,9 @@ void say_on(compare::CommandPage& page, const add::Addition& added) {
   page.unseen.clear();
   for (const auto& e : added.events)
     if (!e.score.seen) page.unseen.push_back(e.score.record);
-  page.tried.push_back(fmt::format("{}: evidence {:.1f}, where {:g} is asked for; it {} its place.",
-                                   added.hypothesis.what, added.evidence, thresholds::addition.strong.value,
-                                   added.earns ? "earns" : "does not earn"));
+  page.tried.push_back(fmt::format("{}: evidence {:.1f}, required {:g}; {}.", added.hypothesis.what,
+                                   added.evidence, thresholds::addition.strong.value,
+                                   added.earns ? "accepted" : "not accepted"));
 }
 compare::CommandPage page_of(const add::Addition& added) {
   compare::CommandPage page;
@@ -70,7 +70,7 @@ compare::CommandPage page_of(const add::Completion& c) {
   page.sentence = c.sentence;
   for (const auto& one : c.added) say_on(page, one);
   for (const auto& r : c.removed)
-    page.tried.push_back(fmt::format("{} taken out again: evidence {:.1f}.", r.effect, r.evidence));
+    page.tried.push_back(fmt::format("{} removed again: evidence {:.1f}.", r.effect, r.evidence));
   return page;
 }
 
@@ -82,9 +82,10 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   model.submitted.reset();
   OutputFolder& results = a.of.results();
   const auto model_file = results.file(kModel), page_file = results.file(kPage);
-  page.title = "An effect added: " + before.name;
-  page.subtitle = fmt::format("{} of {:g} MVA; the model as it was and with what was added.",
-                              plant::subject(before), before.plant.mva);
+  page.title = "Added effect: " + before.name;
+  page.subtitle =
+      fmt::format("{} of {:g} MVA; the submitted and the completed model, compared with the records.",
+                  plant::subject(before), before.plant.mva);
   page.played = played;
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
@@ -119,13 +120,12 @@ void check_options(const Arguments& a) {
   Problems problems;
   if (a.effect.empty() != a.until_adequate)
     problems.add(a.effect.empty() ? "no effect" : "an effect beside --until-adequate", "swingbank add",
-                 "it is either named or looked for", "give one of EFFECT and --until-adequate");
+                 "the effect is either named or searched for", "give one of EFFECT and --until-adequate");
   if (a.retrain && a.until_adequate)
     problems.add("--retrain beside --until-adequate", "swingbank add", "networks are trained for one effect",
                  "name the effect");
   if (a.retrain && a.options.calibrate.held_out.empty())
-    problems.add("no event held out", "--retrain",
-                 "networks are judged on events that the effect was not fitted to",
+    problems.add("no event held out", "--retrain", "networks are judged on held-out events",
                  "hold out at least one with --hold-out");
   problems.raise();
 }
@@ -151,7 +151,7 @@ int run_retrain(const Arguments& a, const jobs::RetrainPrograms& programs, const
                 const add::Addition& done, const std::vector<record::Record>& records) {
   const auto networks = retrain(a, programs, before, done, records);
   if (!networks) {
-    fmt::print(stderr, "stopped on a signal; run the same command again to go on\n");
+    fmt::print(stderr, "stopped on a signal; run the same command again to continue\n");
     return jobs::kStopped;
   }
   nlohmann::json result = retrain::retrained_json(*networks);
@@ -243,9 +243,9 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       .between(1.05, 100.0);
   line.add("--truth", a.truth, "--retrain: plant file (or blind-test's truth) to judge the networks by");
   line.example("swingbank add SEXS --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
-  line.footer(
-      std::string(thresholds::kExitCodes) +
-      " Complete: the effect earns its place, and the residual is noise. 2: a training stopped on a signal; run again to continue.");
+  line.footer(std::string(thresholds::kExitCodes) +
+              " Complete: the effect is accepted, and the residual is noise. 2: a training stopped on "
+              "a signal; run again to continue.");
 }
 
 }  // namespace

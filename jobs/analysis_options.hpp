@@ -56,8 +56,7 @@ struct AnalysisOptions {
              .one_value_a_mention());
     line.group("Events");
     keep(reading.add_switch(line));
-    keep(line.add("--jump-threshold", jump_threshold,
-                  "smallest step of the voltage taken for a switching [pu]")
+    keep(line.add("--jump-threshold", jump_threshold, "smallest voltage step detected as a switching [pu]")
              .shows_default()
              .positive());
     keep(line.add("--pre-event", pre_event, "steady state at the start of records without switching [s]")
@@ -83,7 +82,7 @@ struct AnalysisOptions {
   void declare_hold_out(CommandLine& line) {
     line.group("Events");
     line.add("--hold-out", held_out,
-             "record (name or number from 1) left out of the fit and used to judge it; may be repeated");
+             "record (name or number from 1) excluded from the fit, to judge it; may be repeated");
   }
 
   /// Locks the output folder; call it after all inputs are read and before the work. `names`: files that the

@@ -104,7 +104,7 @@ int make(const mpi::ranks::Ranks& ranks, const Options& o) {
       ranks, o, plan.cases.size(), "cases",
       [&](std::size_t k) { return make_one(o, config, plan.cases[k], blind::cases::case_name(k)); }, counts);
   if (ranks.rank() == 0)
-    fmt::print("made {} cases in {:.1f} s, {} were there already, {} failed: {}\n", counts.done,
+    fmt::print("made {} cases in {:.1f} s, {} existed already, {} failed: {}\n", counts.done,
                seconds_since(begin), counts.there, counts.failed, o.out);
   return code;
 }
@@ -157,7 +157,7 @@ int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
 int score(const Options& o) {
   if (o.targets.empty())
     throw InputError(
-        {"no targets", "--targets", "a score is held against them", "give configs/blind/targets.toml"});
+        {"no targets", "--targets", "a score is compared with them", "give configs/blind/targets.toml"});
   const blind::score::BlindScore result = blind::score::score_blind(o.out, o.targets);
   const std::string text = blind::score::score_markdown(result);
   write_file(fs::path(o.out) / "score.md", text);
@@ -204,9 +204,9 @@ int on_ranks(int argc, char** argv, const Options& o) {
 
 int swingbank::jobs::blind_test_command(CommandLine& line, int argc, char** argv) {
   Options o;
-  line.add("--config", o.config, "what --make draws from: configs/blind/cases.toml, tiny.toml");
+  line.add("--config", o.config, "distribution of the cases of --make: configs/blind/cases.toml, tiny.toml");
   line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();
-  line.add("--make", o.make, "make that many cases (those that are there stay)");
+  line.add("--make", o.make, "make that many cases; existing ones are kept");
   line.add("--seed", o.seed, "seed of the run").shows_default();
   line.add("--kinds", o.kinds,
            "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
@@ -217,7 +217,7 @@ int swingbank::jobs::blind_test_command(CommandLine& line, int argc, char** argv
                 "diagnose every case without a verdict, as swingbank diagnose does");
   line.add("--judge", o.judge,
            "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
-  line.add_flag("--score", o.score, "hold the verdicts against the truth: score.md, score.json");
+  line.add_flag("--score", o.score, "compare the verdicts with the truth: score.md, score.json");
   line.add("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
   line.add("--case-timeout", o.limit, "a case that takes longer [s] ends the run (default 7200; 0: never)")
       .not_negative();

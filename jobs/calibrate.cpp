@@ -76,14 +76,14 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   if (!holds) model.submitted = before.plant;
   std::vector<std::string> head = provenance;
   if (!holds)
-    head.insert(head.begin(),
-                "NOT ADEQUATE: something is missing in this model, and its parameters are bent to make up "
-                "for it. Do not use them.");
+    head.insert(
+        head.begin(),
+        "NOT ADEQUATE: a component is missing in this model, and its parameters are biased. Do not use them.");
   plant::write_plant_file(file, model, head);
   if (!holds)
     return fmt::format(
-        "model: {} (not adequate: its parameters are bent, do not use them)\n"
-        "next: what is missing says swingbank diagnose --model {} --records ...",
+        "model: {} (not adequate: its parameters are biased, do not use them)\nnext: swingbank "
+        "diagnose --model {} --records ... names the missing component",
         file.string(), a.of.model);
   const plant::WrittenDyr dyr = plant::write_dyr_beside(file, before, model);
   if (!dyr.file.empty()) a.of.results().file(dyr.file.filename());
@@ -97,7 +97,7 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
   page.subtitle = fmt::format("{} of {:g} MVA; its parameters fitted to the records.", plant::subject(model),
                               model.plant.mva);
   page.tried.insert(page.tried.begin(),
-                    "None about the structure: “swingbank diagnose” names what a model lacks.");
+                    "calibrate does not test the structure; “swingbank diagnose” names missing components.");
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
                      {"model", model.origin}};
@@ -169,7 +169,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
     if (!out[k]) words.push_back(a.of.records[k]);
   for (const auto& word : a.of.reading.words()) words.push_back(word);
   if (jobs::run_own(predict, words) != 0)
-    throw InputError({"no estimate of the network", a.network, "swingbank predict says why above",
+    throw InputError({"no estimate of the network", a.network, "see the message of swingbank predict above",
                       "correct that, or calibrate without --network"});
   return calibrate::read_estimate(file);
 }
@@ -213,7 +213,7 @@ int run(Arguments& a, plant::PlantModel& model) {
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
-    throw InputError({"a method or a start of its own", "--fewest", "it is a way of its own",
+    throw InputError({"a method or a start of its own", "--fewest", "it is a method of its own",
                       "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, records, truth, told);
   if (a.sparse) return run_sparse(a, model, records, told);
@@ -277,25 +277,24 @@ int run_interruptible(Arguments& a) {
 
 void declare(jobs::CommandLine& line, Arguments& a) {
   auto& o = a.options;
-  a.of.declare(line,
-               "model.toml (model-not-adequate.toml where it does not hold), model.dyr, report.html and "
-               "calibrate.json");
+  a.of.declare(line, "model.toml (or model-not-adequate.toml), model.dyr, report.html and calibrate.json");
   a.of.declare_fit(line);
   a.of.declare_hold_out(line);
   line.group("Fit");
   line.add("--method", a.method,
-           "fit; curve-fit: the usual way, least squares of P and Q from the model's own values, as a "
-           "baseline; both: side by side")
+           "fit: maximum likelihood; curve-fit: least squares of P and Q from the model's own "
+           "values, as a baseline; both: comparison of the two")
       .shows_default()
       .one_of({"fit", "curve-fit", "both"});
   line.add_flag("--fewest", a.sparse,
-                "which parameters are wrong: the fewest that must change for the model to explain the "
-                "records, while every other one stays as it is; writes the model with these changed");
-  line.add("--fix", o.fixed, "parameter that stays as it is (GENROU.Xl); may be repeated");
+                "select the smallest set of parameters that must change for the model to explain the "
+                "records; all others keep their values; writes the model with these changes");
+  line.add("--fix", o.fixed, "parameter that keeps its value (GENROU.Xl); may be repeated");
   const jobs::Option network = line.add("--network", a.network,
                                         "trained network (file.network, or a folder with one): its estimate "
                                         "is one of the starts, and is shown beside the fit");
-  line.add("--start", a.start, "the same from what 'swingbank predict --out FILE' wrote").excludes(network);
+  line.add("--start", a.start, "the same from the output of 'swingbank predict --out FILE'")
+      .excludes(network);
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
   line.group("Expert");
   line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);
@@ -304,9 +303,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       .between(0, 1000);
   line.add("--seed", o.seed, "of the draws").shows_default();
   line.example("swingbank calibrate --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
-  line.footer(
-      std::string(thresholds::kExitCodes) +
-      " Complete is a structure that holds after calibration (curve-fit: that leaves nothing but noise).");
+  line.footer(std::string(thresholds::kExitCodes) +
+              " Complete: the structure is adequate after calibration (curve-fit: the residual is noise).");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ int run_system(Arguments& a) {
 int write_interrupted(Arguments& a, std::size_t asked, const std::vector<compare::EventComparison>& events) {
   OutputFolder& results = a.of.results();
   const std::string sentence =
-      fmt::format("Interrupted: {} of {} events were compared. Nothing is judged.", events.size(), asked);
+      fmt::format("Interrupted before a verdict: {} of {} events were compared.", events.size(), asked);
   nlohmann::json result = {{"format", "swingbank-interrupted-1"},
                            {"interrupted", true},
                            {"command", a.command},
@@ -136,13 +136,14 @@ void declare(jobs::CommandLine& line, Arguments& a) {
                "instead of --model and --records: a system file, a grid with an event and records of "
                "several terminals (validate/record/README.md)");
   line.group("Expert");
-  line.add("--drive", a.drive,
-           "what drives the model: voltage (V and angle; P and Q are compared) or pq (the reverse)")
+  line.add(
+          "--drive", a.drive,
+          "signals of the playback: voltage (V and angle are played in, P and Q compared) or pq (the reverse)")
       .one_of({"voltage", "pq"})
       .shows_default()
       .excludes(system);
   line.add_flag_off("--no-fit", a.fit_switchings,
-                    "leave estimated switching times in the middle of their sample interval")
+                    "keep estimated switching times in the middle of their sample interval")
       .excludes(system);
   for (const jobs::Option& option : of_one_plant) option.excludes(system);
   line.example("swingbank compare --model plant.toml --records fault1.csv fault2.csv --out compared");

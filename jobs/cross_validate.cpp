@@ -52,20 +52,19 @@ int swingbank::jobs::cross_validate_command(CommandLine& line, int argc, char** 
   std::string fold = "all", judged;
   int processes = 0;
   line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
-  line.add(
-      "--judge-on", judged,
-      "bus number of a generator to judge on in place of the one left out, which then takes no part: to choose "
-      "recipes by; all: each of the others in turn");
+  line.add("--judge-on", judged,
+           "bus number of a generator to judge on instead of the excluded one, which is then not "
+           "used (for the choice of recipes); all: each of the others in turn");
   line.add("--processes", processes,
            "processes that share the folds, each with its part of the threads (default: one "
            "per core; 1 where mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
-      throw InputError({"this experiment leaves no generator out", options.experiment, "its split says so",
+      throw InputError({"this experiment leaves no generator out", options.experiment, "see its split",
                         "use swingbank train"});
     if (processes < 0)
-      throw InputError({fmt::format("{} processes", processes), "--processes", "somebody must do the work",
-                        "use 1 or more"});
+      throw InputError({fmt::format("{} processes", processes), "--processes",
+                        "at least one process is needed", "use 1 or more"});
     static_cast<void>(folds_of(fold, request.experiment));
     if (!judged.empty()) static_cast<void>(folds_of(judged, request.experiment, "--judge-on"));
   };

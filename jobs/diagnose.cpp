@@ -116,9 +116,11 @@ void declare(jobs::CommandLine& line, Command& c) {
       .excludes(of_one_plant.front())
       .excludes(fleet);
   line.example("swingbank diagnose --model plant.toml --records fault1.csv fault2.csv --out diagnosis");
-  line.footer(
-      std::string(thresholds::kExitCodes) +
-      " Complete is a structure that lacks nothing; fit for purpose, the model with its parameters refitted. 2: interrupted (Ctrl-C, SIGTERM); report and JSON hold what was fitted until then, and nothing is judged; a second Ctrl-C ends at once. Of a fleet: 0 all plants are complete, 3 some plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
+  line.footer(std::string(thresholds::kExitCodes) +
+              " Complete: no component is missing. Fit for purpose: judged with refitted parameters. "
+              "2: interrupted (Ctrl-C, SIGTERM); report and JSON hold the fits until then, without a "
+              "verdict; a second Ctrl-C ends at once. Of a fleet: 0 all plants are complete, 3 some "
+              "plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
 }
 
 }  // namespace

@@ -25,21 +25,21 @@ std::string_view slot_meaning(Slot slot) {
   constexpr std::array<std::string_view, kSlots.size()> meanings = {
       "the source: a synchronous machine or a converter",
       "between the machine's terminal and the grid",
-      "makes Vc, the voltage the exciter regulates",
-      "moves the references of exciter and governor",
-      "makes the mechanical torque",
-      "changes the torque after the governor",
-      "makes Vs, the stabiliser's signal",
-      "adds to the voltage error",
-      "makes the field voltage",
-      "makes the references of a converter's P and Q",
-      "makes the reference of a wind turbine's power from its speed",
-      "turns a wind turbine's blades",
-      "makes the wind's power at the shaft",
-      "turns: the turbine's and the generator's shaft",
-      "makes a converter's current commands",
-      "a consumer at a bus",
-      "between the grid and the record"};
+      "Vc, the voltage that the exciter regulates",
+      "references of exciter and governor",
+      "mechanical torque",
+      "torque after the governor",
+      "Vs, the stabiliser's signal",
+      "signal added to the voltage error",
+      "field voltage",
+      "references of a converter's P and Q",
+      "reference of a wind turbine's power from its speed",
+      "pitch angle of a wind turbine",
+      "wind power at the shaft",
+      "shaft of turbine and generator",
+      "current commands of a converter",
+      "load at a bus",
+      "instrument between the grid and the record"};
   return meanings[static_cast<std::size_t>(slot)];
 }
 
@@ -49,7 +49,7 @@ void print_list(const library::EffectLibrary& library) {
     for (const Effect* e : library.all()) {
       if (e->slot != slot) continue;
       if (!std::exchange(any, true)) fmt::print("{}: {}\n", slot_name(slot), slot_meaning(slot));
-      fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (law file)" : "");
+      fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (user-defined model)" : "");
     }
   }
 }
@@ -77,7 +77,7 @@ class Footnotes {
     return standard == bounds ? fmt::format("{}", standard) : fmt::format("{} {}", standard, bounds);
   }
   void print() const {
-    fmt::print("\nsources (where two are given: of the standard value, of the bounds)\n");
+    fmt::print("\nsources (if two: of the default value, of the bounds)\n");
     for (std::size_t i = 0; i < texts_.size(); ++i) fmt::print("  {:>2}  {}\n", i + 1, texts_[i]);
     for (const Work* work : works_)
       fmt::print("  {}: {}, {} ({}), {}\n", work->id, work->author, work->title, work->edition, work->where);
@@ -114,7 +114,7 @@ void describe(const Effect& e) {
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit),
                       number(p.default_value), number(p.low), number(p.high), number(p.null_value),
                       sources.marks(p), std::string(p.meaning)});
-    fmt::print("\nparameters (neutral: where the influence vanishes; unit code: a choice)\n");
+    fmt::print("\nparameters (neutral: null value, without influence; unit code: a choice)\n");
     print_table(rows);
     sources.print();
   }
@@ -210,8 +210,8 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
         std::ranges::any_of(library.all(), [&](const Effect* e) { return e->name.starts_with(typed); });
     if (!chosen.back() && is_inverter(typed) && !begun)
       problems.add("no effect '" + name + "'", "NAME",
-                   "of the models of inverters, wind and storage it is not there yet",
-                   "see what there is with swingbank effects");
+                   "this model of inverters, wind or storage is not supported yet",
+                   "list the supported ones with swingbank effects");
     else if (!chosen.back())
       problems.add("no effect '" + name + "'", "NAME",
                    "the nearest names are " + nearest_names(library, name),
@@ -240,20 +240,20 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& l
 
 int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
   line.describe(
-      "Lists the effects the simulator knows, by the place they take; with a NAME, its block diagram, "
-      "equations, parameters, states and source.");
+      "Lists the effects of the simulator by slot; with a NAME, its block diagram, equations, "
+      "parameters, states and source.");
   std::vector<std::string> names, laws, dyr_files;
   Shape shape;
   const jobs::Option effects = line.add("NAME", names, "effects, e.g. GENROU SEXS");
-  const jobs::Option law = line.add("--law", laws, "law file (.toml) whose effect is added; may be repeated")
-                               .one_value_a_mention();
+  const jobs::Option law =
+      line.add("--law", laws, "file (.toml) of a user-defined model; may be repeated").one_value_a_mention();
   line.add("--coverage", dyr_files,
            "PSS/E .dyr files: how many of their records the effects cover, model by model")
       .excludes(effects)
       .excludes(law);
   const jobs::Option json =
       line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
-  line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its standard values, to paste")
+  line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its default values, to paste")
       .excludes(json);
   line.example("swingbank effects SEXS --toml");
   if (!line.parse(argc, argv)) return line.end();

@@ -53,32 +53,35 @@ struct Reading {
             "beside [record.columns] of the plant file")
         .comma_separated();
   }
-  Option add_from(CommandLine& line) { return line.add("--from", from, "leave out what comes before [s]"); }
-  Option add_until(CommandLine& line) { return line.add("--until", until, "leave out what comes later [s]"); }
+  Option add_from(CommandLine& line) {
+    return line.add("--from", from, "exclude samples before this time [s]");
+  }
+  Option add_until(CommandLine& line) {
+    return line.add("--until", until, "exclude samples after this time [s]");
+  }
   /// Adds --point, the measured point that several units share.
   Option add_point(CommandLine& line) {
-    return line.add(
-        "--point", point,
-        "file of the measured point where several units or a collector stand behind it: the others, whose models "
-        "are believed, are taken off the record (configs/plants/README.md)");
+    return line.add("--point", point,
+                    "file of the measured point if several units or a collector are connected behind it: the "
+                    "simulated power of the other units is subtracted from the record "
+                    "(configs/plants/README.md)");
   }
   /// Adds --switch, the switching times given by the user.
   Option add_switch(CommandLine& line) {
     return line
         .add("--switch", switches,
-             "instant [s] at which something is switched in the record, or FILE=instant; may be repeated; "
-             "default: found by the voltage's jumps and fitted")
+             "switching time [s] in the record, or FILE=TIME; may be repeated; default: estimated "
+             "from voltage steps and fitted")
         .one_value_a_mention();
   }
   /// Adds --component, the part of the plant that is tested.
   Option add_component(CommandLine& line) {
     return line
-        .add(
-            "--component", component,
-            "what of the plant is tried: plant, or one part that the record drives with what the others did: "
-            "exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref where recorded -> Efd), "
-            "governor (speed or f, and Pref -> Pm, gate), "
-            "machine (V, angle or f, Efd, and Pm -> P, Q, Ifd, speed)")
+        .add("--component", component,
+             "part of the plant under test: plant, or one component with the recorded signals as its "
+             "inputs: exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref "
+             "where recorded -> Efd), governor (speed or f, and Pref -> Pm, gate), machine (V, angle "
+             "or f, Efd, and Pm -> P, Q, Ifd, speed)")
         .shows_default()
         .one_of({"plant", "exciter", "governor", "machine"});
   }
@@ -100,7 +103,7 @@ struct Reading {
     for (const auto& word : columns) {
       const auto equals = word.find('=');
       if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
-        problems.add("'" + word + "'", "--columns", "it says no quantity and column",
+        problems.add("'" + word + "'", "--columns", "quantity or column is missing",
                      "write --columns V=NAME,P=NAME");
       else
         model.reading.columns[word.substr(0, equals)] = word.substr(equals + 1);
@@ -179,7 +182,7 @@ inline void tell(const validate::plant::PlantModel& model) {
   if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
   if (!model.defaults.empty())
-    fmt::print(stderr, "note: standard values, not this plant's: {}\n", fmt::join(model.defaults, ", "));
+    fmt::print(stderr, "note: default values, not this plant's: {}\n", fmt::join(model.defaults, ", "));
 }
 
 /// Returns a progress callback. It updates one line if standard error is a terminal, and prints a line every
@@ -237,7 +240,7 @@ int guarded(const std::string& command, F action) {
   try {
     return action();
   } catch (const Interrupted&) {
-    fmt::print(stderr, "swingbank {}: stopped by a signal before there was a result; nothing was written\n",
+    fmt::print(stderr, "swingbank {}: stopped by a signal before the first result; nothing was written\n",
                command);
     return kSubmitAgain;
   } catch (const InputError& error) {

@@ -27,14 +27,15 @@ int run(const Arguments& a) {
   jobs::tell(model);
   if (!a.out.empty()) require_inputs_kept({{a.out, "--out"}});
   if (model.submitted)
-    throw InputError({"a model that does not hold", file, "it comes of a calibration that was not adequate",
-                      "diagnose it, and export what 'swingbank add' makes of it"});
+    throw InputError({"a model that is not adequate", file,
+                      "it is the result of a calibration that was not adequate",
+                      "diagnose it, and export the result of 'swingbank add'"});
   if (a.bus > 0) model.bus = a.bus;
   if (!a.id.empty()) model.id = a.id;
   Problems problems;
   const double kv = a.kv > 0 ? a.kv : model.record_base.kv;
   if (dyd && !(kv > 0))
-    problems.add("no nominal voltage", file, "PSLF wants that of the unit's bus", "give --kv");
+    problems.add("no nominal voltage", file, "PSLF requires that of the unit's bus", "give --kv");
   const std::string text = dyd ? plant::dyd_text(model, {model.name}, {a.bus_name, kv}, file, problems)
                                : plant::dyr_text(model, {model.name}, file, problems);
   problems.raise();
@@ -65,8 +66,8 @@ int swingbank::jobs::export_command(CommandLine& line, int argc, char** argv) {
   line.add("--out", a.out, "file to write (default: to the terminal)");
   line.example("swingbank export --model added/model.toml --format dyr --bus 33 --out unit.dyr");
   line.footer(
-      "What PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) stands in comments. Instruments "
-      "and moved references belong to a record and are left out.");
+      "Data that PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) are written as "
+      "comments. Instruments and changed references belong to a record and are omitted.");
   if (!line.parse(argc, argv)) return line.end();
   return jobs::guarded("export", [&] { return run(a); });
 }

@@ -64,7 +64,7 @@ std::string describe(const fleet::FleetRow& row, bool was_there) {
   std::string text = row.plant + ": " + row.verdict;
   if (row.failed()) text += ": " + row.sentence.substr(0, row.sentence.find('\n'));
   for (const auto& effect : row.effects) text += " " + effect;
-  return text + (was_there ? " (was there already)" : "");
+  return text + (was_there ? " (existed already)" : "");
 }
 
 int tell(const jobs::FleetCommand& c, const fleet::Fleet& fleet, const std::vector<fleet::FleetRow>& rows) {

@@ -61,7 +61,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   const jobs::Option part = line.add(
       "--part", c.part, "k/n: only the k-th of n parts of the shards, beside runs that make the others");
   line.add("--databank", c.options.databank,
-           "what swingbank databank wrote for this config (.h5): not drawn again");
+           "databank of this config from swingbank databank (.h5), not drawn again");
   const jobs::Option repair =
       line.add_flag("--repair", c.options.repair, "check every shard there is and make bad ones anew");
   repair.excludes(part);

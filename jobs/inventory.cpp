@@ -87,7 +87,8 @@ void print_text(const Inventory& inventory, bool units) {
         "{} units are classical machines (GENCLS){}\n", t.classical,
         t.idle == 0
             ? std::string()
-            : fmt::format(": {} records of exciters, stabilisers and the like do nothing there", t.idle));
+            : fmt::format(": {} records of exciters, stabilisers and other controls have no effect there",
+                          t.idle));
   print_models(inventory);
   for (const ModelCount& m : inventory.models)
     if (m.faulty > 0) fmt::print("\n{} x {}, as this: {}\n", m.faulty, m.name, m.fault);
@@ -141,12 +142,14 @@ void print_json(const Inventory& inventory) {
 
 int swingbank::jobs::inventory_command(CommandLine& line, int argc, char** argv) {
   Arguments a;
-  line.add("--raw,--epc", a.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+  line.add("--raw,--epc", a.raw,
+           "network, format by file extension: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
-  line.add("--dyr,--dyd", a.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
+  line.add("--dyr,--dyd", a.dyr, "dynamic models, format by file extension: PSS/E .dyr, PSLF .dyd")
+      .required();
   line.add("--frequency-hz", a.frequency_hz,
            "nominal frequency [Hz]: taken as by the other commands, but counting needs none");
-  line.add("--raw-version", a.raw_version, "version of a .raw that does not say it, 23 to 35");
+  line.add("--raw-version", a.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");
   line.add_flag("--json", a.json, "print everything as JSON");
   line.footer(

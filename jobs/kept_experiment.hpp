@@ -28,7 +28,7 @@ inline std::filesystem::path keep_experiment(const std::filesystem::path& file,
     const auto kept = mpi::draw::unpack(mpi::draw::card_of(config, {}, {}), folder / key);
     if (!mpi::draw::replace_name(text, written, (std::filesystem::path(key) / kept.filename()).string()))
       throw InputError({"a name that cannot be replaced", file.string(),
-                        "'" + written + "' stands there with escapes",
+                        "'" + written + "' is written with escapes",
                         "write the name between quotes as it is"});
   }
   make_folder(folder);

@@ -77,8 +77,8 @@ double print(const Plan& plan, const std::string& preset, const Scale& to) {
 
 void run(const Options& o) {
   if (!o.out.empty() && (o.hours <= 0 || o.name.empty()))
-    throw InputError({"no size", "--out", "the experiments are written for some hours and under a name",
-                      "give --hours and --name"});
+    throw InputError(
+        {"no size", "--out", "the experiments need a duration and a name", "give --hours and --name"});
   if (!std::ranges::all_of(o.name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }))
     throw InputError({fmt::format("no preset can be called '{}'", o.name), "--name",
                       "it becomes a key of a file", "use letters, digits, - and _"});
@@ -93,7 +93,7 @@ void run(const Options& o) {
   fmt::print("\nPreset {} with {:.3g} times its work: {:.1f} core-hours, {} on {} cores.\n", o.preset,
              to.work, sum / 3600.0, shown(sum / o.cores), o.cores);
   if (o.hours > 0 && sum > 1.1 * o.hours * 3600.0 * o.cores)
-    fmt::print("That is more than the {} asked for: no run can be smaller.\n", shown(o.hours * 3600.0));
+    fmt::print("That is more than the requested {}: no run can be smaller.\n", shown(o.hours * 3600.0));
   if (o.out.empty()) return;
   for (const auto& e : plan.experiments)
     write_scaled(e, o.preset, to, std::filesystem::path(o.out) / e.file.filename());

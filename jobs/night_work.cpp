@@ -73,7 +73,7 @@ struct Rows {
 
 const NetworkRate& rate_of(const Rates& rates, const std::string& kind) {
   if (const auto found = rates.networks.find(kind); found != rates.networks.end()) return found->second;
-  throw InputError({fmt::format("no rate of '{}'", kind), "--rates", "the plan needs what a sample costs",
+  throw InputError({fmt::format("no rate of '{}'", kind), "--rates", "the plan needs the cost of a sample",
                     fmt::format("measure one and add [network.{}]", kind)});
 }
 

@@ -49,16 +49,16 @@ while (($#)); do
   esac
 done
 if [[ ! $date =~ ^[0-9]{4}-[0-9]{2}-[0-9]{2}$ ]] || ! day=$(date -u -d "$date" +%s 2>/dev/null); then
-  echo "no date at --date $date (YYYY-MM-DD is wanted): give one like $(date +%F)" >&2
+  echo "no date at --date $date (it must be YYYY-MM-DD): give one like $(date +%F)" >&2
   exit 1
 fi
 if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; then
-  echo "no hours at --hours $hours (a number above 0 is wanted): give one like 2 or 0.5" >&2
+  echo "no hours at --hours $hours (it must be a number above 0): give one like 2 or 0.5" >&2
   exit 1
 fi
 seeds=${seeds:-$(awk "BEGIN {print ($hours >= $hours_of_seeds ? 3 : 1)}")}
 if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
-  echo "no number of seeds at --seeds $seeds (the next night's begin ten further on): give 1 to 10" >&2
+  echo "no number of seeds at --seeds $seeds (the next run's seeds start ten higher): give 1 to 10" >&2
   exit 1
 fi
 ((${#experiments[@]})) || experiments=("$source_folder"/configs/experiments/*.toml)
@@ -197,7 +197,7 @@ fuzz_seconds() { # of each target, two at a time, from what is left
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
-    printf '\n## Time\n\n%s of %s hours asked for, on %d cores, preset %s, seed %d (%d of them).\n\n' \
+    printf '\n## Time\n\n%s of %s requested hours, on %d cores, preset %s, seed %d (%d of them).\n\n' \
       "$(awk -v s="$(used)" 'BEGIN {printf "%.2f", s / 3600}')" "$hours" "$(nproc)" "$preset" "$seed" "$seeds"
     printf '| part | time [s] |\n|---|---:|\n'
     awk -F'\t' '!($1 in sum) {order[++n] = $1} {sum[$1] += $2} END {for (i = 1; i <= n; ++i) print "| " order[i] " | " sum[order[i]] " |"}' \
@@ -209,19 +209,19 @@ report() {
       printf '\n## Blind test, seed %s\n\n' "$seed"
       sed '1,2d;s/^## /### /' "$night/blind/score.md"
     elif [[ $blind == 0 ]]; then
-      printf '\n## Blind test\n\nNone in this night.\n'
+      printf '\n## Blind test\n\nNot run.\n'
     fi
     if [[ -s $night/tests.txt ]]; then
-      printf '\n## Tests of the night\n\n'
+      printf '\n## Nightly tests\n\n'
       sed -n '/tests passed/,$p' "$night/tests.txt" | sed 's/^/    /'
     elif [[ $tests == 0 ]]; then
-      printf '\n## Tests of the night\n\nNone in this night.\n'
+      printf '\n## Nightly tests\n\nNot run.\n'
     fi
     if [[ -s $night/fuzz.txt ]]; then
       printf '\n## Fuzz targets\n\n'
       sed 's/^/- /' "$night/fuzz.txt"
     elif [[ $fuzz == 0 ]]; then
-      printf '\n## Fuzz targets\n\nNone in this night.\n'
+      printf '\n## Fuzz targets\n\nNot run.\n'
     fi
   } >"$night/report.md.part" || return 1
   mv "$night/report.md.part" "$night/report.md"

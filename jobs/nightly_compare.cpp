@@ -81,7 +81,7 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
     const double ratio = json.at("mse").get<double>() / json.at("baseline_mse").get<double>();
     if (!(ratio > 0) || !std::isfinite(ratio)) {
       problems.add(fmt::format("MSE / baseline = {}", ratio), file.string(), "it must be finite and positive",
-                   "delete the file and run the night again");
+                   "delete the file and run the nightly benchmark again");
       return;
     }
     Score& score = night[{json.at("table"), json.at("network"), fmt::format("{}", json.value("noise", 0.0)),
@@ -92,13 +92,13 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
     score.makers.insert(json.at("software").get<std::string>() + ", " + json.at("blas").get<std::string>());
   } catch (const nlohmann::json::exception& error) {
     problems.add("result cannot be read", file.string(), error.what(),
-                 "delete the file and run the night again");
+                 "delete the file and run the nightly benchmark again");
   }
 }
 
 Nights read_nights(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
-    throw InputError(Problem{"no nights", folder.string(), "there is no such folder",
+    throw InputError(Problem{"no nightly benchmarks", folder.string(), "there is no such folder",
                              "give the --out of jobs/nightly.sh"});
   }
   Nights nights;
@@ -156,7 +156,7 @@ std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * 
 
 std::string verdict(const Change& c) {
   if (c.nights == 0) return "new";
-  const char* word = c.other_maker ? ", by other software or kernels than the night before" : "";
+  const char* word = c.other_maker ? ", with other software or kernels than the night before" : "";
   if (!c.judged()) return fmt::format("no verdict before {} nights{}", kNightsNeeded, word);
   if (!c.moved()) return fmt::format("within noise{}", word);
   return fmt::format("**{}**{}", c.tonight > c.before ? "worse" : "better", word);
@@ -167,8 +167,10 @@ void print_report(const std::string& date, std::vector<Change> changes) {
                    [](const auto& a, const auto& b) { return a.moved() > b.moved(); });
   const auto moved = std::count_if(changes.begin(), changes.end(), [](const auto& c) { return c.moved(); });
   const auto judged = std::count_if(changes.begin(), changes.end(), [](const auto& c) { return c.judged(); });
-  fmt::print("# Night {}: {} of {} judged cells moved beyond their noise ({} cells in all)\n\n", date, moved,
-             judged, changes.size());
+  fmt::print(
+      "# Nightly benchmark {}: {} of {} judged results changed by more than their noise ({} "
+      "results in all)\n\n",
+      date, moved, judged, changes.size());
   fmt::print(
       "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the nights "
       "before.\n\n");
@@ -190,14 +192,14 @@ void print_report(const std::string& date, std::vector<Change> changes) {
 
 int swingbank::jobs::nightly_compare_command(CommandLine& line, int argc, char** argv) {
   std::string folder, date;
-  line.add("folder", folder, "folder of nights, as jobs/nightly.sh writes it").required();
+  line.add("folder", folder, "folder of nightly benchmarks, as jobs/nightly.sh writes it").required();
   line.add("--night", date, "YYYY-MM-DD (default: the last one)");
   line.example("swingbank nightly-compare nights");
   if (!line.parse(argc, argv)) return line.end();
   try {
     const Nights nights = read_nights(folder);
     if (nights.empty() || (!date.empty() && !nights.contains(date))) {
-      throw InputError(Problem{"no results of night '" + date + "'", folder,
+      throw InputError(Problem{"no results of the nightly benchmark '" + date + "'", folder,
                                "no <date>/<experiment>/results/*.json there", "run jobs/nightly.sh first"});
     }
     if (date.empty()) date = nights.rbegin()->first;

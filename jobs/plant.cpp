@@ -70,7 +70,7 @@ int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.group("Input");
   line.add("--raw,--epc", a.unit.raw,
-           "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+           "network, format by file extension: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
   const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
   line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
@@ -84,12 +84,12 @@ int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
       .one_value_a_mention()
       .comma_separated();
   line.add("--replace", a.replace,
-           "OLD=NEW: a model of the unit read as another: with its values where both have as many "
-           "parameters, else with the other's standard values; may be repeated")
+           "OLD=NEW: a model of the unit read as another: with its values if both have the same "
+           "number of parameters, else with the other's default values; may be repeated")
       .one_value_a_mention();
   line.add_choice("--complete-records", a.complete_records, {"no", "zero", "standard"},
-                  "records that are shorter than their model get these values at their end, longer ones lose "
-                  "what is beyond it; each value is named");
+                  "records that are shorter than their model are completed with these values, longer ones "
+                  "are truncated; each value is named");
   line.group("Input");
   line.add("--measured-at", a.measured_at,
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "
@@ -100,8 +100,8 @@ int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
       .one_of({"psse", "andes"})
       .shows_default();
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
-  line.add("--raw-version", a.unit.raw_version, "version of a .raw that does not say it, 23 to 35");
-  line.footer("Only the unit's own records are read: what is wrong with others is of no concern.");
+  line.add("--raw-version", a.unit.raw_version, "version of a .raw file without a version number, 23 to 35");
+  line.footer("Only the unit's own records are read; errors in other records are ignored.");
   line.example("swingbank plant --raw grid.raw --dyr grid.dyr --bus 33 --out plant.toml");
   if (!line.parse(argc, argv)) return line.end();
   try {

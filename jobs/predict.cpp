@@ -134,18 +134,18 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
 }
 
 std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
-  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "spread",
+  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "RMSE",
                                  "scatter", "unit", "learnt within");
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
     const auto& p = n.parameters[i];
     const auto [mean, scatter] = over_records(all, i);
     text +=
         fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.spread, scatter, p.unit,
-                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "held, not learnt");
+                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
   }
   return text +
-         "spread: root mean square error on records of a generator (or values) it was not trained on; scatter: between these "
-         "records\n";
+         "RMSE: root mean square error on generators (or values) outside the training data; "
+         "scatter: standard deviation between these records\n";
 }
 
 /// Returns the 90 % credible intervals of the parameters for each record.
@@ -156,7 +156,7 @@ std::string believed(const train::run::NetworkInfo& n, const std::vector<Estimat
       if (const auto& x = e.estimate.intervals[i])
         text += fmt::format(
             "{}{:<16}{:>12.4g}{:>12.4g}{:>12.4g}  {}\n",
-            text.empty() ? fmt::format("\n{:<16}{:>12}{:>12}{:>12}\n", "believed", "5 %", "50 %", "95 %")
+            text.empty() ? fmt::format("\n{:<16}{:>12}{:>12}{:>12}\n", "quantiles", "5 %", "50 %", "95 %")
                          : std::string(),
             n.parameters[i].name, x->low, x->median, x->high, e.record.name);
   return text;
@@ -172,7 +172,7 @@ int run(const Options& o) {
   if (!o.out.empty()) require_inputs_kept({{o.out, "--out"}});
   if (o.event && all.size() > 1)
     throw InputError(
-        {"one instant for several records", "--event", "each has its own", "give one record at a time"});
+        {"one event time for several records", "--event", "each has its own", "give one record at a time"});
   for (auto& e : all) {
     e.input = network_input(e.record, model, network.info(), o.event);
     e.estimate = network.estimate(e.input.values, o.noise);

@@ -21,57 +21,57 @@ using validate::event::Phase;
 inline std::string_view phase_words(Phase phase) {
   switch (phase) {
     case Phase::playing:
-      return "the models' events are played";
+      return "playback of the events";
     case Phase::model_as_it_is:
-      return "the model as it is";
+      return "submitted model";
     case Phase::parameter_sets:
-      return "parameter sets are screened";
+      return "screening of parameter sets";
     case Phase::starts:
-      return "parameters are fitted";
+      return "fit of the parameters";
     case Phase::voltage_noise:
-      return "the noise of the voltage is corrected";
+      return "bias correction for voltage noise";
     case Phase::fitted_model:
-      return "the fitted model";
+      return "fitted model";
     case Phase::sensitivities:
-      return "what the records determine";
+      return "sensitivity of the records";
     case Phase::effect_left_out:
-      return "the model without the effect";
+      return "model without the effect";
     case Phase::effect_added:
-      return "the model with the effect";
+      return "model with the effect";
     case Phase::every_parameter:
-      return "all parameters are fitted";
+      return "fit of all parameters";
     case Phase::parameter_subsets:
-      return "sets of wrong parameters are tried";
+      return "search for wrong parameters";
     case Phase::subsets_less_one:
-      return "what each wrong parameter reduces";
+      return "evidence of each wrong parameter";
     case Phase::base:
-      return "the model's parameters are refitted";
+      return "refit of the model's parameters";
     case Phase::missing_input:
-      return "the missing input is inferred";
+      return "inference of the missing input";
     case Phase::screening:
-      return "effects are screened";
+      return "screening of effects";
     case Phase::quick_fits:
       return "quick fits";
     case Phase::full_fits:
       return "full fits of the best candidates";
     case Phase::noise_again:
-      return "the noise is measured again";
+      return "second estimate of the noise";
     case Phase::unseen_events:
-      return "effects are judged on events they were not fitted to";
+      return "hold-out tests of effects";
     case Phase::laws:
-      return "user-defined models are searched";
+      return "search for user-defined models";
     case Phase::second_screening:
-      return "second effects are screened";
+      return "screening of second effects";
     case Phase::second_quick_fits:
       return "quick fits of second effects";
     case Phase::second_full_fits:
       return "full fits of the best second effects";
     case Phase::pair_exchanges:
-      return "pairs of other effects are tried";
+      return "exchange of effects in pairs";
     case Phase::pair_crossings:
-      return "partners are exchanged between pairs";
+      return "exchange of partners between pairs";
     case Phase::pair_unseen_events:
-      return "pairs are judged on events they were not fitted to";
+      return "hold-out tests of pairs";
   }
   return "";
 }
@@ -136,7 +136,7 @@ class PlannedProgress {
  public:
   explicit PlannedProgress(ProgressPlan plan) : plan_(std::move(plan)) {}
   /// Returns "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)" after `seconds` [s]. Omits the
-  /// share for a phase that the course does not contain. Adds "round 2" to a phase that begins again.
+  /// share for a phase that the plan does not contain. Adds "round 2" to a phase that begins again.
   std::string line(Phase phase, const std::string& item, int done, int total, double seconds) {
     const int round = round_of(phase, done);
     const std::string what =
@@ -148,7 +148,7 @@ class PlannedProgress {
     share_ = std::max(share_, planned->from + (planned->to - planned->from) * part);
     beyond_ = beyond_ || planned->beyond;
     const std::string share =
-        beyond_ ? std::string("beyond the usual course") : fmt::format("{:.0f} % done", 100 * share_);
+        beyond_ ? std::string("optional search phase") : fmt::format("{:.0f} % done", 100 * share_);
     return share + time_left(seconds) + ": " + what;
   }
 

@@ -16,10 +16,11 @@ int main(int argc, char** argv) {
   std::string kind, file;
   std::vector<std::string> names;
   if (argc < 3) {  // with a file, arguments are not parsed: names of files may begin with a dash
-    jobs::CommandLine line("read an HDF5 or MATLAB file for another command, which its crash does not affect",
-                           "swingbank read-hdf5");
-    line.add("KIND", kind, "what the file is").required().one_of({"hdf5", "mat"});
-    line.add("FILE", file, "what is read; the answer is bytes, or a list of problems with exit code 3")
+    jobs::CommandLine line(
+        "read an HDF5 or MATLAB file in a separate process, so that its crash does not end the command",
+        "swingbank read-hdf5");
+    line.add("KIND", kind, "format of the file").required().one_of({"hdf5", "mat"});
+    line.add("FILE", file, "data to read; the output is bytes, or a list of problems with exit code 3")
         .required();
     line.add("NAMES", names, "of hdf5: arrays (/records) and attributes (@format); of mat: the time column");
     (void)line.parse(argc, argv);  // always an error or help, because there is no file
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
   file = argv[2];
   names.assign(argv + 3, argv + argc);
   if (kind != "hdf5" && kind != "mat") {
-    std::fprintf(stderr, "'%s' at KIND (swingbank read-hdf5 knows hdf5 and mat): choose one, or see --help\n",
+    std::fprintf(stderr, "'%s' at KIND (swingbank read-hdf5 reads hdf5 and mat): choose one, or see --help\n",
                  kind.c_str());
     return 1;
   }

@@ -71,15 +71,15 @@ inline NetworkInput network_input(const validate::record::Record& record,
     quiet = static_cast<std::size_t>(
         std::ranges::count_if(record.t, [&](double t) { return t <= *event_s + 0.5 * record.step(); }));
   if (!event_s && !signals.event)
-    problems.add("no event", record.name, "nothing leaves the noise",
+    problems.add("no event", record.name, "no signal exceeds the noise",
                  "give --event with its time, or another record");
   else if (constexpr std::size_t few = 5; quiet < few || quiet >= record.t.size())
     problems.add(fmt::format("an event at {:g} s", in.event_s), record.name,
                  fmt::format("there must be {} samples or more before it, and some after it", few),
                  "give a record that begins earlier");
   if (!network.fault_start)
-    problems.add("network without an instant of its faults", network.run,
-                 "its dataset does not say when they begin", "train it on a dataset that `generate` made");
+    problems.add("network without the time of its faults", network.run,
+                 "its dataset has no time of the faults", "train it on a dataset that `generate` made");
   problems.raise();
   const double shift = in.event_s - *network.fault_start;
   const double last = shift + static_cast<double>(network.samples - 1) / network.rate;
@@ -92,7 +92,8 @@ inline NetworkInput network_input(const validate::record::Record& record,
   for (const auto& channel : network.channels) {
     const auto x = record_detail::series_of(channel, record, model, network);
     if (x.empty()) {
-      problems.add("channel " + channel, record.name, "the network reads it and the record does not hold it",
+      problems.add("channel " + channel, record.name,
+                   "the network reads it, and the record does not contain it",
                    "give a record with it, or a network trained without it");
       continue;
     }

@@ -22,9 +22,7 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
                              const validate::fit::Fit& reached) {
   OutputFolder& folder = of.results();
   const std::string sentence = fmt::format(
-      "Interrupted: the best values until then, with chi2 per value {:.4g}. The fit has not ended and is not "
-      "judged.",
-      reached.reduced_chi2());
+      "Interrupted before a verdict: best values so far, reduced chi-square {:.4g}.", reached.reduced_chi2());
   validate::plant::PlantModel model = before;
   model.plant = reached.plant;
   of.keep_laws(model);
@@ -32,8 +30,7 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
   if (command == "calibrate") model.submitted = validate::event::whole_model(before).plant;
   validate::plant::write_plant_file(
       folder.file(kInterruptedModel), model,
-      {"INTERRUPTED: the fit that gave these values has not ended. Do not use them.",
-       "Command: " + command_line});
+      {"INTERRUPTED: the fit of these values is incomplete. Do not use them.", "Command: " + command_line});
   nlohmann::json result = {{"format", "swingbank-interrupted-1"},
                            {"interrupted", true},
                            {"command", command_line},

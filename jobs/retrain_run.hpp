@@ -32,7 +32,7 @@ inline bool make_network(const RetrainPrograms& programs, const validate::retrai
     const int code = run_own(program, words);
     if (code != 0 && code != kStopped)
       throw InputError({fmt::format("the network {} the effect was not made", side.name),
-                        side.folder.string(), program.filename().string() + " says why above",
+                        side.folder.string(), program.filename().string() + " printed the reason above",
                         "correct that; if settings changed since an earlier run, remove the folder"});
     return code == 0;
   };
@@ -53,7 +53,7 @@ inline validate::calibrate::NetworkEstimate ask_network(const RetrainPrograms& p
   words.insert(words.end(), records.begin(), records.end());
   if (run_own(programs.predict, words) != 0)
     throw InputError({fmt::format("no estimate by the network {} the effect", side.name),
-                      side.results.string(), "swingbank predict says why above",
+                      side.results.string(), "see the message of swingbank predict above",
                       "correct that and run the command again"});
   return validate::calibrate::read_estimate(file);
 }

@@ -38,7 +38,7 @@ while (($#)); do
   shift 2
 done
 if [[ -z $experiment ]]; then
-  echo "experiment missing at --experiment (nothing says what to run): give a file of configs/experiments" >&2
+  echo "experiment missing at --experiment (it is required): give a file of configs/experiments" >&2
   exit 1
 fi
 out=$(realpath -m "${out:-$source_folder/out/$(basename "$experiment" .toml)-$preset}")

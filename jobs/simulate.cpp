@@ -369,11 +369,13 @@ int simulate(const Options& o) {
 int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) {
   Options o;
   line.group("Input");
-  line.add("--raw,--epc", o.raw, "network, told by its ending: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
+  line.add("--raw,--epc", o.raw,
+           "network, format by file extension: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
-  line.add("--dyr,--dyd", o.dyr, "dynamic models, told by its ending: PSS/E .dyr, PSLF .dyd").required();
+  line.add("--dyr,--dyd", o.dyr, "dynamic models, format by file extension: PSS/E .dyr, PSLF .dyd")
+      .required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
-  line.add("--raw-version", o.raw_version, "version of a .raw that does not say it, 23 to 35");
+  line.add("--raw-version", o.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.add("--law", o.laws, "file (.toml) of a user-defined model that --attach may use; may be repeated");
   line.add("--convention", o.convention,
            "psse: governors set power; andes: torque; neither has speed in the stator voltage "
@@ -384,7 +386,7 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
   line.add_flag("--net-generators", o.net_generators,
                 "generators in service without a machine model become negative loads, as PSS/E's GNET does");
   line.add("--start", o.start,
-           "solved: from the solution of the power flow; file: from the file's voltages as they stand")
+           "solved: start from the solution of the power flow; file: start from the voltages of the file")
       .one_of({"solved", "file"})
       .shows_default();
   line.add("--q-limits", o.q_limits, "reactive limits of generators in the power flow")
@@ -396,8 +398,8 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
       .one_of({"fixed", "step"})
       .shows_default();
   line.add("--devices", o.devices,
-           "dc lines, FACTS and GNE devices and induction machines draw what the file's voltages say, if "
-           "these are a solution (checked) or whatever they are (file), or nothing (none)")
+           "power of dc lines, FACTS and GNE devices and induction machines: from the file's "
+           "voltages, if these are a solution (checked) or always (file), or zero (none)")
       .one_of({"checked", "file", "none"})
       .shows_default();
   line.add("--loads", o.load_model,
@@ -410,8 +412,8 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
                 "where the operating point lies beyond a control's limit, move the limit there and name it");
   line.group("Models");
   line.add("--complete-records", o.complete_records,
-           "records of the .dyr that are shorter than their model get these values at their end, longer "
-           "ones lose what is beyond it; each is named")
+           "records of the .dyr that are shorter than their model are completed with these values, "
+           "longer ones are truncated; each is named")
       .one_of({"no", "zero", "standard"})
       .shows_default();
   line.add_flag("--drop-refused", o.drop_refused,
@@ -462,12 +464,12 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
   line.add("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
       .comma_separated();
   line.add_flag("--after-switching", o.after_switching,
-                "a sample at a switching instant shows the value just after it");
+                "a sample at a switching time has the value just after it");
   line.group("Output");
   line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
   line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
   line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
-  line.add("--changes", o.changes, "text file for all that was done to the case, a line for every place");
+  line.add("--changes", o.changes, "text file of all changes to the case, one line per change");
   line.group("Expert");
   line.add("--integrator", o.integrator,
            "reference: IDA on the unreduced equations; lanes: the engine of generate")

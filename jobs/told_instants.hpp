@@ -32,7 +32,7 @@ inline std::map<std::string, std::vector<double>> told_instants(const std::vecto
                    "give --switch 2.0 or --switch FILE=2.0");
     else if (record.empty())
       problems.add("'" + word + "'", "--switch", "several records are given",
-                   "say which one: --switch FILE=" + number);
+                   "name one: --switch FILE=" + number);
     else if (std::ranges::find(records, record) == records.end())
       problems.add("record '" + record + "'", "--switch", "no --record has that file name",
                    "use the name without its folder");

@@ -7,7 +7,7 @@ int swingbank::jobs::train_command(CommandLine& line, int argc, char** argv) {
   TrainingOptions options;
   const auto check = [&](const train::run::RunRequest& request) {
     if (request.experiment.leave_one_out)
-      throw InputError({"this experiment leaves generators out", options.experiment, "its split says so",
+      throw InputError({"this experiment leaves generators out", options.experiment, "see its split",
                         "use swingbank cross-validate"});
   };
   return training_main(argc, argv, line, options, check, [&](train::run::RunRequest request) {

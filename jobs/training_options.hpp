@@ -48,7 +48,7 @@ struct TrainingOptions {
     line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
     line.add("--noise", noise, "level of measurement noise on every record (0.001: 0.1 %)").shows_default();
     line.add("--test-rows", test_rows,
-             "judge about so many test rows, evenly spread (default: the preset's)");
+             "judge about this number of test rows, evenly spaced (default: the preset's)");
     line.add("--train-share", train_share, "train on this share of the training rows").shows_default();
     line.add("--epochs", epochs, "instead of the preset's");
     line.add("--threads", threads,
@@ -81,9 +81,9 @@ struct TrainingOptions {
       problems.add("two datasets", "--simulate", "rows come from a disk or from memory",
                    "give one of the two");
     if (simulate.empty() && (simulated.draws || simulated.seed))
-      problems.add("no config to simulate", "--draws, --draw-seed", "they change a config's",
+      problems.add("no config to simulate", "--draws, --draw-seed", "they change values of a config",
                    "give --simulate, or leave them out");
-    if (out.empty()) problems.add("no output folder", "--out", "results need a place", "give a folder");
+    if (out.empty()) problems.add("no output folder", "--out", "results need a folder", "give a folder");
     if (!(noise >= 0 && noise <= 0.1))
       problems.add(fmt::format("a noise level of {}", noise), "--noise", "a level lies between 0 and 0.1",
                    "give 0.001 for 0.1 %");

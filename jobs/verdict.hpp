@@ -30,7 +30,7 @@ struct Judging {
   Option add_to(CommandLine& line) {
     line.add("--pdf", pdf, "the page as PDF too, in this file, printed by Chromium");
     line.add_flag("--quiet", quiet, "print errors and the result only");
-    line.add("--by", signed_by, "who signs: printed on the page with date and inputs");
+    line.add("--by", signed_by, "name of the signer: printed on the page with date and inputs");
     return line.add(
         "--accept", accept,
         fmt::format("limits by which the model is fit for purpose: a file (configs/accept/README.md), or "

@@ -35,7 +35,7 @@ for event in compared["events"]:
         assert own["noise"] == c["noise_pu"] * c["units_in_pu"], own
         assert abs(own["rms_over_noise"] - own["rms"] / own["noise"]) < 1e-9 * own["rms_over_noise"], own
 PYTHON
-for words in 'An effect added' 'evidence' 'avr_ev2.csv (not fitted to)' 'completed'; do
+for words in 'Added effect' 'evidence' 'avr_ev2.csv (held out)' 'completed'; do
   grep -qF -- "$words" "$work/added/report.html" || fail "'$words' is not on the page"
 done
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
@@ -61,7 +61,7 @@ holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not
 # the usual method for comparison, with known truth: tables and JSON agree on which is closer
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
   --method both --truth "$work/added/model.toml" --out "$work/both" >"$work/text"
-grep -q 'intervals hold the truth' "$work/text" || fail "no comparison with the truth"
+grep -q 'intervals contain the true value' "$work/text" || fail "no comparison with the truth"
 grep -q '^# Fitted by least squares of the curves' "$work/both/curve-fit.toml" || fail "no plant file of the curve fit"
 python3 - "$work/both/calibrate.json" <<'PYTHON'
 import json, sys
@@ -83,8 +83,8 @@ status=0
 grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the bent model does not say so"
 grep -q "^next: .*swingbank diagnose --model $model" "$work/text" || fail "it does not say what is next"
 "$swingbank" compare --model "$work/poor/model-not-adequate.toml" --records "$one" --out "$work/bent" >/dev/null 2>"$work/notes" || (($? == 3))
-grep -q 'comes of a calibration that did not hold' "$work/notes" || fail "a bent model is taken without a word"
-grep -q 'survives the refit' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
+grep -q 'is the result of a calibration that was not adequate' "$work/notes" || fail "a bent model is taken without a word"
+grep -q 'Structure not adequate' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
 
 out=$work/out
 mkdir "$out"
@@ -105,7 +105,7 @@ misused "method" "method" calibrate --records "$one" --method guess
 misused "spread" "spread" calibrate --records "$one" --spread -1
 refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
 refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
-refuses "slot taken" "no room" add GENCLS --records "$one"
+refuses "slot taken" "no free place" add GENCLS --records "$one"
 refuses "no effect named" "until-adequate" add --records "$one"
 refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"
 refuses "one event, held out" "every event is held out" add SEXS --records "$one" --hold-out avr_ev1

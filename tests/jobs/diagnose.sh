@@ -19,7 +19,7 @@ script -qefc "'$swingbank' diagnose --model '$model' --records '$one' '$two' --p
 # progress on a terminal in plain words: the share done, or that the run takes longer than planned
 tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+' >"$work/progress"
 (($(wc -l <"$work/progress") > 20)) || fail "a terminal shows no progress: $(cat "$work/progress")"
-! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|beyond the usual course: [a-z])' "$work/progress" >"$work/inner" ||
+! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|optional search phase: [a-z])' "$work/progress" >"$work/inner" ||
   fail "progress without a share: $(cat "$work/inner")"
 sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the share done goes back"
 # the remaining time falls: seconds of each line that states it
@@ -65,7 +65,7 @@ status=0
 wait "$diagnosing" || status=$?
 ((status == 2)) || fail "exit code $status after a signal, expected 2"
 grep -qx 'stopping' "$work/told" || fail "the signal is not acknowledged"
-grep -q 'Interrupted: what was fitted until then' "$work/ended.txt" || fail "the end is not told"
+grep -q 'Interrupted before a verdict' "$work/ended.txt" || fail "the end is not told"
 grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
 [[ -s $work/ended/report.html ]] || fail "no page after a signal"
 

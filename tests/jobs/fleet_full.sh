@@ -39,7 +39,7 @@ grep -q 'adequate' "$work/ranks/sound/report.html" || fail "no report of the sou
 # again, on one rank: existing results are not computed again, and the table is the same
 before=$(stat -c %y "$work/ranks/sound/plant.json")
 expect 1 fleet "$work/fleet.toml" "$work/ranks"
-grep -q 'sound: .* (was there already)' "$work/ranks.log" || fail "computed again: $(cat "$work/ranks.log")"
+grep -q 'sound: .* (existed already)' "$work/ranks.log" || fail "computed again: $(cat "$work/ranks.log")"
 [[ $before == "$(stat -c %y "$work/ranks/sound/plant.json")" ]] || fail "written again"
 grep -q '5 failed' "$work/table" || fail "table: $(cat "$work/table")"
 [[ -z $(find "$work/ranks" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/ranks")"

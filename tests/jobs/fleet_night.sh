@@ -55,7 +55,7 @@ if wait "$started"; then fail "a killed run cannot succeed"; fi
 sleep 1 # a diagnosis dies with its rank
 [[ -z $(of_fleet "$work/killed") ]] || fail "left running: $(of_fleet "$work/killed")"
 expect 1 fleet "$work/fleet.toml" "$work/killed" 3
-(($(grep -c 'was there already' "$work/killed.log") >= 1)) || fail "finished plants were computed again"
+(($(grep -c 'existed already' "$work/killed.log") >= 1)) || fail "finished plants were computed again"
 same_table "$work/whole" "$work/killed"
 [[ -z $(find "$work/killed" -name '*.part' -o -name '*.old') ]] || fail "left behind: $(find "$work/killed")"
 
@@ -92,4 +92,4 @@ same_table "$work/whole" "$work/soft"
 # only modified inputs of the same name are diagnosed again
 sed -i 's/^0.05,[^,]*/0.05,1.045/' "$work/records/e4.csv"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
-(($(grep -c 'was there already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"
+(($(grep -c 'existed already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"

@@ -20,7 +20,7 @@ hidden = {h["kind"] for h in json.load(open(sys.argv[1]))["hidden"]}
 said = json.load(open(sys.argv[2]))
 print(f"{' + '.join(sorted(hidden))} in {said['seconds']:.0f} s:",
       ", ".join(f"{p['name']} {100 * p['probability']:.0f} %" for p in said["probabilities"] if p["in_set"]))
-if "Each effect by itself: " not in said["sentence"]:
+if "Probability of each effect: " not in said["sentence"]:
     sys.exit("the sentence does not tell each effect by itself")
 sys.exit(len(hidden) != 2 or not any(p["in_set"] and set(p["name"].split(" + ")) == hidden for p in said["probabilities"]))
 PYTHON

@@ -24,13 +24,13 @@ grep -q '^| V | cnn | 0 | 30 .* no verdict before 3 nights |$' "$work/report" ||
 night 2026-01-03 0.190 0.098
 night 2026-01-04 0.204 0.400
 compare
-grep -q '^# Night 2026-01-04: 1 of 2 judged' "$work/report" || fail "headline: $(cat "$work/report")"
+grep -q '^# Nightly benchmark 2026-01-04: 1 of 2 judged' "$work/report" || fail "headline: $(cat "$work/report")"
 grep -q '^| V | cnn | 0 | 31 .* +300.0 % .* \*\*worse\*\* |$' "$work/report" || fail "fourfold error not named: $(cat "$work/report")"
 grep -q '^| V | cnn | 0 | 30 .* within noise |$' "$work/report" || fail "2 % called a move: $(cat "$work/report")"
 
 BLAS=other night 2026-01-05 0.204 0.100
 compare
-grep -q '^| V | cnn | 0 | 30 .* within noise, by other software or kernels than the night before |$' "$work/report" ||
+grep -q '^| V | cnn | 0 | 30 .* within noise, with other software or kernels than the night before |$' "$work/report" ||
   fail "other kernels without a word: $(cat "$work/report")"
 rm -r "$work/nights/2026-01-05"
 

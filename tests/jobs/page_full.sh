@@ -67,4 +67,4 @@ python3 - "$swingbank" calibrate --model "$work/right.toml" --records "$one" --p
 import pty, sys
 pty.spawn(sys.argv[1:])
 PYTHON
-grep -qE '[0-9]+ % done, about [0-9]+ s left: parameters are fitted' "$work/tty" || fail "no progress: $(head -c 600 "$work/tty")"
+grep -qE '[0-9]+ % done, about [0-9]+ s left: fit of the parameters' "$work/tty" || fail "no progress: $(head -c 600 "$work/tty")"

@@ -133,7 +133,7 @@ PYTHON
 calibrate() { "$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --out "$work/refused" "$@"; }
 refuses "network of another plant" 'was trained on GENCLS' "$swingbank" calibrate --model "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" \
   --records "$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv" --start "$work/seen.json" --out "$work/refused"
-refuses "no network" 'predict says why above' calibrate --network "$work/none.network"
+refuses "no network" 'the message of swingbank predict above' calibrate --network "$work/none.network"
 refuses "estimate of an event held out" 'that event is held out' calibrate --start "$work/seen.json" --hold-out 1
 refuses "curve fitting with a network" 'starts from the model.s own values' calibrate --start "$work/seen.json" --method curve-fit
 misused "network and start" 'excludes' calibrate --start "$work/seen.json" --network "$network"

@@ -54,4 +54,4 @@ swingbank diagnose --model calibrated/model-not-adequate.toml --records event*.c
 grep -q 'started from the values before' said.errors || fail "it does not say what it began with: $(cat said.errors)"
 verdict bent >bent.verdict
 cmp mine bent.verdict || fail "the bent model's verdict is another: $(cat mine bent.verdict)"
-refuses "export of a bent model" "does not hold" swingbank export --model calibrated/model-not-adequate.toml
+refuses "export of a biased model" "not adequate" swingbank export --model calibrated/model-not-adequate.toml

@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/retrain.bash"
 
 retrain_given "$work/text" || (($? == 3)) || fail "$(tail -5 "$work/log")"
-grep -q 'Estimates on the unseen events' "$work/text" || fail "no comparison: $(cat "$work/text")"
+grep -q 'Estimates on held-out events' "$work/text" || fail "no comparison: $(cat "$work/text")"
 for side in without with; do
   [[ -s $work/given/retrain/$side/results/$side-cnn-retrain-seed1.network ]] || fail "no network $side the effect"
 done

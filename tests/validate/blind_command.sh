@@ -15,7 +15,7 @@ before=$(cd "$run" && find . -type f -exec sha256sum {} + | sort)
 rm -r "$run/cases/c0002"
 mkdir "$run/cases/.c0002.partial"
 "$bin/swingbank-blind-test" "${tiny[@]}" >"$folder/log"
-grep -q 'made 1 cases .* 1 were there' "$folder/log"
+grep -q 'made 1 cases .* 1 existed already' "$folder/log"
 [ "$before" = "$(cd "$run" && find . -type f -exec sha256sum {} + | sort)" ]
 [ ! -e "$run/cases/.c0002.partial" ]
 

@@ -32,7 +32,7 @@ refuses() {
   [[ ! -e $work/none ]] || fail "files left behind: $*"
 }
 one=(--record "$records/avr_ev1.csv") two=(--record "$records/avr_ev2.csv")
-refuses 'say which one' "$compare" --model "$model" "${one[@]}" "${two[@]}" --switch 2.0
+refuses 'name one: --switch' "$compare" --model "$model" "${one[@]}" "${two[@]}" --switch 2.0
 refuses 'no --record has that file name' "$compare" --model "$model" "${one[@]}" --switch other.csv=2.0
 refuses 'no time in seconds' "$compare" --model "$model" "${one[@]}" --switch 2,0
 refuses 'no sample between' "$compare" --model "$model" "${one[@]}" --switch 99

@@ -59,7 +59,7 @@ class Bench {
         [&](std::size_t e) {
           fit::Fit f = fit::fit(tested, all_.alone(e), {});
           if (!f.failed.empty())
-            throw InputError({"the model cannot follow the record", all_[e].record.name, f.failed,
+            throw InputError({"playback of the record fails", all_[e].record.name, f.failed,
                               "check the model's parameters and the record's base and units"});
           fits[e] = std::move(f.events.front());
         },
@@ -259,7 +259,7 @@ void calibrate_addition(Addition& a, const std::vector<record::Record>& records,
 /// Returns the effect's values if they are few enough for a sentence; the table of parameters has all.
 std::string own_values(const Addition& a) {
   constexpr int kInASentence = 6;
-  if (a.own > kInASentence) return fmt::format("Its {} values stand among the parameters", a.own);
+  if (a.own > kInASentence) return fmt::format("Its {} values are in the table of parameters", a.own);
   std::string text;
   for (int i = 0; i < a.own; ++i) {
     const auto& p = a.parameters[static_cast<std::size_t>(i)];
@@ -280,14 +280,14 @@ std::string sentence_of(const Addition& a) {
     after += e.score.after;
     ++n;
   }
-  const std::string where = any_unseen ? "events it was not fitted to" : "the events (none was held out)";
+  const std::string where = any_unseen ? "held-out events" : "all events (none held out)";
   std::string text = fmt::format(
-      "{} {}: on {} chi2 per value goes from {:.3g} ({:.3g} after refitting without it) to {:.3g}.",
-      a.hypothesis.what, a.earns ? "added" : "does not earn its place", where, before / n, without / n,
-      after / n);
+      "{} {}: on {} the reduced chi-square changes from {:.3g} ({:.3g} refitted without it) to {:.3g}.",
+      a.hypothesis.what, a.earns ? "added" : "not accepted", where, before / n, without / n, after / n);
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (a.own > 0) text += " " + own_values(a) + ".";
-  text += a.adequate ? " Nothing but noise is left." : " More than noise is left: something else is missing.";
+  text +=
+      a.adequate ? " The residual is noise." : " The residual exceeds noise: another component is missing.";
   if (const std::string bounds = fit::bounds_text(a.parameters); !bounds.empty()) text += " " + bounds;
   return text;
 }
@@ -309,12 +309,12 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
                       suggestion(name, names, remedy)});
   if (effect->instants)
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
-                      "it acts at given instants and so belongs to one event, not to the plant",
+                      "it acts at given times and so belongs to one event, not to the plant",
                       "write it into the model file by hand"});
   throw InputError({"effect " + std::string(effect->name), "swingbank add",
-                    "the plant has no room in slot " + std::string(sim::slot_name(effect->slot)),
+                    "no free place in slot " + std::string(sim::slot_name(effect->slot)),
                     "write \"" + std::string(effect->name) +
-                        " in place of ...\" with the name of what stands there, or " + remedy});
+                        " in place of ...\" with the name of the present effect, or " + remedy});
 }
 
 namespace {

@@ -19,19 +19,19 @@ using nlohmann::json;
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
   return fmt::format(
-      "{} {} its place by the criterion of add: evidence above {:g} for an effect that was named, and {}. Diagnose, "
-      "which takes the best of many, asks for {:g}, that every event be predicted by the others, and that no input "
-      "free in time explain more.",
-      a.hypothesis.name, a.earns ? "earns" : "does not earn", thresholds::addition.strong.value,
-      any_unseen ? "no unseen event worse with it (unless nothing but noise is left there)"
-                 : "no event was held out to try it on",
+      "{} is {} by the criterion of add: evidence above {:g} for a named effect, and {}. "
+      "Diagnose selects one of many effects; it requires evidence above {:g}, prediction of "
+      "every held-out event, and no inferred input with more evidence.",
+      a.hypothesis.name, a.earns ? "accepted" : "not accepted", thresholds::addition.strong.value,
+      any_unseen ? "no held-out event worse with it (unless its residual is noise)"
+                 : "no held-out event for a test",
       thresholds::evidence.accepted.value);
 }
 
 report::Table values_table(const Addition& a) {
   report::Table t{
       "Parameters",
-      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "decided by records", ""},
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "determined by records", ""},
       {}};
   for (std::size_t i = 0; i < a.parameters.size(); ++i) {
     const auto& p = a.parameters[i];
@@ -118,7 +118,7 @@ std::vector<std::string> provenance_lines(const Addition& a, const plant::PlantM
                   fmt::gmtime(std::time(nullptr))),
       "Command: " + command_line, fmt::format("To the model {} (SHA-256 {}).", from.origin, from.sha256),
       "Fitted to: " + fitted};
-  if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
+  if (!unseen.empty()) lines.push_back("Held-out events: " + unseen);
   lines.push_back(a.sentence);
   return lines;
 }
@@ -127,8 +127,7 @@ std::string terminal_report(const Completion& c) {
   std::string text;
   for (const auto& a : c.added) text += terminal_report(a) + "\n";
   for (const auto& r : c.removed)
-    text += fmt::format("{} taken out again: it no longer earns its place (evidence {:.1f}).\n", r.effect,
-                        r.evidence);
+    text += fmt::format("{} removed again: no longer accepted (evidence {:.1f}).\n", r.effect, r.evidence);
   return text + c.sentence + "\n";
 }
 

@@ -79,11 +79,12 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
     prune(c, records, options);
     if (done) {
       c.adequate = true;
-      c.sentence = "Adequate with " + names + ": nothing but noise is left in any event.";
+      c.sentence = "Adequate with " + names + ": the residual is noise in every event.";
       return;
     }
   }
-  c.sentence = fmt::format("{} effects were added ({}), and more than noise is left.", most, names);
+  c.sentence =
+      fmt::format("Not adequate: the residual exceeds noise with {} added effects ({}).", most, names);
 }
 
 }  // namespace

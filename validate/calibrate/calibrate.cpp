@@ -27,7 +27,7 @@ fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
                const event::WhitenedEvents& event) {
   fit::Fit f = fit::fit({plant, model.conventions}, event, {});
   if (!f.failed.empty())
-    throw InputError({"the model cannot follow the record", event.front().record.name, f.failed,
+    throw InputError({"playback of the record fails", event.front().record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   return f;
 }
@@ -443,11 +443,11 @@ class Calibrating {
       c_.sentence += " " + bounds;
   }
   std::string sentence() const {
-    const std::string left = fmt::format("chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}",
-                                         c_.before, c_.after, c_.limit);
+    const std::string left =
+        fmt::format("reduced chi-square {:.3g} -> {:.3g}, noise limit {:.3g}", c_.before, c_.after, c_.limit);
     if (c_.adequacy == Adequacy::structure_poor) return poor_structure(left);
     if (c_.adequacy == Adequacy::adequate)
-      return "Adequate: nothing but noise was left before calibration, and is left after it (" + left + ").";
+      return "Adequate: the residual is noise before and after calibration (" + left + ").";
     std::vector<std::pair<double, std::string>> moves;
     for (const auto& p : c_.parameters)
       moves.emplace_back(
@@ -457,8 +457,8 @@ class Calibrating {
     std::string most;
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
-    return "The parameters were poor, the structure holds: after calibration nothing but noise is left (" +
-           left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
+    return "Structure adequate, parameters were poor: after calibration the residual is noise (" + left +
+           ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();
@@ -466,8 +466,9 @@ class Calibrating {
       if (s.after / s.limit > worst->after / worst->limit) worst = &s;
     const auto channel = std::ranges::max_element(worst->channels, {}, &ChannelScore::over_noise);
     return fmt::format(
-        "Something is missing in the structure: what is left survives the refit of "
-        "every parameter ({}). The largest part is in {} of {}. 'swingbank diagnose' looks for what is missing.",
+        "Structure not adequate: the residual exceeds noise with all parameters refitted ({}). "
+        "Largest residual: {} of {}. Next: 'swingbank diagnose' searches for the missing "
+        "component.",
         left, playin::output_name(channel->channel), worst->record);
   }
 

@@ -143,7 +143,7 @@ class CurveFitting {
     try {
       return as_played(setting_, plant, events_, e);
     } catch (const InputError& error) {
-      throw InputError({"the model cannot follow the record", events_[e].record.name,
+      throw InputError({"playback of the record fails", events_[e].record.name,
                         error.problems().front().sentence(),
                         "check the model's parameters and the record's base and units"});
     }
@@ -252,7 +252,7 @@ class CurveFitting {
     fit_.rms_before = std::sqrt(squares[0] / values);
     fit_.rms_after = std::sqrt(squares[1] / values);
     fit_.sentence = fmt::format(
-        "Curve fitting {} after {} iterations: chi2 per value {:.3g} -> {:.3g}, noise alone leaves at most {:.3g}.",
+        "Curve fitting {} after {} iterations: reduced chi-square {:.3g} -> {:.3g}, noise limit {:.3g}.",
         fit_.converged ? "ended" : "did not end", fit_.iterations, fit_.before, fit_.after, fit_.limit);
   }
 

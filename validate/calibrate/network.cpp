@@ -50,7 +50,7 @@ NetworkEstimate read_estimate(const std::filesystem::path& file) {
     } catch (const json::exception&) {  // reported below
     }
   }
-  throw InputError({"no estimate of a network", file.string(), "it is not what predict writes",
+  throw InputError({"no estimate of a network", file.string(), "it is not an output file of predict",
                     "make one with 'swingbank predict --out FILE'"});
 }
 
@@ -82,7 +82,7 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
     double& value = sim::plant::parameter_value(plant, {*block, index});
     if (!within_reach(value, p.low, p.high, spread)) {
       const std::string learnt = p.learnt() ? fmt::format("was trained on {:g} to {:g}", p.low, p.high)
-                                            : fmt::format("holds it at {:g}", p.low);
+                                            : fmt::format("has the fixed value {:g}", p.low);
       problems.add(fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,
                    fmt::format("the network {} {}, further than {:g} x --spread away", estimate.network,
                                learnt, kBridged),
@@ -107,8 +107,8 @@ void require_unseen(const NetworkEstimate& estimate, const std::vector<record::R
   for (std::size_t k = 0; k < records.size(); ++k)
     if (held_out[k] &&
         std::ranges::count(estimate.records, records[k].sha256, &NetworkEstimate::Seen::sha256) > 0)
-      problems.add("an estimate made of " + records[k].name, estimate.file, "that event is held out",
-                   "make the estimate of the other events, or let it in");
+      problems.add("an estimate from " + records[k].name, estimate.file, "that event is held out",
+                   "estimate from the other events, or do not hold this one out");
   problems.raise();
 }
 

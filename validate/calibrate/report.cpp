@@ -30,7 +30,7 @@ bool strained(const fit::FittedParameter& p) {
 std::string notes(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
   std::string text = p.fit.at_bound ? "at its bound: interval not valid" : "";
-  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "further off than --spread believes";
+  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "outside the prior (--spread)";
   if (p.fit.decided < thresholds::parameters.identified)
     text += std::string(text.empty() ? "" : "; ") + "not identified";
   return text;
@@ -43,8 +43,8 @@ std::string identify_text(const Calibration& c) {
     if (p.fit.decided >= thresholds::parameters.identified) continue;
     text += fmt::format("  {}: ", p.fit.full_name());
     text += p.best_candidate < 0
-                ? std::string("none of the events tried would narrow it by a fifth\n")
-                : fmt::format("{} would narrow its error {:.1f} times ({:.2g} -> {:.2g} {})\n",
+                ? std::string("no simulated event reduces its standard error by a fifth\n")
+                : fmt::format("{} reduces its standard error by a factor of {:.1f} ({:.2g} -> {:.2g} {})\n",
                               c.candidates[static_cast<std::size_t>(p.best_candidate)].what, 1 / p.narrowed,
                               p.fit.error, p.fit.error * p.narrowed, p.fit.unit);
   }
@@ -52,7 +52,7 @@ std::string identify_text(const Calibration& c) {
 }
 
 std::string starts_text(const Calibration& c) {
-  std::string text = "Starts, chi2 per value before -> after, noise taken as white:";
+  std::string text = "Starts, reduced chi-square before -> after, white noise assumed:";
   for (const auto& s : c.started)
     text += fmt::format(" {} {:.3g} -> {:.3g}{};", s.name, s.before, s.after,
                         s.agrees ? "" : " (another optimum)");
@@ -104,15 +104,16 @@ std::string describe(const Calibration& c, const Blur& blur) {
   }
   if (blur.alone)
     return c.parameters[static_cast<std::size_t>(blur.members.front().parameter)].fit.full_name() +
-           " leaves no trace in these records by itself (" + percent(blur.decided) + " decided)";
-  return "cannot be told apart: " + members + " together change nothing that these records show (" +
-         percent(blur.decided) + " decided)";
+           " alone has no significant influence on these records (" + percent(blur.decided) + " determined)";
+  return "not identified separately: " + members +
+         " together have no significant influence on these records (" + percent(blur.decided) +
+         " determined)";
 }
 
 report::Table parameter_table(const Calibration& c) {
   report::Table t{
       "Parameters",
-      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "decided by records", ""},
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "determined by records", ""},
       {}};
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     const auto& p = c.parameters[i].fit;
@@ -158,22 +159,22 @@ std::string aligned(const report::Table& table) {
 std::string terminal_report(const Calibration& c) {
   std::string text =
       c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
-  text += fmt::format("\n{} of {} starts came to this optimum{}.\n", c.agreeing, c.starts,
-                      c.converged ? "" : "; the search had not ended when its iterations did");
+  text += fmt::format("\n{} of {} starts reached this optimum{}.\n", c.agreeing, c.starts,
+                      c.converged ? "" : "; the search reached its iteration limit");
   if (c.started.size() > 1) text += starts_text(c);
   const auto coloured = std::ranges::max_element(c.events, {}, &EventScore::colour);
   if (coloured->colour > 0.2)
     text += fmt::format(
-        "The noise is coloured: neighbouring samples before the event correlate by {:.2f} in {}; limits and "
-        "errors are widened for it.\n",
+        "The noise is coloured: neighbouring samples before the event correlate by {:.2f} in {}; "
+        "limits and standard errors are widened accordingly.\n",
         coloured->colour, coloured->record);
   if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
     text +=
-        "Some values lie further from the model's than --spread believes; the belief pulls at them and "
-        "at what moves with them. Calibrate again from the new model, or with a larger --spread.\n";
+        "Some values are far outside the prior (--spread), which biases them and correlated "
+        "values. Calibrate again from the new model, or with a larger --spread.\n";
   for (const auto& blur : c.blurs) text += "- " + describe(c, blur) + "\n";
   const std::string events = identify_text(c);
-  if (!events.empty()) text += "Which event would tell:\n" + events;
+  if (!events.empty()) text += "Next measurement for each parameter that is not identified:\n" + events;
   return text;
 }
 
@@ -243,9 +244,9 @@ std::vector<std::string> provenance_lines(const Calibration& c, const std::strin
                   fmt::gmtime(std::time(nullptr))),
       "Command: " + command_line,
       fmt::format("From the model {} (SHA-256 {}).", c.model.origin, c.model.sha256), "Fitted to: " + fitted};
-  if (!unseen.empty()) lines.push_back("Not fitted to, but tried on: " + unseen);
+  if (!unseen.empty()) lines.push_back("Held-out events: " + unseen);
   lines.push_back("Fitted parameters: " + names + "; every other value is as in that model.");
-  lines.push_back(fmt::format("Misfit (chi2 per value) {:.4g} before, {:.4g} after: {}.", c.before, c.after,
+  lines.push_back(fmt::format("Reduced chi-square {:.4g} before, {:.4g} after: {}.", c.before, c.after,
                               adequacy_name(c.adequacy)));
   return lines;
 }

@@ -118,8 +118,8 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
   if (records.empty())
     problems.add("no record", "--records", "there is nothing to fit", "give at least one event");
   else if (std::ranges::count(out, false) == 0)
-    problems.add("every event is held out", "--hold-out", "none is left to fit",
-                 records.size() == 1 ? "give more records" : "leave at least one in");
+    problems.add("every event is held out", "--hold-out", "no event remains for the fit",
+                 records.size() == 1 ? "give more records" : "remove at least one --hold-out");
   problems.raise();
   return out;
 }

@@ -40,7 +40,7 @@ void require_base(double mva, const plant::PlantModel& model, const std::string&
 Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
   note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
-  const InputError wrong({"no truth", file.string(), "it is not what blind-test seals",
+  const InputError wrong({"no truth", file.string(), "it is not a truth file of blind-test",
                           "give a plant file (.toml) or a truth of blind-test (.json)"});
   if (!j.is_object() || !j.contains("true_plant")) throw wrong;
   Truth truth;
@@ -200,8 +200,8 @@ report::Table events_beside(const std::vector<Way>& ways) {
 
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   std::string text =
-      "Side by side, chi2 per value (every event with its own switching times and start; only the parameters "
-      "differ):\n" +
+      "Comparison, reduced chi-square (each event with its own switching times and start; only "
+      "the parameters differ):\n" +
       aligned(events_beside(ways)) + "\n" + aligned(parameters_beside(ways, truth));
   if (truth.empty()) return text;
   text += "\n";
@@ -209,7 +209,8 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
     const Distance d = distance(way, truth);
     text += fmt::format("{}: {:.3g} % rms from the truth, mean squared error {:.3g} (raw units)", way.name,
                         100 * d.relative, d.mse);
-    if (has_interval(way)) text += fmt::format(", {} of {} intervals hold the truth", d.held, d.intervals);
+    if (has_interval(way))
+      text += fmt::format(", {} of {} intervals contain the true value", d.held, d.intervals);
     text += "\n";
   }
   return text;
@@ -259,7 +260,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
   const Distance d = distance(way, truth);
   return text + fmt::format(
                     "\n{:.3g} % rms from the truth, mean squared error {:.3g} (raw units), {} of {} "
-                    "intervals hold the truth\n",
+                    "intervals contain the true value\n",
                     100 * d.relative, d.mse, d.held, d.intervals);
 }
 

@@ -26,36 +26,35 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 }
 
 namespace {
-/// "KPR and KIR together would do in place of KPM", for all alternatives.
+/// "KPR and KIR together explain the records as well as KPM", for all alternatives.
 std::string alternatives_text(const fit::SparseSelection& found) {
   std::string text;
   for (const auto& a : found.alternatives)
-    text += fmt::format(" {} together would do in place of {}: the records cannot tell.",
-                        fmt::join(a.instead, " and "), fmt::join(a.named, " and "));
+    text += fmt::format(" {} together explain the records as well as {}.", fmt::join(a.instead, " and "),
+                        fmt::join(a.named, " and "));
   return text;
 }
 }  // namespace
 
 std::string wrong_sentence(const fit::SparseSelection& found, double adequate) {
   const std::string left = fmt::format(
-      "chi2 per value {:.3f} as the model is, {:.3f} with every parameter free", found.before, found.best);
+      "reduced chi-square {:.3f} as submitted, {:.3f} with all parameters free", found.before, found.best);
   if (found.wrong.empty())
-    return fmt::format("No parameter has to change: none explains more of the records than noise would ({}).",
-                       left);
+    return fmt::format("No parameter has to change: none explains more than noise ({}).", left);
   std::string names;
   for (const auto& w : found.wrong) {
     std::string tied;
     for (const auto& t : w.tied) tied += (tied.empty() ? "" : ", ") + t;
-    names += fmt::format("{}{} {:.4g} -> {:.4g} {}{}", names.empty() ? "" : "; ", w.fit.full_name(),
-                         w.fit.start, w.fit.value, w.fit.unit,
-                         tied.empty() ? "" : " (or " + tied + ": the records cannot tell)");
+    names +=
+        fmt::format("{}{} {:.4g} -> {:.4g} {}{}", names.empty() ? "" : "; ", w.fit.full_name(), w.fit.start,
+                    w.fit.value, w.fit.unit, tied.empty() ? "" : " (or " + tied + ": not distinguishable)");
   }
   const bool one = found.wrong.size() == 1;
   return fmt::format(
       "{} {} must change: {}. {} {:.3f} with {} ({}).{}",
       one ? "One parameter" : fmt::format("{} parameters", found.wrong.size()),
-      found.fit.reduced_chi2() <= adequate ? "and no more" : "at least, though more than noise is left,",
-      names, "Chi2 per value is", found.fit.reduced_chi2(), one ? "it" : "them", left,
+      found.fit.reduced_chi2() <= adequate ? "and no more" : "at least, although the residual exceeds noise,",
+      names, "The reduced chi-square is", found.fit.reduced_chi2(), one ? "it" : "them", left,
       alternatives_text(found));
 }
 
@@ -63,7 +62,7 @@ std::string wrong_text(const WrongParameters& w) {
   std::string text = w.sentence + "\n";
   if (w.found.wrong.empty()) return text;
   text += fmt::format("\n{:<16} {:>12} {:>12} {:>26} {:>6} {:>12} {:>10}  {}\n", "parameter", "model",
-                      "fitted", "95 % interval", "unit", "evidence", "of error", "or in its place");
+                      "fitted", "95 % interval", "unit", "evidence", "share", "alternative");
   for (const auto& p : w.found.wrong) {
     std::string tied;
     for (const auto& t : p.tied) tied += (tied.empty() ? "" : ", ") + t;
@@ -73,8 +72,9 @@ std::string wrong_text(const WrongParameters& w) {
                     p.fit.unit, p.evidence, 100 * p.share, tied);
   }
   text +=
-      "\nEvidence [chi2]: by how much the cost rises if this one keeps its value and the others are refitted. Of error: "
-      "that rise as a share of what the model leaves beyond them all; shares need not add up to 100 %.\n";
+      "\nEvidence [chi2]: increase of the cost if this parameter keeps its value and the "
+      "others are refitted. Share: this increase relative to the cost above that of the full "
+      "fit; shares need not add up to 100 %.\n";
   return text;
 }
 

@@ -52,12 +52,11 @@ class Check : Findings {
   void rate() {
     constexpr double kSlowestRate = 24.5;
     if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
-    warn(
-        "slow_rate", fmt::format("{:.3g} samples/s", r_.rate()),
-        fmt::format("a swing of 2 Hz has {:.2g} samples, and what the voltage does between them is guessed",
-                    r_.rate() / 2),
-        "give a record at 25/s or more if there is one; of this one believe what is slow: inertia, governor, "
-        "reactances");
+    warn("slow_rate", fmt::format("{:.3g} samples/s", r_.rate()),
+         fmt::format("a swing of 2 Hz has {:.2g} samples per period, and the voltage between them is unknown",
+                     r_.rate() / 2),
+         "give a record at 25/s or more if there is one; with this record only slow quantities "
+         "are reliable: inertia, governor, reactances");
   }
   static constexpr double kShortestChecked = 0.5;  ///< shortest record that the checks can interpret [s]
 
@@ -97,7 +96,7 @@ class Check : Findings {
       warn("held_samples",
            fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_hold,
                        r_.t[signals_.hold_at]),
-           "all channels stand still although the record has noise",
+           "all channels are constant although the record has noise",
            "check whether the instrument held its last value while data were lost");
   }
 
@@ -107,17 +106,16 @@ class Check : Findings {
       refuse("too_short", fmt::format("{:.3g} s", length),
              "a response to an event cannot be judged from less than 1 s", "give a longer record");
     else if (length < 2)
-      warn(
-          "short_record", fmt::format("{:.3g} s of record", length),
-          "subtransient and transient reactances and a fast voltage regulator can be judged by it; inertia only "
-          "roughly, governor and stabiliser not",
-          "export at least 5 s after the event where that is possible");
+      warn("short_record", fmt::format("{:.3g} s of record", length),
+           "it determines subtransient and transient reactances and a fast voltage regulator, "
+           "inertia only roughly, governor and stabiliser not at all",
+           "export at least 5 s after the event where that is possible");
     if (!signals_.event) {
-      refuse(
-          "no_event", "no event",
-          fmt::format("nothing leaves the noise: V stays within {:.2g} pu, P within {:.2g} pu of the machine",
-                      signals_.V.reach, signals_.P.reach * machine_per_record()),
-          "give a record that holds a fault, a switching or a frequency event");
+      refuse("no_event", "no event",
+             fmt::format(
+                 "no signal exceeds the noise: V stays within {:.2g} pu, P within {:.2g} pu of the machine",
+                 signals_.V.reach, signals_.P.reach * machine_per_record()),
+             "give a record of a fault, a switching or a frequency event");
       return;
     }
     if (!beginning()) return;
@@ -141,23 +139,24 @@ class Check : Findings {
     if (few || sagged || moves > 0.02) {
       refuse("no_pre_event",
              few      ? fmt::format("{:.3g} s before the event", before)
-             : sagged ? fmt::format("V = {:.3g} pu before the first jump and {:.3g} pu at the end",
+             : sagged ? fmt::format("V = {:.3g} pu before the first step and {:.3g} pu at the end",
                                     signals_.V.level, last_voltage())
                       : fmt::format("P or Q moves by {:.2g} pu of the machine in the first {:.2g} s", moves,
                                     static_cast<double>(looked_at) * r_.step()),
-             "the model starts from the steady state before the event, which the record must show",
+             "the model starts from the steady state before the event, which the record must contain",
              "export it from at least 1 s before the event");
       return false;
     }
     if (before < kShort)
-      warn("short_pre_event",
-           signals_.slow ? fmt::format("something moves from {:.3g} s on, without a jump", before)
-                         : fmt::format("{:.3g} s before the event, {:.0f} samples", before, n),
-           signals_.slow
-               ? "the model starts at the mean of the first second (--pre-event) and is driven from the "
-                 "first sample on"
-               : "operating point and noise are known from so few only, so the verdict allows for more",
-           "export it from at least 1 s before the event where that is possible");
+      warn(
+          "short_pre_event",
+          signals_.slow ? fmt::format("a signal moves from {:.3g} s on, without a step", before)
+                        : fmt::format("{:.3g} s before the event, {:.0f} samples", before, n),
+          signals_.slow
+              ? "the model starts at the mean of the first second (--pre-event), and playback begins "
+                "with the first sample"
+              : "operating point and noise are estimated from these samples only, so the noise limit is higher",
+          "export it from at least 1 s before the event where that is possible");
     return true;
   }
 
@@ -184,11 +183,12 @@ class Check : Findings {
          {std::tuple{"V", &r_.V, 2e-4}, {"P", &r_.P, 0.002 / scale}, {"Q", &r_.Q, 0.002 / scale}})
       if (const double step = record::quantum(*y); step > limit)
         warn(
-            std::string("quantised_") + name, fmt::format("{} comes in steps of {:.3g} pu", name, step),
+            std::string("quantised_") + name,
+            fmt::format("{} has a quantisation step of {:.3g} pu", name, step),
             *name == 'V'
-                ? "a transducer or an archive has rounded it; what that does behind a regulator is slow, so that a "
-                  "right model may leave more than noise"
-                : "a transducer or an archive has rounded it; noise is taken to be at least what that leaves",
+                ? "a transducer or an archive has rounded it; behind a regulator the error is slow, so "
+                  "that the residual of a correct model may exceed noise"
+                : "a transducer or an archive has rounded it; the noise is taken to be at least the quantisation noise",
             "export it with more digits where that is possible");
   }
 
@@ -202,11 +202,13 @@ class Check : Findings {
       if (drift > std::max(limit, 6 * s->drift_error * scale))
         add("unsteady", drift > 0.05 ? Severity::refuse : Severity::warn,
             fmt::format("{} drifts by {:.2g} pu of the machine before the event", name, drift),
-            "the model starts in equilibrium there", "start the record later, or in a steadier hour");
+            "the model starts in equilibrium there",
+            "start the record later, or take another record with less motion before the event");
       else if (swing > std::max(limit, 3 * s->white * scale))
         add("unsteady", swing > 0.05 ? Severity::refuse : Severity::warn,
             fmt::format("{} swings by {:.2g} pu of the machine (rms) before the event", name, swing),
-            "the model starts in equilibrium there", "start the record later, or in a steadier hour");
+            "the model starts in equilibrium there",
+            "start the record later, or take another record with less motion before the event");
     }
   }
 
@@ -273,9 +275,9 @@ class Check : Findings {
     const bool ten = near(std::abs(hz), 10, 0.1);
     refuse(
         ten ? "nominal_frequency" : "angle_frame",
-        fmt::format("the angle turns by {:.3g} Hz before the event", hz),
+        fmt::format("the angle rotates at {:.3g} Hz before the event", hz),
         ten ? fmt::format(
-                  "the record is of a {:g} Hz grid, or its angle in another frame than the model's {:g} Hz",
+                  "the record is of a {:g} Hz grid, or its angle has another reference frame than the model's {:g} Hz",
                   other_hz(), plant_.frequency)
             : std::string("it is not in the frame of nominal frequency, or its unit is wrong"),
         ten ? fmt::format("set frequency_hz = {:g} in the plant file, or take that plant's own record",
@@ -323,24 +325,23 @@ class Check : Findings {
     const char* const name_deg = "name the column theta_deg";
     if (signals_.wraps_of_360)
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
-             "it jumps by 360 where it is wrapped: these are degrees taken as radians", name_deg);
+             "it steps by 360 where it is wrapped: these are degrees taken as radians", name_deg);
     else if (std::abs(signals_.first_angle) > 2.1 * constants::pi && !radians_beyond_a_turn())
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
-             "that is beyond a turn, and neither the frequency nor the jumps say that it is radians which "
-             "were never wrapped",
+             "that exceeds a full turn, and neither the frequency nor the steps confirm unwrapped radians",
              "name the column theta_deg if it is degrees; else take whole turns off, or add the frequency");
     // A frequency or speed in a wrong unit cannot be compared with the angle.
     const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
     if (within(ratio, 18, 180))
       refuse("angle_unit",
-             fmt::format("an angle that turns {:.0f} times as fast as the frequency says", ratio),
+             fmt::format("an angle that rotates {:.0f} times as fast as the recorded frequency", ratio),
              "degrees were taken as radians", name_deg);
     else if (ratio > 0 && within(1 / ratio, 18, 180))
       refuse("angle_unit",
-             fmt::format("an angle that turns {:.0f} times slower than the frequency says", 1 / ratio),
+             fmt::format("an angle that rotates {:.0f} times slower than the recorded frequency", 1 / ratio),
              "radians were taken as degrees", "name the column theta_rad");
     else if (signals_.fast_angle > constants::turn * 4)
-      refuse("angle_unit", fmt::format("an angle that turns by {:.3g} rad/s", signals_.fast_angle),
+      refuse("angle_unit", fmt::format("an angle that rotates at {:.3g} rad/s", signals_.fast_angle),
              "no machine swings so fast; degrees taken as radians do", name_deg);
   }
 
@@ -358,9 +359,9 @@ class Check : Findings {
     const int delay = power_delay(r_, jumps_);
     if (delay != 0)
       warn("time_skew",
-           fmt::format("P and Q jump {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
+           fmt::format("P and Q step {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
                        delay > 0 ? "after" : "before"),
-           "they were stamped by different clocks or filters", "shift them so that they jump together");
+           "they were stamped by different clocks or filters", "shift them so that their steps coincide");
     const JumpFit as_is = fit_jumps(r_, jumps_, delay);
     const Mistake* best = nullptr;
     double least = 1;
@@ -380,11 +381,11 @@ class Check : Findings {
       if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;
     }
     if (best && apart())
-      warn("time_skew", "voltage and current jump up to a sample apart", "one of them is late",
-           "mend its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
+      warn("time_skew", "steps of voltage and current up to a sample apart", "one of them is late",
+           "correct its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
     else if (best)
-      refuse(best->kind, "voltage and current that do not jump together as at a machine's terminals",
-             best->why, best->remedy);
+      refuse(best->kind, "steps of voltage and current that are inconsistent with a machine", best->why,
+             best->remedy);
     else if (fits(as_is))
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
@@ -438,7 +439,7 @@ class Check : Findings {
     for (const auto& b : all)  // multiplying P by the factor divides X by it
       if (distance(x / b.factor) < (best ? distance(x / best->factor) : std::log(2.5))) best = &b;
     const std::string what =
-        fmt::format("jumps of P and Q that mean a reactance of {:.3g} pu of the machine", x);
+        fmt::format("steps of P and Q that correspond to a reactance of {:.3g} pu of the machine", x);
     if (best && !within(x, 0.06, 1.0))
       refuse("wrong_base", what, "likely " + best->why, best->remedy);
     else

@@ -175,7 +175,7 @@ class Readings {
     const std::string what =
         as_is_.share
             ? fmt::format("with {} the model follows P and Q {:.0f} times closer", words_.words, closer)
-            : fmt::format("the model cannot follow the record, but with {} it does", words_.words);
+            : fmt::format("playback into the model fails, but succeeds with {}", words_.words);
     return Finding{words_.kind,
                    as_is_.share ? Severity::warn : Severity::refuse,
                    {what, r_.name, words_.why + "; the record was left as it is", words_.remedy}};

@@ -17,8 +17,7 @@ void read_into(RecordSet& set, const std::string& file, const plant::PlantModel&
   record::Record record = record::read_staged(file, model.record_base, model.reading);
   if (prepare && model.plant.machine.effect != nullptr) record = prepare(std::move(record));
   if (std::ranges::find(set.records, record.name, &record::Record::name) != set.records.end())
-    problems.add("two records named " + record.name, file,
-                 "they could not be told apart, and their results would overwrite each other",
+    problems.add("two records named " + record.name, file, "their results would overwrite each other",
                  "rename one of them");
   std::vector<std::string> warnings = record.notes;
   if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant) && !record.breaker()) {

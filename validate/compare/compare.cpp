@@ -198,10 +198,9 @@ void play_without_angle(const plant::PlantModel& model, const playin::PlayInOpti
     play(model, DriveBy::power, options, e);
   } catch (const InputError& error) {
     const Problem& p = error.problems().front();
-    throw InputError(
-        {p.what, p.where, p.why,
-         "check base and sign of P and Q; the record has neither angle nor frequency, so that only they "
-         "can drive the model: with one of the two the voltage could"});
+    throw InputError({p.what, p.where, p.why,
+                      "check base and sign of P and Q, or add the angle or the frequency to the record: the "
+                      "voltage can then be played in"});
   }
 }
 
@@ -237,10 +236,10 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
 void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
       jumps == event::Jumps::spread && smeared > 0)
-    e.notes.push_back(fmt::format(
-        "The instrument's filter spreads the steps over {} samples: these are neither played in nor "
-        "compared, and {} fitted to P and Q.",
-        smeared, e.detected ? "instants and start were" : "the start was"));
+    e.notes.push_back(
+        fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
+                    "nor compared, and {} fitted to P and Q.",
+                    smeared, e.detected ? "switching times and start were" : "the start was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
@@ -262,13 +261,14 @@ void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::stri
   if (const std::string hint = quiet_end_hint(e); !hint.empty()) e.notes.push_back(hint);
   if (e.playback.start.drift != 0)
     e.notes.push_back(
-        fmt::format("Before the event the angle turns by {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
+        fmt::format("Before the event the angle rotates at {:.3g} rad/s (frequency {:+.2f} mHz off nominal): "
                     "the model starts in equilibrium in that frame.",
                     e.playback.start.drift, 1e3 * e.playback.start.drift / constants::turn));
   if (playin::is_part(e.record) && e.record.speed.empty() && !e.record.f.empty())
     e.notes.push_back(
-        "The record has no speed: where the component asks for it the terminal's frequency stands for it. In a swing "
-        "the shaft's speed is another, and a right model may leave more than noise for some seconds after a switching.");
+        "The record has no speed; the terminal frequency replaces it. In a swing the shaft speed "
+        "differs, so that the residual of a correct model may exceed noise for some seconds "
+        "after a switching.");
   if (!e.record.ignored.empty()) {
     std::string all;
     for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
@@ -420,7 +420,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
     const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;
     if (!no_angle && movable && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
-      step("instants and start are fitted", 1);
+      step("switching times and start are fitted", 1);
       try {
         if (EventComparison other = fitted(); is_closer(other, e)) e = std::move(other);
       } catch (const InputError& error) {  // the playback without a fit remains valid
@@ -428,15 +428,16 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       }
     }
   }
-  step("what is left is measured", 2);
+  step("the residual is evaluated", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
   explain(e, jumps, options.fit_switchings && !no_angle, failed);
   if (options.drive == DriveBy::power) {  // with the switching times found by the voltage
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(
-        "P and Q drive the model. No network holds its angle, so a small lasting error of P grows into one "
-        "of frequency and speed: both are shown, the verdict is about the voltage and the field. During a "
-        "fault the voltage answers many times as strongly to noise of P and Q, so that window is not judged.");
+        "P and Q are played in, and no network holds the angle. A small lasting error of P "
+        "therefore grows into one of frequency and speed; both are shown, but the verdict uses "
+        "voltage and field only. During a fault the voltage is many times more sensitive to "
+        "noise of P and Q, so this window is not judged.");
   }
   step("compared", 3);
   return e;

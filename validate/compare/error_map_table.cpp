@@ -65,10 +65,10 @@ std::string events_beyond(const std::vector<LabelledMap>& maps, const std::strin
 }
 
 constexpr const char* kCaption =
-    "Normalised RMS of the residual per time window and frequency band: each component is divided by the standard "
-    "deviation that coloured noise gives it, so that noise alone gives 1 ×. Windows “after” count from the last "
-    "switching, others from the first sample. * = above the joint noise limit of all cells; “–”: the window is too "
-    "short for the band.";
+    "Normalised RMS of the residual per time window and frequency band: each component is "
+    "divided by its standard deviation under coloured noise, so that noise alone gives 1 ×. "
+    "Windows “after” count from the last switching, others from the first sample. * = above "
+    "the joint noise limit of all bins; “–”: the window is too short for the band.";
 
 }  // namespace
 
@@ -97,8 +97,7 @@ report::Table map_table(const std::vector<LabelledMap>& maps) {
 }
 
 report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
-  report::Table table{
-      std::string(kCaption) + " Each cell shows the worst of all events.", columns(false), {}};
+  report::Table table{std::string(kCaption) + " Each bin shows the worst of all events.", columns(false), {}};
   std::vector<std::string> channels;
   for (const auto& m : maps)
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
@@ -145,10 +144,11 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
           band = b;
         }
     text += text.empty() ? "" : " ";
-    text += worst.empty() ? channel + " is nowhere beyond its noise."
-                          : fmt::format("{} is furthest off in the window “{}” at {}: {} noise{}.", channel,
-                                        window, error_bands()[band].name, times_noise(worst.normalised),
-                                        events_beyond(maps, channel, window, band));
+    text += worst.empty()
+                ? channel + " is within its noise everywhere."
+                : fmt::format("{} has its largest error in the window “{}” at {}: {} noise{}.", channel,
+                              window, error_bands()[band].name, times_noise(worst.normalised),
+                              events_beyond(maps, channel, window, band));
   }
   return text;
 }

@@ -53,7 +53,7 @@ report::Table error_table(const std::vector<Played>& played, const std::vector<s
     const EventComparison& event = longest->events[e];
     const bool fitted_to = std::ranges::find(unseen, event.record.name) == unseen.end();
     for (const ChannelComparison& c : event.channels) {
-      std::vector<report::Cell> row = {event.record.name + (fitted_to ? "" : " (not fitted to)"), c.name};
+      std::vector<report::Cell> row = {event.record.name + (fitted_to ? "" : " (held out)"), c.name};
       for (const Played& p : played) add_cells(row, find_channel(p, e, c.name));
       if (single) {
         row.emplace_back(quantity(c.whole.worst, c));

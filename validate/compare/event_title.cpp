@@ -84,8 +84,8 @@ std::string quiet_end_hint(const EventComparison& e) {
   const double over = e.switchings.back().time, quiet = e.record.t.back() - over;
   if (quiet < kQuietTime) return {};
   return fmt::format(
-      "The record goes on for {:.0f} s after the last switching: errors over the whole record are averaged over "
-      "this quiet time. --until {:.0f} limits them to the event.",
+      "The record continues for {:.0f} s after the last switching: errors over the whole "
+      "record are averaged over this quiet time. --until {:.0f} limits them to the event.",
       quiet, std::ceil(over + kQuietTime / 4));
 }
 

@@ -94,18 +94,18 @@ std::string nearest_text(const Fitness& f) {
   if (const auto m = std::ranges::max_element(f.movements, {}, beyond);
       m != f.movements.end() && !(beyond(*m) <= ratio(row)))
     return fmt::format(
-        "RMS error of {} after the last switching of {}, {:.3g} % of its movement of {:.3g} {}, of "
-        "which the model makes {:.0f} %, where an error of {:g} % is allowed.",
+        "RMS error of {} after the last switching of {}, {:.3g} % of its movement of {:.3g} {}, "
+        "of which the model reproduces {:.0f} %; the limit is {:g} %.",
         m->channel, m->event, m->error, m->measured, m->unit, m->share, m->limit);
   const thresholds::Nearest at = thresholds::nearest(row.errors, row.limits);
-  return fmt::format("{} of {} in the {} window of {}, {:.3g} % of {:g} MVA where {:g} % is allowed.",
-                     at.name, row.channel, row.window(), row.event, at.error, f.mva, at.limit);
+  return fmt::format("{} of {} in the {} window of {}, {:.3g} % of {:g} MVA; the limit is {:g} %.", at.name,
+                     row.channel, row.window(), row.event, at.error, f.mva, at.limit);
 }
 
 std::string verdict(const Fitness& f, int exceed) {
   const auto all = 3 * f.rows.size() + f.movements.size();
   return fmt::format("Fit for purpose: {} the limits {}. {}: {}",
-                     f.fit ? fmt::format("yes. All {} errors of P and Q keep", all)
+                     f.fit ? fmt::format("yes. All {} errors of P and Q are within", all)
                            : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
                      f.by.name, f.fit ? "Nearest to its limit" : "Largest violation", nearest_text(f));
 }
@@ -114,9 +114,10 @@ const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "
 
 std::string caption(const Fitness& f) {
   return fmt::format(
-      "Errors (modelled − measured) in % of {:g} MVA, each of its limit, as IEC 61400-27-2 counts them: MXE the "
-      "largest, ME the mean, MAE the mean of their sizes. Limits {}: {}. Excluded: the first {:g} ms after "
-      "the first switching and {:g} ms after the last. A star marks what exceeds its limit.",
+      "Errors (modelled − measured) in % of {:g} MVA, each with its limit, as defined in IEC "
+      "61400-27-2: maximum error MXE, mean error ME, mean absolute error MAE. Limits {}: {}. "
+      "Excluded: the first {:g} ms after the first switching and {:g} ms after the last. A "
+      "star marks a value above its limit.",
       f.mva, f.by.name, f.by.source, 1e3 * f.by.after_fault, 1e3 * f.by.after_clearing);
 }
 
@@ -129,7 +130,7 @@ std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors&
     cells.emplace_back(std::isfinite(error)
                            ? fmt::format("{:.2f} of {}{:g} %{}", std::abs(error) < 0.005 ? 0.0 : error, sign,
                                          limit, within ? "" : " *")
-                           : "no number *",
+                           : "not finite *",
                        within ? 0.0 : 1.0);
   };
   add(from[0]->errors.mxe, of.limits.mxe, "");
@@ -199,7 +200,7 @@ report::Table fitness_table(const Fitness& f) {
 }
 
 report::Table worst_fitness_table(const Fitness& f) {
-  report::Table table{caption(f) + " Each error is the worst of all events.", kHeader, {}};
+  report::Table table{caption(f) + " Each value is the worst of all events.", kHeader, {}};
   table.header.erase(table.header.begin());
   for (const char* channel : {"P", "Q"})
     for (const Phase phase : thresholds::kPhases) {
@@ -226,9 +227,10 @@ report::Table worst_fitness_table(const Fitness& f) {
 
 report::Table movement_table(const Fitness& f) {
   report::Table table{
-      "Movement of P and Q after the last switching: RMS of the measured deviation from the mean before the event, and "
-      "RMS of modelled − measured in % of it. A star marks what exceeds its limit.",
-      {"event", "channel", "measured movement", "model makes", "error"},
+      "Movement of P and Q after the last switching: RMS of the measured deviation from the "
+      "mean before the event, and RMS of modelled − measured in % of it. A star marks a value "
+      "above its limit.",
+      {"event", "channel", "measured movement", "reproduced by the model", "error"},
       {}};
   for (const Movement& m : f.movements)
     table.rows.push_back(

@@ -47,14 +47,15 @@ std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
   const auto share = [](const NamedCell& n) { return n.cell->allowed() / n.channel->size; };
   constexpr double kNoSize = 10;  // largest ratio shown as a number; above it the model is clearly unstable
   const NamedCell& most = *std::ranges::max_element(cells, {}, share);
-  const std::string by = share(most) < kNoSize ? fmt::format("{:.3g} {}, {:.3g} times its size",
-                                                             most.cell->allowed() * most.channel->scale,
-                                                             most.channel->unit, share(most))
-                                               : fmt::format("more than {:g} times its size", kNoSize);
+  const std::string by =
+      share(most) < kNoSize
+          ? fmt::format("{:.3g} {}, {:.3g} times the nominal value",
+                        most.cell->allowed() * most.channel->scale, most.channel->unit, share(most))
+          : fmt::format("more than {:g} times the nominal value", kNoSize);
   return fmt::format(
-      "Cannot be told: in {} of {} cells the noise of the voltage alone may move the model's answer by more than "
-      "the machine is large ({} {}: by {}). Driven by this voltage the model runs "
-      "away: check its damping, time constants and the order of its reactances.",
+      "Undecided: the model is unstable in this playback. In {} of {} time/frequency bins the "
+      "voltage noise alone may change the response by more than its nominal value ({} {}: by "
+      "{}). Check the damping, the time constants and the order of the reactances.",
       vague, cells.size(), most.channel->name, most.where, by);
 }
 
@@ -83,8 +84,8 @@ Adequacy judge(std::vector<EventComparison>& events) {
     return a;
   }
   a.sentence =
-      a.adequate ? fmt::format("Adequate: each of {} time/frequency cells is within the noise limit", a.cells)
-                 : fmt::format("Not adequate: {} of {} time/frequency cells exceed the noise limit",
+      a.adequate ? fmt::format("Adequate: each of {} time/frequency bins is within the noise limit", a.cells)
+                 : fmt::format("Not adequate: {} of {} time/frequency bins exceed the noise limit",
                                a.exceeding, a.cells);
   a.sentence += fmt::format(" (joint {:g} % level).", 100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)

@@ -118,7 +118,7 @@ std::string instants_of(const EventComparison& e) {
   for (const auto& s : e.switchings) text += fmt::format("{}{:.4f} s", text.empty() ? "" : ", ", s.time);
   return text.empty() ? "none"
                       : text + (!e.detected ? " (given)"
-                                : e.fitted  ? " (found and fitted)"
+                                : e.fitted  ? " (estimated and fitted)"
                                             : " (found)");
 }
 
@@ -180,8 +180,8 @@ void panels_part(report::Page& page, const std::vector<Played>& played) {
   if (events == 0) return;
   page.section("Events");
   page.hint(
-      "Drag across a chart to zoom in on a stretch of time (all charts of an event follow); double-click to "
-      "see the whole record. The shaded band is the fault.");
+      "Drag across a chart to zoom in on a time range (all charts of an event follow); "
+      "double-click to see the whole record. The shaded band is the fault.");
   for (std::size_t e = 0; e < events; ++e) event_panels(page, played, e);
 }
 
@@ -189,13 +189,14 @@ void parameters_part(report::Page& page, const std::vector<PageParameter>& param
   if (parameters.empty()) return;
   page.section("Parameters");
   const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
-  report::Table table{fitted ? "Before and after, with 95 % intervals. The last columns say how much of the "
-                               "interval the records decide, and what else is to be known."
-                             : "Model parameters (unchanged).",
-                      {"parameter", "unit", fitted ? "before" : "value"},
-                      {}};
+  report::Table table{
+      fitted ? "Values before and after the fit, with 95 % intervals and the share of the interval that "
+               "the records determine."
+             : "Model parameters (unchanged).",
+      {"parameter", "unit", fitted ? "before" : "value"},
+      {}};
   if (fitted)
-    table.header.insert(table.header.end(), {"after", "95 % interval", "decided by the records", "note"});
+    table.header.insert(table.header.end(), {"after", "95 % interval", "determined by records", "note"});
   for (const PageParameter& p : parameters) {
     std::vector<report::Cell> row = {p.block + " " + p.symbol, p.unit, number_text(p.before)};
     if (fitted) {
@@ -240,17 +241,17 @@ void glossary_part(report::Page& page) {
          "Standard deviation of modelled − measured before the event, of the model that is played. RMS / noise is "
          "the quotient of the two."},
         {"normalised RMS",
-         "Root mean square of the residual's components (frequencies in the error map, whitened samples in a fit), "
-         "each divided by the standard deviation that the coloured noise gives it. Noise alone gives 1. Its square "
-         "is chi2 per value."},
-        {"cell",
-         "One window of time and one band of frequency of one channel in the error map, with a bound of its "
-         "own that noise alone keeps."},
+         "Root mean square of the residual's components (frequencies in the error map, whitened "
+         "samples in a fit), each divided by its standard deviation under coloured noise. Noise "
+         "alone gives 1. Its square is the reduced chi-square."},
+        {"bin",
+         "One time window and one frequency band of one channel in the error map. Noise alone "
+         "stays below its bound."},
         {"evidence",
          "2 ln(Bayes factor) of the model with the effect against the model without it, penalised for the "
          "added parameters."},
         {"prior", "Standard deviation of a parameter before the records were used (--spread)."},
-        {"decided",
+        {"determined",
          "Share of a parameter's interval that is determined by the records, not by the prior."}}});
 }
 

@@ -194,7 +194,7 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
           model.conventions.mechanical_power ? "mechanical power held" : "mechanical torque held",
           model.conventions.frequency));
   if (!model.defaults.empty())
-    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.defaults, ", ")));
+    rows.emplace_back("default values", fmt::format("{}", fmt::join(model.defaults, ", ")));
   for (const auto& e : events)
     rows.emplace_back("record", e.record.name + (e.record.epoch ? ", begins " + record::beginning(e.record)
                                                                 : std::string()));

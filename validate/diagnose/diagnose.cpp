@@ -35,7 +35,7 @@ class Diagnoser {
       : model_(model), options_(options) {
     if (records.size() < 2)
       throw InputError({fmt::format("{} event", records.size()), "--records",
-                        "an effect is believed only if it predicts an event that it was not fitted to",
+                        "an effect is accepted only if it predicts a held-out event",
                         "give records of two events or more"});
     result_.events = event::prepare_events(model, std::move(records), options.events);
     result_.conventions = model.conventions;
@@ -411,7 +411,7 @@ class Diagnoser {
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})
       if (j.accepted && m->evidence > j.gain) {
         j.accepted = false;
-        j.why_not = fmt::format("a {} free in time explains more", what);
+        j.why_not = fmt::format("an inferred {} explains more", what);
       }
   }
   static void best_first(std::vector<hypothesis::Judgement>& judged) {

@@ -299,7 +299,7 @@ report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Di
   report::Provenance rows = {
       {"command", command_line}, {"software", "swingbank " SWINGBANK_VERSION}, {"model", model.origin}};
   if (!model.defaults.empty())
-    rows.emplace_back("standard values", fmt::format("{}", fmt::join(model.defaults, ", ")));
+    rows.emplace_back("default values", fmt::format("{}", fmt::join(model.defaults, ", ")));
   for (const auto& e : d.events) rows.emplace_back("record", e.record.name);
   return rows;
 }

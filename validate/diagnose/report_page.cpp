@@ -57,7 +57,7 @@ class DiagnosisPage {
     sides();
     hypotheses();
     laws_on_page(d_, page_);
-    page_.section("Each event");
+    page_.section("Event results");
     for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
     method();
     compare::glossary_part(page_);
@@ -77,17 +77,17 @@ class DiagnosisPage {
       bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability, i < set,
                            hypothesis::probability_text(d_.probabilities[i].probability)});
     page_.bars(bars);
-    page_.text(fmt::format(
-        "How probable each explanation is, given the effects that were tried and that none of them may be right. "
-        "The blue ones make up {:.0f} % together. How often such figures are right stands in docs/reference/blind-test-results.md.",
-        100 * thresholds::posterior.set));
+    page_.text(
+        fmt::format("Probability of each explanation, including that none of the tried effects is right. The "
+                    "blue bars form the {:.0f} % credible set. Measured reliability of these probabilities: "
+                    "docs/reference/blind-test-results.md.",
+                    100 * thresholds::posterior.set));
     if (d_.would_decide.next.empty()) return;
     report::Table table{
-        fmt::format(
-            "What to record next: how many of the {:.0f} effects would be left on average (the rivals played "
-            "into such a record).",
-            d_.would_decide.now),
-        {"record", "effects left"},
+        fmt::format("Next measurement: expected number of the {:.0f} candidates that remain, from "
+                    "simulations of the record with each candidate.",
+                    d_.would_decide.now),
+        {"record", "remaining candidates"},
         {}};
     for (const auto& n : d_.would_decide.next)
       table.rows.push_back({n.what, fmt::format("{:.1f}", n.expected)});
@@ -105,8 +105,8 @@ class DiagnosisPage {
     const bool unseen = std::ranges::any_of(
         figures_.events, [](const ReportEvent& e) { return std::isfinite(e.unseen_after); });
     if (unseen) {
-      table.header.emplace_back("not fitted to it: as it is");
-      table.header.push_back("not fitted to it: with " + figures_.after_name);
+      table.header.emplace_back("held out: refitted");
+      table.header.push_back("held out: with " + figures_.after_name);
     }
     for (const auto& e : figures_.events) {
       std::vector<report::Cell> row = {e.event->record.name, compare::times_noise(e.before)};
@@ -148,9 +148,9 @@ class DiagnosisPage {
     return all;
   }
   void error_maps() {
-    page_.section("Where the model is wrong");
+    page_.section("Error map");
     report::Table before = compare::worst_map_table(maps(&ReportChannel::map_before));
-    before.caption = "The model with its parameters refitted. " + before.caption;
+    before.caption = "Model with refitted parameters. " + before.caption;
     page_.table(before);
     if (!with_after()) return;
     report::Table after = compare::worst_map_table(maps(&ReportChannel::map_after));
@@ -160,19 +160,19 @@ class DiagnosisPage {
 
   void sides() {
     if (d_.torque.fit.events.empty() && d_.field.fit.events.empty()) return;
-    page_.section("Which side");
+    page_.section("Excitation or mechanical side");
     page_.text(
-        "Before any effect was asked for, a torque and then a field voltage, free in time, were added to the "
-        "model such "
-        "that it answers as measured. The one that leaves less is the side where something is missing.");
+        "Before the search for effects, a mechanical torque and then a field voltage, free in "
+        "time, were inferred such that the response matches the records. The input with the "
+        "smaller residual indicates the side of the missing component.");
     report::Bars bars{"Normalised RMS", "×", 1.0, "noise alone", {}};
     const auto add = [&](const std::string& name, double reduced_chi2) {
       const double left = std::sqrt(reduced_chi2);
       bars.bars.push_back({name, left, left < 1.5});
     };
-    add("as it is", d_.base.reduced_chi2());
-    if (!d_.torque.fit.events.empty()) add("with a free torque", d_.torque.reduced_chi2());
-    if (!d_.field.fit.events.empty()) add("with a free field voltage", d_.field.reduced_chi2());
+    add("refitted", d_.base.reduced_chi2());
+    if (!d_.torque.fit.events.empty()) add("with an inferred torque", d_.torque.reduced_chi2());
+    if (!d_.field.fit.events.empty()) add("with an inferred field voltage", d_.field.reduced_chi2());
     page_.bars(bars);
     if (d_.side != hypothesis::Side::none)
       page_.text(fmt::format("Side: {}.", hypothesis::side_name(d_.side)));
@@ -180,15 +180,13 @@ class DiagnosisPage {
 
   void hypotheses() {
     if (d_.ranked.empty()) return;
-    page_.section("What could be missing");
-    page_.text(fmt::format(
-        "{} effects were added one at a time, each fitted together with the model's parameters as far as it "
-        "came near the best. "
-        "Evidence is 2 ln(Bayes factor) of the effect (Laplace's "
-        "approximation): from {:.0f} it is accepted, below 0 the effect does not pay "
-        "for its parameters. "
-        "The leading ones were then judged on events left out of the fit.",
-        d_.ranked.size(), thresholds::evidence.accepted.value));
+    page_.section("Hypotheses");
+    page_.text(
+        fmt::format("{} effects were added one at a time. Each was fitted together with the model's "
+                    "parameters until its rank was clear. Evidence is 2 ln(Bayes factor) of the effect "
+                    "(Laplace's approximation): {:.0f} or more is accepted; below 0 the added parameters do "
+                    "not improve the model. The leading effects were then judged on held-out events.",
+                    d_.ranked.size(), thresholds::evidence.accepted.value));
     const double most = std::max(1.0, d_.ranked.front().gain);
     report::Bars bars{
         "Evidence (logarithmic)", "", std::log10(thresholds::evidence.accepted.value), "accepted", {}};
@@ -199,7 +197,9 @@ class DiagnosisPage {
                            fmt::format("{:.0f}", d_.ranked[i].gain)});
     page_.bars(bars);
     report::Table table{
-        "", {"hypothesis", "what", "side", "evidence", "normalised RMS", "unseen events", "judged"}, {}};
+        "",
+        {"hypothesis", "description", "side", "evidence", "normalised RMS", "held-out events", "judgement"},
+        {}};
     for (const auto& h : d_.ranked) {
       double worst = 0;
       for (const auto& u : h.held_out) worst = std::max(worst, std::sqrt(u.after));
@@ -216,13 +216,14 @@ class DiagnosisPage {
   /// Adds the section on wrong parameters, if a small set of them explains the records.
   void few_wrong() {
     if (!d_.wrong) return;
-    page_.section("Which parameters are wrong");
+    page_.section("Wrong parameters");
     page_.text(calibrate::wrong_sentence(*d_.wrong, thresholds::adequacy.reduced_chi2));
     report::Table table{
-        "Every other parameter keeps its value. Evidence: by how much the cost rises if this one keeps its value too "
-        "and the others are refitted; of the error: that rise as a share of what the model leaves beyond them all.",
-        {"parameter", "unit", "submitted", "fitted", "95 % interval", "evidence", "of the error",
-         "or in its place"},
+        "Every other parameter keeps its value. Evidence: increase of the cost (chi2) if this "
+        "parameter also keeps its value and the others are refitted. Share of error: this "
+        "increase as a share of the cost above that of the full fit.",
+        {"parameter", "unit", "submitted", "fitted", "95 % interval", "evidence", "share of error",
+         "alternative"},
         {}};
     for (const auto& w : d_.wrong->wrong) {
       std::string tied;
@@ -241,12 +242,12 @@ class DiagnosisPage {
     if (last.parameters.empty()) return;  // the addition is an inferred input
     page_.section("Parameters");
     report::Table table{
-        "95 % intervals. The last column says how much of the interval "
-        "the records decide; the rest is what was believed before.",
+        "Fitted values with 95 % intervals. Last column: share of the interval that the records "
+        "determine; the prior determines the rest.",
         {"parameter", "unit", "submitted", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
-    table.header.insert(table.header.end(), {"95 % interval", "told by the records"});
+    table.header.insert(table.header.end(), {"95 % interval", "determined by records"});
     for (const auto& p : last.parameters) {
       const auto base = std::ranges::find_if(d_.base.parameters, [&](const fit::FittedParameter& b) {
         return b.block == p.block && b.name == p.name;
@@ -311,19 +312,17 @@ class DiagnosisPage {
   }
 
   void method() {
-    page_.section("How to read this");
+    page_.section("Method");
     page_.text(
-        "The recorded voltage and angle of the terminal drive the model; what it answers is laid over what "
-        "was measured, "
-        "event by event, as verification reports under NERC MOD-026 and MOD-027 (plants) and MOD-033 "
-        "(systems) do. These "
-        "standards set no numerical tolerance; stated here is the 99 % band of the noise, estimated before "
-        "each event.");
+        "Playback of the recorded terminal voltage and angle into the model, with the response "
+        "compared with the measurement for each event, as in verification reports under NERC "
+        "MOD-026 and MOD-027 (plants) and MOD-033 (systems). These standards set no numerical "
+        "tolerance; this page uses the 99 % band of the noise, estimated before each event.");
     page_.text(
-        "“Refitted” means the present structure with its parameters fitted to all events: what "
-        "is wrong then is not a matter of parameters. A cell of the error map is the part of "
-        "the residual in a window of time and a band of frequency, over what noise alone leaves "
-        "there; the bound is kept by noise alone in all cells together with 99.9 % probability.");
+        "“Refitted” means the submitted structure with its parameters fitted to all events; an "
+        "error that remains is not caused by the parameters. A bin of the error map is the RMS "
+        "of the residual in a time window and a frequency band, divided by that of noise alone. "
+        "With 99.9 % probability, noise alone stays below the bounds of all bins.");
     page_.text(fmt::format("Computed in {:.0f} s.", d_.seconds));
   }
 

@@ -18,29 +18,29 @@ constexpr double kShownFrom = 0.01;  ///< minimum probability of a printed expla
 void add_inputs(const Diagnosis& d, std::string& text) {
   if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before the inference
   text += fmt::format(
-      "\n"
-      "What is left [chi2 per value; 1: noise]: {:.2f} with the parameters refitted, "
-      "{:.2f} with a torque free in time, {:.2f} with a field voltage free in time.\n",
+      "\nReduced chi-square (1: noise): {:.2f} with refitted parameters, {:.2f} with an "
+      "inferred torque, {:.2f} with an inferred field voltage.\n",
       d.base.reduced_chi2(), d.torque.reduced_chi2(), d.field.reduced_chi2());
 }
 void add_probabilities(const Diagnosis& d, std::string& text) {
   if (d.probabilities.empty()) return;
-  text += "\nProbability, given these effects and that none of them may be right:\n";
+  text += "\nProbability of each explanation, 'none of these' included:\n";
   const std::size_t set = hypothesis::credible(d.probabilities);
   for (std::size_t i = 0; i < d.probabilities.size(); ++i)
     if (i < set || d.probabilities[i].probability >= kShownFrom)
       text += fmt::format(
           "  {:>6}  {}{}\n", hypothesis::probability_text(d.probabilities[i].probability),
           d.probabilities[i].name,
-          i < set ? "" : fmt::format("  (outside the {:.0f} %)", 100 * thresholds::posterior.set));
+          i < set ? ""
+                  : fmt::format("  (outside the {:.0f} % credible set)", 100 * thresholds::posterior.set));
   if (d.would_decide.next.empty()) return;
-  text +=
-      fmt::format("\nEffects left of the {:.0f} on average, if this is recorded next:\n", d.would_decide.now);
+  text += fmt::format("\nNext measurement, and expected number of the {:.0f} candidates that remain:\n",
+                      d.would_decide.now);
   for (const auto& n : d.would_decide.next) text += fmt::format("  {:>6.1f}  {}\n", n.expected, n.what);
 }
 void add_hypotheses(const Diagnosis& d, std::string& text) {
-  text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence", "left",
-                      "unseen: before, after", "judgement");
+  text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence",
+                      "red. chi2", "unseen: before, after", "judgement");
   for (std::size_t i = 0; i < d.ranked.size() && i < kHypothesesShown; ++i) {
     const hypothesis::Judgement& j = d.ranked[i];
     double before = 0, after = 0;
@@ -54,14 +54,13 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
                         j.accepted ? "accepted" : j.why_not);
   }
   if (d.ranked.size() > kHypothesesShown)
-    text += fmt::format("and {} more that explain less\n", d.ranked.size() - kHypothesesShown);
+    text += fmt::format("and {} more with lower ranks\n", d.ranked.size() - kHypothesesShown);
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
   const laws::LawFinding* law = named ? nullptr : d.laws.found();
   if (!named && !law && !d.ruling.adequate) {
-    text +=
-        "\nThe fitted values of the model are not shown: it leaves more than noise, so they mean nothing.\n";
+    text += "\nThe fitted values are not shown: the residual exceeds noise, so they are biased.\n";
     return;
   }
   const fit::Fit& fit = named ? d.ranked.front().fit : law ? law->judgement.fit : d.base;
@@ -71,7 +70,7 @@ void add_parameters(const Diagnosis& d, std::string& text) {
     text += fmt::format("{:<10} {:<10} {:>12.5g} {:>12.5g} {:>26} {:>6}{}\n", p.block, p.name, p.start,
                         p.value, fmt::format("{:.4g} to {:.4g}", p.low, p.high), p.unit,
                         p.at_bound ? "  (at its bound: interval not valid)"
-                        : p.decided < thresholds::parameters.identified ? "  (the records hardly tell)"
+                        : p.decided < thresholds::parameters.identified ? "  (not identified)"
                                                                         : "");
 }
 

@@ -31,15 +31,15 @@ std::string left_out_of(const sim::plant::Plant& plant, Component component) {
 plant::PlantModel component_model(plant::PlantModel model, Component component) {
   if (component == Component::plant) return model;
   if (const auto names = left_out_of(model.plant, component); !names.empty())
-    model.warnings.push_back(fmt::format(
-        "{} alone: {} of the plant file {} left out; the record stands for {}",
-        record::component_name(component), names, names.find(',') == std::string::npos ? "is" : "are",
-        names.find(',') == std::string::npos ? "it" : "them"));
+    model.warnings.push_back(fmt::format("{} alone: {} of the plant file {} left out; the record replaces {}",
+                                         record::component_name(component), names,
+                                         names.find(',') == std::string::npos ? "is" : "are",
+                                         names.find(',') == std::string::npos ? "it" : "them"));
   const sim::Slot slot = component == Component::exciter ? sim::Slot::exciter : sim::Slot::governor;
   if (component != Component::machine &&
       std::ranges::none_of(model.plant.controls, [&](const auto& b) { return b.effect->slot == slot; }))
     model.warnings.push_back(
-        fmt::format("the plant file has no {0}: what a {0} makes stays where it was", sim::slot_name(slot)));
+        fmt::format("the plant file has no {0}: its output is constant", sim::slot_name(slot)));
   model.whole = std::move(model.plant);
   model.plant = playin::component_of(*model.whole, component);
   model.reading.component = component;

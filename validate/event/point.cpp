@@ -96,11 +96,11 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
   }
   if (!found)
     c.problem("unit", "the plant file " + tried.string() + " is none of the units",
-              "its part of the record is what the others leave",
+              "its part of the record is the rest after subtraction of the others",
               "list it as a [[unit]] with model = its path");
   if (shares >= 1 - 1e-9)
-    c.problem("unit", fmt::format("shares of {:g} beside the unit that is tried", shares),
-              "they leave nothing for it", "give every unit its share of the whole");
+    c.problem("unit", fmt::format("shares of {:g} without the unit under test", shares),
+              "nothing remains for it", "give every unit its share of the whole");
   for (const Problem& p : problems.list()) c.problem("unit", p.what + " at " + p.where, p.why, p.remedy);
   c.raise();
   return point;
@@ -121,8 +121,10 @@ record::Record behind_section(record::Record r, const Collector& z) {
     r.P[k] = S.real();
     r.Q[k] = S.imag();
   }
-  r.notes.push_back(fmt::format(
-      "V, angle, P and Q were moved behind the collector of {:g} + j{:g} pu on {:g} MVA.", z.R, z.X, z.mva));
+  r.notes.push_back(
+      fmt::format("V, angle, P and Q were transformed to the other side of the collector of {:g} + j{:g} "
+                  "pu on {:g} MVA.",
+                  z.R, z.X, z.mva));
   return r;
 }
 
@@ -165,8 +167,8 @@ sim::plant::Plant at_point(const MeasuredPoint& point) {
     if (!(unit.share > 0))
       throw InputError({"P_MW and Q_Mvar of " + unit.model.name, point.file,
                         "the control of " + point.tried.name +
-                            " measures at the point, where it sees what all units do together",
-                        "give share in their place"});
+                            " measures at the common point, where the signals depend on all units",
+                        "give share instead"});
     share -= unit.share;
   }
   plant.beyond = to_point(point.collector, plant.mva, share);
@@ -312,7 +314,7 @@ std::vector<plant::PlantModel> models_at(const MeasuredPoint& point) {
 record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) {
   record::require_angle(record);
   if (record.P.size() != record.t.size() || record.Q.size() != record.t.size())
-    throw InputError({"no P and Q", record.name, "what flows at the point is shared among its units",
+    throw InputError({"no P and Q", record.name, "the power at the common point is divided among its units",
                       "record both there"});
   record = behind_collector(std::move(record), point.collector);
   if (point.others.empty()) return record;
@@ -342,9 +344,9 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
       record.Q[k] -= r.of(playin::Output::Q)[k];
     }
     const Complex start = units[u].start * record.base.mva;
-    record.notes.push_back(
-        fmt::format("What {} does by its model was taken off; it began at {:.4g} MW and {:.4g} Mvar.",
-                    point.others[u].model.name, start.real(), start.imag()));
+    record.notes.push_back(fmt::format(
+        "The simulated power of {} was subtracted; it was {:.4g} MW and {:.4g} Mvar before the event.",
+        point.others[u].model.name, start.real(), start.imag()));
   }
   return record;
 }

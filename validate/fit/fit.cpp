@@ -227,7 +227,7 @@ class Search {
     } catch (const InputError& error) {
       return error.problems().front().sentence();
     }
-    return "its parameters contradict each other";
+    return "its parameters violate a constraint";
   }
 
   /// Returns the final response, with lenient steps if exact ones fail.
@@ -329,8 +329,8 @@ class Search {
 void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
   if (a != b)
     throw std::logic_error(
-        "two fits are compared that were made with different noise, so that their costs are "
-        "in different units: fit both again with the noise that was measured last");
+        "the costs of two fits with different noise models cannot be compared: fit both again "
+        "with the latest noise model");
 }
 
 }  // namespace

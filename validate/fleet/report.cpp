@@ -62,13 +62,12 @@ int count(const std::vector<FleetRow>& rows, std::initializer_list<const char*> 
 
 report::Table fleet_table(const std::vector<FleetRow>& rows) {
   report::Table table{
-      "Errors are normalised RMS over all channels (square root of chi2 per value): noise alone gives 1 ×. "
-      "“Refitted” is "
-      "the model as it is with its parameters fitted; the next column is of events left out of the fit, "
-      "without and "
-      "with the effect. The last bounds the probability that noise alone gives any hypothesis this evidence.",
-      {"plant", "verdict", "effect", "side", "evidence", "error, refitted", "unseen: before → after",
-       "by noise alone"},
+      "Errors are normalised RMS over all channels (square root of the reduced chi-square): "
+      "noise alone gives 1 ×. “Refitted”: submitted model with fitted parameters. “Held out”: "
+      "events excluded from the fit, without and with the effect. Last column: bound of the "
+      "probability that noise alone gives any hypothesis this evidence.",
+      {"plant", "verdict", "effect", "side", "evidence", "error, refitted", "held out: before → after",
+       "probability under noise"},
       {}};
   for (const auto& r : rows) table.rows.push_back(row_cells(r));
   return table;
@@ -89,14 +88,12 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
   std::string text = "False verdicts: ";
   if (named)
     text += fmt::format(
-        "noise alone would name an effect at any of the plants that have one named with a "
-        "probability of at most {:.0e}. That leaves out noise of the played-in voltage, "
-        "instruments in error, records of another plant, effects that are not in the list. ",
+        "under noise alone, the probability of an effect at any plant with a named effect is at "
+        "most {:.0e}. This excludes noise of the played-in voltage, wrong instruments, records "
+        "of another plant and unlisted effects. ",
         std::clamp(any, 1e-12, 1.0));
   return text +
-         "How often the diagnosis names an effect where nothing is missing, or misses one, is for the blind "
-         "test to say "
-         "(docs/reference/blind-test-results.md).";
+         "Measured rates of false positives and of missed effects: docs/reference/blind-test-results.md.";
 }
 
 std::string fleet_text(const std::vector<FleetRow>& rows) {

@@ -72,12 +72,12 @@ class Separations {
     for (std::size_t e = 0; e < events.size(); ++e)
       scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
     scenes_.push_back({quiet(events.front(), kFrequencyDip), -1,
-                       fmt::format("after a load step far away (frequency down by {} Hz)", kFrequencyDip)});
+                       fmt::format("after a remote load step (frequency falls by {} Hz)", kFrequencyDip)});
     event::FitEvent step = quiet(events.front(), 0);
     step.record.staged = {{.kind = record::StagedEvent::Kind::vref_step,
                            .time = step.record.t.front() + kSceneBegins,
                            .size = kReferenceStep}};
-    scenes_.push_back({step, -1, fmt::format("after a step of Vref by {} pu", kReferenceStep)});
+    scenes_.push_back({step, -1, fmt::format("after a Vref step of {} pu", kReferenceStep)});
     for (const Judgement* j : competitors_) free_.push_back(free_of(j->hypothesis, spread));
     measure_noise();
   }
@@ -256,9 +256,11 @@ std::string decide_sentence(const Decision& decision) {
   std::string what = best.what;
   what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   if (best.expected > decision.now - 0.5)
-    return fmt::format("Nothing that was tried would decide: {} leaves a set of {:.1f} of {:.0f}.", best.what,
-                       best.expected, decision.now);
-  return fmt::format("{} would decide: set of {:.0f} -> {:.1f}.", what, decision.now, best.expected);
+    return fmt::format(
+        "No simulated measurement separates the candidates: {} leaves {:.1f} of {:.0f} on average.",
+        best.what, best.expected, decision.now);
+  return fmt::format("Next measurement: {} (candidates: {:.0f} -> {:.1f} on average).", what, decision.now,
+                     best.expected);
 }
 
 }  // namespace swingbank::validate::hypothesis

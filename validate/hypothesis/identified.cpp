@@ -273,15 +273,15 @@ class Identifying {
         j.fit = base_model_.fit;
         j.fitted = false;
         if (other_side) {
-          j.why_not = fmt::format("a {} that is free in time explains too little",
+          j.why_not = fmt::format("an inferred {} explains too little",
                                   h.input() == InputKind::torque ? "torque" : "field voltage");
         } else if (leader) {
           j.behind = h.cost - leader->cost;
-          j.why_not = fmt::format("identified alone it leaves {:.0f} more of chi2 than {}", j.behind,
+          j.why_not = fmt::format("chi2 of its identification is higher by {:.0f} than with {}", j.behind,
                                   leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;
-          j.why_not = fmt::format("chi2 would fall by some {:.0f}: not worth a fit", j.gain);
+          j.why_not = fmt::format("predicted chi2 reduction {:.0f}: too small for a fit", j.gain);
         }
       }
       all.push_back(std::move(j));

@@ -54,11 +54,11 @@ std::string objection(const std::vector<HeldOut>& held_out, double evidence, dou
   for (const HeldOut& h : held_out)
     if ((h.cost_after > thresholds::held_out.worse * h.cost_before && h.cost_after > adequate) ||
         h.saves() < -std::max(thresholds::held_out.costs.value, thresholds::held_out.costs_share * evidence))
-      return fmt::format("does not improve {} when that is not fitted", h.record);
+      return fmt::format("does not improve held-out {}", h.record);
   for (const HeldOut& h : held_out)
     if (h.cost_after > thresholds::held_out.predicts &&
         h.cost_after > thresholds::held_out.falls * h.cost_before)
-      return fmt::format("does not predict {} when that is not fitted", h.record);
+      return fmt::format("does not predict held-out {}", h.record);
   return "";
 }
 
@@ -88,7 +88,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   j.why_not = objection(j.held_out, j.gain, trial.adequate);
   if (!j.why_not.empty()) return;
   if (j.fit.reduced_chi2() > trial.adequate) {
-    j.why_not = fmt::format("leaves {:.2f} of the noise's variance", j.fit.reduced_chi2());
+    j.why_not = fmt::format("reduced chi-square {:.2f}: residual exceeds noise", j.fit.reduced_chi2());
     return;
   }
   j.accepted = true;

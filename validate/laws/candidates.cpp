@@ -122,15 +122,15 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate&
     order += fmt::format("{}\"w{} < w{}\"", k == 2 ? "" : ", ", k - 1, k);
   }
   law.requirements = order;
-  law.words = "a curve of {x}, through " + points + ", straight between and with its sign";
+  law.words = "an odd function of {x} through " + points + ", linear in between";
 }
 /// Writes the TOML expression and the description of each shape. `y`: name of the filtered signal.
 void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
   constexpr double kMostGain = 1e6, kMostLevel = 10;
   const double factor = factors[0];
   const std::string y = f.filter == Filter::none ? "x" : "filtered";
-  const LawParameter limit{"w", "pu", f.width, 1e-7, 10.0, false, "deviation from which it grows no further"};
-  const LawParameter band{"w", "pu", f.width, 1e-7, 10.0, false, "deviation that has no effect"};
+  const LawParameter limit{"w", "pu", f.width, 1e-7, 10.0, false, "deviation at the limit"};
+  const LawParameter band{"w", "pu", f.width, 1e-7, 10.0, false, "dead band"};
   switch (f.shape) {
     case Shape::straight:
       law.value = "K * " + y;
@@ -139,12 +139,12 @@ void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate&
       break;
     case Shape::limited:
       law.value = "L * clamp(" + y + " / w, -1, 1)";
-      law.words = "{L} where {x} exceeds {w}, in proportion below that and with its sign";
+      law.words = "{L} where {x} exceeds {w}, proportional below, with its sign";
       law.parameters = {gain_of("L", factor, kMostLevel, "limit"), limit};
       break;
     case Shape::dead_band:
       law.value = "K * deadband(" + y + ", w)";
-      law.words = "{K} × what {x} exceeds {w} by, in either direction";
+      law.words = "{K} × {x} outside a dead band of ± {w}";
       law.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), band};
       break;
     case Shape::bent:

@@ -143,14 +143,14 @@ class Searcher {
   void settle(LawFinding& f) const {
     const double left = f.judgement.fit.reduced_chi2();
     if (left > thresholds::laws.judged_below) {
-      f.judgement.why_not = fmt::format("leaves {:.2f} of the noise's variance", left);
+      f.judgement.why_not = fmt::format("reduced chi-square {:.2f}: residual exceeds noise", left);
       return;
     }
     hypothesis::judge(case_.trial, case_.base, case_.held_out_base, f.judgement);
   }
   void write_out(LawFinding& f, const std::vector<LawTrace>& traces) const {
     if (f.judgement.why_not.empty() && !f.judgement.accepted)
-      f.judgement.why_not = "not judged: others answer better";
+      f.judgement.why_not = "not judged: other models fit better";
     const auto& own = f.judgement.hypothesis.free;
     std::vector<fit::FittedParameter> values;
     for (const auto& p : f.judgement.fit.parameters)
@@ -209,8 +209,8 @@ std::string law_sentence(const LawSearch& search, std::size_t hypotheses) {
     after += h.after / static_cast<double>(unseen.size());
   }
   return fmt::format(
-      "None of the {} known effects explains it; {} does: on events it was not fitted to, the normalised RMS "
-      "falls from {:.1f} to {:.2f}.",
+      "None of the {} known effects explains the records; {} does: on held-out events the "
+      "normalised RMS falls from {:.1f} to {:.2f}.",
       hypotheses, law->words, std::sqrt(before), std::sqrt(after));
 }
 

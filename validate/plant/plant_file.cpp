@@ -59,7 +59,7 @@ void append_block(std::string& text, const PlantModel& model, const sim::plant::
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
   bool standard = false;
   for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_default(model, block, i);
-  if (standard) text += "standard = true  # what stands behind # alone has its standard value\n";
+  if (standard) text += "standard = true  # entries in comments have default values\n";
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
     const std::string entry =
@@ -80,7 +80,8 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
 void append_submitted(std::string& text, const PlantModel& model) {
   if (!model.submitted) return;
   text +=
-      "\n[submitted]  # before a calibration that did not hold: calibrate, add and diagnose begin with these\n";
+      "\n[submitted]  # before a calibration that was not adequate: calibrate, add and "
+      "diagnose start from these values\n";
   PlantModel before = model;
   before.plant = *model.submitted;
   const auto old = blocks_of(before), now = blocks_of(model);
@@ -139,7 +140,7 @@ std::vector<std::string> law_names(const PlantModel& model) {
   Problems problems;
   for (const auto& law : model.laws) {
     if (std::ranges::count(names, law.filename().string()))
-      problems.add("two law files named " + law.filename().string(), law.string(),
+      problems.add("two user-defined models in files named " + law.filename().string(), law.string(),
                    "their copies would overwrite each other", "rename one of them");
     names.push_back(law.filename().string());
   }
@@ -208,7 +209,7 @@ void write_plant_file(const fs::path& file, const PlantModel& model,
     const fs::path copy = file.parent_path() / names[k];
     std::error_code none;
     if (!fs::equivalent(copy, model.laws[k], none))
-      write_file(copy, read_input(model.laws[k], "no readable law file, from which the model's effects come",
+      write_file(copy, read_input(model.laws[k], "no readable file of a user-defined model of the plant",
                                   "put it back where it was"));
   }
   write_file(file, text);

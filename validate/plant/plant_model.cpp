@@ -121,7 +121,7 @@ void read_slot(Config& config, PlantModel& model, Slot slot, std::vector<sim::pl
   }
   if (!sim::is_shared(slot)) {
     config.ignore(section);
-    return config.problem(section, "several [[" + section + "]]", "a plant has room for one",
+    return config.problem(section, "several [[" + section + "]]", "a plant has at most one",
                           "write one [" + section + "]");
   }
   std::ranges::move(read_several(config, model, slot), std::back_inserter(into));
@@ -148,12 +148,12 @@ void read_around(Config& config, PlantModel& model) {
     if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
     if (effects_of(model.library, slot).empty()) {
       config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
-                     "remove it; the slot holds its input at the operating point");
+                     "remove it; the input is then constant at the operating point");
     } else if (filled(plant, slot)) {
       config.ignore(section);
       config.problem(
           section, fmt::format("[{}] beside {} of the grid's files", section, name_in(plant, slot)),
-          "a plant has room for one",
+          "a plant has at most one",
           slot == Slot::transformer ? "remove it, or take measured_at out of [grid]"
                                     : fmt::format("remove it, or write ignore_models = [\"{}\"] under [grid]",
                                                   name_in(plant, slot)));
@@ -186,8 +186,9 @@ void read_submitted(Config& config, PlantModel& model) {
   take(plant.transformer);
   for (auto& control : plant.controls) take(control);
   model.submitted = std::move(plant);
-  model.warnings.push_back(fmt::format("{} comes of a calibration that did not hold: its parameters are bent",
-                                       config.name().string()));
+  model.warnings.push_back(
+      fmt::format("{} is the result of a calibration that was not adequate: its parameters are biased",
+                  config.name().string()));
 }
 
 /// Loads the law files of the plant, and adds their effects to the library.

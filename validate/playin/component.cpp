@@ -16,10 +16,10 @@ using record::Component;
 using sim::Slot;
 
 struct RecordedMachine {
-  static constexpr std::string_view name = "RECORDED", title = "a machine that does what was recorded",
+  static constexpr std::string_view name = "RECORDED", title = "a machine with the recorded signals",
                                     source = "the record", description = "";
   static constexpr Slot slot = Slot::machine;
-  static constexpr sim::State states[] = {{"delta", "rad", "stands still"}, {"speed", "pu", "stands still"}};
+  static constexpr sim::State states[] = {{"delta", "rad", "constant"}, {"speed", "pu", "constant"}};
   static constexpr int coefficients = recorded::kCoefficients, scratch = recorded::kMoves;
 
   static void check(const double*, const std::string&, Problems&) {}

@@ -368,7 +368,7 @@ class Driven {
     }
   }
   [[noreturn]] void give_up() const {
-    throw InputError({"play-in stops", fmt::format("t = {:.4f} s", t_),
+    throw InputError({"playback failed", fmt::format("t = {:.4f} s", t_),
                       "the plant's equations cannot be integrated further with this voltage",
                       "check the parameters (time constants, limits) and the record at that time"});
   }

@@ -87,8 +87,8 @@ VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> 
     if (segment.t.empty())
       problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s",
                                s > 0 ? switchings_[s - 1].time : record.t.front(), end),
-                   record.name, "the voltage there cannot be known",
-                   "give switching instants inside the record, with a sample between them");
+                   record.name, "the voltage there is unknown",
+                   "give switching times inside the record, with a sample between them");
     else
       fit(segment);
     segments.push_back(std::move(segment));

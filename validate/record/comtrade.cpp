@@ -376,8 +376,8 @@ void make_even(Comtrade& c, double fewest, Problems& problems) {
     if (i >= from && i < to && all[i].rate == low) anchor = all[i].first;
     if (i >= from && i < to && std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
       problems.add(fmt::format("sampling rates of {:g} and {:g} per second", all[i].rate, low), c.file,
-                   "the faster is no multiple of the slower, so no samples lie evenly",
-                   "export the stretch with one rate, or one at a common rate");
+                   "the faster is no multiple of the slower, so no even sampling exists",
+                   "export the section with one rate, or one at a common rate");
   }
   std::vector<std::size_t> kept;
   for (std::size_t k = all[from].first; k < all[to - 1].end; ++k) {
@@ -386,12 +386,11 @@ void make_even(Comtrade& c, double fewest, Problems& problems) {
   }
   std::string note = fmt::format("The record has the sampling rates {} per second; ", rates);
   if (to - from < all.size())
-    note += fmt::format("the stretch from {:.4g} to {:.4g} s was taken, the rest is too slow for waveforms",
+    note += fmt::format("the section from {:.4g} to {:.4g} s was taken, the rest is too slow for waveforms",
                         c.t[kept.front()], c.t[kept.back()]);
   if (kept.size() < all[to - 1].end - all[from].first)
-    note +=
-        fmt::format("{}of what is faster every n-th sample was taken, so that all come at {:g} per second",
-                    to - from < all.size() ? "; " : "", low);
+    note += fmt::format("{}faster sections were decimated to {:g} per second",
+                        to - from < all.size() ? "; " : "", low);
   c.notes.push_back(note + ".");
   const auto pick = [&](auto& values) {
     for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];

@@ -65,7 +65,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
     problems.add(fault->what, comtrade.file,
                  fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
                              names[1], names[2]),
-                 fault->remedy + " (the channels' names and phases stand in the .cfg)");
+                 fault->remedy + " (the .cfg defines the channels' names and phases)");
   // Times and angles refer to the record's first sample, which may not be used.
   const double begin = comtrade.t.front();
   Sequence sequence;
@@ -105,7 +105,7 @@ void check_terminal(const std::vector<Wave>& waves, const ReadOptions& options, 
   const auto same = [&](const std::string& c) { return normalised(c) == normalised(options.terminal); };
   if (options.terminal.empty() || std::ranges::any_of(circuits, same)) return;
   problems.add(fmt::format("no circuit '{}'", options.terminal), file,
-               circuits.empty() ? "neither the channels' circuits nor their names tell one"
+               circuits.empty() ? "neither the channels' circuits nor their names identify one"
                                 : fmt::format("the file has {}", fmt::join(circuits, ", ")),
                circuits.empty() ? "leave it off the file's name" : "choose one of them");
 }
@@ -134,14 +134,14 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     if (even.place[k] != static_cast<double>(k)) {
       faults.add("step", "waveforms that are not evenly sampled", std::min(k, comtrade.t.size() - 1),
                  "samples are missing or repeated there",
-                 "take the stretch before or after it (--until, --from)");
+                 "take the section before or after it (--until, --from)");
       break;
     }
   const double rate = options.phasor_rate > 0 ? options.phasor_rate : base.frequency;
   const double sampled = t.size() > 1 ? 1 / (t[1] - t[0]) : 0;
   if (t.size() < 2)
     problems.add(fmt::format("waveforms of {} sample", t.size()), comtrade.file,
-                 "a phasor takes the samples of a cycle", "export the stretch around the event");
+                 "a phasor takes the samples of a cycle", "export the section around the event");
   else if (!(sampled >= kMinPerCycle * base.frequency))
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
                  fmt::format("a cycle needs at least {:g} samples", kMinPerCycle),

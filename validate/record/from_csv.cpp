@@ -184,7 +184,7 @@ class CsvReader {
     if (name.empty() || value.empty() || !options_.columns.empty()) return;
     problems_.add(
         "a tall table", where,
-        fmt::format("it has one measurement a line ('{}' says of what, '{}' how much)", name, value),
+        fmt::format("it has one measurement per line ('{}' is the name, '{}' the value)", name, value),
         "export a column for each quantity and a line for each time (a pivot table)");
     problems_.raise();
   }

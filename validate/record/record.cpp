@@ -157,7 +157,7 @@ Record read_staged(const std::filesystem::path& file, const RecordBase& base, Re
     if (power->empty()) power->assign(r.t.size(), 0.0);
   if (r.speed.empty() && !r.f.empty()) {
     r.speed = r.f;
-    r.notes.emplace_back("The frequency is taken for the speed: no grid is beside the machine.");
+    r.notes.emplace_back("The frequency is used as the speed, because no grid is connected to the machine.");
   }
   if (r.angle != AngleSource::measured)
     std::erase_if(r.notes, [](const std::string& note) { return note.starts_with("The record has n"); });
@@ -172,7 +172,7 @@ Record stretch(Record r, double from, double until) {
   const std::size_t kept = last > first ? last - first : 0;
   if (kept < kMinSamples)
     throw InputError({fmt::format("{} samples", kept), r.name,
-                      fmt::format("the stretch asked for leaves fewer than {}", kMinSamples),
+                      fmt::format("the selected time range contains fewer than {}", kMinSamples),
                       "give an earlier --from or a later --until"});
   if (const double length = r.t[last - 1] - r.t[first]; length < kShortestRecord)
     throw InputError({fmt::format("{:.3g} s is too short", length), r.name,
@@ -227,9 +227,8 @@ std::vector<double> angle_of_frequency(const Record& r) {
 
 void require_angle(const Record& record) {
   if (record.angle == AngleSource::none)
-    throw InputError({"no angle and no frequency", record.name,
-                      "the voltage's magnitude alone does not say how the grid pulls the rotor",
-                      "record one of them, or let P and Q drive the model: swingbank compare --drive pq"});
+    throw InputError({"no angle and no frequency", record.name, "playback needs the angle of the voltage",
+                      "record one of them, or play in P and Q: swingbank compare --drive pq"});
 }
 
 std::string utc_text(double epoch) {

@@ -306,11 +306,11 @@ void add_task(const Task& task, const std::string& stem, Both& to) {
       if (const Table unseen = unseen_table(task, level); !unseen.rows.empty()) to.table(unseen);
     }
   to.picture(stem + "-parameters.svg", parameter_picture(task),
-             "Error of each parameter relative to its variance: what the raw MSE does not show.");
+             "Error of each parameter relative to its variance.");
   for (const double level : task.levels()) to.table(parameter_comparison(task, level));
   to.picture(
       stem + "-reliability.svg", reliability_picture(task),
-      "Intervals of the estimates: a point on the dashed line is an interval that holds what it states.");
+      "Coverage of the intervals: a point on the dashed line is an interval with the nominal coverage.");
   if (const Table several = several_table(task); !several.rows.empty()) to.table(several);
   to.table(effort_table(task));
 }
@@ -347,8 +347,9 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
   }
   if (of.empty()) return;
   Table choice{
-      "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run trains on, their "
-      "geometric mean; the generator left out took no part. The least of a row is the choice for it.",
+      "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run "
+      "trains on, their geometric mean; the excluded generator was not used. The smallest "
+      "value of a row is chosen.",
       {"left out", "judged on"},
       {}};
   for (const auto& network : networks) choice.header.push_back(method_name(network));

@@ -57,7 +57,8 @@ class Base {
     if (plants_.empty())
       say("no vary.generators", "the effect is attached to the generators that vary", "name the plant's bus");
     if (table_.at_path("vary.box").as_table() == nullptr)
-      say("no [vary.box]", "networks learn what varies", "give intervals of the machine's parameters");
+      say("no [vary.box]", "networks learn only parameters that vary",
+          "give intervals of the machine's parameters");
     problems.raise();
   }
   [[nodiscard]] const toml::table& table() const { return table_; }
@@ -105,7 +106,7 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
                    const RetrainOptions& options) {
   if (added.hypothesis.replaces)
     throw InputError({"effect " + added.hypothesis.name, "--retrain",
-                      "the datasets differ in what is added, not in what stands in a slot",
+                      "the datasets may differ only in an added effect, not in a replaced one",
                       "retrain with the new model as the model"});
   const sim::plant::Block* block = added_block(added);
   if (block != nullptr) {

@@ -108,19 +108,18 @@ std::string power(double rms) {
 
 std::string sentence_of(const Retrained& r, const add::Addition& added) {
   std::string text = fmt::format(
-      "On events not fitted, the network without {} misses the {} by {:.3g} standard deviations of the "
-      "values drawn, "
-      "the one with it by {:.3g}: {:.3g} times less (the middle of the intervals by {:.3g}).",
+      "On held-out events the network without {} estimates the {} with an error of {:.3g} "
+      "standard deviations of the drawn values, the network with it {:.3g}: smaller by a "
+      "factor of {:.3g} (midpoint of the intervals: {:.3g}).",
       added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
       r.fall(), r.middle);
   if (r.error[1] > r.middle)
-    text +=
-        " That is no better than the middle: train it on more (--train-draws, --train-epochs) before "
-        "trusting it.";
+    text += " This is no better than the midpoint: train it with more data (--train-draws, --train-epochs).";
   if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be run.";
-  return text + fmt::format(" With its estimates P and Q are missed by {} rms; with those of the other {}.",
-                            power(r.rms[1]),
-                            std::isfinite(r.rms[0]) ? "by " + power(r.rms[0]) : "the plant cannot be run");
+  return text + fmt::format(
+                    " With its estimates the RMS error of P and Q is {}; with those of the other network {}.",
+                    power(r.rms[1]),
+                    std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be run");
 }
 
 }  // namespace
@@ -136,8 +135,7 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
   const auto unseen = std::ranges::count(r.events, false, &RetrainedEvent::seen);
   Problems problems;
   if (unseen == 0)
-    problems.add("no event held out", "--retrain",
-                 "networks are judged on events that the effect was not fitted to",
+    problems.add("no event held out", "--retrain", "networks are judged on held-out events",
                  "hold out at least one with --hold-out");
   if (shared == 0)
     problems.add("no parameter that both networks learnt", estimates[0].network, "nothing can be compared",
@@ -179,7 +177,7 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
 std::string terminal_report(const Retrained& r) {
   report::Table t{"Networks",
                   {"parameter", "unit", r.truth ? "truth" : "fitted", "without", "error", "with", "error",
-                   "middle's error"},
+                   "midpoint error"},
                   {}};
   for (const auto& p : r.parameters)
     t.rows.push_back({p.name, p.unit, fmt::format("{:.4g}", p.reference),
@@ -187,7 +185,7 @@ std::string terminal_report(const Retrained& r) {
                       p.own ? std::string() : fmt::format("{:.2f}", p.error[0]),
                       fmt::format("{:.4g}", p.estimate[1]), fmt::format("{:.2f}", p.error[1]),
                       fmt::format("{:.2f}", p.middle)});
-  t.rows.push_back({"rms of those of both", "", "", "", fmt::format("{:.2f}", r.error[0]), "",
+  t.rows.push_back({"rms of common parameters", "", "", "", fmt::format("{:.2f}", r.error[0]), "",
                     fmt::format("{:.2f}", r.error[1]), fmt::format("{:.2f}", r.middle)});
   report::Table events{"Events",
                        {"event", "", "parameter error without", "with", "P, Q rms without", "with",
@@ -199,7 +197,7 @@ std::string terminal_report(const Retrained& r) {
                            fmt::format("{:.2f}", e.parameter_error[1]), power(e.rms[0]), power(e.rms[1]),
                            figure(e.reduced_chi2[0]), figure(e.reduced_chi2[1])});
   return r.sentence +
-         "\n\nEstimates on the unseen events; errors in standard deviations of the values drawn:\n" +
+         "\n\nEstimates on held-out events; errors in standard deviations of the drawn values:\n" +
          calibrate::aligned(t) + "\nP and Q with each network's estimates from the fitted events:\n" +
          calibrate::aligned(events);
 }

@@ -60,7 +60,7 @@ sim::grid::EventTexts read_texts(Config& c) {
   t.z0 = c.optional<std::string>(event_key(sim::grid::EventPart::z0), "");
   if (t.faults.empty() && t.trips.empty() && t.generator_trips.empty() && t.load_steps.empty() &&
       t.vref_steps.empty() && t.pref_steps.empty())
-    c.problem("event", "no event", "nothing would happen in the simulation",
+    c.problem("event", "no event", "the simulation has no disturbance",
               "give fault, trip, trip_generator, load_step, vref_step or pref_step as swingbank simulate "
               "takes them");
   return t;
@@ -114,7 +114,7 @@ int plant_named(Config& c, const std::string& key, const std::string& name, cons
 void check_bus_record(const record::Record& r, Problems& problems) {
   const double level = std::accumulate(r.V.begin(), r.V.end(), 0.0) / static_cast<double>(r.V.size());
   if (level < 0.5 || level > 1.5)
-    problems.add(fmt::format("V = {:.4g} pu on average", level), r.name, "a bus stands near 1 pu",
+    problems.add(fmt::format("V = {:.4g} pu on average", level), r.name, "bus voltages are near 1 pu",
                  "name the column by its unit (V_kV with record.base_kv), or give per-unit values");
 }
 
@@ -144,7 +144,7 @@ void add_instruments(Config& c, const std::string& key, const SystemCase& s, Sys
     attempt(c, key, [&] {
       if (!is_repeatable(block, s.base.frequency))
         throw InputError({"an instrument that draws random numbers", std::string(block.effect->name),
-                          "how much noise a record has is seen in it", "leave it out"});
+                          "the noise of a record is estimated from it", "leave it out"});
     });
 }
 
@@ -197,7 +197,7 @@ void check_clocks(Config& c, const SystemCase& s) {
     if (t.record.start != s.terminals.front().record.start)
       c.problem("terminal." + t.name + ".record", "a record that starts at " + t.record.start,
                 "that of " + s.terminals.front().name + " starts at " + s.terminals.front().record.start,
-                "export all records from the same instant, or with times relative to one");
+                "export all records from the same time, or with times relative to one time");
   double end = 0;
   for (const auto& t : s.terminals) end = std::max(end, t.record.t.back());
   for (const auto& t : s.terminals)
@@ -228,7 +228,8 @@ SystemCase load_system(const fs::path& file) {
   if (c.sound()) s.base.frequency = s.grid.network.frequency;
   const auto names = c.keys("terminal");
   if (names.empty())
-    c.problem("terminal", "no terminal", "nothing was measured", "give one [terminal.NAME] at least");
+    c.problem("terminal", "no terminal", "the comparison needs a measurement",
+              "give one [terminal.NAME] at least");
   if (!c.sound()) {  // errors of the grid first; references to it cannot be checked yet
     c.ignore("terminal");
     c.raise();

@@ -131,10 +131,9 @@ std::vector<double> found_instants(const SystemCase& s, double& uncertainty) {
     }
   }
   if (votes == 0)
-    throw InputError({fmt::format("{} switching instants", written.size()),
-                      s.file.string() + ", event.instants",
-                      "no record shows as many jumps of the voltage (" + counts + ")",
-                      "give the instants (event.instants = \"given\")"});
+    throw InputError({fmt::format("{} switching times", written.size()), s.file.string() + ", event.instants",
+                      "no record has this number of voltage steps (" + counts + ")",
+                      "give the switching times (event.instants = \"given\")"});
   for (double& t : sum) t /= votes;
   return InstantFit(s, written, sum).run(uncertainty);
 }
@@ -151,9 +150,8 @@ std::string clock_doubt(const record::Record& record, const std::vector<double>&
   }
   if (!off) return {};
   return fmt::format(
-      "The voltage of {} jumps at {} (± {:.1f} ms), not at the event's instants: check its clock, or have "
-      "them found "
-      "(event.instants = \"found\").",
+      "The voltage of {} has steps at {} (± {:.1f} ms), not at the event's switching times: "
+      "check its clock, or estimate the times from the records (event.instants = \"found\").",
       record.name, seen, 1e3 * jumps.front().uncertainty);
 }
 

@@ -68,7 +68,7 @@ std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
 /// Table of the differences between model and records before the event.
 report::Table initial_table(const SystemCase& s, const SystemComparison& c) {
   report::Table table{
-      "Before the event: model less record, mean.", {"terminal", "at", "V", "angle", "P", "Q"}, {}};
+      "Before the event: mean of modelled − measured.", {"terminal", "at", "V", "angle", "P", "Q"}, {}};
   const double scales[] = {1, constants::degrees_in_radian, s.base.mva, s.base.mva};
   const char* units[] = {"pu", "deg", "MW", "Mvar"};
   for (std::size_t i = 0; i < s.terminals.size(); ++i) {
@@ -149,11 +149,11 @@ void add_terminal(report::Page& page, const SystemCase& s, const SystemCompariso
 
 report::Table ranking_table(const SystemCase& s, const SystemComparison& c) {
   report::Table table{
-      "Terminals, the one that fails most first. “Alone”: the recorded voltage of a "
-      "plant played into its own model, so that neither the grid nor other plants "
-      "can be to blame; those that fail so come first. Numbers are the largest cell "
-      "of the error map over its bound: above 1 noise alone does not explain it.",
-      {"terminal", "at", "in the grid", "furthest off", "alone", "furthest off, alone"},
+      "Terminals, sorted by error. “Alone”: playback of a plant's recorded voltage into its "
+      "own model, which excludes errors of the grid and of other plants; plants that fail "
+      "alone come first. Numbers: largest ratio of a bin of the error map to its bound; above "
+      "1 the error exceeds noise.",
+      {"terminal", "at", "in the grid", "largest error", "alone", "largest error, alone"},
       {}};
   for (const auto& r : c.ranking) {
     const auto ratio = [](double worst) {
@@ -175,9 +175,9 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
   const auto maps = compare::maps_of(c.terminals);
   out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));
-  out += "* = above the joint noise limit\n\nBefore the event, model less record:\n";
+  out += "* = above the joint noise limit\n\nBefore the event, mean of modelled − measured:\n";
   out += report::padded(initial_table(s, c));
-  out += "\nTerminals, the one that fails most first (largest cell over its bound):\n";
+  out += "\nTerminals, sorted by error (largest ratio of a bin to its bound):\n";
   out += report::padded(ranking_table(s, c), 6);
   out += "\nswitching at " + instants_text(c) + "\n";
   for (const auto& note : c.notes) out += "note: " + note + "\n";
@@ -239,9 +239,8 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
   for (const auto& line : event_lines(s.texts)) event += (event.empty() ? "" : "; ") + line;
   page.text("Event: " + event + ". Switching: " + instants_text(c) + ".");
   page.text(
-      "Drag across a chart to zoom in on a stretch of time (all charts follow); double-click to see the "
-      "whole record. "
-      "The shaded band is the fault.");
+      "Drag across a chart to zoom in on a time range (all charts follow); double-click to see "
+      "the whole record. The shaded band is the fault.");
   for (const auto& r : c.ranking) add_terminal(page, s, c, r.terminal);
   page.provenance(rows);
   page.data("figures", system_json(s, c, rows));

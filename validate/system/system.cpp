@@ -75,7 +75,7 @@ class Comparer {
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kMinQuiet)
       throw InputError({fmt::format("{} samples before the event", e.playback.start.samples),
-                        "terminal " + t.name, "noise and steady state are seen there",
+                        "terminal " + t.name, "noise and steady state are estimated from these samples",
                         "start the record at least 1 s before the event"});
     e.windows = compare::event_windows(e.record, e.switchings, 1.0, e.left_out);
     channels(i, e);
@@ -101,10 +101,10 @@ class Comparer {
   void leave_out_smeared(compare::EventComparison& e, double smear) const {
     if (!(smear > 0)) return;
     leave_out(e, smear);
-    e.notes.push_back(fmt::format(
-        "The instruments' filters smear switchings by up to {:.0f} ms to either side: samples there are not "
-        "compared.",
-        1e3 * smear));
+    e.notes.push_back(
+        fmt::format("The instruments' filters smooth switchings by up to {:.0f} ms on either side; these "
+                    "samples are not compared.",
+                    1e3 * smear));
   }
   void channels(std::size_t i, compare::EventComparison& e) {
     const Modelled& m = run_.answers[i];
@@ -147,7 +147,7 @@ class Comparer {
     }
     if (other.samples() != r.samples() || std::abs(other.t.front() - r.t.front()) > 1e-3 * r.step() ||
         std::abs(other.step() - r.step()) > 1e-6 * r.step())
-      throw InputError({"angles sampled at other instants",
+      throw InputError({"angles with different sampling times",
                         "terminals " + e.record.name + " and " + s_.terminals[reference].name,
                         "the angle between them cannot be taken sample by sample",
                         "export both at the same rate, or leave compare.reference out"});
@@ -223,8 +223,8 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
     rank.alone = compare::judge(one);
     std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
   } catch (const InputError& error) {
-    rank.alone_where = "could not be played in: " + error.problems().front().sentence();
-    c.terminals[rank.terminal].notes.push_back("Alone, its record " + rank.alone_where);
+    rank.alone_where = "playback failed: " + error.problems().front().sentence();
+    c.terminals[rank.terminal].notes.push_back("Record alone: " + rank.alone_where);
   }
 }
 
@@ -247,20 +247,20 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
   const auto played =
       std::ranges::count_if(c.ranking, [](const TerminalRank& r) { return r.alone.has_value(); });
   if (c.adequacy.adequate)
-    c.culprit = "Every terminal is met.";
+    c.culprit = "All terminals are within the limits.";
   else if (failing > 0)
     c.culprit = fmt::format(
-        "Terminal {} fails most: its plant's model does not answer its own recorded voltage either ({}); "
-        "look there "
-        "first.{}",
+        "Largest error at terminal {}. Its plant's model also fails in playback of its own "
+        "recorded voltage ({}); correct this model first.{}",
         s.terminals[first.terminal].name, first.alone_where,
-        failing > 1 ? fmt::format(" {} more plants fail so.", failing - 1) : "");
+        failing > 1 ? fmt::format(" {} more plants fail in playback.", failing - 1) : "");
   else
-    c.culprit =
-        fmt::format("Terminal {} fails most ({}).{}", s.terminals[first.terminal].name, first.where,
-                    played > 0 ? " Every recorded plant answers its own recorded voltage as measured, so the "
-                                 "error is in the network, the loads, the event, or a plant without a record."
-                               : "");
+    c.culprit = fmt::format(
+        "Largest error at terminal {} ({}).{}", s.terminals[first.terminal].name, first.where,
+        played > 0
+            ? " Every recorded plant is adequate in playback of its own recorded voltage, so the error "
+              "is in the network, the loads, the event, or a plant without a record."
+            : "");
 }
 
 }  // namespace
@@ -281,7 +281,7 @@ SystemComparison compare_system(const SystemCase& s) {
     if (c.instants.front() < t.record.t.front())
       throw InputError({fmt::format("an event at {:g} s", c.instants.front()), "terminal " + t.name,
                         fmt::format("its record begins at {:g} s", t.record.t.front()),
-                        "give the event's instants on the records' clock"});
+                        "give the event's switching times on the records' clock"});
   const SystemRun run = run_system(s, event);
   c.outcome = run.outcome;
   c.stopped_at = run.stopped_at;
@@ -291,18 +291,19 @@ SystemComparison compare_system(const SystemCase& s) {
   rank_terminals(s, c);
   if (c.outcome != sim::Outcome::stable)
     c.notes.push_back(
-        fmt::format("The simulation ended at {:.3f} s: {}. What follows repeats its last value.",
+        fmt::format("The simulation ended at {:.3f} s: {}. Later samples repeat its last value.",
                     c.stopped_at, sim::outcome_name(c.outcome)));
   if (s.find_instants)
     c.notes.push_back(
-        fmt::format("The records tell each switching instant to ± {:.1f} ms; within that they were moved to "
-                    "where model and "
-                    "records agree best. Give them (event.instants = \"given\") where they are known.",
+        fmt::format("Switching times were estimated from the records (each to ± {:.1f} ms) and refined by "
+                    "the fit of the model to the records. Give them (event.instants = \"given\") where they "
+                    "are known.",
                     1e3 * c.uncertainty));
   if (s.steady_state == SteadyState::shift)
     c.notes.push_back(
-        "What differs before the event was taken off every channel (compare.steady_state = "
-        "\"shift\"): only what the event does is judged. The table of the steady state shows it.");
+        "The difference before the event was subtracted from every channel (compare.steady_state "
+        "= \"shift\"), so only the response to the event is judged. The table of the steady "
+        "state shows the difference.");
   return c;
 }
 

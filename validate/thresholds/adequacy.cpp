@@ -10,15 +10,15 @@ namespace swingbank::validate::thresholds {
 const CriterionRecord& criterion_record(Criterion criterion) {
   static constexpr std::array<CriterionRecord, 7> records = {{
       {"cells",
-       "cells of the error maps beyond what noise alone allows, or in which that is more than the machine is large",
+       "bins of the error maps above the noise limit, or whose noise limit exceeds the nominal value",
        "cells", "at"},
-      {"events", "chi2 per value of the event furthest off, parameters refitted", "chi2 per value", "up to"},
-      {"misfit", "chi2 per value over all events, parameters refitted", "chi2 per value", "up to"},
-      {"slow", "slow remainder of the residual, parameters refitted", "standard deviations", "below"},
-      {"line", "what a steady oscillation of one frequency in all events explains beyond its price", "chi2",
+      {"events", "largest reduced chi-square of an event, parameters refitted", "chi2 per value", "up to"},
+      {"misfit", "reduced chi-square of all events, parameters refitted", "chi2 per value", "up to"},
+      {"slow", "slow drift of the residual, parameters refitted", "standard deviations", "below"},
+      {"line", "chi2 of a steady oscillation of one frequency in all events, above its penalty", "chi2",
        "up to"},
-      {"free_input", "evidence of an input that is free in time", "chi2", "up to"},
-      {"named_effect", "evidence of the effect that is named", "chi2", "below"},
+      {"free_input", "evidence of an inferred input", "chi2", "up to"},
+      {"named_effect", "evidence of the named effect", "chi2", "below"},
   }};
   return records[static_cast<std::size_t>(criterion)];
 }

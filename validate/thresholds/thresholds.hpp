@@ -21,77 +21,74 @@ struct Evidence {
   /// Evidence from which diagnose accepts an effect [chi2].
   Threshold accepted{
       "evidence.accepted", 40, "chi2",
-      "diagnose accepts an effect from here; the best of some thirty wrong ones had 20 at most in thirty "
-      "development cases with nothing hidden (decisions 16 and 41)"};
+      "least evidence of an accepted effect; the best of about thirty wrong effects reached 20 "
+      "in thirty development cases without a hidden effect (decisions 16 and 41)"};
   /// Additional evidence of a pair of effects over every single effect [chi2].
-  Threshold second{
-      "evidence.second", 80, "chi2",
-      "a pair of effects leaves that much less than every single one, in evidence and in chi2, because "
-      "what the first effect or the instruments leave looks like a second one (decision 61)"};
+  Threshold second{"evidence.second", 80, "chi2",
+                   "least advantage of a pair over every single effect, in evidence and in chi2, because "
+                   "the residual of the first effect or of the instruments resembles a second effect "
+                   "(decision 61)"};
   /// Largest gain in evidence that a longer fit is expected to bring [chi2].
-  Threshold within_reach{
-      "evidence.within_reach", 200, "chi2",
-      "a long fit may add this much to a short one; what lies further behind the best is neither "
-      "fitted on for that reason nor judged (decision 61)"};
+  Threshold within_reach{"evidence.within_reach", 200, "chi2",
+                         "largest gain that a long fit is expected to add to a short one; hypotheses further "
+                         "behind the best are neither refined nor judged (decision 61)"};
   /// Share of the leading extension's evidence from which a better optimum of the base model restarts the
   /// diagnosis [-].
   Threshold escape{
       "evidence.escape", 0.5, "share of the leading extension's evidence",
-      "where a better start of the model alone explains more, the diagnosis begins anew (decision 61)"};
+      "if a better optimum of the base model explains more, the diagnosis starts again (decision 61)"};
   /// Largest difference in chi2 at which a completed fit replaces a short one [chi2].
   Threshold same_fit{
       "evidence.same_fit", 0.5, "chi2",
-      "a finished fit takes the place of a short one, which has no errors, unless it is worse by more"};
+      "a complete fit replaces a short one, which has no standard errors, unless its chi2 is higher by more"};
 };
 inline constexpr Evidence evidence;  ///< the thresholds in use
 
 /// Conversion of evidence to posterior probabilities (decision 41).
 struct Posterior {
   /// Divisor that tempers the evidence before its conversion to a probability [chi2].
-  Threshold scale{
-      "posterior.scale", 6, "chi2",
-      "an evidence counts as twice a log probability times this: fits end short of their optima, and noise is "
-      "not all modelled; the likelihood of 21 blind cases of spent seeds is flat from 4 to 6 (decision 41)"};
+  Threshold scale{"posterior.scale", 6, "chi2",
+                  "divisor of the evidence before the conversion to a probability, because fits end before "
+                  "their optima and the noise model is incomplete; the likelihood of 21 earlier blind "
+                  "cases is flat from 4 to 6 (decision 41)"};
   /// Total probability of the set of credible explanations [-].
-  Threshold set{"posterior.set", 0.95, "probability",
-                "the most probable explanations that make up this much are the set (decision 41)"};
+  Threshold set{"posterior.set", 0.95, "probability", "total probability of the credible set (decision 41)"};
   /// Probability above which the verdict names the first explanation of the set [-].
-  Threshold told{"posterior.told", 0.5, "probability",
-                 "which of the set comes first is told above this (decision 41)"};
+  Threshold told{
+      "posterior.told", 0.5, "probability",
+      "least probability at which the verdict names the first explanation of the set (decision 41)"};
   /// Probability relative to the leading explanation below which a fit is not continued [-].
-  Threshold negligible{"posterior.negligible", 1e-4, "probability beside the leading one",
-                       "what cannot become more probable is not fitted on (decision 61)"};
+  Threshold negligible{"posterior.negligible", 1e-4, "probability relative to the leading one",
+                       "hypotheses that cannot exceed this are not refined (decision 61)"};
 };
 inline constexpr Posterior posterior;  ///< the thresholds in use
 
 /// Thresholds of the hold-out test of an effect on unseen events (decision 41).
 struct HeldOut {
   /// Largest ratio of the costs with and without the effect on an unseen event [-].
-  Threshold worse{
-      "held_out.worse", 1.02, "ratio of costs",
-      "an event in which the effect hardly acts may be predicted worse by this: the refit's own scatter "
-      "(decision 41)"};
+  Threshold worse{"held_out.worse", 1.02, "ratio of costs",
+                  "largest cost ratio with and without the effect on a held-out event in which it hardly "
+                  "acts; scatter of the refit (decision 41)"};
   /// Largest increase of the cost of an unseen event [chi2].
-  Threshold costs{
-      "held_out.costs", 20, "chi2",
-      "an effect may cost no unseen event more, or costs_share if that is more; what is really missing "
-      "costs nothing (decision 41)"};
+  Threshold costs{"held_out.costs", 20, "chi2",
+                  "largest increase of the cost of a held-out event by an effect, or costs_share if that "
+                  "is more; a component that is really missing does not increase it (decision 41)"};
   /// Largest increase of the cost of an unseen event, as a share of the effect's evidence [-].
   Threshold costs_share{"held_out.costs_share", 0.1, "share of the effect's evidence",
                         "see costs (decision 41)"};
   /// Cost per value up to which an unseen event is predicted [chi2 per value].
   Threshold predicts{"held_out.predicts", 1.25, "chi2 per value",
-                     "an unseen event with this cost at most is predicted (decision 41)"};
+                     "largest cost of a predicted held-out event (decision 41)"};
   /// Share of the cost without the effect up to which an unseen event is predicted [-].
   Threshold falls{"held_out.falls", 0.1, "share of the cost without the effect",
-                  "an unseen event whose cost falls to this is predicted too (decision 41)"};
+                  "a held-out event whose cost falls to this share is predicted too (decision 41)"};
   /// Share of the total reduction from which the effect acts in one event only [-].
-  Threshold alone{
-      "held_out.alone", 0.8, "share of what the effect saves on unseen events",
-      "an effect shows in one event alone if that event holds more; no other event can foretell it then"};
+  Threshold alone{"held_out.alone", 0.8, "share of the cost reduction on held-out events",
+                  "an effect acts in one event only if that event has a larger share; other events then "
+                  "cannot predict it"};
   /// Share of such an event's chi2 that must remain when the fit excludes it [-].
   Threshold foretold{"held_out.foretold", 0.5, "share of that event's chi2",
-                     "and if the others, fitted without it, leave more of it than this"};
+                     "and if a larger share of its chi2 remains when the fit excludes it"};
 };
 inline constexpr HeldOut held_out;  ///< the thresholds in use
 
@@ -100,20 +97,19 @@ struct Adequacy {
   /// Limit of the reduced chi-square [chi2 per value].
   Threshold reduced_chi2{
       "adequacy.reduced_chi2", 1.12, "chi2 per value",
-      "splines through noisy samples of the played-in voltage leave up to this (decisions 16 and 17)"};
+      "limit of adequacy; splines through noisy samples of the played-in voltage cause up to "
+      "this (decisions 16 and 17)"};
   /// Limit of the means of the whitened residual over 0.5 to 2 s [standard deviations].
-  Threshold slow{
-      "adequacy.slow", 8, "standard deviations",
-      "means of the residual over 0.5 to 2 s may exceed those of white noise by this; thirty development "
-      "cases with nothing hidden had 3.9 at most (measured 2026-11-21)"};
+  Threshold slow{"adequacy.slow", 8, "standard deviations",
+                 "limit of the means of the residual over 0.5 to 2 s, above white noise; thirty "
+                 "development cases without a hidden effect had 3.9 at most (measured 2026-11-21)"};
   /// Limit of the chi2 that a steady oscillation explains [chi2].
-  Threshold line{
-      "adequacy.line", 40, "chi2 beyond its price",
-      "a steady oscillation in what is left has to earn what an effect has to; the strongest line of 75 "
-      "cases with nothing hidden earned 18 at most (measured 2026-11-26)"};
+  Threshold line{"adequacy.line", 40, "chi2 above its penalty",
+                 "least chi2 of a steady oscillation in the residual, equal to that of an effect; the "
+                 "strongest line of 75 cases without a hidden effect had 18 at most (measured 2026-11-26)"};
   /// Penalty for each fitted number of a steady oscillation [chi2].
   Threshold number{"adequacy.number", 2, "chi2 per number",
-                   "what each number of a steady oscillation must earn (Akaike 1974)"};
+                   "penalty for each fitted number of a steady oscillation (Akaike 1974)"};
   /// Standard deviations of an event's limit above the expected chi-square [standard deviations].
   Threshold one_in_thousand{
       "adequacy.one_in_thousand", 3.09, "standard deviations",
@@ -122,25 +118,23 @@ struct Adequacy {
   /// Probability that noise alone exceeds the bound of any bin [-].
   Threshold false_alarm{
       "adequacy.false_alarm", 0.001, "probability",
-      "with which noise alone exceeds any of the cells of all of compare's error maps together"};
+      "probability that noise alone exceeds the bound of any bin in all error maps of compare"};
 };
 inline constexpr Adequacy adequacy;  ///< the thresholds in use
 
 /// Values of the reduced chi-square above which something other than noise dominates a fit.
 struct Noise {
   /// Reduced chi-square up to which the noise is estimated from the residual [chi2 per value].
-  Threshold measurable{
-      "noise.measurable", 4, "chi2 per value",
-      "noise can be measured through a structure that misfits by less, because its reactances are "
-      "near enough (decision 16)"};
+  Threshold measurable{"noise.measurable", 4, "chi2 per value",
+                       "largest reduced chi-square at which the noise is estimated from the residual of an "
+                       "incomplete model, because its reactances are accurate enough (decision 16)"};
   /// Reduced chi-square up to which the priors keep their full weight [chi2 per value].
   Threshold believed{"noise.believed", 1.5, "chi2 per value",
-                     "up to this misfit beliefs about parameters weigh as they stand (decision 15)"};
+                     "largest reduced chi-square at which the priors have their full weight (decision 15)"};
   /// Reduced chi-square up to which calibrate corrects the bias from voltage noise [chi2 per value].
-  Threshold taken_back{
-      "noise.taken_back", 1.5, "chi2 per value",
-      "up to this misfit calibrate takes back what noise of the voltage did; above it something else "
-      "pulls harder (decision 17)"};
+  Threshold taken_back{"noise.taken_back", 1.5, "chi2 per value",
+                       "largest reduced chi-square at which calibrate corrects the bias from voltage noise; "
+                       "above it other biases dominate (decision 17)"};
 };
 inline constexpr Noise noise;  ///< the thresholds in use
 
@@ -149,42 +143,43 @@ struct Search {
   /// Reduced chi-square below which a hypothesis is fitted with the whole plant [chi2 per value].
   Threshold nearly_fits{
       "search.nearly_fits", 1.5, "chi2 per value",
-      "what leaves less is fitted with the whole plant, however far behind identification saw it (decision 61)"};
+      "hypotheses with a smaller reduced chi-square are fitted with the whole plant, whatever "
+      "their rank in the identification (decision 61)"};
   /// Share of the better input's gain from which the blocks of the other side are identified [-].
-  Threshold fair{
-      "search.fair", 0.2, "share of the best gain",
-      "blocks of a side are identified if its input, free in time, takes off as much (decision 61)"};
+  Threshold fair{"search.fair", 0.2, "share of the best gain",
+                 "blocks of a side are identified if its inferred input reduces chi2 by at least this "
+                 "share (decision 61)"};
   /// Largest difference in chi2 between two runs of one model with different step sizes [chi2].
-  Threshold other_steps{"search.other_steps", 4, "chi2",
-                        "two runs of one model may differ by this, because other states make other steps"};
+  Threshold other_steps{
+      "search.other_steps", 4, "chi2",
+      "numerical difference between two runs of one model, because additional states change the step sizes"};
 };
 inline constexpr Search search;  ///< the thresholds in use
 
 /// Search for user-defined models of the inferred input (decision 21).
 struct Laws {
   /// Largest share of the base model's chi2 that an input may leave to justify a user-defined model [-].
-  Threshold explains{"laws.explains", 0.3, "share of the base's misfit",
-                     "an input is worth a law if it leaves no more: it takes away 70 % (decision 21)"};
+  Threshold explains{"laws.explains", 0.3, "share of the base model's chi2",
+                     "largest share that may remain with the inferred input if a user-defined model is "
+                     "searched: a reduction by 70 % (decision 21)"};
   /// Largest ratio of chi2 at which the other input is searched too [-].
-  Threshold as_much{
-      "laws.as_much", 1.5, "ratio of misfits",
-      "an input explains as much as the better one if it leaves no more than this many times what that "
-      "leaves (decision 21)"};
+  Threshold as_much{"laws.as_much", 1.5, "ratio of chi2",
+                    "largest ratio of the chi2 of the other inferred input to that of the better one, if "
+                    "both explain the residual equally well (decision 21)"};
   /// Least share of the inferred input that a fitted user-defined model explains [-].
   Threshold least_explained{"laws.least_explained", 0.3, "share of the inferred input",
-                            "a law that explains less is not fitted (decision 21)"};
+                            "user-defined models that explain less are not fitted (decision 21)"};
   /// Reduced chi-square of the first fit above which a user-defined model is not judged [chi2 per value].
-  Threshold judged_below{"laws.judged_below", 2, "chi2 per value",
-                         "judging a law is in vain if its first fit leaves more (decision 21)"};
+  Threshold judged_below{
+      "laws.judged_below", 2, "chi2 per value",
+      "user-defined models whose first fit has a larger reduced chi-square are not judged (decision 21)"};
   /// Additional evidence for a user-defined model of the record's own time [chi2].
-  Threshold own_time{
-      "laws.own_time", 6, "chi2",
-      "a law of the record's own time must be better by this, because it means something only where "
-      "records begin alike (decision 21)"};
+  Threshold own_time{"laws.own_time", 6, "chi2",
+                     "additional evidence of a model of the record's own time, which is meaningful only if "
+                     "all records begin alike (decision 21)"};
   /// Additional evidence for a user-defined model in proportion to the initial value [chi2].
   Threshold in_proportion{"laws.in_proportion", 3, "chi2",
-                          "a law in proportion to the start must be better by this than one that is not "
-                          "(decision 21)"};
+                          "additional evidence of a model in proportion to the initial value (decision 21)"};
 };
 inline constexpr Laws laws;  ///< the thresholds in use
 
@@ -192,45 +187,44 @@ inline constexpr Laws laws;  ///< the thresholds in use
 /// requires four times the evidence because it selects the best of about thirty, some of which fit by chance.
 struct Addition {
   /// Evidence above which a named effect is added [chi2].
-  Threshold strong{
-      "addition.strong", 10, "chi2",
-      "an effect that a person names earns its place above this, if no unseen event is worse with it: "
-      "strong evidence of one hypothesis against one other (Kass and Raftery, JASA 90, 1995: 6 to 10); "
-      "the best of many, which diagnose takes, needs evidence.accepted"};
+  Threshold strong{"addition.strong", 10, "chi2",
+                   "least evidence of an effect named by the user, if no held-out event is worse with it: "
+                   "strong evidence of one hypothesis against one other (Kass and Raftery, JASA 90, 1995: 6 "
+                   "to 10); diagnose selects the best of many and needs evidence.accepted"};
   /// Evidence at or below which an earlier addition is removed [chi2].
   Threshold stays{"addition.stays", 0, "chi2",
-                  "an effect added before is taken out again if what came later leaves it no more"};
+                  "an earlier addition is removed if its evidence beside later ones falls to this"};
 };
 inline constexpr Addition addition;  ///< the thresholds in use
 
 /// Statements of calibrate and the tables on a parameter (decision 17).
 struct Parameters {
   /// Prior standard deviation of a model's parameters, relative [-].
-  Threshold spread{"parameters.spread", 0.2, "relative",
-                   "standard deviation believed of a model's parameters, unless --spread says otherwise "
-                   "(decision 15)"};
+  Threshold spread{
+      "parameters.spread", 0.2, "relative",
+      "prior standard deviation of a model's parameters, unless --spread is given (decision 15)"};
   /// Share decided by the records below which a parameter is not identified [-].
-  Threshold identified{
-      "parameters.identified", 0.5, "share decided by the records",
-      "a parameter, or a direction of several, that the records decide less is not identified"};
+  Threshold identified{"parameters.identified", 0.5, "share determined by the records",
+                       "parameters, or combinations of parameters, below this are not identified"};
   /// Component of a poorly identified direction from which a parameter belongs to it [-].
   Threshold member{"parameters.member", 0.3, "component of a unit vector",
-                   "a parameter belongs to a group that the records cannot tell apart from here"};
+                   "least component of a parameter in a combination that is not identified"};
   /// Largest ratio of standard errors for which a further event is recommended [-].
-  Threshold narrowed{"parameters.narrowed", 0.8, "ratio of standard errors",
-                     "a further event is recommended if it narrows a parameter's error to less"};
+  Threshold narrowed{
+      "parameters.narrowed", 0.8, "ratio of standard errors",
+      "a further event is recommended if it reduces a parameter's standard error below this ratio"};
   /// Largest relative difference in cost at which two starts reached the same optimum [-].
   Threshold agrees{
       "parameters.agrees", 0.01, "share of the cost",
-      "a start that ends this near the best one came to the same optimum; agrees_least if that is more"};
+      "largest difference from the best start at the same optimum; agrees_least if that is more"};
   /// Least value of that difference [chi2].
-  Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "what one parameter's standard error costs"};
+  Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "cost of one standard error of a parameter"};
   /// Change above which the verdict names a calibrated parameter [standard errors].
   Threshold moved{"parameters.moved", 2, "standard errors",
-                  "a parameter that calibration moved by more is named in the verdict"};
+                  "the verdict names parameters that calibration changed by more"};
   /// Change above which a fitted value is noted [standard deviations].
-  Threshold beyond_prior{"parameters.beyond_prior", 2.5, "standard deviations of the belief",
-                         "a fitted value further from the model's is noted"};
+  Threshold beyond_prior{"parameters.beyond_prior", 2.5, "prior standard deviations",
+                         "a note names values that are fitted further from the prior mean"};
 };
 inline constexpr Parameters parameters;  ///< the thresholds in use
 
@@ -339,11 +333,11 @@ struct Movement {
   /// Least ratio of movement to noise for this limit [-].
   Threshold over_noise{
       "movement.over_noise", 5, "noise",
-      "a channel whose RMS movement is less times its noise is not held to movement.error, of which "
-      "noise alone would then take most"};
+      "least ratio of a channel's RMS movement to its noise at which movement.error applies; "
+      "below it noise alone uses most of the limit"};
   /// Least movement for this limit [% of MVA].
   Threshold least{"movement.least", 1, "% of MVA",
-                  "a channel whose RMS movement is less is not held to movement.error"};
+                  "least RMS movement of a channel at which movement.error applies"};
 };
 inline constexpr Movement movement;  ///< the limits in use
 

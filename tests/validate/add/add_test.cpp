@@ -58,8 +58,9 @@ TEST(Add, VerdictOmitsManyValues) {
   const plant::PlantModel model = example(false);
   const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
   ASSERT_GT(a.own, 6);
-  EXPECT_THAT(a.sentence, AllOf(HasSubstr(fmt::format("Its {} values stand among the parameters.", a.own)),
-                                testing::Not(HasSubstr("KA = "))));
+  EXPECT_THAT(a.sentence,
+              AllOf(HasSubstr(fmt::format("Its {} values are in the table of parameters.", a.own)),
+                    testing::Not(HasSubstr("KA = "))));
 }
 
 // If the noise transfer is computed without the exciter, TA/TB lies outside its interval. All of seventeen 95
@@ -180,7 +181,7 @@ TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "TGOV"); }),
               ElementsAre(EndsWith("did you mean TGOV1?")));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1"); }),
-              ElementsAre(AllOf(HasSubstr("no room"), HasSubstr("exciter"))));
+              ElementsAre(AllOf(HasSubstr("no free place"), HasSubstr("exciter"))));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),
               ElementsAre(HasSubstr("belongs to one event")));
 }

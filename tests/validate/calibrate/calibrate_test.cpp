@@ -153,7 +153,7 @@ TEST(Calibrate, ReportsMissingExciterAfterTheRefit) {
   options.starts = 0;
   const Calibration c = calibrate(model, example_records(model, 1), options);
   EXPECT_EQ(c.adequacy, Adequacy::structure_poor);
-  EXPECT_THAT(c.sentence, HasSubstr("survives the refit"));
+  EXPECT_THAT(c.sentence, HasSubstr("Structure not adequate"));
   EXPECT_GT(c.after, 2 * c.limit);
 }
 

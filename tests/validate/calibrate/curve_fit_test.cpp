@@ -111,7 +111,7 @@ TEST(CurveFit, IsLessAccurateThanCalibrateOnTheExample) {
   EXPECT_EQ(table.rows.size(), f.parameters.size());
   const report::Table events = events_beside(ways);
   for (const auto& row : events.rows) EXPECT_EQ(row.size(), events.header.size());
-  EXPECT_THAT(beside_report(ways, known), HasSubstr("intervals hold the truth"));
+  EXPECT_THAT(beside_report(ways, known), HasSubstr("intervals contain the true value"));
   EXPECT_EQ(beside_json(ways, known)[1]["way"], "curve fit");
   const auto leaves_no_trace = std::ranges::find(f.parameters, "EMIN", &fit::FittedParameter::name);
   EXPECT_FALSE(std::isfinite(leaves_no_trace->error));

@@ -86,7 +86,7 @@ TEST(NetworkStart, RefusesNetworksOfOtherPlants) {
               ElementsAre(HasSubstr("trained on 1 to 2")));
   EXPECT_THAT(refused(EstimateFile(Parameters{estimate_json("H", 2.7, 2.65, 3)})), ElementsAre());
   EXPECT_THAT(refused(EstimateFile(Parameters{estimate_json("H", 40, 40, 40)})),
-              ElementsAre(HasSubstr("holds it at 40")));
+              ElementsAre(HasSubstr("has the fixed value 40")));
 }
 
 TEST(NetworkStart, IsAStartAndIsReportedWithTheFit) {

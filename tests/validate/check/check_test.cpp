@@ -250,12 +250,12 @@ TEST(RecordCheckTest, AcceptsEventsWithoutSwitching) {
   const auto findings = check_record(dip(0, 0.005), {100, 60});
   EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
   EXPECT_TRUE(warned(findings, "quantised_P")) << told(findings);
-  EXPECT_THAT(told(findings), testing::HasSubstr("noise is taken to be at least what that leaves"));
+  EXPECT_THAT(told(findings), testing::HasSubstr("the noise is taken to be at least the quantisation noise"));
   record::Record coarse = dip(0, 0);
   for (double& v : coarse.V) v = 5e-4 * std::round(v / 5e-4);
   for (std::size_t k = 0; k < coarse.V.size(); ++k) coarse.V[k] += 5e-4 * static_cast<double>(k % 2);
   const std::string of_voltage = told(check_record(coarse, {100, 60}));
-  EXPECT_THAT(of_voltage, testing::HasSubstr("what that does behind a regulator is slow"));
+  EXPECT_THAT(of_voltage, testing::HasSubstr("behind a regulator the error is slow"));
 }
 TEST(RecordCheckTest, DoesNotCheckIntegratedAngle) {
   record::Record r = example(1);

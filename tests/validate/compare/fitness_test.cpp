@@ -83,7 +83,7 @@ TEST(Fitness, MissingResponse_FailsByItsMovement_WhenEveryLimitOfMvaHolds) {
   EXPECT_NEAR(f.movements[0].error, 100, 1e-9);
   EXPECT_NEAR(f.movements[0].share, 0, 1e-9);
   EXPECT_THAT(f.sentence, HasSubstr("no. 1 of 19 errors"));
-  EXPECT_THAT(f.sentence, HasSubstr("of which the model makes 0 %, where an error of 25 % is allowed"));
+  EXPECT_THAT(f.sentence, HasSubstr("of which the model reproduces 0 %; the limit is 25 %"));
   const Fitness most = judge_fitness({governor_event(0.8)}, 50, plain_limits());
   EXPECT_TRUE(most.fit) << most.sentence;
   EXPECT_NEAR(most.movements[0].error, 20, 1e-9);
@@ -166,8 +166,8 @@ TEST(Fitness, RejectsNaN) {
     EXPECT_THAT(f.sentence, HasSubstr("no. 3 of 18 errors"));
     EXPECT_EQ(f.exit_code(true), 5);
     EXPECT_TRUE(fitness_json(f).at("errors_percent_of_mva").at(2).at("mae").is_null());
-    EXPECT_THAT(report::padded(fitness_table(f)), HasSubstr("no number *"));
-    EXPECT_THAT(report::padded(worst_fitness_table(f)), HasSubstr("no number *"));
+    EXPECT_THAT(report::padded(fitness_table(f)), HasSubstr("not finite *"));
+    EXPECT_THAT(report::padded(worst_fitness_table(f)), HasSubstr("not finite *"));
   }
 }
 

@@ -224,9 +224,9 @@ Diagnosis with_laws() {
 TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
   const Diagnosis d = with_laws();
   const std::string html = diagnosis_html(example().model, d, {});
-  const auto section = html.find("A law for it");
+  const auto section = html.find("User-defined model");
   ASSERT_NE(section, std::string::npos);
-  EXPECT_THAT(html, HasSubstr("7 kinds of laws were ranked"));
+  EXPECT_THAT(html, HasSubstr("7 model structures were ranked"));
   EXPECT_THAT(html, HasSubstr("Found: -20 * V &lt; 0.5."));
   EXPECT_THAT(html, HasSubstr("inferred field voltage"));
   const auto rows = table_after(html.substr(section), "share of the input");
@@ -246,12 +246,12 @@ TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   Diagnosis d = with_laws();
   d.laws.findings.erase(d.laws.findings.begin());
   const std::string html = diagnosis_html(example().model, d, {});
-  EXPECT_THAT(html, HasSubstr("No law predicts unseen events: none is offered."));
+  EXPECT_THAT(html, HasSubstr("No user-defined model predicts held-out events; none is accepted."));
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
   EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
 }
 TEST(DiagnosisReportTest, PageOmitsLaws_WithoutASearch) {
-  EXPECT_THAT(page(), testing::Not(HasSubstr("A law for it")));
+  EXPECT_THAT(page(), testing::Not(HasSubstr("User-defined model")));
   EXPECT_TRUE(figures()["laws"].is_null());
 }
 

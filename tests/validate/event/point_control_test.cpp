@@ -82,7 +82,7 @@ TEST_F(Plant, RequiresAShareOfOtherUnits) {
   point.tried.plant = model();
   point.tried.name = "the converters";
   point.others.push_back({.model = point.tried, .share = 0, .P = 20, .Q = 1});
-  EXPECT_THAT(test::messages([&] { at_point(point); }), Contains(HasSubstr("measures at the point")));
+  EXPECT_THAT(test::messages([&] { at_point(point); }), Contains(HasSubstr("measures at the common point")));
   point.others[0].share = 0.5;
   const auto beyond = at_point(point).beyond.value();
   EXPECT_NEAR(std::abs(beyond.d), 2.0, 0.01);

@@ -83,9 +83,8 @@ TEST_F(TwoUnits, RecoversTheTestedUnit) {
                             .others = {{.model = other, .share = 0, .P = kP, .Q = kQ}}};
   const record::Record left = of_tried_unit(point, at_point);
   expect_alone(left);
-  EXPECT_THAT(left.notes,
-              AllOf(Contains(HasSubstr("behind the collector")),
-                    Contains(HasSubstr("unit 6 does by its model was taken off; it began at 30 MW"))));
+  EXPECT_THAT(left.notes, AllOf(Contains(HasSubstr("other side of the collector")),
+                                Contains(HasSubstr("power of unit 6 was subtracted; it was 30 MW"))));
 }
 
 TEST_F(TwoUnits, IntegratedAngleGetsTurnsForAllUnits) {
@@ -138,7 +137,7 @@ TEST_F(TwoUnits, ReadsPointFiles) {
   EXPECT_THAT(test::messages([&] { load(cable + "what = 2\n" + a); }),
               Contains(HasSubstr("unknown key what")));
   EXPECT_THAT(test::messages([&] { load(b + "share = 0.5\n"); }), Contains(HasSubstr("none of the units")));
-  EXPECT_THAT(test::messages([&] { load(a + b + "share = 1.0\n"); }), Contains(HasSubstr("leave nothing")));
+  EXPECT_THAT(test::messages([&] { load(a + b + "share = 1.0\n"); }), Contains(HasSubstr("nothing remains")));
   EXPECT_THAT(test::messages([&] { load(a + b + "P_MW = 30\nwhat = 1\n"); }),
               AllOf(Contains(HasSubstr("Q_Mvar")), Contains(HasSubstr("what"))));
   EXPECT_THAT(test::messages([&] { load(a + "[[unit]]\nmodel = \"c.toml\"\nshare = 0.1\n"); }),

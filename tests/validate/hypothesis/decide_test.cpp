@@ -49,14 +49,14 @@ TEST_F(Decide, FieldQuantitiesDistinguishExciters) {
   EXPECT_TRUE(std::ranges::any_of(
       d.next, [](const NextRecord& n) { return n.what.starts_with("field current in"); }));
   EXPECT_TRUE(std::ranges::is_sorted(d.next, {}, &NextRecord::expected));
-  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("would decide: set of 2 -> 1."));
+  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("(candidates: 2 -> 1."));
 }
 TEST_F(Decide, NothingDistinguishesAnExciterFromItself) {
   const Judgement sexs = fitted("SEXS");
   const Decision d = between({sexs, sexs});
   ASSERT_FALSE(d.next.empty());
   for (const NextRecord& n : d.next) EXPECT_NEAR(n.expected, 2, 1e-9) << n.what;
-  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("Nothing that was tried would decide"));
+  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("No simulated measurement separates the candidates"));
 }
 TEST_F(Decide, SingleHypothesisNeedsNoDecision) {
   const Decision d = between({fitted("SEXS")});

@@ -231,7 +231,7 @@ TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
     }
   }
   EXPECT_THAT(law_sentence(s, 30),
-              testing::HasSubstr("None of the 30 known effects explains it; a torque of -0.0"));
+              testing::HasSubstr("None of the 30 known effects explains the records; a torque of -0.0"));
   // The law file contains the law that was judged.
   const sim::Effect read = sim::laws::make_law(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)

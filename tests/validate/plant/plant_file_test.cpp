@@ -140,7 +140,7 @@ TEST_F(PlantFileTest, ReportsErrorsOfSharedSlots) {
   EXPECT_THAT(all, ::testing::Contains(HasSubstr("missing key shaft[0]")));
   const std::string two = plant_text(m, {}) + "\n[[exciter]]\neffect = \"SEXS\"\n";
   EXPECT_THAT(test::messages([&] { parse_plant_model(two, "plant.toml"); }),
-              ::testing::Contains(HasSubstr("room for one")));
+              ::testing::Contains(HasSubstr("at most one")));
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ TEST_F(PlantModelTest, BiasedModelKeepsTheSubmittedValues) {
   EXPECT_EQ(back.plant.machine.p[4], 3.5);
   ASSERT_TRUE(back.submitted.has_value());
   EXPECT_EQ(difference(as_submitted(back), before), "");
-  EXPECT_THAT(back.warnings, Contains(HasSubstr("did not hold")));
+  EXPECT_THAT(back.warnings, Contains(HasSubstr("not adequate")));
 }
 TEST_F(PlantModelTest, UsesDefaultValuesOnRequest) {
   const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";

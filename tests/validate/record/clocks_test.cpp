@@ -154,8 +154,8 @@ TEST(ClockTest, ReportsStoppedClock) {
     return all;
   };
   EXPECT_THAT(clock_faults(text(100, 300)),
-              ElementsAre(AllOf(HasSubstr("199 of 300 samples"),
-                                HasSubstr("the clock stands still at t = 3.3333"), HasSubstr("--until"))));
+              ElementsAre(AllOf(HasSubstr("199 of 300 samples"), HasSubstr("the clock stops at t = 3.3333"),
+                                HasSubstr("--until"))));
   const Record few = parse_record(text(100, 102), "r.csv", kTestBase);
   EXPECT_EQ(few.samples(), 300);
   EXPECT_EQ(std::ranges::count(few.lost, 1), 2);

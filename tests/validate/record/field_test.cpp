@@ -44,7 +44,7 @@ TEST(ColumnMapTest, NamesColumnsWithTheirUnits) {
                                              {"Q", "-line.q [Mvar]"},
                                              {"f", "hz"}}});
   expect_values(r);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("P, with the sign turned, is the column 'line.p'")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("P, with the sign reversed, is the column 'line.p'")));
 }
 TEST(ColumnMapTest, OverridesColumnNames) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu,net_P_pu\n", 60,
@@ -55,7 +55,7 @@ TEST(ColumnMapTest, RefusesMissingColumns) {
   const auto text = table("t_s,V_pu,theta_deg,P_pu,Q_pu\n", 60,
                           [](int k) { return fmt::format("{:.7f},1.02,10,0.4,0.1", k / 60.0); });
   EXPECT_THAT(field_faults(text, {.columns = {{"V", "U12"}}}),
-              Contains(AllOf(HasSubstr("no column 'U12'"), HasSubstr("seen: 't_s', 'V_pu'"))));
+              Contains(AllOf(HasSubstr("no column 'U12'"), HasSubstr("columns found: 't_s', 'V_pu'"))));
   EXPECT_THAT(field_faults(text, {.columns = {{"X", "V_pu"}}}), Contains(HasSubstr("'X'")));
   EXPECT_THAT(field_faults(text, {.columns = {{"V", "Q_pu [MW]"}}}), Contains(HasSubstr("unit")));
 }
@@ -142,8 +142,9 @@ TEST_F(PlaybackTest, PlbWithMeasuredPower) {
   EXPECT_NEAR(r.V[60], 1.02, 1e-9);
   EXPECT_LT(r.V[61], 0.98);
   EXPECT_EQ(r.angle, AngleSource::integrated);
-  EXPECT_THAT(r.notes, AllOf(Contains(HasSubstr("taken to be in kV")), Contains(HasSubstr("in Hz")),
-                             Contains(HasSubstr("straight lines")), Contains(HasSubstr("integrated"))));
+  EXPECT_THAT(r.notes,
+              AllOf(Contains(HasSubstr("taken to be in kV")), Contains(HasSubstr("in Hz")),
+                    Contains(HasSubstr("interpolated linearly")), Contains(HasSubstr("integrated"))));
   EXPECT_THAT(test::messages([&] { read_record(file, kTestBase); }),
               ElementsAre(AllOf(HasSubstr("no column of P and Q"), HasSubstr("event.plb+FILE"))));
 }
@@ -311,7 +312,7 @@ TEST(LostFramesTest, StepWithinTheGapIsReported) {
   });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_TRUE(r.V[100] == 1.02 || r.V[100] == 0.7);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("jumps where frames are missing")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("has a step where frames are missing")));
 }
 TEST(StampTest, AcceptsTruncatedLastLine) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";
@@ -373,7 +374,7 @@ TEST(StampTest, ResamplesVariableSteps) {
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_NEAR(r.V[static_cast<std::size_t>(r.samples() / 2)],
               1.02 + 1e-3 * std::sin(r.t[static_cast<std::size_t>(r.samples() / 2)]), 1e-6);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("joined by straight lines")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("interpolated linearly")));
 }
 TEST(StampTest, KeepsUtc) {
   const auto with = [](const char* heading, const char* zone) {

@@ -139,7 +139,7 @@ TEST(RecordComtradeTest, SeveralRates) {
     EXPECT_NEAR(r.t[k], static_cast<double>(k) / 30, 1e-9);
     EXPECT_NEAR(r.V[k], 1.02 + slow(r.t[k]), 0.0051 / 138);
   }
-  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("30, 120, 30 per second"), HasSubstr("every n-th sample"))));
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("30, 120, 30 per second"), HasSubstr("decimated"))));
   w.rates = {{30, 60}, {100, 330}};
   EXPECT_THAT(w.faults(), ElementsAre(HasSubstr("100 and 30 per second")));
 }

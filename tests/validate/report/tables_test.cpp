@@ -289,7 +289,7 @@ TEST_F(TablesTest, PlotsAreFilesForMarkdownAndInlineInHtml) {
     EXPECT_THAT(report.markdown, HasSubstr("](tables/" + name + ")"));
     EXPECT_THAT(report.html, HasSubstr(svg));
   }
-  EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("as stated")));
+  EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("nominal")));
 }
 TEST_F(TablesTest, WarnsAboutResultsOfDifferentSoftware) {
   write("a", result("V", "cnn", 30, 0.1));

@@ -160,7 +160,7 @@ TEST(Retrain, ErrorsAreScaledByThePriorAndUseUnseenEventsOnly) {
   // The plant with the exciter (H = 9 s from the fitted event) is nearer than the one without it.
   EXPECT_LT(r.events[1].rms[1], r.events[1].rms[0]);
   EXPECT_EQ(r.rms[1], r.events[1].rms[1]);
-  EXPECT_THAT(terminal_report(r), HasSubstr("3 times less"));
+  EXPECT_THAT(terminal_report(r), HasSubstr("by a factor of 3 "));
   EXPECT_EQ(retrained_json(r)["parameters"].size(), 2U);
 }
 

@@ -266,7 +266,7 @@ TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
     if (c.ranking[k].alone) {
       EXPECT_TRUE(c.ranking[k].alone->adequate) << c.ranking[k].alone_where;
     }
-  EXPECT_THAT(c.culprit, HasSubstr("Terminal two fails most: its plant's model"));
+  EXPECT_THAT(c.culprit, HasSubstr("Largest error at terminal two. Its plant's model"));
   EXPECT_THAT(system_text(s, c), HasSubstr(c.culprit));
   const auto j = nlohmann::json::parse(system_json(s, c, system_provenance(s, "command")));
   EXPECT_EQ(j["ranking"][0]["terminal"], "two");
@@ -281,7 +281,8 @@ TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
   const SystemComparison c = compare_system(s);
   EXPECT_FALSE(c.adequacy.adequate);
-  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
+  EXPECT_THAT(c.culprit,
+              HasSubstr("Every recorded plant is adequate in playback of its own recorded voltage"));
 }
 
 TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
@@ -299,9 +300,10 @@ TEST_F(SystemCompare, DetectsClockOffset) {
   record({.attached = same, .t_on = 2.053, .t_off = 2.153});
   const SystemComparison c = compare_system(load_system(system()));
   EXPECT_FALSE(c.adequacy.adequate);
-  EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's instants")));
+  EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's switching times")));
   // The plants are played in with the steps of their own records, so no plant is named.
-  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant answers its own recorded voltage as measured"));
+  EXPECT_THAT(c.culprit,
+              HasSubstr("Every recorded plant is adequate in playback of its own recorded voltage"));
 }
 
 TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {
@@ -328,7 +330,7 @@ TEST_F(SystemCompare, AcceptsTerminalsSampledAtOtherTimes) {
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   EXPECT_EQ(c.terminals[3].channels[1].name, "frequency");
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system())); }),
-              Contains(HasSubstr("angles sampled at other instants")));
+              Contains(HasSubstr("angles with different sampling times")));
 }
 
 TEST_F(SystemCompare, ReportsBadInput) {

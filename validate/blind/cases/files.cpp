@@ -96,7 +96,7 @@ void write_blind_case(const BlindCase& made, const BlindConfig& config, const st
   fs::remove_all(partial);
   write_file(partial / "model.toml",
              model_file(made.model, name, sim::Conventions::psse(made.conventions.frequency),
-                        "Plant of a blind case, as its owner believes it to be"));
+                        "Plant of a blind case, as submitted by its owner"));
   if (made.other) {
     write_file(partial / "other.toml",
                model_file(*made.other, name + "/2", made.conventions, "The unit recorded with it, as it is"));

@@ -98,9 +98,9 @@ Reliability reliability(const std::vector<Forecast>& forecasts) {
 std::string reliability_markdown(const Reliability& r) {
   if (r.cases == 0) return "";
   std::string text =
-      "\n## Are the probabilities true?\n\n"
-      "Every explanation of every case, by the probability it was given (bar) and how often it was right.\n\n"
-      "| said | mean | right (n; 95 % interval) | |\n|---|---:|---|---|\n";
+      "\n## Reliability of the probabilities\n\nAll explanations of all cases, by stated "
+      "probability (bar) and measured frequency.\n\n| stated | mean | right (n; 95 % interval) "
+      "| |\n|---|---:|---|---|\n";
   for (std::size_t b = 0; b < r.bins.size(); ++b) {
     const Rate& right = r.bins[b].right;
     if (right.n == 0) continue;

@@ -17,7 +17,7 @@ std::string percent(const Rate& r) {
 }
 
 std::string rates(const BlindScore& score) {
-  std::string text = "| rate | measured (n; 95 % interval) | asked for | |\n|---|---|---:|---|\n";
+  std::string text = "| rate | measured (n; 95 % interval) | target | |\n|---|---|---:|---|\n";
   std::set<std::string> all;
   for (const auto& [name, rate] : score.rates) all.insert(name);
   for (const auto& [name, least] : score.targets) all.insert(name);
@@ -56,7 +56,7 @@ std::string matrix(const BlindScore& score) {
   std::set<std::string> columns;
   for (const auto& [row, counts] : score.confusion)
     for (const auto& [column, n] : counts) columns.insert(column);
-  std::string text = "| hidden \\ said |", line = "|---|";
+  std::string text = "| hidden \\ verdict |", line = "|---|";
   for (const auto& column : columns) {
     text += " " + column + " |";
     line += "---:|";
@@ -77,8 +77,9 @@ std::string matrix(const BlindScore& score) {
 std::string conditions(const BlindScore& score) {
   if (score.by_condition.empty()) return "";
   std::string text =
-      "## Recorded under\n\n| condition | nothing hidden: adequate | one effect: first or in the set | wrong value: "
-      "named | outside the list: none of these |\n|---|---|---|---|---|\n";
+      "## Field conditions\n\n| condition | nothing hidden: adequate | one effect: first or in "
+      "the set | wrong value: named | outside the list: none of these "
+      "|\n|---|---|---|---|---|\n";
   for (const auto& [name, c] : score.by_condition)
     text += fmt::format("| {} | {} | {} | {} | {} |\n", name, percent(c.nothing), percent(c.one),
                         percent(c.value), percent(c.outside));
@@ -93,23 +94,10 @@ json rate_json(const Rate& r) {
 
 std::string score_markdown(const BlindScore& score) {
   return fmt::format(
-      "# Blind test\n"
-      "\n"
-      "{} cases judged, {} without a verdict. Time per case: median {:.1f} s, longest {:.1f} s.\n"
-      "Rates of single effects and of the side count effects from 2 detection limits up.\n"
-      "\n"
-      "## Rates\n"
-      "\n"
-      "{}\n"
-      "## Right effect first, against size\n"
-      "\n"
-      "{}\n"
-      "{}"
-      "## Confusion matrix\n"
-      "\n"
-      "First effect named, or the verdict where none was.\n"
-      "\n"
-      "{}{}",
+      "# Blind test\n\n{} cases judged, {} without a verdict. Time per case: median {:.1f} s, "
+      "longest {:.1f} s.\nRates of single effects and of the side count effects from 2 "
+      "detection limits up.\n\n## Rates\n\n{}\n## Right effect first, by size\n\n{}\n{}## "
+      "Confusion matrix\n\nFirst effect named, or the verdict where none was.\n\n{}{}",
       score.cases.size(), score.unjudged.size(), score.median_seconds, score.longest_seconds, rates(score),
       sizes(score), conditions(score), matrix(score), reliability_markdown(score.reliability));
 }

@@ -31,7 +31,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = how == Fitted::start_stands});
   if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
   if (!f.failed.empty())
-    throw InputError({"the model cannot follow the record", e.record.name, f.failed,
+    throw InputError({"playback of the record fails", e.record.name, f.failed,
                       "check the model's parameters and the record's base and units"});
   const fit::EventState& state = f.events.front().state;
   playin::Response r = event::play(model.under_test(), event, state);

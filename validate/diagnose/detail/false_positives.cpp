@@ -6,8 +6,8 @@ namespace swingbank::validate::diagnose {
 
 std::string false_positive_note() {
   return fmt::format(
-      "In {} of {} blind cases in which nothing was hidden an effect was named (95 % interval {:.1f} to "
-      "{:.0f} %; docs/reference/blind-test-results.md).",
+      "False positives of the diagnosis: {} of {} blind cases without a hidden effect (95 % "
+      "interval {:.1f} to {:.0f} %; docs/reference/blind-test-results.md).",
       kFalsePositives.hits, kFalsePositives.n, 100 * kFalsePositives.low(), 100 * kFalsePositives.high());
 }
 

@@ -87,21 +87,24 @@ nlohmann::json finding_json(const laws::LawFinding& f) {
 void laws_on_page(const Diagnosis& d, report::Page& page) {
   const laws::LawSearch& s = d.laws;
   if (s.kind == fit::InputKind::none) return;
-  page.section("A law for it");
-  page.text(fmt::format(
-      "No known effect explains the records. The {} that would is plotted here over time and against "
-      "every signal that a law could read. {} kinds of laws were ranked on it (at once, lagged, washed "
-      "out, limited, dead-banded, curved, periodic, or set off at a time or by the voltage), the leading "
-      "{} fitted to the records. A law is offered only if it predicts events that it was not fitted to.",
-      input_name(s), s.ranked.size(), s.findings.size()));
+  page.section("User-defined model");
+  page.text(
+      fmt::format("No known effect explains the records. The charts show the {} over time and against "
+                  "every possible input signal. {} model structures were ranked by their fit to it "
+                  "(proportional, lag, washout, limit, dead band, polynomial, periodic, or started at a "
+                  "time or by the voltage). The leading {} were fitted to the records. A user-defined "
+                  "model is accepted only if it predicts held-out events.",
+                  input_name(s), s.ranked.size(), s.findings.size()));
   if (const laws::LawFinding* f = s.found())
     page.note(fmt::format("Found: {}.", f->words));
   else
-    page.note("No law predicts unseen events: none is offered.");
+    page.note("No user-defined model predicts held-out events; none is accepted.");
   add_time_series(d, page);
   add_scatters(d, page);
-  report::Table table{
-      "", {"law", "share of the input", "evidence", "error left", "unseen events", "judged", "what"}, {}};
+  report::Table table{"",
+                      {"model", "share of the input", "evidence", "normalised RMS", "held-out events",
+                       "judgement", "description"},
+                      {}};
   for (const auto& f : s.findings)
     table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.law.explained),
                           fmt::format("{:.1f}", f.judgement.gain),
@@ -125,12 +128,13 @@ nlohmann::json laws_json(const Diagnosis& d) {
 std::string laws_text(const Diagnosis& d) {
   const laws::LawSearch& s = d.laws;
   if (s.kind == fit::InputKind::none) return {};
-  std::string text = fmt::format("\nLaws for the {} ({} ranked; evidence, chi2 per value left, judgement):\n",
-                                 input_name(s), s.ranked.size());
+  std::string text =
+      fmt::format("\nUser-defined models for the {} ({} ranked; evidence, reduced chi-square, judgement):\n",
+                  input_name(s), s.ranked.size());
   for (const auto& f : s.findings)
     text += fmt::format("  {:>10.1f} {:>8.3f}  {}: {}\n", f.judgement.gain, f.judgement.fit.reduced_chi2(),
                         f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words);
-  if (!s.found()) text += "  none predicts events that it was not fitted to\n";
+  if (!s.found()) text += "  none predicts held-out events\n";
   return text;
 }
 

@@ -52,15 +52,15 @@ thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
   return {d.base.reduced_chi2(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
           torque, field};
 }
-/// Returns " What is left oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
+/// Returns " The residual oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
 /// because any residual has a frequency at which it is strongest.
 std::string line_sentence(const Diagnosis& d) {
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.reduced_chi2).by !=
       thresholds::Criterion::line)
     return "";
   const fit::Line line = strongest_line(d.base, d.events);
-  return fmt::format(" What is left oscillates at {:.2f} Hz in {}, in all events together (chi2 {:.0f}).",
-                     line.frequency, playin::output_name(line.channel), line.explains);
+  return fmt::format(" The residual oscillates at {:.2f} Hz in {} (chi2 {:.0f}, all events).", line.frequency,
+                     playin::output_name(line.channel), line.explains);
 }
 
 std::string capitalised(std::string text) {
@@ -82,11 +82,11 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
   if (most->saves() > thresholds::held_out.alone * saved &&
       most->after > thresholds::held_out.foretold * most->before)
     return fmt::format(
-        "it shows in {} alone, so that no other event foretells it; fitted there too, the normalised RMS falls from "
-        "{:.2f} to {:.2f}",
+        "it acts in {} alone, so no other event predicts it; with this event in the fit, its "
+        "normalised RMS falls from {:.2f} to {:.2f}",
         most->record, std::sqrt(base.events[e].reduced_chi2()), std::sqrt(best.fit.events[e].reduced_chi2()));
-  return fmt::format("on events it was not fitted to, the normalised RMS falls from {:.1f} to {:.2f}",
-                     std::sqrt(before), std::sqrt(after));
+  return fmt::format("on held-out events the normalised RMS falls from {:.1f} to {:.2f}", std::sqrt(before),
+                     std::sqrt(after));
 }
 
 double probability_of_nothing_missing(const Diagnosis& d) {
@@ -101,13 +101,13 @@ std::string adequate_sentence(const Diagnosis& d) {
   const std::string probable = hypothesis::probability_text(probability_of_nothing_missing(d));
   if (d.wrong)
     return fmt::format(
-        "Nothing is missing ({}), but {} of the model's values {} wrong: {}. With {} changed nothing but noise is left "
-        "(chi2 per value {:.3f}), and no effect in the list improves it.",
-        probable, d.wrong->wrong.size(), d.wrong->wrong.size() == 1 ? "is" : "are", wrong_names(d),
-        d.wrong->wrong.size() == 1 ? "it" : "them", d.wrong->fit.reduced_chi2());
+        "No component is missing ({}), but {} parameter {} wrong: {}. With {} changed the "
+        "residual is noise (reduced chi-square {:.3f}), and no listed effect improves the fit.",
+        probable, d.wrong->wrong.size(), d.wrong->wrong.size() == 1 ? "value is" : "values are",
+        wrong_names(d), d.wrong->wrong.size() == 1 ? "it" : "them", d.wrong->fit.reduced_chi2());
   return fmt::format(
-      "The model is adequate ({}): after refitting its parameters nothing but noise is left (chi2 per value {:.3f}), and "
-      "no effect in the list improves it.",
+      "The model is adequate ({}): with refitted parameters the residual is noise (reduced "
+      "chi-square {:.3f}), and no listed effect improves the fit.",
       probable, d.base.reduced_chi2());
 }
 
@@ -150,7 +150,7 @@ std::string by_effect_sentence(const Diagnosis& d) {
   }
   std::erase_if(alone, [](const auto& e) { return e.probability < kEffectShownFrom; });
   std::ranges::stable_sort(alone, std::greater<>(), &hypothesis::Explanation::probability);
-  return "Each effect by itself: " + with_probabilities(alone) + ".";
+  return "Probability of each effect: " + with_probabilities(alone) + ".";
 }
 
 bool names_an_effect(const Diagnosis& d) {
@@ -188,12 +188,11 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
         fmt::format("{} {} ({}){}",
                     capitalised(best.hypothesis.with.empty()
                                     ? best.hypothesis.what
-                                    : best.hypothesis.with + ", and besides " + best.hypothesis.what),
+                                    : best.hypothesis.with + ", together with " + best.hypothesis.what),
                     does, hypothesis::probability_text(first->probability),
                     others.empty() ? "" : ", or " + set_text(others, pairs));
   else
-    d.sentence =
-        fmt::format("One of these {}, and the records cannot tell which: {}", does, set_text(set, pairs));
+    d.sentence = fmt::format("Undecided, one of these {}: {}", does, set_text(set, pairs));
   d.sentence += fmt::format(": {}.", fall_of_error(d.base, best));
   if (set.size() > 1 && pairs) d.sentence += " " + by_effect_sentence(d);
   d.would_decide = hypothesis::what_would_decide(d.ranked, d.probabilities, judged.trial.events,
@@ -207,12 +206,11 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
 std::string first_sentence(const Diagnosis& d, double adequate) {
   const double slow = slow_remainder(d.base, d.events);
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
-    return fmt::format(
-        "So far: with the parameters refitted the residual is noise (reduced chi-square {:.3f}).",
-        d.base.reduced_chi2());
+    return fmt::format("So far: with refitted parameters the residual is noise (reduced chi-square {:.3f}).",
+                       d.base.reduced_chi2());
   return fmt::format(
-      "So far: something is missing; reduced chi-square {:.2f} with the parameters refitted, slow drift {:.1f} "
-      "standard deviations above noise.{}",
+      "So far: something is missing; reduced chi-square {:.2f} with refitted parameters, slow "
+      "drift {:.1f} standard deviations above noise.{}",
       d.base.reduced_chi2(), slow, line_sentence(d));
 }
 
@@ -236,9 +234,9 @@ std::string side_sentence(const Diagnosis& d) {
       "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
       "vary freely).",
       !explains ? "neither mechanical power nor field voltage explains the residual"
-      : both    ? "mechanical power and field voltage explain the residual about as well"
-      : t < f   ? "it looks like the mechanical side"
-                : "it looks like the excitation side",
+      : both    ? "mechanical power and field voltage explain the residual about equally well"
+      : t < f   ? "mechanical power explains more of the residual"
+                : "field voltage explains more of the residual",
       t, f);
 }
 
@@ -251,8 +249,8 @@ std::string leading_sentence(const Diagnosis& d) {
                            hypothesis::full_name(j.hypothesis), j.gain);
       ++named;
     }
-  return names.empty() ? "So far: no effect of the list explains anything."
-                       : "So far, not yet judged on unseen events: " + names + ".";
+  return names.empty() ? "So far: no listed effect improves the fit."
+                       : "So far, not yet judged on held-out events: " + names + ".";
 }
 
 std::string_view verdict_name(Verdict verdict) {
@@ -271,12 +269,11 @@ void interrupt(Diagnosis& d) {
   std::string leading;
   for (const auto& j : d.ranked)
     if (j.fitted && j.fit.failed.empty() && j.gain > thresholds::evidence.accepted && leading.empty())
-      leading = fmt::format("{} led with an evidence of {:.0f}, but was not judged on unseen events",
+      leading = fmt::format("{} led with an evidence of {:.0f}, but was not judged on held-out events",
                             hypothesis::full_name(j.hypothesis), j.gain);
   d.sentence = fmt::format(
-      "Interrupted: what was fitted until then. The model with its parameters refitted leaves chi2 of {:.2f} per "
-      "value; {}.",
-      d.base.reduced_chi2(), leading.empty() ? "no effect had explained anything yet" : leading);
+      "Interrupted before a verdict. With refitted parameters the reduced chi-square is {:.2f}; {}.",
+      d.base.reduced_chi2(), leading.empty() ? "no effect had improved the fit yet" : leading);
 }
 
 void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
@@ -295,8 +292,8 @@ void settle(const laws::Unexplained& judged, const event::Progress& progress, Di
   const double t = d.torque.reduced_chi2(), f = d.field.reduced_chi2();
   d.side = t < f ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
   d.sentence = fmt::format(
-      "None of the {} known effects explains the records (chi2 per value {:.2f} at best {:.2f}). A missing "
-      "{} would (chi2 per value {:.2f}); its course is shown.{}",
+      "None of the {} known effects explains the records (reduced chi-square {:.2f}, at best "
+      "{:.2f}). An inferred {} gives {:.2f}; the report shows its time series.{}",
       r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
   d.laws = laws::search_laws(judged, progress);

@@ -153,8 +153,9 @@ void drop_peaks(FitEvent& event) {
   for (std::size_t k = 0; k < r.t.size(); ++k)  // keeps the change of the angle across a collector
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
-      "The frequency has peaks about the switchings, where a meter spreads the angle's jump over its window: for the "
-      "angle it is taken from the samples beyond them, and those behind a switching are not compared.");
+      "The frequency has peaks at the switchings, where a meter smooths the step of the angle "
+      "over its window. The angle is integrated from the samples outside the peaks; samples "
+      "after a switching are not compared.");
 }
 
 void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {

@@ -47,13 +47,13 @@ void add_transients(std::vector<LawShape>& all) {
   all.push_back({.family = "pulse",
                  .time_series = [](double tau, double b) { return edge(tau) - edge(tau - b); },
                  .grid = kLengths,
-                 .second = time("length", "how long it lasts"),
+                 .second = time("length", "duration"),
                  .value = fmt::format("({} - clamp((tau - length) / {:g}, 0, 1))", kBegins, kRise),
                  .words = "a pulse of {A} that begins {begin} and lasts {length}"});
   all.push_back({.family = "ramp",
                  .time_series = [](double tau, double b) { return std::clamp(tau / b, 0.0, 1.0); },
                  .grid = kLengths,
-                 .second = time("length", "how long it rises"),
+                 .second = time("length", "rise time"),
                  .value = "clamp(tau / length, 0, 1)",
                  .words = "a ramp to {A} that begins {begin} and takes {length}"});
   all.push_back(

@@ -53,7 +53,7 @@ std::string law_name(const LawCandidate& law) {
 std::string law_toml(const LawCandidate& law, const std::string& source) {
   std::string text = fmt::format(
       "name = \"{}\"\ntitle = {}\nsource = {}\noutput = \"{}\"\naction = \"add\"\nvalue = {}\n\n{}\n",
-      law_name(law), in_quotes(fmt::format("{} law of {}: {}", law.family, law.signal, law_words(law))),
+      law_name(law), in_quotes(fmt::format("{} model of {}: {}", law.family, law.signal, law_words(law))),
       in_quotes(source), law.kind == fit::InputKind::torque ? "Tm" : "Efd", in_quotes(law.value), law.body);
   if (!law.requirements.empty()) text.insert(text.find("value = "), "require = [" + law.requirements + "]\n");
   text += "[parameters]\n";

@@ -112,7 +112,8 @@ class Timed {
     law.signal = clock.triggered ? "time since the voltage moved" : "time";
     law.parameters.push_back({"A", clock.scaled ? "-" : "pu",
                               shape.kind == Kind::sine ? at.answer.factors.norm() : at.answer.factors[0], -20,
-                              20, true, clock.scaled ? "size, as a part of the value at rest" : "size"});
+                              20, true,
+                              clock.scaled ? "amplitude relative to the steady-state value" : "amplitude"});
     const std::string now = clock.triggered ? "since" : "t";
     law.words = shape.words;
     law.body = fmt::format("[signals]\ntau = \"{} - {}\"\n", now, add_begin(clock, at, always, law));
@@ -135,7 +136,7 @@ class Timed {
   }
   /// Adds the start time as a parameter, or as a constant if it is not determined.
   std::string add_begin(const Clock& clock, const At& at, bool always, LawCandidate& law) const {
-    const std::string level = fmt::format("the voltage has left ± {:.3g} pu", level_);
+    const std::string level = fmt::format("the voltage leaves a band of ± {:.3g} pu", level_);
     if (always) {
       replace(law.words, "{begin}", clock.triggered ? "when " + level : "before the event");
       return fmt::format("{:.4g}", clock.triggered ? 0.0 : first_ - 0.05);
@@ -144,10 +145,9 @@ class Timed {
             clock.triggered ? "{delay} after " + level : std::string("at {start} of the record"));
     if (clock.triggered)  // a delay of zero could not change on a logarithmic scale
       law.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
-                                "time from the voltage's move to its beginning"});
+                                "delay of the start after the voltage leaves its band"});
     else
-      law.parameters.push_back(
-          {"start", "s", at.begin, -1e5, 1e5, false, "time of the record at which it begins"});
+      law.parameters.push_back({"start", "s", at.begin, -1e5, 1e5, false, "start time in the record"});
     return law.parameters.back().name;
   }
   /// Adds the phase at the centre of the records, where it is nearly independent of the frequency.

@@ -40,11 +40,12 @@ record::StagedEvent read_one(Config& config, const std::string& section) {
       e.until = config.require<double>(section + ".until", {-kLatest, kLatest, "s"});
     if (config.sound() && !(e.until > e.time))
       config.problem(section + ".until", fmt::format("until = {:g} s with time = {:g} s", e.until, e.time),
-                     "a step ends after it came", "give until > time, or leave it out where the step stays");
+                     "the end of a step is after its beginning",
+                     "give until > time, or omit it for a permanent step");
   }
   for (const auto& key : config.keys(section))
     if (!std::ranges::count(known, key))
-      config.problem(section + "." + key, "unknown key " + key, fmt::format("nothing reads it of a {}", kind),
+      config.problem(section + "." + key, "unknown key " + key, fmt::format("a {} has no such key", kind),
                      fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
   return e;
 }

@@ -193,7 +193,7 @@ class DrivenByPower {
                         when, "the machine's inner voltage behind its impedance cannot deliver as much",
                         "check base and sign of P and Q, or play in the voltage instead (--drive voltage)"});
     throw InputError(
-        {"play-in stops", when, "the plant's equations cannot be integrated further with this power",
+        {"playback failed", when, "the plant's equations cannot be integrated further with this power",
          "check the parameters (time constants, limits) and the record at that time, or play in the "
          "voltage instead (--drive voltage)"});
   }

@@ -139,7 +139,8 @@ void bridge(Record& r) {
     const bool jump = !r.V.empty() && jumps_in(r, gap, told);
     if (jump)
       r.notes.push_back(fmt::format(
-          "The voltage jumps where frames are missing, between t = {:.4f} and {:.4f} s: the instant is known no better.",
+          "The voltage has a step where frames are missing, between t = {:.4f} and {:.4f} s: this "
+          "is the uncertainty of the switching time.",
           r.t[gap.first - 1], r.t[gap.last + 1]));
     const bool bends = !jump && told.size() >= kMinAcross;
     for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {

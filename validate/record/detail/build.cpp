@@ -274,18 +274,20 @@ void settle_angle(Record& r) {
     r.theta = angle_of_frequency(r);
     r.angle = AngleSource::integrated;
     r.notes.emplace_back(
-        "The record has no angle: it was integrated from the frequency. At a switching the angle turns at once, "
-        "and a measured frequency shows that late, smoothed or not at all: by how much it turns there is fitted.");
+        "The record has no angle: it was integrated from the frequency. A measured frequency "
+        "shows the angle step at a switching late, smoothed or not at all; the angle steps are "
+        "therefore fitted.");
     return;
   }
   r.theta.assign(r.t.size(), 0.0);
   r.angle = AngleSource::none;
   r.notes.emplace_back(
-      "The record has neither angle nor frequency. The voltage's magnitude alone cannot drive a model, so P and Q "
-      "drive it and V is compared; that the frequency before the event was nominal is assumed.");
+      "The record has neither angle nor frequency. The voltage magnitude alone is insufficient "
+      "for a playback, so P and Q are played in and V is compared; nominal frequency before "
+      "the event is assumed.");
   if (!r.Efd.empty())
     r.notes.emplace_back(
-        "An exciter alone needs no angle, and Efd is recorded: --component exciter tries it.");
+        "An exciter alone needs no angle, and Efd is recorded: test it with --component exciter.");
 }
 
 /// Copies the channels of `from` to the times of `all`, with linear interpolation if they differ.
@@ -302,7 +304,7 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
   if (all.t.front() < first - slack || all.t.back() > last + slack) {
     all = stretch(std::move(all), first - slack, last + slack);
     all.notes.push_back(
-        fmt::format("Of the files only what they share is used: {:.6g} to {:.6g} s.", first, last));
+        fmt::format("Only the time range common to all files is used: {:.6g} to {:.6g} s.", first, last));
   }
   bool same = true;
   std::vector<double> places;
@@ -314,9 +316,9 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
     places.push_back(meets ? std::round(place) : place);
   }
   if (!same)
-    all.notes.push_back(
-        fmt::format("{}, sampled {:.6g} times a second, was put at the instants of {} by straight lines.",
-                    from.name, from.rate(), all.name));
+    all.notes.push_back(fmt::format(
+        "{}, sampled {:.6g} times a second, was interpolated linearly to the sampling times of {}.",
+        from.name, from.rate(), all.name));
   for (const auto q :
        {Quantity::V, Quantity::theta, Quantity::f, Quantity::P, Quantity::Q, Quantity::speed, Quantity::Efd,
         Quantity::Ifd, Quantity::Vs, Quantity::Vref, Quantity::Pm, Quantity::Pref, Quantity::gate}) {
@@ -324,7 +326,7 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
     if (values.empty()) continue;
     if (!channel(all, q)->empty())
       problems.add("two columns of " + std::string(word_of(q)), files, "each of the files gives it",
-                   "say which one counts: --columns");
+                   "name one of them: --columns");
     *channel(all, q) = at_places(values, places);
   }
   for (std::size_t k = 0; k < places.size() && !from.lost.empty(); ++k)
@@ -413,7 +415,7 @@ void SampleFaults::tell(Problems& problems, const std::string& file) const {
   }
   if (faults_.size() > kShown)
     problems.add(fmt::format("{} further faults", faults_.size() - kShown), file, "the list is cut here",
-                 "mend the ones above first");
+                 "correct the ones above first");
 }
 
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,

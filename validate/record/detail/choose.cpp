@@ -149,7 +149,7 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
     problems.add("no complete terminal", where,
                  "of " + listed(all) + " none has voltage" +
                      (options.power ? ", P and Q (or current and its angle)" : " and time") +
-                     ", and which belong together is not certain; seen: " + seen(headings),
+                     ", and their grouping is ambiguous; columns found: " + seen(headings),
                  "name the columns: --columns V=…,P=…,Q=… or [record.columns] in the plant file");
   return {*all.begin(), *all.begin(), false};
 }
@@ -161,7 +161,7 @@ void check_missing(const Present& present, const ReadOptions& options, const std
       std::string names;
       for (const auto q : any) names += (names.empty() ? "" : " or ") + names_of(q);
       problems.add("no column " + names, where,
-                   fmt::format("the {} is driven by it or compared with it; seen: {}",
+                   fmt::format("the {} needs it for playback or comparison; columns found: {}",
                                component_name(options.component), seen(headings)),
                    "add the column, named with its unit, or say which one it is: --columns " +
                        std::string(word_of(any.front())) + "=… or [record.columns] in the plant file");
@@ -175,7 +175,7 @@ void check_missing(const Present& present, const ReadOptions& options, const std
         "no column " + names_of(q), where,
         std::string(options.power ? "play-in needs time, voltage, P and Q, and the angle or the frequency"
                                   : "a comparison needs time, voltage and angle") +
-            "; seen: " + seen(headings),
+            "; columns found: " + seen(headings),
         "add the column, named with its unit, or say which one it is: --columns V=…,P=… or "
         "[record.columns] in the plant file");
 }
@@ -247,7 +247,7 @@ class Mapper {
                                                                const std::string& text) {
     auto m = quantity_of(word);
     if (!m) {
-      problems_.add("'" + word + "'", "the map of columns", "it is no quantity that a record can have",
+      problems_.add("'" + word + "'", "the map of columns", "a record has no such quantity",
                     "use t, V, theta, f, P, Q, I, phi, speed, omega, Efd, Ifd, Vs, Vref, Pm, Pref or "
                     "gate");
       return std::nullopt;
@@ -261,9 +261,10 @@ class Mapper {
     }
     if (!at) {
       if (!options_.part)
-        problems_.add(fmt::format("no column '{}'", named.name), where_,
-                      fmt::format("the map of columns names it for {}; seen: {}", word, seen(headings_)),
-                      "name one of them (and its terminal, where two have the same name)");
+        problems_.add(
+            fmt::format("no column '{}'", named.name), where_,
+            fmt::format("the map of columns names it for {}; columns found: {}", word, seen(headings_)),
+            "name one of them (and its terminal, where two have the same name)");
       return std::nullopt;
     }
     const Heading& h = headings_[*at];
@@ -279,8 +280,8 @@ class Mapper {
           fmt::format("column '{}'", h.name), where_, "its unit is missing or not known",
           fmt::format("give it: {} = \"{} [unit]\", as in {}", word, h.name, names_of(m->quantity)));
     about_.named.push_back(word);
-    about_.notes.push_back(fmt::format("{}{} is the column '{}', as the map of columns says.", word,
-                                       named.negated ? ", with the sign turned," : "", h.name));
+    about_.notes.push_back(fmt::format("{}{} is the column '{}', from the map of columns.", word,
+                                       named.negated ? ", with the sign reversed," : "", h.name));
     return std::pair(*at, *m);
   }
 
@@ -365,14 +366,13 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
     if (!key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0)) {
       if (!is_asked_for(meaning->quantity, options)) {
-        about.notes.push_back(
-            fmt::format("Column '{}' was left out: the plant file has no {} under [record], and "
-                        "the {} does not ask for it.",
-                        name, key, component_name(options.component)));
+        about.notes.push_back(fmt::format(
+            "Column '{}' was not read: the plant file has no {} under [record], and the {} does not need it.",
+            name, key, component_name(options.component)));
         continue;
       }
       problems.add(fmt::format("column '{}'", name), where,
-                   "the plant file does not say what 1 pu (air-gap line) of it is",
+                   "the plant file does not define 1 pu (air-gap line) of it",
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
     }

@@ -84,8 +84,8 @@ std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex
   }
   return SequenceFault{
       "phase sequence is A-C-B",
-      fmt::format("exchange the names of {} and {}: two leads are exchanged, or the grid's phases follow one "
-                  "another in the order A-C-B, and then so of voltages and currents",
+      fmt::format("exchange the names of {} and {}: two leads are exchanged, or the grid's phases follow "
+                  "one another in the order A-C-B, and then exchange them for voltages and currents",
                   names[1], names[2])};
 }
 

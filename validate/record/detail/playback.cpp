@@ -59,7 +59,7 @@ class Playback {
     if (!f_.empty()) add_frequency(raw);
     if (options.power && !options.part)
       problems_.add("no column of P and Q", name_,
-                    "a playback file holds what drives a model, not what was measured",
+                    "a playback file contains the played-in signals, not the measured response",
                     "join it with a file of the measured P and Q: " + name_ + "+FILE");
     problems_.raise();
     SampleFaults faults([this](std::size_t a, std::size_t b) {
@@ -76,7 +76,7 @@ class Playback {
     const auto open = text_.find('['), close = text_.find(']', open), brace = text_.find('{', close);
     const auto end = text_.find('}', brace);
     if (brace == std::string_view::npos || end == std::string_view::npos) {
-      problems_.add("play-in signals without values", name_, "fields stand in [ ], values in { }",
+      problems_.add("play-in signals without values", name_, "fields are enclosed in [ ], values in { }",
                     "export it again");
       problems_.raise();
     }

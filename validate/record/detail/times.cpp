@@ -82,7 +82,7 @@ void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std:
     const bool hour = halves != 0 && std::abs(leap - halves * kHalfHour) < 2 * usual;
     if ((back || hour) && k > 0 && usual_at(k - 1) && usual_at(k + 1) && notes.size() < 3) {
       notes.push_back(
-          fmt::format("At {} the clock was put {} by {:.6g} s; the samples were taken to go on evenly.",
+          fmt::format("At {} the clock was put {} by {:.6g} s; the samples were assumed evenly spaced.",
                       faults.where(k + 1), leap < 0 ? "back" : "on", std::abs(leap)));
       shift -= leap;
     }
@@ -203,12 +203,11 @@ class Grid {
     for (std::size_t i = 1; i < index_.size(); ++i) {
       const double missing = static_cast<double>(index_[i] - index_[i - 1]) - 1;
       if (missing * h_ > kLongestGap * (1 + 1e-6))
-        faults.add(
-            "gap", fmt::format("a gap of {:.4g} s", (missing + 1) * h_), row_[i],
-            fmt::format("samples are {:.6g} s apart, so {:.0f} are missing; up to {:g} s are bridged", h_,
-                        missing, kLongestGap),
-            "fill the gap at the source, or take the stretch before or after it (--until, --from); if the "
-            "clock leapt there and nothing is missing, mend the stamps");
+        faults.add("gap", fmt::format("a gap of {:.4g} s", (missing + 1) * h_), row_[i],
+                   fmt::format("samples are {:.6g} s apart, so {:.0f} are missing; up to {:g} s are bridged",
+                               h_, missing, kLongestGap),
+                   "fill the gap at the source, or take the section before or after it (--until, --from); "
+                   "if the clock jumped there and nothing is missing, correct the time stamps");
     }
   }
 
@@ -282,8 +281,8 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
     even.place.push_back(static_cast<double>(k) + part);
   }
   about.notes.push_back(fmt::format(
-      "The file's {} samples are {:.3g} to {:.3g} s apart{}: they were joined by straight lines and taken {:g} "
-      "times a second.",
+      "The file's {} samples are {:.3g} to {:.3g} s apart{}: they were interpolated linearly "
+      "and resampled {:g} times a second.",
       t.size(), std::ranges::min(steps), std::ranges::max(steps),
       clock.rows > 0 ? fmt::format(" ({} of them at the time of the one before)", clock.rows) : "", 1 / h));
   return even;
@@ -312,8 +311,8 @@ bool tell_standing(const Rows& rows, SampleFaults& faults) {
         "1.77E+12): give the column a format with milliseconds before you save it");
   else
     faults.add(
-        "standing", what, clock.first, fmt::format("the clock stands still at t = {:.6g} s", t[clock.first]),
-        fmt::format("take the stretch before it (--until {:.6g}), or export the record again with its times",
+        "standing", what, clock.first, fmt::format("the clock stops at t = {:.6g} s", t[clock.first]),
+        fmt::format("take the section before it (--until {:.6g}), or export the record again with its times",
                     t[clock.first]));
   return true;
 }

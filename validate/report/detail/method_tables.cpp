@@ -235,9 +235,9 @@ Table parameter_comparison(const Task& task, double noise) {
 
 Table several_table(const Task& task) {
   Table table{
-      "Several records of one plant: raw MSE of the plants with three test records or more, from the first of "
-      "them, from three, from up to twelve; by the mean of the records' estimates and, where the method states "
-      "beliefs, by their product.",
+      "Several records of one plant: raw MSE of the plants with three test records or more, "
+      "from the first of them, from three, from up to twelve; by the mean of the records' "
+      "estimates and, where the method gives posterior distributions, by their product.",
       {"method", "noise", "plants", "records", "mean", "product"},
       {}};
   for (const auto& method : task.methods())
@@ -262,7 +262,7 @@ Table several_table(const Task& task) {
 }
 
 Table effort_table(const Task& task) {
-  Table table{"What the figures cost: rows and epochs of a run, processor time of all runs.",
+  Table table{"Cost of the results: rows and epochs of a run, processor time of all runs.",
               {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
               {}};
   for (const auto& method : task.methods())

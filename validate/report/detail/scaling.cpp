@@ -149,9 +149,9 @@ std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results)
 
 Table scaling_table(const std::vector<ScalingSeries>& series) {
   Table table{
-      "The law MSE ∝ size^exponent, fitted to the logarithms, with intervals of 95 %; what lies beyond the largest size "
-      "is extrapolated. Core-hours are of one network with the epochs and inputs that it has here, at the largest size's "
-      "rate.",
+      "The law MSE ∝ size^exponent, fitted to the logarithms, with intervals of 95 %; values "
+      "beyond the largest size are extrapolated. Core-hours are of one network with the epochs "
+      "and inputs that it has here, at the largest size's rate.",
       {"", "sizes", "training rows", "exponent of the rows", "exponent of the time",
        "MSE at the thesis's training rows", "core-hours for that", "the thesis's MSE", "rows until then",
        "core-hours for that"},

@@ -94,12 +94,12 @@ std::string reliability_picture(const Task& task) {
       rows += c.rows;
     }
   if (counted.empty()) return {};
-  Plot plot{"How often the truth lay in the intervals",
-            {"should lie in them", false, {}, false, {0, 1}},
-            {"lay in them", false, {}, false, {0, 1}},
+  Plot plot{"Coverage of the intervals",
+            {"nominal coverage", false, {}, false, {0, 1}},
+            {"measured coverage", false, {}, false, {0, 1}},
             {}};
   plot.width = 330;
-  PlotSeries right{"as stated", "#1b2733", {{0, 0}, {1, 1}}, Mark::none};
+  PlotSeries right{"nominal", "#1b2733", {{0, 0}, {1, 1}}, Mark::none};
   right.line = right.dashed = true;
   plot.series.push_back(right);
   for (const auto& [key, shares] : counted) {

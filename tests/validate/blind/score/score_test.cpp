@@ -172,7 +172,7 @@ TEST_F(BlindScoring, ComparesProbabilitiesWithTheTruth) {
   EXPECT_EQ(s.reliability.cases, 4);
   EXPECT_EQ(s.reliability.sets.at(0).second.holds.hits, 1);
   EXPECT_EQ(score_json(s)["probabilities"]["sets"]["P, Q only"]["mean_size"], 3.0);
-  EXPECT_THAT(score_markdown(s), testing::HasSubstr("## Are the probabilities true?"));
+  EXPECT_THAT(score_markdown(s), testing::HasSubstr("## Reliability of the probabilities"));
 }
 TEST_F(BlindScoring, RefusesUnorderedProbabilities) {
   BlindVerdict v{"missing", {"SEXS"}, {}, "excitation", 1};
