@@ -46,7 +46,7 @@ struct Trajectory {
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   int directions = 0;                                ///< number of sensitivity parameters
   /// Sensitivities, as `values`, one block per parameter: see slope().
-  std::vector<double, CacheAligned<double>> slopes;
+  std::vector<double, CacheAligned<double>> sensitivities;
   Outcome outcome = Outcome::stable;  ///< how the simulation ended
   double stopped_at = 0.0;            ///< [s]: t_end, or the time at which synchronism was lost
   double largest_spread = 0.0;        ///< largest change of a rotor angle difference since the start [rad]
@@ -58,17 +58,18 @@ struct Trajectory {
     constexpr int kDoublesPerLine = 8;
     stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
-    slopes.resize(values.size() * static_cast<std::size_t>(directions));
+    sensitivities.resize(values.size() * static_cast<std::size_t>(directions));
   }
   /// Returns the sensitivity of at(plant, channel) to the parameter number `direction`.
-  [[nodiscard]] double* slope(int direction, int plant, int channel) {
-    return slopes.data() + static_cast<std::ptrdiff_t>(direction * rows() +
-                                                       plant * static_cast<int>(channels.size()) + channel) *
-                               stride;
+  [[nodiscard]] double* sensitivity(int direction, int plant, int channel) {
+    return sensitivities.data() +
+           static_cast<std::ptrdiff_t>(direction * rows() + plant * static_cast<int>(channels.size()) +
+                                       channel) *
+               stride;
   }
   /// The same, read only.
-  [[nodiscard]] const double* slope(int direction, int plant, int channel) const {
-    return const_cast<Trajectory*>(this)->slope(direction, plant, channel);
+  [[nodiscard]] const double* sensitivity(int direction, int plant, int channel) const {
+    return const_cast<Trajectory*>(this)->sensitivity(direction, plant, channel);
   }
   /// Returns row i = plant * channels + channel: `samples` values in the channel's unit.
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }

@@ -21,7 +21,7 @@ namespace {
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Cost {
-  double steps = 0, seconds = 0, slope_steps = 0, slope_seconds = 0, largest = 0, square = 0;
+  double steps = 0, seconds = 0, sensitivity_steps = 0, sensitivity_seconds = 0, largest = 0, square = 0;
   int runs = 0;
 };
 
@@ -46,10 +46,10 @@ struct Bench {
                          .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
       const double middle = processor_seconds();
       const int runs = static_cast<int>(along.size() + sim::kDirections - 1) / sim::kDirections;
-      const event::Playing how{.lenient = lenient, .linear_slopes = lenient};
-      cost.slope_steps += static_cast<double>(event::play(tested, e, {}, along, how).steps) /
-                          e.record.samples() / (lenient ? 1 : runs);
-      cost.slope_seconds += processor_seconds() - middle;
+      const event::Playing how{.lenient = lenient, .linear_sensitivities = lenient};
+      cost.sensitivity_steps += static_cast<double>(event::play(tested, e, {}, along, how).steps) /
+                                e.record.samples() / (lenient ? 1 : runs);
+      cost.sensitivity_seconds += processor_seconds() - middle;
       ++cost.runs;
       double square = 0, most = 0;
       for (std::size_t c = 0; c < e.channels.size(); ++c)
@@ -73,13 +73,14 @@ void tell(const Bench& bench) {
   Cost all;
   for (const auto& [name, c] : bench.costs) {
     fmt::print("{:22} {:5} {:13.2f} {:8.2f} {:13.2f} {:8.2f} {:10.2g} {:12.2g}\n", name, c.runs,
-               c.steps / c.runs, 1e3 * c.seconds / c.runs, c.slope_steps / c.runs,
-               1e3 * c.slope_seconds / c.runs, c.largest, c.square);
+               c.steps / c.runs, 1e3 * c.seconds / c.runs, c.sensitivity_steps / c.runs,
+               1e3 * c.sensitivity_seconds / c.runs, c.largest, c.square);
     all.seconds += c.seconds;
-    all.slope_seconds += c.slope_seconds;
+    all.sensitivity_seconds += c.sensitivity_seconds;
     all.runs += c.runs;
   }
-  fmt::print("{} runs in {:.3f} s, with slopes in {:.3f} s\n", all.runs, all.seconds, all.slope_seconds);
+  fmt::print("{} runs in {:.3f} s, with slopes in {:.3f} s\n", all.runs, all.seconds,
+             all.sensitivity_seconds);
 }
 
 /// Processor time of the whitened residuals of all events [s], minimum of several calls.
@@ -100,11 +101,12 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::
                            .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
         std::ranges::move(fit::state_directions(event), std::back_inserter(along));
       }
-      const playin::Response r = event::play(
-          tested, event, {}, along, {.lenient = true, .allowance = &allowances[e], .linear_slopes = true});
+      const playin::Response r =
+          event::play(tested, event, {}, along,
+                      {.lenient = true, .allowance = &allowances[e], .linear_sensitivities = true});
       event::RowMatrix columns(event.values(), static_cast<Eigen::Index>(along.size()) + 1);
       for (std::size_t d = 0; d < along.size(); ++d)
-        columns.col(static_cast<Eigen::Index>(d)) = event.collected(r.slopes[d].value, false);
+        columns.col(static_cast<Eigen::Index>(d)) = event.collected(r.sensitivities[d].value, false);
       columns.rightCols(1) = event.collected(r.value, true);
       events.noise(e).whiten(columns);
     }

@@ -15,7 +15,7 @@
 #include "base/nearest_word.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 #include "validate/hypothesis/search.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -220,7 +220,8 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
   in_parallel(
       fits.size(),
       [&](std::size_t e) {
-        known[e] = fit::information(fit::event_slopes(fitted, bench.all().whitened(e), fits[e].state, free));
+        known[e] =
+            fit::information(fit::event_sensitivities(fitted, bench.all().whitened(e), fits[e].state, free));
       },
       [&](int done) { bench.tell(event::Phase::sensitivities, done, static_cast<int>(fits.size())); });
   const auto n = static_cast<Eigen::Index>(free.size());

@@ -38,7 +38,7 @@ double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEv
   double sum = 0;
   try {
     for (std::size_t e = 0; e < events.size(); ++e) {
-      const fit::EventSlopes s = fit::event_slopes(tested, events.whitened(e), states[e], {});
+      const fit::EventSensitivities s = fit::event_sensitivities(tested, events.whitened(e), states[e], {});
       sum += s.residual.squaredNorm();
     }
   } catch (const InputError&) {
@@ -241,15 +241,16 @@ class Calibrating {
     before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
   }
   /// Returns the sensitivities of the fitted events.
-  std::vector<fit::EventSlopes> slopes_seen(const sim::plant::Plant& plant) const {
-    std::vector<fit::EventSlopes> slopes(seen_.size());
+  std::vector<fit::EventSensitivities> fitted_sensitivities(const sim::plant::Plant& plant) const {
+    std::vector<fit::EventSensitivities> jacobians(seen_.size());
     in_parallel(
-        slopes.size(),
+        jacobians.size(),
         [&](std::size_t e) {
-          slopes[e] = fit::event_slopes({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
+          jacobians[e] =
+              fit::event_sensitivities({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
         },
-        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(slopes.size())); });
-    return slopes;
+        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(jacobians.size())); });
+    return jacobians;
   }
   /// Removes the bias due to noise of the played-in voltage. Newton steps solve for the parameters at which
   /// the scores equal their expectation under that noise.
@@ -269,7 +270,7 @@ class Calibrating {
       if (options_.spread > 0)
         missing -= (off_prior(model_.plant, plant, free_).array() * prior.diagonal().array().sqrt()).matrix();
       Eigen::MatrixXd data = Eigen::MatrixXd::Zero(missing.size(), missing.size());
-      for (const auto& s : slopes_seen(plant)) {
+      for (const auto& s : fitted_sensitivities(plant)) {
         data += fit::information(s);
         missing -= s.score;
       }
@@ -314,14 +315,14 @@ class Calibrating {
 
   /// Computes errors, correlations, poorly identified directions and helpful further events.
   void learn() {
-    std::vector<fit::EventSlopes> slopes(c_.prepared.size());
+    std::vector<fit::EventSensitivities> jacobians(c_.prepared.size());
     in_parallel(
-        slopes.size(),
+        jacobians.size(),
         [&](std::size_t e) {
-          slopes[e] = fit::event_slopes({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
-                                        c_.states[e], free_);
+          jacobians[e] = fit::event_sensitivities({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
+                                                  c_.states[e], free_);
         },
-        [&](int done) { tell(event::Phase::sensitivities, done, static_cast<int>(slopes.size())); });
+        [&](int done) { tell(event::Phase::sensitivities, done, static_cast<int>(jacobians.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
     const Eigen::MatrixXd prior = prior_at(c_.fit.plant);
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;
@@ -332,11 +333,11 @@ class Calibrating {
       mean = pull_.score / samples;
       scores += pull_.doubt;
     }
-    for (std::size_t e = 0; e < slopes.size(); ++e) {
+    for (std::size_t e = 0; e < jacobians.size(); ++e) {
       if (out_[e]) continue;
-      data += fit::information(slopes[e]);
+      data += fit::information(jacobians[e]);
       scores += fit::score_covariance(
-          slopes[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())), mean);
+          jacobians[e], static_cast<int>(std::lround(kColour / c_.prepared[e].record.step())), mean);
     }
     data = real(data);
     const Eigen::MatrixXd inverse = (data + prior).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
@@ -349,9 +350,9 @@ class Calibrating {
     fill_parameters(inverse, unit, widening);
     c_.blurs = find_blurs(data, unit);
     if (!options_.only_given) try_others(data + prior, inverse, unit, widening);
-    for (std::size_t e = 0; e < slopes.size(); ++e)  // effect of parameter uncertainty on held-out events
+    for (std::size_t e = 0; e < jacobians.size(); ++e)  // effect of parameter uncertainty on held-out events
       allowance_.push_back(
-          out_[e] ? unseen_allowance(fit::information(slopes[e]), robust, c_.prepared[e].values()) : 0.0);
+          out_[e] ? unseen_allowance(fit::information(jacobians[e]), robust, c_.prepared[e].values()) : 0.0);
   }
   static constexpr double kColour = 0.5;  ///< largest lag of the scores' covariance (Newey and West) [s]
 

@@ -54,7 +54,7 @@ class EventResidual : public ceres::CostFunction {
       const auto width = static_cast<int>(setting_.free.size());
       write(r.value, true, residuals, 1, 0);
       for (std::size_t i = 0; i < along.size(); ++i)
-        write(r.slopes[i].value, false, slopes, width, static_cast<int>(i));
+        write(r.sensitivities[i].value, false, slopes, width, static_cast<int>(i));
     } catch (const InputError&) {
       return false;  // Ceres shortens the step
     } catch (const Interrupted&) {

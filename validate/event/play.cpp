@@ -56,11 +56,11 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
     run.allowance = playin::allowances(playin::linearise(run), event.channels, event.record.step());
     if (how.allowance) *how.allowance = run.allowance;
   }
-  if (how.linear_slopes) {
+  if (how.linear_sensitivities) {
     run.past = how.past;
-    run.linear_slopes = event.channels;
+    run.linear_sensitivities = event.channels;
     for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
-      if (std::ranges::count(event.channels, o) == 0) run.linear_slopes.push_back(o);
+      if (std::ranges::count(event.channels, o) == 0) run.linear_sensitivities.push_back(o);
   }
   run.torque = state.torque;
   run.field = state.field;

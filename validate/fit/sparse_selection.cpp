@@ -9,8 +9,8 @@
 
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/noise.hpp"
+#include "validate/fit/sensitivities.hpp"
 #include "validate/fit/sign.hpp"
-#include "validate/fit/slopes.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -117,8 +117,8 @@ class Selection {
     const auto n = static_cast<Eigen::Index>(free_.size());
     curvature_ = Eigen::MatrixXd::Identity(n, n);  // of the priors
     for (std::size_t e = 0; e < events_.size(); ++e)
-      curvature_ += information(
-          event_slopes({all_.plant, tested_.conventions}, events_.whitened(e), all_.events[e].state, free_));
+      curvature_ += information(event_sensitivities({all_.plant, tested_.conventions}, events_.whitened(e),
+                                                    all_.events[e].state, free_));
     at_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& p = all_.parameters[static_cast<std::size_t>(i)];

@@ -12,7 +12,7 @@
 
 #include "base/constants.hpp"
 #include "base/in_parallel.hpp"
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -44,7 +44,7 @@ struct Scene {
 /// Response of one hypothesis in a scene and its sensitivities, in units of noise.
 struct Answer {
   std::array<Eigen::VectorXd, playin::kOutputs> value;
-  std::array<Eigen::MatrixXd, playin::kOutputs> slopes;
+  std::array<Eigen::MatrixXd, playin::kOutputs> sensitivities;
 };
 
 /// Returns an event without a disturbance in the network, except a frequency drop of `dip` [Hz].
@@ -93,7 +93,8 @@ class Separations {
       known_[j] = Eigen::MatrixXd::Identity(n, n);
       for (std::size_t s = 0; s < events_.size(); ++s)
         if (const auto& a = answer(s, j))
-          for (const Output o : channels()) known_[j] += a->slopes[at(o)].transpose() * a->slopes[at(o)];
+          for (const Output o : channels())
+            known_[j] += a->sensitivities[at(o)].transpose() * a->sensitivities[at(o)];
     }
   }
 
@@ -110,10 +111,10 @@ class Separations {
     Eigen::VectorXd score = Eigen::VectorXd::Zero(information.rows());
     for (const Output o : outputs) {
       const Eigen::VectorXd r = other->value[at(o)] - truth->value[at(o)];
-      const Eigen::MatrixXd& slopes = other->slopes[at(o)];
+      const Eigen::MatrixXd& sensitivities = other->sensitivities[at(o)];
       squares += r.squaredNorm();
-      score += slopes.transpose() * r;
-      information += slopes.transpose() * slopes;
+      score += sensitivities.transpose() * r;
+      information += sensitivities.transpose() * sensitivities;
     }
     return std::max(0.0, squares - score.dot(information.ldlt().solve(score)));
   }
@@ -161,9 +162,9 @@ class Separations {
           return c;
         };
         a.value[o] = column(r.value[o]);
-        a.slopes[o].resize(a.value[o].size(), static_cast<Eigen::Index>(along.size()));
+        a.sensitivities[o].resize(a.value[o].size(), static_cast<Eigen::Index>(along.size()));
         for (std::size_t d = 0; d < along.size(); ++d)
-          a.slopes[o].col(static_cast<Eigen::Index>(d)) = column(r.slopes[d].value[o]);
+          a.sensitivities[o].col(static_cast<Eigen::Index>(d)) = column(r.sensitivities[d].value[o]);
       }
       return a;
     } catch (const InputError&) {

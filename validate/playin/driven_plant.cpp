@@ -12,7 +12,7 @@
 #include "base/stop_signal.hpp"
 #include "validate/playin/detail/driven_equations.hpp"
 #include "validate/playin/detail/hermite.hpp"
-#include "validate/playin/detail/linear_slopes.hpp"
+#include "validate/playin/detail/linear_sensitivities.hpp"
 #include "validate/playin/detail/pairs.hpp"
 
 namespace swingbank::validate::playin {
@@ -48,11 +48,11 @@ class Driven {
   Response run(Trace* trace = nullptr) {
     trace_ = trace;
     Response back;
-    back.slopes.resize(directions_.size());
+    back.sensitivities.resize(directions_.size());
     const record::Record& r = *run_.record;
     for (auto& values : back.value) values.reserve(r.t.size());
-    for (auto& slope : back.slopes)
-      for (auto& values : slope.value) values.reserve(r.t.size());
+    for (auto& sensitivity : back.sensitivities)
+      for (auto& values : sensitivity.value) values.reserve(r.t.size());
     const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
     t_ = r.t.front();
     for (const double sample : r.t) {
@@ -78,15 +78,15 @@ class Driven {
       for (Eigen::Index i = 0; i < count; ++i) {
         const auto d = static_cast<std::size_t>(i);
         if (first + i < n) Seeds<T>::add(x[static_cast<std::size_t>(first + i)], d, 1.0);
-        const Complex slope = first + i == n ? v : first + i == n + 1 ? Complex(0, 1) * v : Complex();
-        Seeds<T>::add(vr, d, slope.real());
-        Seeds<T>::add(vi, d, slope.imag());
+        const Complex derivative = first + i == n ? v : first + i == n + 1 ? Complex(0, 1) * v : Complex();
+        Seeds<T>::add(vr, d, derivative.real());
+        Seeds<T>::add(vi, d, derivative.imag());
       }
       equations_.evaluate_at(vr, vi, run_.record->t.front(), x.data(), trial_.data());
       const auto out = equations_.outputs(x.data());
       for (Eigen::Index i = 0; i < count; ++i)
         for (Eigen::Index j = 0; j < n + kOutputs; ++j)
-          by(j, first + i) = Seeds<T>::slope(
+          by(j, first + i) = Seeds<T>::get(
               j < n ? trial_[static_cast<std::size_t>(j)] : out[static_cast<std::size_t>(j - n)],
               static_cast<std::size_t>(i));
     }
@@ -233,7 +233,7 @@ class Driven {
     for (std::size_t i = 0; i < x_.size() && !run_.instants_stand; ++i)
       for (std::size_t d = 0; d < directions_.size(); ++d)
         Seeds<T>::add(x_[i], d,
-                      Seeds<T>::slope(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
+                      Seeds<T>::get(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
     fresh_ = fresh_ || !directions_.empty();
     if (++steps_ > run_.step_limit) give_up();
   }
@@ -364,7 +364,7 @@ class Driven {
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
       for (std::size_t d = 0; d < directions_.size(); ++d)
-        back.slopes[d].value[o].push_back(Seeds<T>::slope(out[static_cast<std::size_t>(o)], d));
+        back.sensitivities[d].value[o].push_back(Seeds<T>::get(out[static_cast<std::size_t>(o)], d));
     }
   }
   [[noreturn]] void give_up() const {
@@ -471,7 +471,7 @@ Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input) {
 }
 
 Response drive(const Drive& run, std::span<const Direction> directions) {
-  const bool linear = !run.linear_slopes.empty() && can_be_linear(run);
+  const bool linear = !run.linear_sensitivities.empty() && can_be_linear(run);
   if (directions.empty()) {
     if (!run.past || !linear) return Driven<double>(run, {}).run();
     *run.past = std::make_shared<const Past>(run);
@@ -480,7 +480,7 @@ Response drive(const Drive& run, std::span<const Direction> directions) {
   if (linear) {
     const auto past = run.past && *run.past ? *run.past : std::make_shared<const Past>(run);
     Response answer = past->answer;
-    if (add_linear_slopes(run, directions, past->trace, answer)) return answer;
+    if (add_linear_sensitivities(run, directions, past->trace, answer)) return answer;
   }
   Response all;
   constexpr std::size_t kSeedsAtOnce = sim::kDirections;
@@ -491,7 +491,7 @@ Response drive(const Drive& run, std::span<const Direction> directions) {
       all = std::move(some);
       continue;
     }
-    std::ranges::move(some.slopes, std::back_inserter(all.slopes));
+    std::ranges::move(some.sensitivities, std::back_inserter(all.sensitivities));
     all.steps += some.steps;
   }
   return all;

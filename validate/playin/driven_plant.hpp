@@ -66,7 +66,7 @@ struct Drive {
   int step_limit = 2'000'000;               ///< maximum number of steps
   /// Outputs with approximate sensitivities, from the plant linearised at both ends of each step: one or two
   /// per cent off, at a fraction of the cost. Empty: exact sensitivities of every output.
-  std::vector<Output> linear_slopes = {};
+  std::vector<Output> linear_sensitivities = {};
   bool instants_stand = false;  ///< exact sensitivities neglect the shift of a guard's switching time
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
   /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
@@ -100,13 +100,13 @@ struct Direction {
 struct Response {
   std::vector<double> value[kOutputs];  ///< [output][sample]; units as for Drive
   /// Sensitivities to one parameter.
-  struct Slope {
+  struct Sensitivity {
     std::vector<double> value[kOutputs];
     ///< [output][sample], per unit of the parameter; empty: not requested
   };
-  std::vector<Slope> slopes;     ///< [parameter], in the order of the request
-  std::vector<Complex> voltage;  ///< played-in voltage at each sample [pu]
-  int steps = 0;                 ///< number of integration steps
+  std::vector<Sensitivity> sensitivities;  ///< [parameter], in the order of the request
+  std::vector<Complex> voltage;            ///< played-in voltage at each sample [pu]
+  int steps = 0;                           ///< number of integration steps
   /// Returns the samples of an output.
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };

@@ -83,9 +83,9 @@ class Observed {
     auto& Q = r.value[static_cast<int>(Output::Q)];
     shown_ = phasors(r.voltage, P, Q, rate, frequency);
     const Power seen = measured(chain_, shown_, stride_);
-    for (auto& slope : r.slopes) {
-      auto& dP = slope.value[static_cast<int>(Output::P)];
-      auto& dQ = slope.value[static_cast<int>(Output::Q)];
+    for (auto& sensitivity : r.sensitivities) {
+      auto& dP = sensitivity.value[static_cast<int>(Output::P)];
+      auto& dQ = sensitivity.value[static_cast<int>(Output::Q)];
       double largest = 1e-12;
       for (std::size_t k = 0; k < dP.size(); ++k)
         largest = std::max({largest, std::abs(dP[k]), std::abs(dQ[k])});
@@ -96,7 +96,7 @@ class Observed {
         movedQ[k] += step * dQ[k];
       }
       const Power moved = measured(chain_, phasors(r.voltage, movedP, movedQ, rate, frequency), stride_);
-      for (auto& values : slope.value) thin(values, stride_);
+      for (auto& values : sensitivity.value) thin(values, stride_);
       for (std::size_t k = 0; k < seen.P.size(); ++k) {
         dP[k] = (moved.P[k] - seen.P[k]) / step;
         dQ[k] = (moved.Q[k] - seen.Q[k]) / step;
@@ -110,7 +110,7 @@ class Observed {
   }
   /// Returns the sensitivity to a parameter of an instrument, after run(). If it does not change the gain for
   /// constant phasors, the plant's run is unchanged, and only the instruments' outputs are recomputed.
-  [[nodiscard]] Response::Slope along(const Direction& d) const {
+  [[nodiscard]] Response::Sensitivity along(const Direction& d) const {
     const auto& record = sim::plant::parameter_record(*run_.plant, d.parameter);
     const double move = kMove * (record.high - record.low);
     sim::plant::Plant above = *run_.plant, below = above;
@@ -119,13 +119,13 @@ class Observed {
     if (!(stands_as_before(above) && stands_as_before(below))) return along_both(d, above, below, move);
     const Power more = measured(above.measurements, shown_, stride_),
                 less = measured(below.measurements, shown_, stride_);
-    Response::Slope slope;
-    for (auto& values : slope.value) values.assign(more.P.size(), 0.0);
+    Response::Sensitivity sensitivity;
+    for (auto& values : sensitivity.value) values.assign(more.P.size(), 0.0);
     for (std::size_t k = 0; k < more.P.size(); ++k) {
-      slope.value[static_cast<int>(Output::P)][k] = d.scale * (more.P[k] - less.P[k]) / (2 * move);
-      slope.value[static_cast<int>(Output::Q)][k] = d.scale * (more.Q[k] - less.Q[k]) / (2 * move);
+      sensitivity.value[static_cast<int>(Output::P)][k] = d.scale * (more.P[k] - less.P[k]) / (2 * move);
+      sensitivity.value[static_cast<int>(Output::Q)][k] = d.scale * (more.Q[k] - less.Q[k]) / (2 * move);
     }
-    return slope;
+    return sensitivity;
   }
 
  private:
@@ -135,8 +135,8 @@ class Observed {
     return gain.V == gain_.V && gain.I == gain_.I &&
            (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
   }
-  [[nodiscard]] Response::Slope along_both(const Direction& d, const sim::plant::Plant& above,
-                                           const sim::plant::Plant& below, double move) const {
+  [[nodiscard]] Response::Sensitivity along_both(const Direction& d, const sim::plant::Plant& above,
+                                                 const sim::plant::Plant& below, double move) const {
     const auto of = [&](const sim::plant::Plant& plant) {
       Drive moved = run_;
       moved.plant = &plant;
@@ -144,11 +144,11 @@ class Observed {
       return Observed(moved, {}).run();
     };
     const Response more = of(above), less = of(below);
-    Response::Slope slope;
+    Response::Sensitivity sensitivity;
     for (int o = 0; o < kOutputs; ++o)
       for (std::size_t k = 0; k < more.value[o].size(); ++k)
-        slope.value[o].push_back(d.scale * (more.value[o][k] - less.value[o][k]) / (2 * move));
-    return slope;
+        sensitivity.value[o].push_back(d.scale * (more.value[o][k] - less.value[o][k]) / (2 * move));
+    return sensitivity;
   }
   void refine(const record::Record& r) {
     stride_ = kFine;
@@ -169,8 +169,8 @@ class Observed {
     if (p == directions_.size() || q == directions_.size()) return;
     const double toP = directions_[p].scale, toQ = directions_[q].scale;
     for (int o = 0; o < kOutputs; ++o)
-      for (std::size_t k = 0; k < r.slopes[p].value[o].size(); ++k) {
-        double &a = r.slopes[p].value[o][k], &b = r.slopes[q].value[o][k];
+      for (std::size_t k = 0; k < r.sensitivities[p].value[o].size(); ++k) {
+        double &a = r.sensitivities[p].value[o][k], &b = r.sensitivities[q].value[o][k];
         const double byP = a / toP, byQ = b / toQ;
         a = toP * (back_.real() * byP + back_.imag() * byQ);
         b = toQ * (back_.real() * byQ - back_.imag() * byP);
@@ -201,11 +201,11 @@ Response observe(const Drive& run, std::span<const Direction> directions) {
                        [&](const Direction& d) { return !instrument(d); });
   Observed observed(run, others);
   Response r = observed.run();
-  std::vector<Response::Slope> slopes;
+  std::vector<Response::Sensitivity> sensitivities;
   std::size_t next = 0;
   for (const Direction& d : directions)
-    slopes.push_back(instrument(d) ? observed.along(d) : std::move(r.slopes[next++]));
-  r.slopes = std::move(slopes);
+    sensitivities.push_back(instrument(d) ? observed.along(d) : std::move(r.sensitivities[next++]));
+  r.sensitivities = std::move(sensitivities);
   return r;
 }
 

@@ -79,13 +79,13 @@ class Inferring {
   }
 
   Inference run(int steps) {
-    std::vector<EventSlopes> slopes = linearise(at_);
+    std::vector<EventSensitivities> sensitivities = linearise(at_);
     double cost = prior_cost(at_) + walk_cost(knots_, at_, intensity_);
-    for (const auto& e : slopes) cost += e.residual.squaredNorm();
+    for (const auto& e : sensitivities) cost += e.residual.squaredNorm();
     double damping = kFirstDamping;
     int taken = 0;
     while (taken < steps) {
-      const Normal normal = normal_of(slopes);
+      const Normal normal = normal_of(sensitivities);
       bool moved = false;
       double gained = 0;
       for (int attempt = 0; attempt < kDampings && !moved; ++attempt) {
@@ -103,12 +103,12 @@ class Inferring {
       }
       if (!moved) break;
       ++taken;
-      slopes = linearise(at_);
+      sensitivities = linearise(at_);
       if (gained < kWorthAStep) break;
     }
     Inference found;
     found.inputs = inputs_;
-    found.criterion = cost + step_of(normal_of(slopes)).log_determinant - log_prior(intensity_);
+    found.criterion = cost + step_of(normal_of(sensitivities)).log_determinant - log_prior(intensity_);
     found.intensity = intensity_;
     found.base = tested_.plant;
     for (std::size_t i = 0; i < axes_.size(); ++i)
@@ -120,10 +120,10 @@ class Inferring {
     found.steps = taken;
     for (std::size_t e = 0; e < events_.size(); ++e) {
       found.states.push_back(state_at(at_, e));
-      found.chi2 += slopes[e].residual.squaredNorm();
+      found.chi2 += sensitivities[e].residual.squaredNorm();
       found.values += events_[e].values();
     }
-    found.events = std::move(slopes);
+    found.events = std::move(sensitivities);
     return found;
   }
 
@@ -181,7 +181,7 @@ class Inferring {
   void add_deviations(Inference& found) const {
     const auto all = deviations(normal_of(found.events));
     for (std::size_t e = 0; e < all.size(); ++e) {
-      EventSlopes& s = found.events[e];
+      EventSensitivities& s = found.events[e];
       s.torque_deviation = all[e].segment(s.state.cols(), s.torque.cols());
       s.field_deviation = all[e].tail(s.field.cols());
     }
@@ -193,9 +193,9 @@ class Inferring {
   static constexpr double kWorthAStep = 1.0;  ///< minimum gain of a step to continue [chi2]
   static constexpr double kLongestLog = 0.5;  ///< maximum step of a logarithm
 
-  [[nodiscard]] Normal normal_of(const std::vector<EventSlopes>& slopes) const {
-    Normal normal = without_walks(slopes, axes_, at_, events_);
-    add_walks(slopes, at_, intensity_, normal);
+  [[nodiscard]] Normal normal_of(const std::vector<EventSensitivities>& sensitivities) const {
+    Normal normal = without_walks(sensitivities, axes_, at_, events_);
+    add_walks(sensitivities, at_, intensity_, normal);
     return normal;
   }
   /// Returns the values of an input that is given on the same knots; otherwise zeros.
@@ -227,15 +227,16 @@ class Inferring {
     }
     return knots;
   }
-  [[nodiscard]] std::vector<EventSlopes> linearise(const Point& p) const {
-    std::vector<EventSlopes> all(events_.size());
+  [[nodiscard]] std::vector<EventSensitivities> linearise(const Point& p) const {
+    std::vector<EventSensitivities> all(events_.size());
     const sim::plant::Plant plant = plant_at(p.z);
     in_parallel(
-        events_.size(), [&](std::size_t e) { all[e] = event_slopes(p, plant, e); }, [](int) {}, threads_);
+        events_.size(), [&](std::size_t e) { all[e] = event_sensitivities(p, plant, e); }, [](int) {},
+        threads_);
     return all;
   }
-  [[nodiscard]] EventSlopes event_slopes(const Point& p, const sim::plant::Plant& plant,
-                                         std::size_t e) const {
+  [[nodiscard]] EventSensitivities event_sensitivities(const Point& p, const sim::plant::Plant& plant,
+                                                       std::size_t e) const {
     const event::FitEvent& event = events_[e];
     const event::EventState state = state_at(p, e);
     std::vector<playin::Direction> along;
@@ -255,27 +256,27 @@ class Inferring {
     for (int k = 0; k < knots; ++k)  // in order of time
       for (const Kind kind : kinds) along.push_back({.kind = kind, .index = k});
     const playin::Response r =
-        event::play({plant, tested_.conventions}, event, state, along, {.linear_slopes = true});
+        event::play({plant, tested_.conventions}, event, state, along, {.linear_sensitivities = true});
     event::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
     for (std::size_t d = 0; d < along.size(); ++d)
-      columns.col(static_cast<Index>(d)) = event.collected(r.slopes[d].value, false);
+      columns.col(static_cast<Index>(d)) = event.collected(r.sensitivities[d].value, false);
     columns.rightCols(1) = event.collected(r.value, true);
     events_.noise(e).whiten(columns);
-    EventSlopes slopes;
-    slopes.knots = knots_of_moved(e, state);
+    EventSensitivities sensitivities;
+    sensitivities.knots = knots_of_moved(e, state);
     const auto n = static_cast<Index>(numbers.size()), width = static_cast<Index>(kinds.size());
-    slopes.plant = MatrixXd::Zero(columns.rows(), static_cast<Index>(axes_.size()));
-    slopes.plant(Eigen::all, numbers) = columns.leftCols(n);
-    slopes.state = columns.middleCols(n, own);
-    slopes.torque.resize(columns.rows(), 0);
-    slopes.field.resize(columns.rows(), 0);
+    sensitivities.plant = MatrixXd::Zero(columns.rows(), static_cast<Index>(axes_.size()));
+    sensitivities.plant(Eigen::all, numbers) = columns.leftCols(n);
+    sensitivities.state = columns.middleCols(n, own);
+    sensitivities.torque.resize(columns.rows(), 0);
+    sensitivities.field.resize(columns.rows(), 0);
     Index first = n + own;
     for (const Kind kind : kinds)
-      (kind == Kind::torque ? slopes.torque : slopes.field) =
+      (kind == Kind::torque ? sensitivities.torque : sensitivities.field) =
           columns(Eigen::all, Eigen::seqN(first++, knots, width));
-    slopes.residual = columns.rightCols(1);
-    slopes.state_at = p.states[e];
-    return slopes;
+    sensitivities.residual = columns.rightCols(1);
+    sensitivities.state_at = p.states[e];
+    return sensitivities;
   }
   /// Returns the cost at a point; infinite if the plant cannot be simulated.
   [[nodiscard]] double cost_at(const Point& p) const {

@@ -21,7 +21,7 @@ struct Knots {
 /// Whitened residuals of one event (model - measured) and their Jacobians at the point of an Inference:
 /// [value][parameter]. Plant parameters are on the axes of a fit (fit/axis.hpp), the event's state is in its
 /// own units (fit/states.hpp), inputs are in pu.
-struct EventSlopes {
+struct EventSensitivities {
   Knots knots;                                  ///< knots of the inputs
   Eigen::MatrixXd plant, state, torque, field;  ///< no columns for an input that is not free
   Eigen::MatrixXd changes;                      ///< columns of add_changes()
@@ -41,13 +41,13 @@ struct Inference {
   Inputs inputs;  ///< free inputs
   /// `base`: the submitted plant with the estimated values. `plant`: the simulated plant, which may have an
   /// additional block.
-  sim::plant::Plant base, plant;          ///< submitted and simulated plant
-  std::vector<fit::FreeParameter> free;   ///< of `base`
-  Eigen::VectorXd offset;                 ///< of the free parameters from their prior means, on their axes
-  std::vector<event::EventState> states;  ///< including both inputs
-  std::vector<EventSlopes> events;        ///< residuals and Jacobians of the events
-  event::NoiseModel noise;                ///< noise model of the residuals
-  double chi2 = 0;                        ///< sum of squared whitened residuals
+  sim::plant::Plant base, plant;           ///< submitted and simulated plant
+  std::vector<fit::FreeParameter> free;    ///< of `base`
+  Eigen::VectorXd offset;                  ///< of the free parameters from their prior means, on their axes
+  std::vector<event::EventState> states;   ///< including both inputs
+  std::vector<EventSensitivities> events;  ///< residuals and Jacobians of the events
+  event::NoiseModel noise;                 ///< noise model of the residuals
+  double chi2 = 0;                         ///< sum of squared whitened residuals
   /// -2 log evidence by Laplace's approximation, up to a constant common to all inferences of these events.
   double criterion = 0;
   double intensity = 1.0;     ///< intensity of the inputs' random walk, relative to the prior's [-]

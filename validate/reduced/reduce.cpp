@@ -72,15 +72,16 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
 
 /// Returns the switching times that would leave their range at the optimum of the event's state (active set),
 /// with their moves to the end of the range.
-std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event, const EventSlopes& slopes,
+std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event,
+                                                     const EventSensitivities& sensitivities,
                                                      const std::vector<double>& priors) {
-  const Index n = slopes.state.cols();
-  MatrixXd curvature = slopes.state.transpose() * slopes.state;
-  VectorXd gradient = slopes.state.transpose() * slopes.residual;
+  const Index n = sensitivities.state.cols();
+  MatrixXd curvature = sensitivities.state.transpose() * sensitivities.state;
+  VectorXd gradient = sensitivities.state.transpose() * sensitivities.residual;
   for (Index k = 0; k < n; ++k)
     if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
       curvature(k, k) += 1 / (b * b);
-      gradient[k] += slopes.state_at[k] / (b * b);
+      gradient[k] += sensitivities.state_at[k] / (b * b);
     }
   std::vector<std::pair<Index, double>> held;
   for (bool changed = true; changed;) {
@@ -94,12 +95,12 @@ std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& even
       left(k, k) = 1;
     }
     for (const auto& [k, move] : held) right[k] = -move;
-    const VectorXd best = slopes.state_at - left.ldlt().solve(right);
+    const VectorXd best = sensitivities.state_at - left.ldlt().solve(right);
     VectorXd kept = best;
     keep_in_range(event, kept);
     for (Index k = 0; k < n; ++k)
       if (kept[k] != best[k] && std::ranges::count(held, k, &std::pair<Index, double>::first) == 0) {
-        held.emplace_back(k, kept[k] - slopes.state_at[k]);
+        held.emplace_back(k, kept[k] - sensitivities.state_at[k]);
         changed = true;
       }
   }
@@ -149,7 +150,7 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
   if (inference_.inputs.field) field_ = beside(InputKind::field);
   Index row = 0;
   for (std::size_t e = 0; e < events.size(); ++e) {
-    const EventSlopes& s = inference_.events[e];
+    const EventSensitivities& s = inference_.events[e];
     const Index states = s.state.cols(), values = s.residual.size(), K = events_[e].over_hats.rows(),
                 plant = s.plant.cols() + s.changes.cols();
     VectorXd residual = s.residual;

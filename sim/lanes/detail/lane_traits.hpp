@@ -101,7 +101,7 @@ struct LaneTraits<Dual<Pack<N>, D>> {
     Of::set(v.a, l, a);
     for (auto& d : v.d) Of::set(d, l, 0.0);
   }
-  static void set_slope(T& v, int l, int direction, double a) {
+  static void set_sensitivity(T& v, int l, int direction, double a) {
     Of::set(v.d[static_cast<std::size_t>(direction)], l, a);
   }
   static typename Flat::Mask mask(unsigned bits) { return Of::mask(bits); }

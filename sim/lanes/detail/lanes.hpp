@@ -138,7 +138,7 @@ class Lanes {
   const Terminals& set_shared(int lane, const network::Topology& topology);
   const InternalMatrix& own_matrix();
   std::optional<LowRank> few_products(int lane, const network::Topology& topology);
-  void matrix_slopes(int lane, const InternalMatrix& matrix);
+  void matrix_sensitivities(int lane, const InternalMatrix& matrix);
 
   // loading (load.hpp)
   void load(int lane);

@@ -134,7 +134,7 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
     Traits::set(to, lane, value_of(from));
     if constexpr (Traits::directions > 0 && !std::is_same_v<Value, double>)
       for (int d = 0; d < Traits::directions; ++d)
-        Traits::set_slope(to, lane, d, from.d[static_cast<std::size_t>(d)]);
+        Traits::set_sensitivity(to, lane, d, from.d[static_cast<std::size_t>(d)]);
   };
   for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
   for (std::size_t i = 0; i < at.x.size(); ++i) put(y_[static_cast<std::size_t>(p.x) + i], at.x[i]);

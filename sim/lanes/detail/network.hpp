@@ -54,7 +54,7 @@ const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topolog
     Traits::set(per_lane_.far_g[i], lane, matrix.far_g[i]);
     Traits::set(per_lane_.far_b[i], lane, matrix.far_b[i]);
   }
-  if constexpr (Traits::directions > 0) matrix_slopes(lane, matrix);
+  if constexpr (Traits::directions > 0) matrix_sensitivities(lane, matrix);
   return matrix;
 }
 
@@ -115,15 +115,15 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
 /// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. The
 /// rows of remote measurements have their own entry k in place of M[:,k].
 template <class T>
-void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
+void Lanes<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);
   for (int d = 0; d < Traits::directions; ++d)
     for (std::size_t k = 0; k < plants_.size(); ++k) {
       const T* z = source_impedance(per_lane_, static_cast<int>(k));
-      const auto slope = [&](const T& v) {
+      const auto sensitivity = [&](const T& v) {
         return LaneTraits<Flat>::get(v.d[static_cast<std::size_t>(d)], lane);
       };
-      const Complex dz(slope(z[0]), slope(z[1]));
+      const Complex dz(sensitivity(z[0]), sensitivity(z[1]));
       if (dz == Complex{}) continue;
       const auto add = [&](const std::vector<double>& g, const std::vector<double>& b, std::vector<T>& to_g,
                            std::vector<T>& to_b) {
@@ -131,8 +131,8 @@ void Lanes<T>::matrix_slopes(int lane, const InternalMatrix& matrix) {
           for (std::size_t j = 0; j < n; ++j) {
             const Complex at_k(g[row + k], b[row + k]), of_k(matrix.g[k * n + j], matrix.b[k * n + j]);
             const Complex change = -at_k * dz * of_k;
-            Traits::set_slope(to_g[row + j], lane, d, change.real());
-            Traits::set_slope(to_b[row + j], lane, d, change.imag());
+            Traits::set_sensitivity(to_g[row + j], lane, d, change.real());
+            Traits::set_sensitivity(to_b[row + j], lane, d, change.imag());
           }
       };
       add(matrix.g, matrix.b, per_lane_.g, per_lane_.b);

@@ -277,7 +277,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
     put(Traits::value(v), run.record.at(plant, channel));
     if constexpr (Traits::directions > 0)
       for (int d = 0; d < Traits::directions; ++d)
-        put(v.d[static_cast<std::size_t>(d)], run.record.slope(d, plant, channel));
+        put(v.d[static_cast<std::size_t>(d)], run.record.sensitivity(d, plant, channel));
   }
 }
 
@@ -312,7 +312,7 @@ void Lanes<T>::hold(LaneRun& run, int until) const {
       };
       repeat(run.record.at(static_cast<int>(k), static_cast<int>(j)));
       for (int d = 0; d < Traits::directions; ++d)
-        repeat(run.record.slope(d, static_cast<int>(k), static_cast<int>(j)));
+        repeat(run.record.sensitivity(d, static_cast<int>(k), static_cast<int>(j)));
     }
   run.recorded = until;
 }

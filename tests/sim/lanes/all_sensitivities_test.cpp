@@ -92,7 +92,8 @@ Trajectory play(const grid::Grid& grid, const BatchOptions& o, const Job& job) {
             [&](const Job&, const Trajectory& t) { result = t; });
   return result;
 }
-Trajectory with_slopes(const grid::Grid& grid, const network::Event& event, const std::vector<Seed>& seeds) {
+Trajectory with_sensitivities(const grid::Grid& grid, const network::Event& event,
+                              const std::vector<Seed>& seeds) {
   BatchOptions o = options(1e-10);
   o.sensitivities = true;
   Job job;
@@ -145,7 +146,7 @@ network::Event gentle() {
   return event;
 }
 
-constexpr double kSlopeLimit = 1e-5;  ///< required, relative to a column's largest value
+constexpr double kSensitivityLimit = 1e-5;  ///< required, relative to a column's largest value
 constexpr double kQuotientStep = 1e-3,
                  kWideQuotientStep = 3e-3;  ///< of difference quotients; their noise falls with a larger step
 /// Largest difference of each column over the column's largest value.
@@ -156,12 +157,12 @@ void compare_with_quotients(const grid::Grid& grid, const Effect& e, Worst& wors
     const std::vector<Seed> some(
         all.begin() + static_cast<std::ptrdiff_t>(first),
         all.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtOnce, all.size())));
-    const Trajectory dual = with_slopes(grid, gentle(), some);
+    const Trajectory dual = with_sensitivities(grid, gentle(), some);
     ASSERT_EQ(dual.outcome, Outcome::stable) << e.name;
     for (std::size_t d = 0; d < some.size(); ++d) {
       const auto rows = quotients(grid, gentle(), some[d], kQuotientStep, 1e-12);
       for (int row = 0; row < dual.rows(); ++row) {
-        const double* own = dual.slope(static_cast<int>(d), 0, row);
+        const double* own = dual.sensitivity(static_cast<int>(d), 0, row);
         const auto apart = [&](const std::vector<double>& expected) {
           double most = 0.0;
           for (int k = 0; k < dual.samples; ++k)
@@ -173,7 +174,7 @@ void compare_with_quotients(const grid::Grid& grid, const Effect& e, Worst& wors
         for (const double v : expected) largest = std::max(largest, std::abs(v));
         double error = apart(expected);
         if (largest >= floor &&
-            error > kSlopeLimit * largest)  // difference quotients of a stiff effect are noisier
+            error > kSensitivityLimit * largest)  // difference quotients of a stiff effect are noisier
           error = std::min(error, apart(quotients(grid, gentle(), some[d], kWideQuotientStep,
                                                   1e-12)[static_cast<std::size_t>(row)]));
         if (largest >= floor)
@@ -191,7 +192,7 @@ TEST(AllSensitivitiesFull, EqualCentralDifferences) {
   for (const Effect* e : effects_of_a_plant()) {
     Worst own;
     compare_with_quotients(host(*e), *e, own);
-    EXPECT_LT(own.value, kSlopeLimit) << own.where;
+    EXPECT_LT(own.value, kSensitivityLimit) << own.where;
     worst.columns += own.columns - 1;
     worst.add(own.value, own.where);
     if (own.columns > 0) seen.insert(e->name);
@@ -228,14 +229,14 @@ void compare_with_cvodes(const Effect& e, Worst& worst) {
   auto some = seeds(grid, e);
   some.resize(std::min(some.size(), most));
   if (some.empty()) return;
-  const Trajectory dual = with_slopes(grid, gentle(), some);
+  const Trajectory dual = with_sensitivities(grid, gentle(), some);
   test::ReducedSystem system(grid, gentle(), some);
-  test::CvodesSlopes cvodes(system, some);
+  test::CvodesSensitivities cvodes(system, some);
   const auto columns = cvodes.columns(kPlant, 2, dual.samples, dual.rate);
   for (std::size_t d = 0; d < some.size(); ++d)
     for (int state = 0; state < 2; ++state) {  // delta and speed are the first channels and the first states
       const auto& expected = columns[d][static_cast<std::size_t>(state)];
-      const double* own = dual.slope(static_cast<int>(d), 0, state);
+      const double* own = dual.sensitivity(static_cast<int>(d), 0, state);
       double largest = 0.0, error = 0.0;
       for (int k = 0; k < dual.samples; ++k) {
         largest = std::max(largest, std::abs(expected[static_cast<std::size_t>(k)]));
@@ -251,7 +252,7 @@ TEST(AllSensitivitiesNight, EqualThoseOfCvodes) {
   for (const Effect* e : effects_of_a_plant()) {
     Worst own;
     compare_with_cvodes(*e, own);
-    EXPECT_LT(own.value, kSlopeLimit) << own.where;
+    EXPECT_LT(own.value, kSensitivityLimit) << own.where;
     worst.columns += own.columns - 1;
     worst.add(own.value, own.where);
   }
@@ -271,7 +272,7 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
   std::vector<Seed> some = {ceiling, {kPlant, {block, sexs.parameter_index("K")}, 100.0}, {kPlant, {}, 1.0}};
   network::Event event;
   event.faults = {{1, 0.1, 0.35, {0.0, 0.2}}};
-  const Trajectory dual = with_slopes(grid, event, some);
+  const Trajectory dual = with_sensitivities(grid, event, some);
   ASSERT_EQ(dual.outcome, Outcome::stable);
   const auto efd = static_cast<int>(Channel::Efd);
   int at_ceiling = 0, released = 0;
@@ -280,7 +281,7 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
     at_ceiling += held;
     released += !held && at_ceiling > 0;
     if (!held) continue;
-    EXPECT_NEAR(dual.slope(0, 0, efd)[k], 1.0, 1e-9) << k;  // Efd equals the ceiling
+    EXPECT_NEAR(dual.sensitivity(0, 0, efd)[k], 1.0, 1e-9) << k;  // Efd equals the ceiling
   }
   EXPECT_GT(at_ceiling, 5);
   EXPECT_GT(released, 20);
@@ -290,7 +291,7 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
       double difference = 0.0, size = 0.0;
       for (int k = 0; k < dual.samples; ++k) {
         const double expected = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(k)];
-        difference += std::abs(dual.slope(static_cast<int>(d), 0, row)[k] - expected);
+        difference += std::abs(dual.sensitivity(static_cast<int>(d), 0, row)[k] - expected);
         size += std::abs(expected);
       }
       // Mean over the samples: if a limit's switching time crosses a sample while the parameter changes by

@@ -102,17 +102,17 @@ class ReducedSystem {
 };
 
 /// Sensitivities of the first `states` states of a plant, times each seed's scale: [seed][state][sample].
-class CvodesSlopes {
+class CvodesSensitivities {
  public:
-  CvodesSlopes(ReducedSystem& system, std::vector<lanes::Seed> seeds)
+  CvodesSensitivities(ReducedSystem& system, std::vector<lanes::Seed> seeds)
       : system_(system), seeds_(std::move(seeds)) {
     SUNContext_Create(nullptr, &context_);
     const auto start = system.start();
     const auto size = static_cast<sunindextype>(start.size());
     y_ = N_VNew_Serial(size, context_);
     std::copy(start.begin(), start.end(), N_VGetArrayPointer(y_));
-    slopes_ = N_VCloneVectorArray(count(), y_);
-    operating_slopes(size);
+    sensitivities_ = N_VCloneVectorArray(count(), y_);
+    operating_sensitivities(size);
     cvode_ = CVodeCreate(CV_BDF, context_);
     matrix_ = SUNDenseMatrix(size, size, context_);
     solver_ = SUNLinSol_Dense(y_, matrix_, context_);
@@ -124,15 +124,15 @@ class CvodesSlopes {
     require(CVodeSetUserData(cvode_, &system));
     require(CVodeSetLinearSolver(cvode_, solver_, matrix_));
     require(CVodeSetMaxNumSteps(cvode_, 100000));
-    require(CVodeSensInit1(cvode_, count(), CV_SIMULTANEOUS, nullptr, slopes_));
+    require(CVodeSensInit1(cvode_, count(), CV_SIMULTANEOUS, nullptr, sensitivities_));
     require(CVodeSetSensParams(cvode_, system.p.data(), scales_.data(), nullptr));
     require(CVodeSensEEtolerances(cvode_));
     require(CVodeSetSensErrCon(cvode_, 1));
   }
-  CvodesSlopes(const CvodesSlopes&) = delete;
-  CvodesSlopes& operator=(const CvodesSlopes&) = delete;
-  ~CvodesSlopes() {
-    N_VDestroyVectorArray(slopes_, count());
+  CvodesSensitivities(const CvodesSensitivities&) = delete;
+  CvodesSensitivities& operator=(const CvodesSensitivities&) = delete;
+  ~CvodesSensitivities() {
+    N_VDestroyVectorArray(sensitivities_, count());
     N_VDestroy(y_);
     CVodeFree(&cvode_);
     SUNLinSolFree(solver_);
@@ -148,11 +148,11 @@ class CvodesSlopes {
       realtype t = 0.0;
       if (k > 0) {
         require(CVode(cvode_, k / rate, y_, &t, CV_NORMAL));
-        require(CVodeGetSens(cvode_, &t, slopes_));
+        require(CVodeGetSens(cvode_, &t, sensitivities_));
       }
       for (std::size_t i = 0; i < seeds_.size(); ++i)
         for (std::size_t state = 0; state < states; ++state)
-          column[i][state].push_back(N_VGetArrayPointer(slopes_[i])[first + state] * seeds_[i].scale);
+          column[i][state].push_back(N_VGetArrayPointer(sensitivities_[i])[first + state] * seeds_[i].scale);
     }
     return column;
   }
@@ -167,7 +167,7 @@ class CvodesSlopes {
     return 0;
   }
   /// Sensitivities of the operating point, by central differences.
-  void operating_slopes(sunindextype size) {
+  void operating_sensitivities(sunindextype size) {
     const auto nominal = system_.p;
     for (std::size_t i = 0; i < seeds_.size(); ++i) {
       const double h = 1e-5 * (nominal[i] == 0.0 ? 1.0 : nominal[i]);
@@ -178,7 +178,7 @@ class CvodesSlopes {
       system_.p = nominal;
       for (sunindextype k = 0; k < size; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        N_VGetArrayPointer(slopes_[i])[k] = (up[at] - down[at]) / (2 * h);
+        N_VGetArrayPointer(sensitivities_[i])[k] = (up[at] - down[at]) / (2 * h);
       }
     }
   }
@@ -187,7 +187,7 @@ class CvodesSlopes {
   std::vector<lanes::Seed> seeds_;
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr;
-  N_Vector* slopes_ = nullptr;
+  N_Vector* sensitivities_ = nullptr;
   void* cvode_ = nullptr;
   SUNMatrix matrix_ = nullptr;
   SUNLinearSolver solver_ = nullptr;

@@ -46,7 +46,7 @@ network::Event fault(const grid::Grid& grid, int bus) {
 /// Largest difference of a column from `other`, over the column's largest value.
 double worst_column(const Trajectory& t, int direction, const std::vector<double>& other, int row) {
   const auto channels = static_cast<int>(t.channels.size());
-  const double* own = t.slope(direction, row / channels, row % channels);
+  const double* own = t.sensitivity(direction, row / channels, row % channels);
   double largest = 0.0, worst = 0.0;
   for (int k = 0; k < t.samples; ++k)
     largest = std::max(largest, std::abs(other[static_cast<std::size_t>(k)]));
@@ -122,7 +122,7 @@ TEST(Sensitivities, EqualThoseOfCvodes) {
   options.plants = {1};
   const Trajectory dual = play_one(grid, options, job);
   test::ReducedSystem system(grid, job.event, job.seeds);
-  test::CvodesSlopes cvodes(system, job.seeds);
+  test::CvodesSensitivities cvodes(system, job.seeds);
   const auto columns = cvodes.columns(1, 2, dual.samples, dual.rate);
   for (std::size_t i = 0; i < job.seeds.size(); ++i)
     for (int state = 0; state < 2; ++state) {

@@ -43,9 +43,11 @@ class Copies {
       r.P[k] += P * v - Q * theta;
       r.Q[k] += Q * v + P * theta;
     }
-    const fit::EventSlopes moved = fit::event_slopes(model_.under_test(), {noisy, noise_}, {}, free_);
-    const fit::EventSlopes still = fit::event_slopes(model_.under_test(), {event_, noise_}, {}, free_);
-    return (moved.slopes - still.slopes).transpose() * (moved.residual - still.residual);
+    const fit::EventSensitivities moved =
+        fit::event_sensitivities(model_.under_test(), {noisy, noise_}, {}, free_);
+    const fit::EventSensitivities still =
+        fit::event_sensitivities(model_.under_test(), {event_, noise_}, {}, free_);
+    return (moved.sensitivities - still.sensitivities).transpose() * (moved.residual - still.residual);
   }
   [[nodiscard]] Eigen::VectorXd expected(double carried) const {
     const event::WhitenedEvents events({event_}, event::NoiseModel({noise_}));

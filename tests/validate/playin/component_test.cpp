@@ -120,13 +120,13 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::parameter_value(less, gain) -= h;
   const Direction along[] = {{.kind = Direction::Kind::parameter, .parameter = gain},
                              {.kind = Direction::Kind::P}};
-  const Response slopes = drive_from(part, 0, along);
+  const Response base = drive_from(part, 0, along);
   const auto compare = [&](std::size_t direction, const Response& up, const Response& down, double step) {
     double error = 0, largest = 0;
     for (std::size_t k = 0; k < r.t.size(); ++k) {
       const double difference = (up.of(Output::Efd)[k] - down.of(Output::Efd)[k]) / (2 * step);
-      const double slope = slopes.slopes[direction].value[static_cast<int>(Output::Efd)][k];
-      error = std::max(error, std::abs(slope - difference));
+      const double sensitivity = base.sensitivities[direction].value[static_cast<int>(Output::Efd)][k];
+      error = std::max(error, std::abs(sensitivity - difference));
       largest = std::max(largest, std::abs(difference));
     }
     EXPECT_GT(largest, 1e-5) << direction;

@@ -66,7 +66,7 @@ class DrivenPlantTest : public ::testing::Test {
     }
   }
   /// Response with every sensitivity parameter moved by `by` units.
-  Response answer(const std::vector<Direction>& along, double by, bool slopes = false) {
+  Response answer(const std::vector<Direction>& along, double by, bool with_sensitivities = false) {
     plant::PlantModel model = model_;
     auto switchings = switchings_;
     Drive run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
@@ -109,9 +109,9 @@ class DrivenPlantTest : public ::testing::Test {
     }
     const VoltageCurve curve(record_, switchings);
     run.curve = &curve;
-    return drive(run, slopes ? std::span(along) : std::span<const Direction>());
+    return drive(run, with_sensitivities ? std::span(along) : std::span<const Direction>());
   }
-  void expect_slopes(const std::vector<Direction>& directions) {
+  void expect_sensitivities(const std::vector<Direction>& directions) {
     const Response at = answer(directions, 0.0, true);
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const Response up = answer({directions[i]}, 1.0), down = answer({directions[i]}, -1.0);
@@ -119,7 +119,7 @@ class DrivenPlantTest : public ::testing::Test {
         double worst = 0, largest = 0;
         for (std::size_t k = 0; k < at.value[o].size(); ++k) {
           const double difference = (up.value[o][k] - down.value[o][k]) / 2;
-          worst = std::max(worst, std::abs(difference - at.slopes[i].value[o][k]));
+          worst = std::max(worst, std::abs(difference - at.sensitivities[i].value[o][k]));
           largest = std::max(largest, std::abs(difference));
         }
         // Error of the difference quotient: curvature over 2e-4 of the value; the gate hardly moves.
@@ -150,17 +150,17 @@ TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
     }
   }
   EXPECT_GT(directions.size(), 15u);
-  expect_slopes(directions);
+  expect_sensitivities(directions);
 }
 TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
-  expect_slopes({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
-                 {.kind = Kind::switching, .index = 1, .scale = 1e-5},
-                 {.kind = Kind::turn, .index = 0, .scale = 1e-5},
-                 {.kind = Kind::turn, .index = 1, .scale = 1e-5},
-                 {.kind = Kind::P, .scale = 1e-5},
-                 {.kind = Kind::Q, .scale = 1e-5},
-                 {.kind = Kind::angle, .scale = 1e-5},
-                 {.kind = Kind::speed, .scale = 1e-6}});
+  expect_sensitivities({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
+                        {.kind = Kind::switching, .index = 1, .scale = 1e-5},
+                        {.kind = Kind::turn, .index = 0, .scale = 1e-5},
+                        {.kind = Kind::turn, .index = 1, .scale = 1e-5},
+                        {.kind = Kind::P, .scale = 1e-5},
+                        {.kind = Kind::Q, .scale = 1e-5},
+                        {.kind = Kind::angle, .scale = 1e-5},
+                        {.kind = Kind::speed, .scale = 1e-6}});
 }
 /// A frequency without the steps of the angle, and the same voltage with them.
 TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
@@ -207,13 +207,13 @@ TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
                           .parameter = {sim::plant::kMachineBlock, p},
                           .scale = 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
   }
-  expect_slopes(directions);
+  expect_sensitivities(directions);
 }
 TEST_F(DrivenPlantTest, SensitivitiesToAddedInputs) {
-  expect_slopes({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
-                 {.kind = Kind::torque, .index = 2, .scale = 1e-4},
-                 {.kind = Kind::field, .index = 1, .scale = 1e-4},
-                 {.kind = Kind::field, .index = 3, .scale = 1e-4}});
+  expect_sensitivities({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
+                        {.kind = Kind::torque, .index = 2, .scale = 1e-4},
+                        {.kind = Kind::field, .index = 1, .scale = 1e-4},
+                        {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
 TEST_F(DrivenPlantTest, LinearPlantMatchesSmallStepResponse) { expect_linear(); }
 /// At rest the errors of a converter's regulators are zero, and the limits of their integrators have a corner

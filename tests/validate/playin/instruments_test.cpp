@@ -130,7 +130,7 @@ TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
       double worst = 0, largest = 0;
       for (std::size_t k = 0; k < at.of(o).size(); ++k) {
         const double difference = (up.of(o)[k] - down.of(o)[k]) / 2;
-        worst = std::max(worst, std::abs(difference - at.slopes[d].value[static_cast<int>(o)][k]));
+        worst = std::max(worst, std::abs(difference - at.sensitivities[d].value[static_cast<int>(o)][k]));
         largest = std::max(largest, std::abs(difference));
       }
       // Next to a step the skewed curve has corners; a difference quotient over 2e-4 s spans them.

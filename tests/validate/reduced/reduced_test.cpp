@@ -137,7 +137,7 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
     // Only the events' states are free; they stay near their prior means and within their ranges.
     const double chi2 = about.inference().chi2;
     double freely = chi2;
-    for (const EventSlopes& s : about.inference().events)
+    for (const EventSensitivities& s : about.inference().events)
       freely -= s.residual.dot(s.state * (s.state.colPivHouseholderQr().solve(s.residual)));
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(1);
     const double cost = plant.costs(own, still)[0];

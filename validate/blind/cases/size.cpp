@@ -128,11 +128,11 @@ void BlindSize::add_columns(std::size_t event) {
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
   event::RowMatrix own = event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {
-    const auto& slope = r.slopes[d].value;
+    const auto& sensitivity = r.sensitivities[d].value;
     const auto at = static_cast<Eigen::Index>(d);
     own.col(d < shared ? at : first + at - static_cast<Eigen::Index>(shared)) =
-        interleaved(prepared_[event], slope[static_cast<int>(playin::Output::P)],
-                    slope[static_cast<int>(playin::Output::Q)]);
+        interleaved(prepared_[event], sensitivity[static_cast<int>(playin::Output::P)],
+                    sensitivity[static_cast<int>(playin::Output::Q)]);
   }
   noise_[event].whiten(own);
   columns_.middleRows(first_row(event), own.rows()) = own;

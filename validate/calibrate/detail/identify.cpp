@@ -133,7 +133,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
   const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
                           const fit::EventState& state) {
     noise.memory = fit::memory_of(tested, {event, noise}, voltage);
-    return fit::information(fit::event_slopes(tested, {event, noise}, state, free));
+    return fit::information(fit::event_sensitivities(tested, {event, noise}, state, free));
   };
   const auto attempt = [&](const std::string& what, const event::FitEvent& event,
                            const fit::EventState& state) {

@@ -2,7 +2,7 @@
 // Identifiability: directions that the records do not determine, and further events that would.
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/fit/noise.hpp"
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 namespace swingbank::validate::calibrate {
 

@@ -1,6 +1,6 @@
 #pragma once
 // Newton steps of a calibration in units of fit::axis_unit().
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 namespace swingbank::validate::calibrate {
 

@@ -5,8 +5,8 @@
 
 #include "sim/core/noise.hpp"
 #include "sim/plant/usual.hpp"
+#include "validate/fit/sensitivities.hpp"
 #include "validate/fit/sign.hpp"
-#include "validate/fit/slopes.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {

@@ -13,7 +13,7 @@ constexpr double kSettle = 3, kFade = 12;  ///< duration before and after that s
 /// Whitened residual of the playback, and its sensitivities.
 struct Answer {
   Eigen::VectorXd residual;
-  Eigen::MatrixXd slopes;
+  Eigen::MatrixXd sensitivities;
 };
 Answer answer(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
               const std::vector<playin::Direction>& along) {
@@ -21,7 +21,7 @@ Answer answer(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
   const auto n = static_cast<Eigen::Index>(along.size());
   event::RowMatrix all(e.event.values(), n + 1);
   for (Eigen::Index d = 0; d < n; ++d)
-    all.col(d) = e.event.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+    all.col(d) = e.event.collected(r.sensitivities[static_cast<std::size_t>(d)].value, false);
   all.col(n) = e.event.collected(r.value, true);
   e.noise.whiten(all);
   return {all.col(n), all.leftCols(n)};
@@ -61,12 +61,12 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
       if (kicked.channels[c] == playin::Output::Q) r.Q[at] += more;
     }
     const Answer moved = answer(tested, {kicked, noise}, along);
-    const Eigen::MatrixXd slopes = (moved.slopes - still.slopes) / kKick;
+    const Eigen::MatrixXd sensitivities = (moved.sensitivities - still.sensitivities) / kKick;
     const Eigen::VectorXd residual = (moved.residual - still.residual) / kKick;
     const double times = samples * variance[of];
-    const Eigen::VectorXd score = times * slopes.transpose() * residual;
+    const Eigen::VectorXd score = times * sensitivities.transpose() * residual;
     pull.score += score;
-    pull.information += times * slopes.transpose() * slopes;
+    pull.information += times * sensitivities.transpose() * sensitivities;
     pull.doubt += voltage.doubt[of] * voltage.doubt[of] * score * score.transpose();
   }
   return pull;

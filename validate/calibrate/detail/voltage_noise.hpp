@@ -4,7 +4,7 @@
 // transfer (reactances too large), and the noise in the sensitivities counts as information. Whitening
 // removes neither; this file computes both, and the calibration subtracts them.
 #include "validate/fit/noise.hpp"
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 namespace swingbank::validate::calibrate {
 

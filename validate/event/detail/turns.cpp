@@ -93,7 +93,7 @@ double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std:
     double cost = 0, slope = 0, curvature = 0;
     for (const playin::Output o : {playin::Output::P, playin::Output::Q}) {
       if (std::ranges::count(event.channels, o) == 0) continue;
-      const auto& by = r.slopes.front().value[static_cast<int>(o)];
+      const auto& by = r.sensitivities.front().value[static_cast<int>(o)];
       for (const std::size_t k : samples) {
         const double off = r.of(o)[k] - event.measured(o)[k];
         cost += off * off;

@@ -139,12 +139,12 @@ void EventCost::take(event::RowMatrix e) const {
   renew_ = false;
 }
 
-event::RowMatrix EventCost::values(const double* z, const double* state, bool slopes) const {
+event::RowMatrix EventCost::values(const double* z, const double* state, bool with_sensitivities) const {
   const sim::plant::Plant plant = moved(setting_, z);
   if (!(setting_.can_exist ? playin::can_exist_beside(plant, *setting_.plant) : playin::can_run(plant)))
     return {};
   std::vector<playin::Direction> along;
-  if (slopes) {
+  if (with_sensitivities) {
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
       const Axis& a = setting_.axes[i];
       along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
@@ -156,12 +156,12 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool sl
                                            {.tolerance = setting_.tolerance,
                                             .lenient = setting_.lenient,
                                             .allowance = &allowance_,
-                                            .linear_slopes = setting_.linear_slopes,
+                                            .linear_sensitivities = setting_.linear_sensitivities,
                                             .past = &last_.past});
     const auto n = static_cast<Eigen::Index>(along.size());
     event::RowMatrix e(event_.values(), n + 1);
     for (Eigen::Index d = 0; d < n; ++d)
-      e.col(d) = event_.collected(r.slopes[static_cast<std::size_t>(d)].value, false);
+      e.col(d) = event_.collected(r.sensitivities[static_cast<std::size_t>(d)].value, false);
     e.col(n) = event_.collected(r.value, true);
     noise_.whiten(e);
     return e;

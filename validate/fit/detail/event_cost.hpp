@@ -33,7 +33,7 @@ class EventCost : public ceres::CostFunction {
   bool evaluate(double const* const* blocks, double* residuals, double** jacobians) const;
   /// Returns the whitened residuals in the last column, and their sensitivities to z and to the state in the
   /// columns before it. Empty if the plant cannot be simulated.
-  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool slopes) const;
+  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool with_sensitivities) const;
   /// Distributes the prediction error of a step over the columns of the sensitivities. Linearised
   /// sensitivities are wrong by per cents, which stops a search along nearly collinear columns. Each column
   /// receives a share proportional to its squared norm (Broyden, Math. Comp. 19, 1965, p. 577, with each

@@ -28,13 +28,13 @@ inline double hat(const std::vector<double>& knots, std::size_t k, double t) {
 template <class T>
 struct Seeds {
   static void add(T&, std::size_t, double) {}
-  static double slope(const T&, std::size_t) { return 0.0; }
+  static double get(const T&, std::size_t) { return 0.0; }
   static double size(const T& x) { return std::abs(sim::value_of(x)); }
 };
 template <>
 struct Seeds<sim::D8> {
   static void add(sim::D8& x, std::size_t direction, double by) { x.d[direction] += by; }
-  static double slope(const sim::D8& x, std::size_t direction) { return x.d[direction]; }
+  static double get(const sim::D8& x, std::size_t direction) { return x.d[direction]; }
   /// Returns the size for error control; sensitivities count a hundredth, because a fit tolerates their
   /// errors better.
   static double size(const sim::D8& x) {

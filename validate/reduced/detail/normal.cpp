@@ -35,7 +35,7 @@ void add_walk(const Knots& knots, InputKind kind, const VectorXd& input, Index f
 
 }  // namespace
 
-Normal without_walks(const std::vector<EventSlopes>& slopes, const std::vector<fit::Axis>& axes,
+Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const std::vector<fit::Axis>& axes,
                      const Point& at, const event::WhitenedEvents& events) {
   const auto n = static_cast<Index>(axes.size());
   Normal normal{MatrixXd::Zero(n, n), VectorXd::Zero(n), {}, {}, {}, {}};
@@ -44,8 +44,8 @@ Normal without_walks(const std::vector<EventSlopes>& slopes, const std::vector<f
       normal.plant(i, i) += 1 / (spread * spread);
       normal.gradient[i] += at.z[i] / (spread * spread);
     }
-  for (std::size_t e = 0; e < slopes.size(); ++e) {
-    const EventSlopes& s = slopes[e];
+  for (std::size_t e = 0; e < sensitivities.size(); ++e) {
+    const EventSensitivities& s = sensitivities[e];
     const Index states = s.state.cols(), own = states + s.torque.cols() + s.field.cols();
     MatrixXd all(s.residual.size(), n + own);
     all << s.plant, s.state, s.torque, s.field;
@@ -71,9 +71,10 @@ Normal without_walks(const std::vector<EventSlopes>& slopes, const std::vector<f
   return normal;
 }
 
-void add_walks(const std::vector<EventSlopes>& slopes, const Point& at, double intensity, Normal& normal) {
-  for (std::size_t e = 0; e < slopes.size(); ++e) {
-    const EventSlopes& s = slopes[e];
+void add_walks(const std::vector<EventSensitivities>& sensitivities, const Point& at, double intensity,
+               Normal& normal) {
+  for (std::size_t e = 0; e < sensitivities.size(); ++e) {
+    const EventSensitivities& s = sensitivities[e];
     const Index states = s.state.cols();
     if (s.torque.cols() > 0)
       add_walk(s.knots, InputKind::torque, at.torques[e], states, intensity, normal.own[e],

@@ -26,10 +26,11 @@ struct Normal {
 
 /// Returns the normal equations of the residuals and of the priors of parameters and states, without the
 /// inputs' prior.
-Normal without_walks(const std::vector<EventSlopes>& slopes, const std::vector<fit::Axis>& axes,
+Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const std::vector<fit::Axis>& axes,
                      const Point& at, const event::WhitenedEvents& events);
 /// Adds the prior of the inputs: a random walk of `intensity` times the variance in walk_weights().
-void add_walks(const std::vector<EventSlopes>& slopes, const Point& at, double intensity, Normal& normal);
+void add_walks(const std::vector<EventSensitivities>& sensitivities, const Point& at, double intensity,
+               Normal& normal);
 /// Returns the cost of this prior.
 double walk_cost(const std::vector<Knots>& knots, const Point& at, double intensity);
 

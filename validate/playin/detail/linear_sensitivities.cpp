@@ -1,5 +1,5 @@
 // Approximate sensitivities of a response from the plant linearised at both ends of each step.
-#include "validate/playin/detail/linear_slopes.hpp"
+#include "validate/playin/detail/linear_sensitivities.hpp"
 
 #include <algorithm>
 #include <array>
@@ -102,9 +102,10 @@ struct Linear {
   std::vector<char> held;         ///< states clamped at a limit; their sensitivities are the limit's
 };
 
-class LinearSlopes {
+class LinearSensitivities {
  public:
-  LinearSlopes(const Drive& run, std::span<const Direction> directions, const Trace& trace, Response& answer)
+  LinearSensitivities(const Drive& run, std::span<const Direction> directions, const Trace& trace,
+                      Response& answer)
       : run_(run),
         directions_(directions),
         trace_(trace),
@@ -116,7 +117,7 @@ class LinearSlopes {
         limits_(n_, m_),
         some_(n_, 1),
         right_(n_, 1),
-        shown_(run.linear_slopes.size()),
+        shown_(run.linear_sensitivities.size()),
         before_(n_, inputs_, m_, shown_),
         now_(n_, inputs_, m_, shown_),
         left_(n_, n_),
@@ -149,10 +150,10 @@ class LinearSlopes {
   }
 
   bool run() {
-    answer_.slopes.resize(m_);
-    for (auto& slope : answer_.slopes)
-      for (const Output o : run_.linear_slopes) {
-        auto& values = slope.value[static_cast<int>(o)];
+    answer_.sensitivities.resize(m_);
+    for (auto& sensitivity : answer_.sensitivities)
+      for (const Output o : run_.linear_sensitivities) {
+        auto& values = sensitivity.value[static_cast<int>(o)];
         values.resize(trace_.y.size());
         to_.push_back(values.data());
       }
@@ -289,7 +290,7 @@ class LinearSlopes {
       if (is_sample) {
         const auto y = equations.outputs(x_.data());
         for (std::size_t o = 0; o < shown_; ++o) {
-          const auto output = static_cast<std::size_t>(run_.linear_slopes[o]);
+          const auto output = static_cast<std::size_t>(run_.linear_sensitivities[o]);
           shown[o] = (y[output] - P8(trace_.y[sample][output])) * per_move;
         }
       }
@@ -427,9 +428,9 @@ bool can_be_linear(const Drive& run) {
   return !is_recorded(*run.plant) && !run.given && !run.record->breaker() && !run.record->open_circuit();
 }
 
-bool add_linear_slopes(const Drive& run, std::span<const Direction> directions, const Trace& trace,
-                       Response& answer) {
-  return LinearSlopes(run, directions, trace, answer).run();
+bool add_linear_sensitivities(const Drive& run, std::span<const Direction> directions, const Trace& trace,
+                              Response& answer) {
+  return LinearSensitivities(run, directions, trace, answer).run();
 }
 
 }  // namespace swingbank::validate::playin

@@ -15,7 +15,7 @@ using Kind = Direction::Kind;
 
 const std::vector<Output> kShown = {Output::P, Output::Q, Output::speed, Output::Ifd};
 
-class LinearSlopesTest : public ::testing::Test {
+class LinearSensitivitiesTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
@@ -44,7 +44,7 @@ class LinearSlopesTest : public ::testing::Test {
                     .torque = {knots_, {0.0, 0.01, 0.0, 0.0}},
                     .field = {knots_, {0.0, 0.0, 0.02, 0.0}},
                     .tolerance = linear ? 1e-5 : 1e-9,
-                    .linear_slopes = linear ? kShown : std::vector<Output>()};
+                    .linear_sensitivities = linear ? kShown : std::vector<Output>()};
     return drive(run, along);
   }
   /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
@@ -79,8 +79,8 @@ class LinearSlopesTest : public ::testing::Test {
         const auto o = static_cast<std::size_t>(output);
         double own = 0, off = 0;
         for (std::size_t k = 0; k < exact.value[o].size(); ++k) {
-          own += std::pow(exact.slopes[d].value[o][k], 2);
-          off += std::pow(exact.slopes[d].value[o][k] - linear.slopes[d].value[o][k], 2);
+          own += std::pow(exact.sensitivities[d].value[o][k], 2);
+          off += std::pow(exact.sensitivities[d].value[o][k] - linear.sensitivities[d].value[o][k], 2);
         }
         if (own > 1e-12) most = std::max(most, std::sqrt(off / own));
       }
@@ -92,30 +92,30 @@ class LinearSlopesTest : public ::testing::Test {
   std::vector<double> knots_;
 };
 
-TEST_F(LinearSlopesTest, OfRequestedOutputs) {
+TEST_F(LinearSensitivitiesTest, OfRequestedOutputs) {
   const Response r = answer({{.kind = Kind::P}}, true);
-  EXPECT_EQ(r.slopes.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
-  EXPECT_TRUE(r.slopes.front().value[static_cast<int>(Output::V)].empty());
+  EXPECT_EQ(r.sensitivities.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
+  EXPECT_TRUE(r.sensitivities.front().value[static_cast<int>(Output::V)].empty());
 }
-TEST_F(LinearSlopesTest, OfMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
-TEST_F(LinearSlopesTest, WithControls) {
+TEST_F(LinearSensitivitiesTest, OfMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
+TEST_F(LinearSensitivitiesTest, WithControls) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
   EXPECT_LT(worst(all()), 0.06) << "the ceiling is met somewhere within a step";
 }
-TEST_F(LinearSlopesTest, WithFastFeedbackAndNoise) {
+TEST_F(LinearSensitivitiesTest, WithFastFeedbackAndNoise) {
   add("EXST1");
   EXPECT_LT(worst(all()), 0.02);
   parameter("EXST1", "KF") = 0.05;
   parameter("EXST1", "TF") = 0.1;
   EXPECT_LT(worst(all()), 0.06);
 }
-TEST_F(LinearSlopesTest, AgreesForTimeConstantsFarBelowASample) {
+TEST_F(LinearSensitivitiesTest, AgreesForTimeConstantsFarBelowASample) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
   parameter("SEXS", "TE") = 2e-4;
   EXPECT_LT(worst(all()), 0.03);
 }
 /// A field voltage at its ceiling moves with the ceiling; inputs that drive it further have no effect.
-TEST_F(LinearSlopesTest, AtLimit) {
+TEST_F(LinearSensitivitiesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
   const Response r = answer({}, false);
@@ -124,10 +124,10 @@ TEST_F(LinearSlopesTest, AtLimit) {
   EXPECT_LT(worst(all()), 0.05);
 }
 /// A limiter acts from the time at which its timer expires; every parameter moves that time.
-class Limited : public LinearSlopesTest {
+class Limited : public LinearSensitivitiesTest {
  protected:
   void SetUp() override {
-    LinearSlopesTest::SetUp();
+    LinearSensitivitiesTest::SetUp();
     for (const char* name : {"MAXEX2", "SEXS"}) add(name);
     // The current exceeds the pickup during and after the fault, falls below it, and then exceeds it for
     // seconds.
@@ -163,8 +163,8 @@ TEST_F(Limited, LimiterTimeHasSensitivities) {
       for (std::size_t k = 0; k < exact.value[o].size(); ++k) {
         const double secant = (up.value[o][k] - down.value[o][k]) / (2 * kAside);
         own += secant * secant;
-        off += std::pow(secant - exact.slopes[d].value[o][k], 2);
-        off_linear += std::pow(secant - linear.slopes[d].value[o][k], 2);
+        off += std::pow(secant - exact.sensitivities[d].value[o][k], 2);
+        off_linear += std::pow(secant - linear.sensitivities[d].value[o][k], 2);
       }
     }
     if (own < 0.01) continue;
@@ -176,7 +176,7 @@ TEST_F(Limited, LimiterTimeHasSensitivities) {
   }
   EXPECT_EQ(limiter_moved, 8) << "it was meant to act";
 }
-TEST_F(LinearSlopesTest, WithSaturatedStatorBehindTransformer) {
+TEST_F(LinearSensitivitiesTest, WithSaturatedStatorBehindTransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};

@@ -12,9 +12,9 @@ namespace swingbank::validate::fit {
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
 /// Sensitivities of one event at a point of the fit.
-struct EventSlopes {
-  Eigen::MatrixXd slopes;    ///< [sample * channels + channel][parameter], whitened, per axis_unit
-  Eigen::VectorXd residual;  ///< [sample * channels + channel], model - measured, whitened
+struct EventSensitivities {
+  Eigen::MatrixXd sensitivities;  ///< [sample * channels + channel][parameter], whitened, per axis_unit
+  Eigen::VectorXd residual;       ///< [sample * channels + channel], model - measured, whitened
   /// Half the gradient of the event's cost with respect to the parameters, minimised over its state with its
   /// priors.
   Eigen::VectorXd score;
@@ -22,16 +22,16 @@ struct EventSlopes {
 };
 
 /// Computes the sensitivities of one event. The event's own state (switching times, operating point, initial
-/// motion) is projected out of `slopes` and `score`. Throws InputError if the playback fails.
-EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event,
-                         const EventState& state, const std::vector<FreeParameter>& free);
+/// motion) is projected out of `sensitivities` and `score`. Throws InputError if the playback fails.
+EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event,
+                                       const EventState& state, const std::vector<FreeParameter>& free);
 
 /// Returns J'J of one event, the Fisher information on the parameters in units of their priors.
-Eigen::MatrixXd information(const EventSlopes& e);
+Eigen::MatrixXd information(const EventSensitivities& e);
 
 /// Returns the covariance of the scores J'r with autocovariances up to `lags` samples (Newey and West,
 /// Econometrica 55, 1987). It holds for coloured noise and for noise of any level. `mean`: expected score of
 /// each sample.
-Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags, const Eigen::VectorXd& mean);
+Eigen::MatrixXd score_covariance(const EventSensitivities& e, int lags, const Eigen::VectorXd& mean);
 
 }  // namespace swingbank::validate::fit

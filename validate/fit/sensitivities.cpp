@@ -1,4 +1,4 @@
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +58,8 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   return (f.spread > 0 ? f.spread : 1.0) * size;
 }
 
-EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
-                         const EventState& state, const std::vector<FreeParameter>& free) {
+EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+                                       const EventState& state, const std::vector<FreeParameter>& free) {
   const event::FitEvent& event = e.event;
   std::vector<playin::Direction> along;
   for (const auto& f : free)
@@ -67,34 +67,37 @@ EventSlopes event_slopes(const sim::plant::PlantUnderTest& tested, event::Whiten
   std::ranges::move(own_directions(event), std::back_inserter(along));
   const playin::Response r = event::play(tested, event, state, along, kExact);
 
-  EventSlopes back;
+  EventSensitivities back;
   back.channels = static_cast<int>(event.channels.size());
   back.residual = whitened(e, r.value, true);
   const auto parameters = static_cast<Eigen::Index>(free.size());
   const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
-  back.slopes.resize(event.values(), parameters);
+  back.sensitivities.resize(event.values(), parameters);
   Eigen::MatrixXd own(event.values(), states);
   for (Eigen::Index d = 0; d < parameters + states; ++d) {
-    const Eigen::VectorXd column = whitened(e, r.slopes[static_cast<std::size_t>(d)].value, false);
-    (d < parameters ? back.slopes.col(d) : own.col(d - parameters)) = column;
+    const Eigen::VectorXd column = whitened(e, r.sensitivities[static_cast<std::size_t>(d)].value, false);
+    (d < parameters ? back.sensitivities.col(d) : own.col(d - parameters)) = column;
   }
   // The states, with unit priors, absorb the projected part.
   const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
   const auto solved = inner.ldlt();
-  const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.slopes);
-  back.slopes -= own * absorbed;
-  back.score = back.slopes.transpose() * back.residual - absorbed.transpose() * on_directions(event, state);
+  const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.sensitivities);
+  back.sensitivities -= own * absorbed;
+  back.score =
+      back.sensitivities.transpose() * back.residual - absorbed.transpose() * on_directions(event, state);
   return back;
 }
 
-Eigen::MatrixXd information(const EventSlopes& e) { return e.slopes.transpose() * e.slopes; }
+Eigen::MatrixXd information(const EventSensitivities& e) {
+  return e.sensitivities.transpose() * e.sensitivities;
+}
 
-Eigen::MatrixXd score_covariance(const EventSlopes& e, int lags, const Eigen::VectorXd& mean) {
+Eigen::MatrixXd score_covariance(const EventSensitivities& e, int lags, const Eigen::VectorXd& mean) {
   const Eigen::Index n = e.channels, samples = e.residual.size() / n;
-  Eigen::MatrixXd scores(samples, e.slopes.cols());
+  Eigen::MatrixXd scores(samples, e.sensitivities.cols());
   for (Eigen::Index k = 0; k < samples; ++k)
     scores.row(k) =
-        e.residual.segment(k * n, n).transpose() * e.slopes.middleRows(k * n, n) - mean.transpose();
+        e.residual.segment(k * n, n).transpose() * e.sensitivities.middleRows(k * n, n) - mean.transpose();
   Eigen::MatrixXd sum = scores.transpose() * scores;
   for (int lag = 1; lag <= lags && lag < samples; ++lag) {
     const double weight = 1.0 - lag / (lags + 1.0);

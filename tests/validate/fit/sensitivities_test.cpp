@@ -1,6 +1,6 @@
 // Sensitivities of an event's response refer to the compared quantities: the plant as seen through its
 // instruments.
-#include "validate/fit/slopes.hpp"
+#include "validate/fit/sensitivities.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr event::Playing kExact{.tolerance = 1e-9, .hasty = false};
 
-struct Slopes : ::testing::TestWithParam<const char*> {
+struct EventSensitivitiesTest : ::testing::TestWithParam<const char*> {
   const test::InstrumentExample example{{test::instrument(GetParam())}};
   const plant::PlantModel& model = example.truth;
   const event::WhitenedEvents events =
@@ -39,15 +39,16 @@ struct Slopes : ::testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(Slopes, ResidualEqualsThatOfTheFit) {
+TEST_P(EventSensitivitiesTest, ResidualEqualsThatOfTheFit) {
   const Fit f = fit(model.under_test(), events.alone(0), {});
   ASSERT_TRUE(f.failed.empty()) << f.failed;
   EXPECT_LT(f.reduced_chi2(), 1.2);  // plant and instruments are the true ones
-  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), f.events.front().state, {});
+  const EventSensitivities s =
+      event_sensitivities(model.under_test(), events.whitened(0), f.events.front().state, {});
   EXPECT_NEAR(s.residual.squaredNorm(), f.chi2, 1e-2 * f.chi2);  // tolerance of the fit's integration: 1e-5
 }
 
-TEST_P(Slopes, AgreeWithCentralDifferences) {
+TEST_P(EventSensitivitiesTest, AgreeWithCentralDifferences) {
   const int last = block_count(model.plant) - 1;
   std::vector<FreeParameter> free = {{{0, model.plant.machine.effect->parameter_index("H")}, 0.2},
                                      {{0, model.plant.machine.effect->parameter_index("Xdp")}, 0.2},
@@ -56,13 +57,13 @@ TEST_P(Slopes, AgreeWithCentralDifferences) {
   ASSERT_GT(free.size(), 3U);
   EXPECT_NEAR(axis_unit(model.plant, free.back()),
               0.2 * std::abs(parameter_value(model.plant, free.back().id)), 1e-15);
-  const EventSlopes s = event_slopes(model.under_test(), events.whitened(0), {}, free);
+  const EventSensitivities s = event_sensitivities(model.under_test(), events.whitened(0), {}, free);
 
   const auto columns = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd slopes(event.values(), columns);
+  Eigen::MatrixXd sensitivities(event.values(), columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
     const FreeParameter& f = free[static_cast<std::size_t>(i)];
-    slopes.col(i) = difference([&](sim::plant::Plant& plant, EventState&, double by) {
+    sensitivities.col(i) = difference([&](sim::plant::Plant& plant, EventState&, double by) {
       parameter_value(plant, f.id) += by * axis_unit(model.plant, f);
     });
   }
@@ -82,15 +83,16 @@ TEST_P(Slopes, AgreeWithCentralDifferences) {
   for (std::size_t k = 0; k < own.size(); ++k) states.col(static_cast<Eigen::Index>(k)) = own[k];
   const Eigen::MatrixXd inner =
       states.transpose() * states + Eigen::MatrixXd::Identity(states.cols(), states.cols());
-  slopes -= states * inner.ldlt().solve(states.transpose() * slopes).eval();
+  sensitivities -= states * inner.ldlt().solve(states.transpose() * sensitivities).eval();
   for (Eigen::Index i = 0; i < columns; ++i) {
     const auto name = parameter_record(model.plant, free[static_cast<std::size_t>(i)].id).name;
-    EXPECT_GT(slopes.col(i).norm(), 0.1) << name;  // otherwise the records do not determine it
-    EXPECT_LT((s.slopes.col(i) - slopes.col(i)).norm(), 2e-2 * slopes.col(i).norm()) << name;
+    EXPECT_GT(sensitivities.col(i).norm(), 0.1) << name;  // otherwise the records do not determine it
+    EXPECT_LT((s.sensitivities.col(i) - sensitivities.col(i)).norm(), 2e-2 * sensitivities.col(i).norm())
+        << name;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Instruments, Slopes,
+INSTANTIATE_TEST_SUITE_P(Instruments, EventSensitivitiesTest,
                          ::testing::Values("CTERROR:gain=0.02,phase=-0.03", "SKEW:skew=0.006"),
                          [](const auto& which) {
                            const std::string text = which.param;
