@@ -54,12 +54,12 @@ struct Dual {
   friend auto operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }  ///< compares values
 };
 
-/// Returns the dual of f(x) from f(x) and `slope` = f'(x) by the chain rule.
+/// Returns the dual of f(x) from f(x) and `derivative` = f'(x) by the chain rule.
 template <class T, int N>
-inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& slope) {
+inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& derivative) {
   Dual<T, N> r;
   r.a = f;
-  for (int i = 0; i < N; ++i) r.d[i] = slope * x.d[i];
+  for (int i = 0; i < N; ++i) r.d[i] = derivative * x.d[i];
   return r;
 }
 

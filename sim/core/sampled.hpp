@@ -16,13 +16,13 @@ template <class T>
 class SampledCurve {
  public:
   /// Constructs the curve. The samples `y` are referenced, not copied, and must outlive it.
-  explicit SampledCurve(std::span<const T> y) : y_(y), slope_(y.size(), T{}) {
+  explicit SampledCurve(std::span<const T> y) : y_(y), derivative_(y.size(), T{}) {
     for (std::ptrdiff_t k = 0; k < size(); ++k) {
       const bool left = k > 0 && !jump(k - 1), right = k + 1 < size() && !jump(k);
       if (left && right)
-        slope_[index(k)] = 0.5 * (at(k + 1) - at(k - 1));
+        derivative_[index(k)] = 0.5 * (at(k + 1) - at(k - 1));
       else if (left || right)
-        slope_[index(k)] = left ? at(k) - at(k - 1) : at(k + 1) - at(k);
+        derivative_[index(k)] = left ? at(k) - at(k - 1) : at(k + 1) - at(k);
     }
   }
 
@@ -34,7 +34,7 @@ class SampledCurve {
     if (k < 0 || u == 0.0) return at(k < 0 ? 0 : k);
     const T rise = at(k + 1) - at(k);
     if (jump(k)) return at(k) + u * rise;
-    const T a = slope_[index(k)] - rise, b = rise - slope_[index(k + 1)];
+    const T a = derivative_[index(k)] - rise, b = rise - derivative_[index(k + 1)];
     return at(k) + u * (rise + (1.0 - u) * ((1.0 - u) * a + u * b));
   }
 
@@ -53,7 +53,7 @@ class SampledCurve {
   [[nodiscard]] T at(std::ptrdiff_t k) const { return y_[index(k)]; }
 
   std::span<const T> y_;
-  std::vector<T> slope_;
+  std::vector<T> derivative_;
 };
 
 }  // namespace swingbank::sim

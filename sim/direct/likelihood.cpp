@@ -63,9 +63,9 @@ class Posterior : public ceres::CostFunction {
       const Index last = std::min<Index>(first + kDirections, unknowns());
       for (std::size_t i = 0; i < r.size(); ++i)
         for (Index k = first; k < last; ++k) {
-          const double slope = r[i].d[static_cast<std::size_t>(k - first)];
-          jacobians[0][static_cast<Index>(i) * unknowns() + k] = slope;
-          finite = finite && std::isfinite(slope);
+          const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
+          jacobians[0][static_cast<Index>(i) * unknowns() + k] = derivative;
+          finite = finite && std::isfinite(derivative);
         }
     }
     return finite;
@@ -217,13 +217,13 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
   const VectorXd z = posterior.start();
   posterior.linearise(z);
   VectorXd values(posterior.num_residuals());
-  RowMatrix slopes(posterior.num_residuals(), posterior.unknowns());
+  RowMatrix jacobian(posterior.num_residuals(), posterior.unknowns());
   const double* blocks[] = {z.data()};
-  double* jacobians[] = {slopes.data()};
+  double* jacobians[] = {jacobian.data()};
   if (!posterior.Evaluate(blocks, values.data(), jacobians)) return {};
-  const VectorXd size = slopes.colwise().norm();
-  slopes.array().rowwise() /= size.transpose().array();
-  const Eigen::MatrixXd information = slopes.transpose() * slopes;
+  const VectorXd size = jacobian.colwise().norm();
+  jacobian.array().rowwise() /= size.transpose().array();
+  const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
   const VectorXd variance =
       information.ldlt().solve(Eigen::MatrixXd::Identity(size.size(), size.size())).diagonal();
   std::vector<double> bound;

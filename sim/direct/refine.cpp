@@ -90,7 +90,8 @@ class Driven {
     if (whole_.Ifd.size() > 0) out.push_back(m.s.Ifd - T(whole_.Ifd[i]));
   }
   template <class T>
-  std::vector<T> slopes(Machine<T>& m, std::size_t at, const T& angle, const std::vector<T>& flux) const {
+  std::vector<T> derivatives(Machine<T>& m, std::size_t at, const T& angle,
+                             const std::vector<T>& flux) const {
     evaluate(m, at, angle, flux);
     m.derive();
     return {m.dx.begin() + kAngleAndSpeed, m.dx.end()};
@@ -99,8 +100,8 @@ class Driven {
   template <class T>
   void step(Machine<T>& m, const std::array<std::size_t, 3>& at, double h, const T& angle,
             std::vector<T>& x) const {
-    runge_kutta(x, slopes(m, at[0], angle, x), h, [&](int stage, const std::vector<T>& y) {
-      return slopes(m, at[stage == 3 ? 2 : 1], angle, y);
+    runge_kutta(x, derivatives(m, at[0], angle, x), h, [&](int stage, const std::vector<T>& y) {
+      return derivatives(m, at[stage == 3 ? 2 : 1], angle, y);
     });
   }
 
@@ -129,9 +130,9 @@ class Residuals : public ceres::CostFunction {
       const auto r = of<D8>(blocks[0], first);
       for (Index k = first; k < std::min<Index>(first + kDirections, width); ++k)
         for (std::size_t i = 0; i < r.size(); ++i) {
-          const double slope = r[i].d[static_cast<std::size_t>(k - first)];
-          jacobians[0][static_cast<Index>(i) * width + k] = slope;
-          finite = finite && std::isfinite(slope);
+          const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
+          jacobians[0][static_cast<Index>(i) * width + k] = derivative;
+          finite = finite && std::isfinite(derivative);
         }
     }
     return finite;
@@ -229,13 +230,13 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   Residuals residuals(driven, start, free, scale);
   const double* blocks[] = {z.data()};
   VectorXd values(driven.outputs());
-  RowMatrix slopes(driven.outputs(), all);
-  double* jacobians[] = {slopes.data()};
+  RowMatrix jacobian(driven.outputs(), all);
+  double* jacobians[] = {jacobian.data()};
   if (!residuals.Evaluate(blocks, values.data(), jacobians))
     return {start, std::numeric_limits<double>::infinity()};
   std::vector<int> idle;  // for example inertia and damping
   for (Index k = 0; k < n; ++k)
-    if (slopes.col(k).squaredNorm() == 0) idle.push_back(static_cast<int>(k));
+    if (jacobian.col(k).squaredNorm() == 0) idle.push_back(static_cast<int>(k));
 
   ceres::Problem::Options borrowed;
   borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

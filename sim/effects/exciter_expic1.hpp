@@ -204,8 +204,8 @@ struct Model {
       return clamp(lead_lag(c[lead2], c[iTA4], x[lag2], u, d2), c[vrmin], c[vrmax]);
     };
     const T before = regulated(x[integral], unused, unused);
-    const T slope = c[feedback] * washout(c[iTF1], x[rate], before, unused);
-    const T Vf = lag(c[iTF2], x[rate_lag], slope, unused);
+    const T washed = c[feedback] * washout(c[iTF1], x[rate], before, unused);
+    const T Vf = lag(c[iTF2], x[rate_lag], washed, unused);
     const T error = c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - Vf;
     const T wanted = c[proportional] * error + x[integral];
     dx[integral] = shared::non_windup(c[integral_gain] * error, wanted, c[vr2], c[vr1]);

@@ -259,8 +259,8 @@ struct Model : shared::Alternator<Model> {
     s.Efd = rectified(ve, c[commutation] * s.Ifd);
     // With FBF = 0 the lag TA exists, so that its state is the output.
     const T fed = c[of_regulator] * clamp(x[Vr], rmin, rmax) + c[of_current] * Vfe + c[of_voltage] * s.Efd;
-    const T slope = c[feedback] * washout(c[iTF], x[rate], fed, dx[rate]);
-    const T Vf = lead_lag(c[lead_feedback], c[iTF2], x[rate_lag], slope, dx[rate_lag]);
+    const T washed = c[feedback] * washout(c[iTF], x[rate], fed, dx[rate]);
+    const T Vf = lead_lag(c[lead_feedback], c[iTF2], x[rate_lag], washed, dx[rate_lag]);
     const T measured = lag(c[iTR], x[Vm], s.Vc, dx[Vm]);
     const T e = clamp(c[Vref] + s.dVref - measured + s.Vs + s.Vlimiter - Vf, T(0.0) - c[vimax], c[vimax]);
     dx[xv] = c[kvi] * e;

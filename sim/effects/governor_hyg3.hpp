@@ -244,8 +244,8 @@ struct Model {
   static T double_derivative(const T* c, const T* x, const T& u, const T& speed, T* dx) {
     const T felt = lag(c[Pid::iTD], x[Pid::filtered], speed, dx[Pid::filtered]);
     dx[Pid::lagged] = (felt - x[Pid::lagged]) * c[Pid::iTF];
-    const T slope = dx[Pid::lagged];  // derivative of the input, lagged by Tf
-    dx[second] = (slope - x[second]) * c[Pid::iTF];
+    const T derivative = dx[Pid::lagged];  // derivative of the input, lagged by Tf
+    dx[second] = (derivative - x[second]) * c[Pid::iTF];
     const T y = c[Pid::kd] * (felt - x[Pid::lagged]) + c[Pid::kp] * dx[second];
     dx[Pid::integral] = c[Pid::ki] * (u - c[by_gate] * x[Pid::integral] - y);
     return x[Pid::integral];
@@ -257,10 +257,10 @@ struct Model {
     const T power = lag(c[iTT], x[measured], c[base] * s.P, dx[measured]);
     const T u = c[ref] + s.dGref + (c[by_gate] + c[by_power]) * s.dPref - c[by_power] * power;
     const T twice = double_derivative(c, x, u, speed, dx);
-    T slopes[Pid::count];
-    const T once = Pid::evaluate(c, x, u - speed, c[by_gate], slopes);
+    T derivatives[Pid::count];
+    const T once = Pid::evaluate(c, x, u - speed, c[by_gate], derivatives);
     const auto is_pid = c[pid] > T(0.5);
-    for (int i = 0; i < Pid::count; ++i) dx[i] = select(is_pid, slopes[i], dx[i]);
+    for (int i = 0; i < Pid::count; ++i) dx[i] = select(is_pid, derivatives[i], dx[i]);
     dx[second] = select(is_pid, zero, dx[second]);
     const T cv = clamp(select(is_pid, once, twice), c[low], c[high]);
     const T gv = Servo::evaluate(c, x, cv, dx);

@@ -65,7 +65,7 @@ struct Model {
     kp = lowest + 6,
     kq,
     iTf,
-    slope,
+    per_angle,
     coefficients
   };
 
@@ -106,7 +106,7 @@ struct Model {
     c[kp] = p[a7];
     c[kq] = p[a8];
     c[iTf] = inverse(p[Tf]);
-    c[slope] = frequency_slope(c[iTf], conventions.frequency);
+    c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
   /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
@@ -119,7 +119,7 @@ struct Model {
       const T& edge = c[lowest + k];
       y[k / 3] = y[k / 3] + c[part + k] * to_the_power(select(v > edge, v, edge), c[power + k]);
     }
-    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[slope]);
+    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T g = y[0] * (T(1.0) + c[kp] * df), b = y[1] * (T(1.0) + c[kq] * df);
     s.Ir = T(0.0) - g * s.Vr - b * s.Vi;
     s.Ii = b * s.Vr - g * s.Vi;

@@ -55,7 +55,7 @@ struct Model {
   /// The gain from an error of x to P is m/(2 pi f0 Tf), about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
-  enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, slope, coefficients };
+  enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     shared::check_time_constant(name, "Tf", p[Tf],
@@ -88,7 +88,7 @@ struct Model {
     c[vp] = p[Vp];
     c[vi] = p[Vi];
     c[iTf] = inverse(p[Tf]);
-    c[slope] = frequency_slope(c[iTf], conventions.frequency);
+    c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
   /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
@@ -99,7 +99,7 @@ struct Model {
     constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
     const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi + T(tiny), v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
-    const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[slope]);
+    const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T least(1e-3);  // lower bound of the frequency [pu]: a trial step may reach values <= 0
     const T f = log(select(df > least - T(1.0), T(1.0) + df, least));
     const T g = c[g0] + c[gi] * amps * exp(c[er] * f) + c[gp] * power * exp(c[em] * f);

@@ -52,7 +52,7 @@ struct Model {
   /// The gain from an error of x to P is Kpf/(2 pi f0 Tf), about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
-  enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, slope, coefficients };
+  enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     shared::check_time_constant(name, "Tf", p[Tf], p[Kpf] != 0 || p[Kqf] != 0, "Kpf = Kqf = 0", where,
@@ -81,7 +81,7 @@ struct Model {
     c[kp] = p[Kpf];
     c[kq] = p[Kqf];
     c[iTf] = inverse(p[Tf]);
-    c[slope] = frequency_slope(c[iTf], conventions.frequency);
+    c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
   /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
@@ -91,7 +91,7 @@ struct Model {
     const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny);
     const T v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
-    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[slope]);
+    const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T g = c[P0] * (c[pz] + c[pi] * amps + c[pp] * power) * (T(1.0) + c[kp] * df);
     const T b = c[Q0] * (c[qz] + c[qi] * amps + c[qp] * power) * (T(1.0) + c[kq] * df);
     s.Ir = T(0.0) - g * s.Vr - b * s.Vi;

@@ -155,13 +155,13 @@ struct Model {
   /// diq.
   template <class T>
   static T magnetisation(const T* c, const T& vd, const T& vq, const T& id, const T& iq, const T& did,
-                         const T& diq, T& slope) {
+                         const T& diq, T& du) {
     using std::sqrt;
     const T tiny(1e-30);  // [pu^2] keeps the derivative finite at 0
     const T fd = vd + c[ra] * id - c[xl] * iq, fq = vq + c[ra] * iq + c[xl] * id;
     const T flux = sqrt(fd * fd + fq * fq + tiny), amps = sqrt(id * id + iq * iq + tiny);
-    slope = (fd * (c[ra] * did - c[xl] * diq) + fq * (c[ra] * diq + c[xl] * did)) / flux +
-            c[kis] * (id * did + iq * diq) / amps;
+    du = (fd * (c[ra] * did - c[xl] * diq) + fq * (c[ra] * diq + c[xl] * did)) / flux +
+         c[kis] * (id * did + iq * diq) / amps;
     return flux + c[kis] * amps;
   }
   template <class T>
@@ -199,13 +199,13 @@ struct Model {
     constexpr double kResidual = 1e-9;
     const T vd = s.Vr * m[sn] - s.Vi * m[cs], vq = s.Vr * m[cs] + s.Vi * m[sn];
     const T a = m[ed] - vd, b = m[eq] - vq;
-    T id, iq, did, diq, slope, rest;
+    T id, iq, did, diq, du, rest;
     T sigma(0.0);
     for (int step = 0; step < kNewtonSteps; ++step) {
       stator(c, sigma, a, b, id, iq, did, diq);
-      const T u = magnetisation(c, vd, vq, id, iq, did, diq, slope);
+      const T u = magnetisation(c, vd, vq, id, iq, did, diq, du);
       const T above = positive_part(u - c[A]), inverse_u = T(1.0) / u;
-      const T rise = T(1.0) - c[B] * above * (u + c[A]) * inverse_u * inverse_u * slope;
+      const T rise = T(1.0) - c[B] * above * (u + c[A]) * inverse_u * inverse_u * du;
       const T safe = select(rise > T(kFlattest), rise, T(kFlattest));
       rest = sigma - c[B] * above * above * inverse_u;
       sigma = positive_part(sigma - rest / safe);

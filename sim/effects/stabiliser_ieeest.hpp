@@ -181,7 +181,7 @@ struct Model {
     c[w5] = is(5);
     c[w6] = is(6);
     c[iTf] = inverse(p[Tf]);
-    c[per_lead] = c[w2] * frequency_slope(c[iTf], conventions.frequency);
+    c[per_lead] = c[w2] * frequency_per_angle(c[iTf], conventions.frequency);
     for (int i = 0; i < 6; ++i) c[a1 + i] = p[A1 + i];
     for (int i = 0; i < 4; ++i) c[ia1 + i] = inverse(p[A1 + i]);
     c[t1] = p[T1];
@@ -207,19 +207,19 @@ struct Model {
     }
     const T zero(0.0);
     const auto second = c[ia2] > zero, first = c[ia1] > zero;
-    const T slope1 = (u - x[y]) * c[ia1];
+    const T derivative1 = (u - x[y]) * c[ia1];
     const T out = select(second, x[y], select(first, x[y], u));
-    const T out_d = select(second, x[ydot], slope1);
+    const T out_d = select(second, x[ydot], derivative1);
     const T out_dd = (u - x[y] - c[a1] * x[ydot]) * c[ia2];
     dx[y] = out_d;
     dx[ydot] = out_dd;
     const auto second2 = c[ia4] > zero, first2 = c[ia3] > zero;
-    const T slope2 = (out - x[w]) * c[ia3];
+    const T derivative2 = (out - x[w]) * c[ia3];
     const T in_w = select(second2, x[w], select(first2, x[w], out));
-    const T in_d = select(second2, x[wdot], select(first2, slope2, out_d));
+    const T in_d = select(second2, x[wdot], select(first2, derivative2, out_d));
     const T acceleration = (out - x[w] - c[a3] * x[wdot]) * c[ia4];
-    const T in_dd = select(second2, acceleration, select(first2, (out_d - slope2) * c[ia3], out_dd));
-    dx[w] = select(second2, x[wdot], slope2);
+    const T in_dd = select(second2, acceleration, select(first2, (out_d - derivative2) * c[ia3], out_dd));
+    dx[w] = select(second2, x[wdot], derivative2);
     dx[wdot] = acceleration;
     return in_w + c[a5] * in_d + c[a6] * in_dd;
   }

@@ -42,9 +42,9 @@ class EventResidual : public ceres::CostFunction {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const sim::plant::Plant plant = setting_.plant(blocks[0]);
     if (!playin::can_run(plant)) return false;
-    double* slopes = jacobians ? jacobians[0] : nullptr;
+    double* jacobian = jacobians ? jacobians[0] : nullptr;
     std::vector<playin::Direction> along;
-    if (slopes)
+    if (jacobian)
       for (std::size_t i = 0; i < setting_.free.size(); ++i)
         along.push_back({.kind = playin::Direction::Kind::parameter,
                          .parameter = setting_.free[i].id,
@@ -54,7 +54,7 @@ class EventResidual : public ceres::CostFunction {
       const auto width = static_cast<int>(setting_.free.size());
       write(r.value, true, residuals, 1, 0);
       for (std::size_t i = 0; i < along.size(); ++i)
-        write(r.sensitivities[i].value, false, slopes, width, static_cast<int>(i));
+        write(r.sensitivities[i].value, false, jacobian, width, static_cast<int>(i));
     } catch (const InputError&) {
       return false;  // Ceres shortens the step
     } catch (const Interrupted&) {
@@ -194,11 +194,11 @@ class CurveFitting {
       if (out_[e]) continue;
       const EventResidual cost(setting_, events_[e]);
       Eigen::VectorXd residual(events_[e].values());
-      RowMatrix slopes(events_[e].values(), n);
+      RowMatrix jacobian(events_[e].values(), n);
       const double* blocks[] = {z_.data()};
-      double* jacobians[] = {slopes.data()};
+      double* jacobians[] = {jacobian.data()};
       if (!cost.Evaluate(blocks, residual.data(), jacobians)) continue;
-      curvature += slopes.transpose() * slopes;
+      curvature += jacobian.transpose() * jacobian;
       squares += residual.squaredNorm();
       values += events_[e].values();
     }

@@ -233,14 +233,15 @@ Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Reco
   return left;
 }
 
-/// Returns the least-squares step along `slopes` within the bounds -1 to 1 of `at`: components that would
+/// Returns the least-squares step along `jacobian` within the bounds -1 to 1 of `at`: components that would
 /// leave them are clamped, and the others are solved again.
-Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left, const Eigen::VectorXd& at) {
+Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd left,
+                             const Eigen::VectorXd& at) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
   std::vector<Eigen::Index> free(static_cast<std::size_t>(at.size()));
   std::iota(free.begin(), free.end(), 0);
   while (!free.empty()) {
-    const Eigen::VectorXd solved = slopes(Eigen::all, free).colPivHouseholderQr().solve(-left);
+    const Eigen::VectorXd solved = jacobian(Eigen::all, free).colPivHouseholderQr().solve(-left);
     std::vector<Eigen::Index> inside;
     for (std::size_t i = 0; i < free.size(); ++i) {
       const Eigen::Index k = free[i];
@@ -249,7 +250,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& slopes, Eigen::VectorXd left
       if (std::abs(end) <= 1)
         inside.push_back(k);
       else
-        left += slopes.col(k) * step[k];
+        left += jacobian.col(k) * step[k];
     }
     if (inside.size() == free.size()) break;
     free = inside;
@@ -278,14 +279,14 @@ EventState fitted_instants(const std::vector<Standing>& units, const record::Rec
   const auto left_at = [&](const Eigen::VectorXd& at) { return left_over(units, whole, state_at(at)); };
   Eigen::VectorXd at = Eigen::VectorXd::Zero(n), left = left_at(at);
   for (int round = 0; round < kPointRounds; ++round) {
-    Eigen::MatrixXd slopes(left.size(), n);
+    Eigen::MatrixXd jacobian(left.size(), n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double aside = at[k] > 0 ? -kAside : kAside;
       Eigen::VectorXd beside = at;
       beside[k] += aside;
-      slopes.col(k) = (left_at(beside) - left) / aside;
+      jacobian.col(k) = (left_at(beside) - left) / aside;
     }
-    Eigen::VectorXd step = bounded_step(slopes, left, at);
+    Eigen::VectorXd step = bounded_step(jacobian, left, at);
     Eigen::VectorXd next = left_at(at + step);
     for (int half = 0; half < 5 && next.squaredNorm() > left.squaredNorm(); ++half)
       next = left_at(at + (step *= 0.5));

@@ -24,7 +24,7 @@ struct Axis {
     return std::ldexp(std::nearbyint(std::ldexp(v, digits)), -digits);
   }
   /// Returns d value / d z at z [unit of the parameter].
-  [[nodiscard]] double slope(double z) const { return logarithmic ? value(z) : unit; }
+  [[nodiscard]] double derivative(double z) const { return logarithmic ? value(z) : unit; }
   /// Returns z of a parameter value.
   [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
   /// Prior standard deviation of z.

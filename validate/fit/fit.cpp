@@ -286,7 +286,7 @@ class Search {
       p.unit = record.unit;
       p.start = a.start;
       p.value = a.value(z);
-      p.error = a.slope(z) * error;
+      p.error = a.derivative(z) * error;
       p.low = std::max(a.low, a.value(z - constants::normal95 * error));
       p.high = std::min(a.high, a.value(z + constants::normal95 * error));
       p.held_by = walls.holding(static_cast<std::size_t>(i), z_.data());

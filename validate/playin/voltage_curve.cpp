@@ -119,13 +119,13 @@ VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switc
 void VoltageCurve::fit(Segment& segment) {
   const auto& t = segment.t;
   const auto& v = segment.v;
-  segment.slope2.assign(t.size(), Complex{});
+  segment.second_derivative.assign(t.size(), Complex{});
   if (t.size() == 3) {
     const Complex curve =
         2.0 * ((v[2] - v[1]) / (t[2] - t[1]) - (v[1] - v[0]) / (t[1] - t[0])) / (t[2] - t[0]);
-    segment.slope2.assign(3, curve);
+    segment.second_derivative.assign(3, curve);
   } else if (t.size() > 3) {
-    segment.slope2 = not_a_knot(t, v);
+    segment.second_derivative = not_a_knot(t, v);
     segment.rate = static_cast<double>(t.size() - 3) / (t[t.size() - 2] - t[1]);
   }
 }
@@ -146,7 +146,8 @@ Complex VoltageCurve::operator()(int index, double t) const {
   const std::size_t i = interval(s, t);
   const double h = s.t[i + 1] - s.t[i], b = (t - s.t[i]) / h, a = 1 - b;
   return a * s.v[i] + b * s.v[i + 1] +
-         ((a * a * a - a) * s.slope2[i] + (b * b * b - b) * s.slope2[i + 1]) * (h * h / 6);
+         ((a * a * a - a) * s.second_derivative[i] + (b * b * b - b) * s.second_derivative[i + 1]) *
+             (h * h / 6);
 }
 
 }  // namespace swingbank::validate::playin

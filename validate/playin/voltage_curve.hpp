@@ -54,8 +54,8 @@ class VoltageCurve {
  private:
   struct Segment {
     std::vector<double> t;
-    std::vector<Complex> v, slope2;  ///< knots and second derivatives there
-    double rate = 0;                 ///< nearly uniform inner knots per second; 0: too few
+    std::vector<Complex> v, second_derivative;  ///< knots and second derivatives there
+    double rate = 0;                            ///< nearly uniform inner knots per second; 0: too few
   };
   static void fit(Segment& segment);
   static std::size_t interval(const Segment& segment, double t);

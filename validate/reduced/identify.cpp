@@ -276,13 +276,13 @@ class Identifying {
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const Start& s = *moving[k];
       const auto at = static_cast<Index>(k) * (np + 1);
-      MatrixXd slopes = made.middleCols(at + 1, np);
+      MatrixXd jacobian = made.middleCols(at + 1, np);
       for (Index i = 0; i < np; ++i) {
         const double move = points[static_cast<std::size_t>(at + 1 + i)][i] - s.z[i];
-        slopes.col(i) = (slopes.col(i) - made.col(at)) / move;
-        if (!slopes.col(i).allFinite()) slopes.col(i).setZero();
+        jacobian.col(i) = (jacobian.col(i) - made.col(at)) / move;
+        if (!jacobian.col(i).allFinite()) jacobian.col(i).setZero();
       }
-      ReducedPlant::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, slopes);
+      ReducedPlant::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, jacobian);
       for (Index i = 0; i < np; ++i)
         if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
           quadratic.curvature(1 + i, 1 + i) += 1 / (spread * spread);

@@ -246,7 +246,7 @@ class Inferring {
       numbers.push_back(static_cast<Index>(i));
       along.push_back({.kind = Kind::parameter,
                        .parameter = *ids_[i],
-                       .scale = axes_[i].slope(p.z[static_cast<Index>(i)])});
+                       .scale = axes_[i].derivative(p.z[static_cast<Index>(i)])});
     }
     std::ranges::move(fit::state_directions(event), std::back_inserter(along));
     const Index own = p.states[e].size(), knots = p.torques[e].size();

@@ -337,8 +337,8 @@ VectorXd ReducedPlant::costs(const MatrixXd& series, const VectorXd& gains) cons
 }
 
 ReducedPlant::Quadratic ReducedPlant::quadratic(const VectorXd& series, double gain,
-                                                const MatrixXd& slopes) const {
-  const Index n = slopes.cols() + 1, m = static_cast<Index>(free_.size());
+                                                const MatrixXd& jacobian) const {
+  const Index n = jacobian.cols() + 1, m = static_cast<Index>(free_.size());
   Quadratic quadratic{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
   MatrixXd cross = MatrixXd::Zero(m, n);
   VectorXd gradient = first_;
@@ -348,7 +348,7 @@ ReducedPlant::Quadratic ReducedPlant::quadratic(const VectorXd& series, double g
   for (const Event& e : events_) {
     const Index K = e.L.cols();
     MatrixXd by(e.r.size(), n);
-    by.rightCols(n - 1) = factor(gain) * (e.L * slopes.middleRows(row, K));
+    by.rightCols(n - 1) = factor(gain) * (e.L * jacobian.middleRows(row, K));
     const VectorXd shown = factor(gain) * (e.L * series.segment(row, K));
     by.col(0) = e.by_gain + gain_.exponent * shown;
     const VectorXd left = e.r + shown + gain * e.by_gain;

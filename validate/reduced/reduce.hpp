@@ -96,7 +96,7 @@ class ReducedPlant {
   /// parameter.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
   /// Half the gradient and half the Gauss-Newton Hessian of the cost of one time series. The variables are
-  /// the gain's parameter and the parameters of the Jacobian `slopes` [knot][parameter]; all other plant
+  /// the gain's parameter and the parameters of the Jacobian `jacobian` [knot][parameter]; all other plant
   /// parameters are eliminated.
   struct Quadratic {
     Eigen::MatrixXd curvature;  ///< half the Hessian
@@ -104,7 +104,7 @@ class ReducedPlant {
   };
   /// Computes the quadratic model of the cost of one time series. `gain`: change of the gain's parameter.
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
-                                    const Eigen::MatrixXd& slopes) const;
+                                    const Eigen::MatrixXd& jacobian) const;
   /// Returns the changes of the plant parameters that minimise the cost of a time series, without those of
   /// add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;

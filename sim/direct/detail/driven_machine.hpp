@@ -47,17 +47,17 @@ struct DrivenMachine {
 
 /// Performs one step of the classical fourth-order Runge-Kutta method from x. `first`: derivative at x;
 /// slope(stage, y) returns the derivatives in the middle (stages 1 and 2) and at the end (3).
-template <class Vector, class Slope>
-void runge_kutta(Vector& x, const Vector& first, double h, const Slope& slope) {
+template <class Vector, class Derivative>
+void runge_kutta(Vector& x, const Vector& first, double h, const Derivative& derivative) {
   using T = typename Vector::value_type;
   const auto moved = [&](const Vector& by, double share) {
     Vector y = x;
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = y[i] + T(share) * by[i];
     return y;
   };
-  const auto b = slope(1, moved(first, h / 2));
-  const auto c = slope(2, moved(b, h / 2));
-  const auto d = slope(3, moved(c, h));
+  const auto b = derivative(1, moved(first, h / 2));
+  const auto c = derivative(2, moved(b, h / 2));
+  const auto d = derivative(3, moved(c, h));
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] = x[i] + T(h / 6) * (first[i] + T(2.0) * (b[i] + c[i]) + d[i]);
 }

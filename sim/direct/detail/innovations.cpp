@@ -37,7 +37,7 @@ class Played {
     const auto& s = m_.s;
     return {s.Vr * s.Ir, T(0.0) - s.Vr * s.Ii, s.speed, s.Ifd};
   }
-  States<T> slope() {
+  States<T> derivative() {
     m_.derive();
     States<T> dx{};
     std::ranges::copy(m_.dx, dx.begin());
@@ -59,9 +59,9 @@ class Played {
     if (const auto leap = r.behind_leap.find(k); leap != r.behind_leap.end()) correct(x, leap->second);
   }
   /// Returns the derivatives at x for another voltage.
-  States<T> slope_at(const States<T>& x, const Inputs& u) {
+  States<T> derivative_at(const States<T>& x, const Inputs& u) {
     evaluate(x, voltage(u));
-    return slope();
+    return derivative();
   }
   /// Returns the voltage as T, if requested with its noise as two further parameters of a dual.
   [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
@@ -80,10 +80,10 @@ class Played {
   }
   void go(States<T>& x, const States<T>& first, const Inputs& middle, const Inputs& last, double h) {
     runge_kutta(x, first, h,
-                [&](int stage, const States<T>& y) { return slope_at(y, stage == 3 ? last : middle); });
+                [&](int stage, const States<T>& y) { return derivative_at(y, stage == 3 ? last : middle); });
   }
   void half(States<T>& x, const Inputs& u, const Inputs& v, double h) {
-    go(x, slope_at(x, u), mean(u, v), v, h);
+    go(x, derivative_at(x, u), mean(u, v), v, h);
   }
 
   bool noise_;
@@ -147,9 +147,9 @@ class Linearised {
       for (int i = 0; i < kInputs; ++i) l.D(o, i) = value.d[kMostFlowing + static_cast<std::size_t>(i)];
     }
     if (k + 1 >= record_.samples()) return l;
-    const auto slope = played_.slope();
+    const auto derivative = played_.derivative();
     const auto before = x;
-    played_.step(record_, k, x, slope);
+    played_.step(record_, k, x, derivative);
     take(x, l);
     if (record_.behind[k].leaps) leap(before, k, l);
     halve(l);
@@ -177,7 +177,7 @@ class Linearised {
   }
   /// Adds the covariance of a step of `h` seconds in which either u or v was present.
   void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
-    const auto a = played_.slope_at(x, u), b = played_.slope_at(x, v);
+    const auto a = played_.derivative_at(x, u), b = played_.derivative_at(x, v);
     Gain::State moved = Gain::State::Zero();
     for (std::size_t i = 0; i < states_; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i].a - b[i].a);
     covariance += moved * moved.transpose();
@@ -263,7 +263,7 @@ void show(Played<double> m, NoisyRecord& record) {
   for (std::size_t k = 0; k < record.samples(); ++k) {
     m.evaluate(x, m.voltage(record.in[k]));
     record.out[k] = m.outputs();
-    if (k + 1 < record.samples()) m.step(record, k, x, m.slope());
+    if (k + 1 < record.samples()) m.step(record, k, x, m.derivative());
   }
 }
 
@@ -333,7 +333,7 @@ void innovations(const Effect& machine, const NoisyRecord& r, const std::vector<
       *out++ = white;
     }
     if (k + 1 == r.samples()) break;
-    m.step(r, k, x, m.slope());
+    m.step(r, k, x, m.derivative());
     for (std::size_t i = 0; i < states; ++i)
       for (int o = 0; o < r.outputs; ++o)
         x[i] = x[i] + T(gain.onto_states(static_cast<Eigen::Index>(i), o)) * e[static_cast<std::size_t>(o)];

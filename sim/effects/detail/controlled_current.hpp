@@ -55,7 +55,7 @@ struct ControlledCurrent {
   template <class T>
   static void prepare_frequency(const T& time_constant, const Conventions& conventions, T* c) {
     c[Model::iTfreq] = T(1.0) / time_constant;
-    c[Model::per_angle] = frequency_slope(c[Model::iTfreq], conventions.frequency);
+    c[Model::per_angle] = frequency_per_angle(c[Model::iTfreq], conventions.frequency);
   }
   /// Sets the signals of a current source without a turbine. `squared`: |V|^2 [pu].
   template <class T>

@@ -91,8 +91,8 @@ struct Diesel {
   static T control_box(const T* c, const T* x, const T& u, T* dx) {
     const T zero(0.0);
     const auto second = c[iTb] > zero, first = c[iT1] > zero;
-    const T slope = (u - x[box]) * c[iT1];
-    dx[box] = select(second, x[box_rate], slope);
+    const T derivative = (u - x[box]) * c[iT1];
+    dx[box] = select(second, x[box_rate], derivative);
     dx[box_rate] =
         (u - x[box]) * c[iTb] - select(second, c[iTb] / select(first, c[iT1], T(1.0)), zero) * x[box_rate];
     return select(first, x[box] + c[box_lead] * dx[box], u);

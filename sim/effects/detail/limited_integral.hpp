@@ -7,14 +7,14 @@ namespace swingbank::sim::effects::shared {
 inline constexpr double kIntegralBand = 2e-3;  ///< width beyond a limit over which integration stops [pu]
 
 /// Returns the derivative of a PI's integral: zero while the unlimited output `out` is beyond a limit and
-/// `slope` leads further out, else `slope`. It fades over a narrow band: with a step there is no solution if
-/// the proportional part falls while the integral rises (sliding along the limit).
+/// `derivative` leads further out, else `derivative`. It fades over a narrow band: with a step there is no
+/// solution if the proportional part falls while the integral rises (sliding along the limit).
 template <class T>
-inline T non_windup(const T& slope, const T& out, const T& least, const T& most) {
+inline T non_windup(const T& derivative, const T& out, const T& least, const T& most) {
   const T zero(0.0), one(1.0), per_band(1.0 / kIntegralBand);
   const T rise = one - clamp((out - most) * per_band, zero, one);
   const T fall = one - clamp((least - out) * per_band, zero, one);
-  return slope * select(slope > zero, rise, fall);  // differentiable also at zero
+  return derivative * select(derivative > zero, rise, fall);  // differentiable also at zero
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -22,8 +22,8 @@ struct LimitedLeadLag {
     const T free = select(lagged, x + c[share] * (u - x), u);
     const T y = clamp(free, low, high);
     // Within the limits y - x = (TC/TB) (u - x), so that both forms of the derivative agree.
-    const T slope = select(leads, (y - x) * c[iTC], (clamp(u, low, high) - x) * c[iTB]);
-    dx = select(lagged, slope, zero);
+    const T derivative = select(leads, (y - x) * c[iTC], (clamp(u, low, high) - x) * c[iTB]);
+    dx = select(lagged, derivative, zero);
     return y;
   }
 };

@@ -128,20 +128,20 @@ void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
 /// Computes the Jacobian of that residual with respect to V into a; call after algebra_rest. dE/dV is a
 /// difference quotient, whose error only slows the convergence.
 template <class T>
-void Lanes<T>::algebra_slopes(const Constants& k, const T* x, T* a) {
+void Lanes<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
   constexpr double nudge = 1e-6;  // [pu]
   const std::size_t count = nonlinear_.size(), size = 2 * count;
-  T* slope = algebra_.data() + size;  // dE/dV, four values per source
+  T* derivative = algebra_.data() + size;  // dE/dV, four values per source
   for (std::size_t j = 0; j < count; ++j) {
     const int source = nonlinear_[j];
     const auto at = static_cast<std::size_t>(source);
     T er, ei;
     source_emf(k, x, source, k.vr[j] + T(nudge), k.vi[j], er, ei);
-    slope[4 * j] = (er - er_[at]) * T(1.0 / nudge);
-    slope[4 * j + 1] = (ei - ei_[at]) * T(1.0 / nudge);
+    derivative[4 * j] = (er - er_[at]) * T(1.0 / nudge);
+    derivative[4 * j + 1] = (ei - ei_[at]) * T(1.0 / nudge);
     source_emf(k, x, source, k.vr[j], k.vi[j] + T(nudge), er, ei);
-    slope[4 * j + 2] = (er - er_[at]) * T(1.0 / nudge);
-    slope[4 * j + 3] = (ei - ei_[at]) * T(1.0 / nudge);
+    derivative[4 * j + 2] = (er - er_[at]) * T(1.0 / nudge);
+    derivative[4 * j + 3] = (ei - ei_[at]) * T(1.0 / nudge);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(nonlinear_[i]);
@@ -159,8 +159,8 @@ void Lanes<T>::algebra_slopes(const Constants& k, const T* x, T* a) {
       const double own = i == j ? 1.0 : 0.0;
       const T wr = (i == j ? share : T(0.0)) - (zr * g - zi * b), wi = T(0.0) - (zr * b + zi * g);  // dV/dE
       for (std::size_t side = 0; side < 2; ++side) {
-        const T& dr = slope[4 * j + 2 * side];
-        const T& di = slope[4 * j + 2 * side + 1];
+        const T& dr = derivative[4 * j + 2 * side];
+        const T& di = derivative[4 * j + 2 * side + 1];
         a[(2 * i) * size + 2 * j + side] = T(side == 0 ? own : 0.0) - (wr * dr - wi * di);
         a[(2 * i + 1) * size + 2 * j + side] = T(side == 1 ? own : 0.0) - (wr * di + wi * dr);
       }
@@ -178,7 +178,7 @@ typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x, const T*
   if (anew != 0) {
     constexpr unsigned all = (1U << kLanes) - 1U;
     T* a = anew == all ? k.factors.data() : f + 3 * size + size;
-    algebra_slopes(k, x, a);
+    algebra_jacobian(k, x, a);
     factor_dense(a, size);
     if (anew != all) {
       const auto mask = Traits::mask(anew);

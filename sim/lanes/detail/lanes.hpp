@@ -111,7 +111,7 @@ class Lanes {
   const T* own_impedance(const Constants& k, int source) const;
   const T* ratio(const Constants& k, int source) const;
   void algebra_rest(Constants& k, const T* x, const T* steady);
-  void algebra_slopes(const Constants& k, const T* x, T* a);
+  void algebra_jacobian(const Constants& k, const T* x, T* a);
   Flat newton_step(Constants& k, const T* x, const T* steady, unsigned anew);
 
   // recording (record.hpp)

@@ -17,13 +17,13 @@ void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
   const std::size_t i = state;
   T* row = reinterpret_cast<T*>(rows);
   const T delta = trial_[i] - y_[i];
-  const T slope = h * k_[0][i] - delta;
+  const T excess = h * k_[0][i] - delta;
   T d = T(plant::dp54::dense[0]) * k_[0][i];
   for (int j = 2; j < plant::dp54::kStages; ++j) d = d + T(plant::dp54::dense[j]) * k_[j][i];
   row[0] = y_[i];
   row[1] = delta;
-  row[2] = slope;
-  row[3] = delta - h * k_[6][i] - slope;
+  row[2] = excess;
+  row[3] = delta - h * k_[6][i] - excess;
   row[4] = h * d;
 }
 

@@ -27,7 +27,7 @@ constexpr int kMinimumDegree = 0;  ///< KLU ordering; less fill than its default
 constexpr double kFactorAnew = 0.1;
 /// Number of steps after which the units' derivatives are recomputed, as in CVODE. Earlier only after a
 /// failed step, which may have crossed a limit.
-constexpr long kSlopesLast = 20;
+constexpr long kStepsPerJacobian = 20;
 
 /// User data of the callbacks below.
 struct Problem {
@@ -39,8 +39,8 @@ struct Problem {
   std::vector<int> own;        ///< positions of the states' diagonal in the full pattern
   SUNLinearSolver solver = nullptr;
   void* ida = nullptr;
-  double a = 0.0;                           ///< leading coefficient of `values`
-  long steps = -kSlopesLast, failures = 0;  ///< when the derivatives were computed
+  double a = 0.0;                                 ///< leading coefficient of `values`
+  long steps = -kStepsPerJacobian, failures = 0;  ///< when the derivatives were computed
 
   /// Whether the units' derivatives must be recomputed when IDA requests a matrix with leading coefficient
   /// `now`. IDA requests one with an unchanged coefficient if Newton's method has not converged.
@@ -52,7 +52,7 @@ struct Problem {
     IDAGetNumErrTestFails(ida, &rejected);
     failed += rejected;
     const bool stalls = now > kSame * a && now * kSame < a;
-    if (count - steps < kSlopesLast && failed == failures && !stalls) return false;
+    if (count - steps < kStepsPerJacobian && failed == failures && !stalls) return false;
     steps = count;
     failures = failed;
     return true;

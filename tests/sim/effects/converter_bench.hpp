@@ -35,7 +35,7 @@ struct BehindImpedance {
     ops.machine.current(c.data(), x.data(), m.data(), s);
     return std::conj(std::complex<double>(s.Ir, s.Ii) * std::conj(axis) / std::abs(axis));
   }
-  std::vector<double> slopes(std::complex<double> v) {
+  std::vector<double> derivatives(std::complex<double> v) {
     std::vector<double> dx(x.size());
     current(v, 1.0);
     ops.machine.electrical(c.data(), x.data(), m.data(), s);

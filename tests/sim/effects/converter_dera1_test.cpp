@@ -32,7 +32,7 @@ struct Distributed {
     refused = ops.machine.steady(p.data(), c.data(), s, x.data());
   }
   void set(std::complex<double> v) { s.Vr = v.real(), s.Vi = v.imag(); }
-  std::vector<double> slopes(const std::vector<double>& at) {
+  std::vector<double> derivatives(const std::vector<double>& at) {
     std::vector<double> dx(at.size());
     ops.machine.current(c.data(), at.data(), m.data(), s);
     s.V = std::hypot(s.Vr, s.Vi);
@@ -49,10 +49,10 @@ struct Distributed {
       const double t = static_cast<double>(k) * h;
       set(v(t));
       auto half = x;
-      const auto first = slopes(x);
+      const auto first = derivatives(x);
       for (std::size_t i = 0; i < x.size(); ++i) half[i] += 0.5 * h * first[i];
       set(v(t + 0.5 * h));
-      const auto mid = slopes(half);
+      const auto mid = derivatives(half);
       for (std::size_t i = 0; i < x.size(); ++i) x[i] = limited(i, x[i] + h * mid[i]);
     }
     set(v(duration));
@@ -87,7 +87,7 @@ TEST(ConverterDera1, StaysAtOperatingPointAndRidesThroughASag) {
   Distributed der;
   ASSERT_TRUE(der.problems.empty());
   ASSERT_EQ(der.refused, "");
-  for (const double d : der.slopes(der.x)) EXPECT_NEAR(d, 0.0, 1e-12);
+  for (const double d : der.derivatives(der.x)) EXPECT_NEAR(d, 0.0, 1e-12);
   der.run(1.0, 0.9);
   // The voltage exceeds the dead-band of 0.05 pu by 0.05 pu, at 5 pu/pu; the power recovers.
   EXPECT_NEAR(der.power().real(), kActive, 1e-6);

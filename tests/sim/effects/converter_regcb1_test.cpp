@@ -20,7 +20,7 @@ TEST(ConverterRegcb1, StartsAtItsCommands) {
     Behind b({{"rateFlag", rate_flag}, {"Re", 0.02}});
     ASSERT_TRUE(b.problems.empty());
     ASSERT_EQ(b.refused, "");
-    for (const double d : b.slopes(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
+    for (const double d : b.derivatives(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
     expect_near(b.current(std::polar(1.0, 0.7)), {0.6, 0.2}, 1e-14);  // rotates with the voltage
   }
 }
@@ -29,7 +29,7 @@ TEST(ConverterRegcb1, VoltageDropDrivesCurrentThroughTheReactance) {
   Behind b({});
   // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current without delay
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
-  EXPECT_NEAR(b.slopes(0.95)[3], (0.95 + 0.25 * 0.2 - b.x[3]) / 0.01, 1e-10);
+  EXPECT_NEAR(b.derivatives(0.95)[3], (0.95 + 0.25 * 0.2 - b.x[3]) / 0.01, 1e-10);
   Behind resistive({{"Re", 0.25}, {"Xe", 1e-9}});
   expect_near(resistive.current(0.95), {0.6 + 0.2, 0.2}, 1e-7);
   Behind at_once({{"Te", 0.0}});
@@ -48,11 +48,11 @@ TEST(ConverterRegcb1, PriorityCurrentIsLimitedLast) {
 TEST(ConverterRegcb1, RatesAndRefusals) {
   Behind b({{"rrpwr", 0.5}, {"Iqrmax", 3.0}});
   b.s.Tm = 0.9, b.s.Efd = 0.9;
-  auto dx = b.slopes(1.0);
+  auto dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[0], 0.5, 1e-14);
   EXPECT_NEAR(dx[1], 3.0, 1e-14);
   b.s.Tm = 0.1, b.s.Efd = 0.1;  // no lower rate limit: Q0 > 0
-  dx = b.slopes(1.0);
+  dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[0], (0.1 - 0.6) / 0.02, 1e-11);
   EXPECT_NEAR(dx[1], (0.1 - 0.2) / 0.02, 1e-11);
   EXPECT_NE(Behind({{"Imax", 0.5}}).refused.find("Imax"), std::string::npos);

@@ -25,7 +25,7 @@ TEST(ConverterRegcc1, StartsAtItsCommands) {
       Locked b({{"rateFlag", rate_flag}, {"Re", 0.02}, {"Te", te}});
       ASSERT_TRUE(b.problems.empty());
       ASSERT_EQ(b.refused, "");
-      for (const double d : b.slopes(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
+      for (const double d : b.derivatives(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
       expect_near(b.current(1.0), {0.6, 0.2}, 1e-14);
     }
 }
@@ -33,31 +33,31 @@ TEST(ConverterRegcc1, StartsAtItsCommands) {
 TEST(ConverterRegcc1, PllFollowsAnAngleStep) {
   Locked b({{"Kppll", 8.0}, {"Kipll", 600.0}});
   const double across = std::sin(0.1);
-  auto dx = b.slopes(std::polar(1.0, 0.1));
+  auto dx = b.derivatives(std::polar(1.0, 0.1));
   EXPECT_NEAR(dx[phi], 8.0 * across, 1e-13);
   EXPECT_NEAR(dx[w], 600.0 * across, 1e-11);
-  dx = b.slopes(std::polar(0.5, -0.1));  // half the voltage, half the gain
+  dx = b.derivatives(std::polar(0.5, -0.1));  // half the voltage, half the gain
   EXPECT_NEAR(dx[phi], -4.0 * across, 1e-13);
   b.x[phi] = 0.1;
   b.x[w] = 2.0;
-  dx = b.slopes(std::polar(1.0, 0.1));
+  dx = b.derivatives(std::polar(1.0, 0.1));
   EXPECT_NEAR(dx[phi], 2.0, 1e-13);  // locked to a frequency 2 rad/s above nominal
   EXPECT_NEAR(dx[w], 0.0, 1e-11);
 }
 TEST(ConverterRegcc1, PllIsLimitedAndFrozenAtLowVoltage) {
   Locked b({{"Kppll", 100.0}, {"wmax", 3.0}, {"wmin", -4.0}});
-  auto dx = b.slopes(std::polar(1.0, 0.1));  // demand: 100 sin 0.1 = 9.98 rad/s
+  auto dx = b.derivatives(std::polar(1.0, 0.1));  // demand: 100 sin 0.1 = 9.98 rad/s
   EXPECT_EQ(dx[phi], 3.0);
   EXPECT_EQ(dx[w], 0.0);
-  dx = b.slopes(std::polar(1.0, -0.1));
+  dx = b.derivatives(std::polar(1.0, -0.1));
   EXPECT_EQ(dx[phi], -4.0);
   EXPECT_EQ(dx[w], 0.0);
   Locked frozen({{"Kipll", 600.0}, {"Vpllfrz", 0.3}});
   frozen.x[w] = 1.0;
-  dx = frozen.slopes(std::polar(0.29, 0.1));
+  dx = frozen.derivatives(std::polar(0.29, 0.1));
   EXPECT_EQ(dx[phi], 0.0);
   EXPECT_EQ(dx[w], 0.0);
-  EXPECT_NEAR(frozen.slopes(std::polar(0.301, 0.1))[w], 600.0 * 0.301 * std::sin(0.1), 1e-11);
+  EXPECT_NEAR(frozen.derivatives(std::polar(0.301, 0.1))[w], 600.0 * 0.301 * std::sin(0.1), 1e-11);
 }
 
 TEST(ConverterRegcc1, VoltageChangeDrivesCurrentThroughTheReactance) {
@@ -75,7 +75,7 @@ TEST(ConverterRegcc1, CurrentControlMovesTheInnerVoltage) {
   Locked b({{"Kip", 2.0}, {"Kii", 30.0}, {"Re", 0.02}, {"Te", 0.01}});
   b.x[Ip] = 0.7;  // commands exceed the flowing current by 0.1 pu active and 0.05 pu reactive
   b.x[Iq] = 0.25;
-  const auto dx = b.slopes(1.0);
+  const auto dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Sp], 30.0 * 0.1, 1e-12);
   EXPECT_NEAR(dx[Sq], 30.0 * 0.05, 1e-12);
   EXPECT_NEAR(dx[Ed], (0.02 * 2.0 * 0.1 + 0.25 * 2.0 * 0.05) / 0.01, 1e-10);
@@ -100,18 +100,18 @@ TEST(ConverterRegcc1, IntegralsAreLimitedByImax) {
   Locked b({{"Imax", 1.0}, {"Kip", 1.0}, {"Kii", 30.0}, {"Te", 0.02}});
   b.x[Iq] = 0.9;  // 0.7 pu above the flowing current, 0.9 pu with the integral's 0.2 pu: sqrt(0.19) pu remain
   b.x[Sp] = 0.6;
-  auto dx = b.slopes(1.0);
+  auto dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Sq], 30.0 * 0.7, 1e-11);
   const double room = std::sqrt(1.0 - 0.81);
   EXPECT_NEAR(dx[Eq], 0.25 * (room - 0.6) / 0.02, 1e-10);
   b.x[Ip] = 0.65;  // beyond its limit the active integral does not rise
-  dx = b.slopes(1.0);
+  dx = b.derivatives(1.0);
   EXPECT_EQ(dx[Sp], 0.0);
   b.x[Ip] = 0.55;  // but may fall
-  dx = b.slopes(1.0);
+  dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Sp], -30.0 * 0.05, 1e-12);
   b.x[Iq] = 1.2;  // 1.0 + 0.2 pu: the reactive current alone exceeds Imax
-  dx = b.slopes(1.0);
+  dx = b.derivatives(1.0);
   EXPECT_EQ(dx[Sq], 0.0);
   EXPECT_NEAR(dx[Ed], 0.25 * (1.0 - 0.2) / 0.02, 1e-10);
 }
@@ -119,11 +119,11 @@ TEST(ConverterRegcc1, IntegralsAreLimitedByImax) {
 TEST(ConverterRegcc1, RatesAndRefusals) {
   Locked b({{"rrpwr", 0.5}, {"Iqrmax", 3.0}});
   b.s.Tm = 0.9, b.s.Efd = 0.9;
-  auto dx = b.slopes(1.0);
+  auto dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Ip], 0.5, 1e-14);
   EXPECT_NEAR(dx[Iq], 3.0, 1e-14);
   b.s.Tm = 0.1, b.s.Efd = 0.1;  // no lower rate limit: Q0 > 0
-  dx = b.slopes(1.0);
+  dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Ip], (0.1 - 0.6) / 0.02, 1e-11);
   EXPECT_NEAR(dx[Iq], (0.1 - 0.2) / 0.02, 1e-11);
   EXPECT_NE(Locked({{"Imax", 0.5}}).refused.find("Imax"), std::string::npos);

@@ -47,10 +47,10 @@ TEST(ExciterRexs, TransferFunctionIsTheDiagrams) {
       const C current = (at("KIP") + at("KII") / s) * lead_over_lag(0.0, at("TP"), omega);
       const C alternator = 1.0 / (at("KE") + at("TE") * s);  // Vfield to Ve, which is Efd
       const C inner = current * alternator / (1.0 + current * alternator * at("KH") * at("KE"));  // Vr to Efd
-      const C slope = at("KF") * s / (1.0 + at("TF") * s) *
-                      lead_over_lag(at("TF2") > 0 ? at("TF1") : 0, at("TF2"), omega);
+      const C feedback = at("KF") * s / (1.0 + at("TF") * s) *
+                         lead_over_lag(at("TF2") > 0 ? at("TF1") : 0, at("TF2"), omega);
       const C fed = at("FBF") == 0 ? C(1.0) : at("FBF") == 1 ? inner * at("KE") : inner;  // of Vr
-      const C exact = regulator * inner / (1.0 + regulator * slope * fed);
+      const C exact = regulator * inner / (1.0 + regulator * feedback * fed);
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEfd, omega) - exact),
                 1e-6 * (1.0 + std::abs(exact)));
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, kEfd, omega) +
@@ -83,7 +83,7 @@ class Drawn {
                                                 : 0.0;
     return ve * fex;
   }
-  [[nodiscard]] std::array<double, 9> slope(const std::array<double, 9>& y) const {
+  [[nodiscard]] std::array<double, 9> derivative(const std::array<double, 9>& y) const {
     std::array<double, 9> d{};
     const double Vfe = field(y[8]);
     const double washed = 0.04 / 1.3 * (Vfe - y[5]), Vf = y[6] + 0.2 * (washed - y[6]) / 0.1;
@@ -103,8 +103,8 @@ class Drawn {
     return d;
   }
   void step(double h) {
-    auto k1 = slope(x), k2 = slope(plus(x, k1, h / 2)), k3 = slope(plus(x, k2, h / 2)),
-         k4 = slope(plus(x, k3, h));
+    auto k1 = derivative(x), k2 = derivative(plus(x, k1, h / 2)), k3 = derivative(plus(x, k2, h / 2)),
+         k4 = derivative(plus(x, k3, h));
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
     x[4] = std::clamp(x[4], -2.0, 4.5);
     x[7] = std::clamp(x[7], -3.0, 5.0);
@@ -112,8 +112,8 @@ class Drawn {
   }
 
  private:
-  static double held(double slope, double at, double low, double high) {
-    return (at >= high && slope > 0) || (at <= low && slope < 0) ? 0.0 : slope;
+  static double held(double rate, double at, double low, double high) {
+    return (at >= high && rate > 0) || (at <= low && rate < 0) ? 0.0 : rate;
   }
   static std::array<double, 9> plus(std::array<double, 9> y, const std::array<double, 9>& d, double h) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += h * d[i];

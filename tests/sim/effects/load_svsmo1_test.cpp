@@ -45,8 +45,8 @@ class Bench {
     const double h = 1e-4;
     const auto steps = std::lround(seconds / h);
     for (long k = 0; k < steps; ++k) {
-      const auto k1 = slope(x), k2 = slope(moved(k1, h / 2)), k3 = slope(moved(k2, h / 2)),
-                 k4 = slope(moved(k3, h));
+      const auto k1 = derivative(x), k2 = derivative(moved(k1, h / 2)), k3 = derivative(moved(k2, h / 2)),
+                 k4 = derivative(moved(k3, h));
       for (std::size_t i = 0; i < x.size(); ++i) x[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
     }
   }
@@ -68,7 +68,7 @@ class Bench {
     plant::LoadEquations<double>(load_).current(at_.c.data(), at.data(), s);
     return s;
   }
-  [[nodiscard]] std::vector<double> slope(const std::vector<double>& at) const {
+  [[nodiscard]] std::vector<double> derivative(const std::vector<double>& at) const {
     std::vector<double> dx(at.size());
     plant::LoadEquations<double>(load_).derivative(at_.c.data(), at.data(), signals(at), dx.data());
     return dx;

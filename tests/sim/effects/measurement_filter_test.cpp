@@ -152,11 +152,11 @@ TEST(PmuFrequency, DifferenceAndAverageOfASine) {
   const Phasors difference = measured("PMUFREQ", {span, 0.0}, before);
   const Phasors both = measured("PMUFREQ", {span, smoothing}, before);
   for (std::size_t k = 60; k < before.V.size() - 60; ++k) {
-    const double slope = A * W * std::cos(W * static_cast<double>(k) / rate) / (2 * kPi * 60.0);
+    const double deviation = A * W * std::cos(W * static_cast<double>(k) / rate) / (2 * kPi * 60.0);
     // A sine keeps its shape: sinc of half the span, of half the smoothing. 3 Hz are 0.05 pu. The cubic
     // through samples 0.042 rad apart is 1e-6 A off at both ends of the span: 1e-6 0.8 / (0.1 2 pi 60).
-    EXPECT_NEAR(difference.df[k], 0.05 + slope * sinc(W * span / 2), 1e-7);
-    EXPECT_NEAR(both.df[k], 0.05 + slope * sinc(W * span / 2) * sinc(W * smoothing / 2), 1e-6);
+    EXPECT_NEAR(difference.df[k], 0.05 + deviation * sinc(W * span / 2), 1e-7);
+    EXPECT_NEAR(both.df[k], 0.05 + deviation * sinc(W * span / 2) * sinc(W * smoothing / 2), 1e-6);
     EXPECT_EQ(both.V[k], before.V[k]);
   }
 }

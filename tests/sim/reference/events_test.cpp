@@ -58,7 +58,7 @@ double inertia(const plant::Plant& plant) {  // 2 H S [s pu of the network's bas
   return 2 * m.p[static_cast<std::size_t>(m.effect->parameter_index("H"))] * plant.mva / 100.0;
 }
 /// Mean acceleration of the remaining machines, weighted by 2 H S, between two samples [1/s].
-double frequency_slope(const grid::Grid& grid, const Trajectory& run, int lost, int from, int to) {
+double mean_acceleration(const grid::Grid& grid, const Trajectory& run, int lost, int from, int to) {
   double sum = 0.0, weight = 0.0;
   for (int p = 0; p < static_cast<int>(grid.plants.size()); ++p) {
     if (p == lost) continue;
@@ -93,9 +93,9 @@ TEST(Events, InitialFrequencyDeclineFollowsTheAggregateSwingEquation) {
     const int at = static_cast<int>(std::lround(1.0 * hard.rate)),
               later = at + static_cast<int>(hard.rate / 10);
     // With constant-power loads only the line losses change: 4, 0.2 and 3 MW of 250 to 540.
-    EXPECT_NEAR(frequency_slope(grid, hard, index, at, later) / expected, 1.0, 0.02) << name;
+    EXPECT_NEAR(mean_acceleration(grid, hard, index, at, later) / expected, 1.0, 0.02) << name;
     // Constant-impedance loads fall with the voltage: the frequency declines more slowly.
-    const double gentle = frequency_slope(grid, soft, index, at, later) / expected;
+    const double gentle = mean_acceleration(grid, soft, index, at, later) / expected;
     EXPECT_GT(gentle, 0.3) << name;
     EXPECT_LT(gentle, 0.97) << name;
   }

@@ -76,9 +76,10 @@ TEST(Reference, JacobianEqualsCentralDifferences) {
     y[col] = keep;
     yp[col] = keep_p;
     for (int row = 0; row < n; ++row) {
-      const double slope = (high[row] - low[row]) / (2 * h), value = jacobian.coeff(row, col);
+      const double quotient = (high[row] - low[row]) / (2 * h), value = jacobian.coeff(row, col);
       // h^2 of the central difference on entries up to 400, relative to the entry's size
-      EXPECT_NEAR(value, slope, 1e-6 * std::max(1.0, std::abs(value))) << "row " << row << " column " << col;
+      EXPECT_NEAR(value, quotient, 1e-6 * std::max(1.0, std::abs(value)))
+          << "row " << row << " column " << col;
     }
   }
 }

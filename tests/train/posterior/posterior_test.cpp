@@ -141,9 +141,9 @@ TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
     y = at::sigmoid(at::logit(x.reshape({n, 1})) + spread * (0.8 * common + 0.6 * at::randn({n, 2})));
   };
   at::Tensor x, y;
-  std::vector<at::Tensor> weights = head.parameters(), slope, square;
+  std::vector<at::Tensor> weights = head.parameters(), momentum, square;
   for (const auto& w : weights) {
-    slope.push_back(at::zeros_like(w));
+    momentum.push_back(at::zeros_like(w));
     square.push_back(at::zeros_like(w));
   }
   for (int step = 1; step <= 250; ++step) {
@@ -152,9 +152,9 @@ TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
     at::NoGradGuard no_gradients;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const at::Tensor g = weights[i].grad();
-      slope[i].mul_(0.9).add_(g, 0.1);
+      momentum[i].mul_(0.9).add_(g, 0.1);
       square[i].mul_(0.99).add_(g * g, 0.01);
-      weights[i].sub_(0.003 * slope[i] / (square[i].sqrt() + 1e-6));
+      weights[i].sub_(0.003 * momentum[i] / (square[i].sqrt() + 1e-6));
       weights[i].mutable_grad() = at::Tensor();
     }
   }

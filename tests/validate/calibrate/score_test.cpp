@@ -14,18 +14,18 @@ TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
   constexpr int kValues = 200, kParameters = 3, kDraws = 20000;
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
-  Eigen::MatrixXd slopes(kValues, kParameters);
-  for (double& x : slopes.reshaped()) x = normal(generator);
+  Eigen::MatrixXd jacobian(kValues, kParameters);
+  for (double& x : jacobian.reshaped()) x = normal(generator);
   const Eigen::Vector3d deviation(1.0, 0.1, 0.01);
   const Eigen::MatrixXd covariance = deviation.cwiseAbs2().asDiagonal();
-  const double allowed = unseen_allowance(slopes.transpose() * slopes, covariance, kValues);
+  const double allowed = unseen_allowance(jacobian.transpose() * jacobian, covariance, kValues);
   int beyond = 0;
   double mean = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
     Eigen::VectorXd moved(kParameters), noise(kValues);
     for (int k = 0; k < kParameters; ++k) moved[k] = deviation[k] * normal(generator);
     for (double& x : noise) x = normal(generator);
-    const double added = ((slopes * moved + noise).squaredNorm() - noise.squaredNorm()) / kValues;
+    const double added = ((jacobian * moved + noise).squaredNorm() - noise.squaredNorm()) / kValues;
     mean += added / kDraws;
     beyond += added > allowed;
   }

@@ -82,7 +82,7 @@ inline record::Record open_circuit_record(double dVref, double noise = 0, double
   };
   const auto voltage = [&](const State& x) { return (x.flux * narrow + x.damper * (wide - narrow)) / wide; };
   const auto Ifd = [&](const State& x) { return x.flux - (p("Xd") - p("Xdp")) * kd * (x.damper - x.flux); };
-  const auto slope = [&](const State& x, double reference) {
+  const auto derivative = [&](const State& x, double reference) {
     return State{(x.Efd - Ifd(x)) / p("Tdop"), (x.flux - x.damper) / p("Tdopp"),
                  (K * (reference - voltage(x)) - x.Efd) / TE};
   };
@@ -106,8 +106,8 @@ inline record::Record open_circuit_record(double dVref, double noise = 0, double
     r.Ifd.push_back(Ifd(x) + field_noise * normal(generator));
     const double h = 1 / kRate / kParts, reference = V0 + V0 / K + (k >= 2.0 * kRate ? dVref : 0.0);
     for (int i = 0; i < kParts; ++i) {
-      const State a = slope(x, reference), b = slope(along(x, h / 2, a), reference),
-                  c = slope(along(x, h / 2, b), reference), d = slope(along(x, h, c), reference);
+      const State a = derivative(x, reference), b = derivative(along(x, h / 2, a), reference),
+                  c = derivative(along(x, h / 2, b), reference), d = derivative(along(x, h, c), reference);
       x = along(along(along(along(x, h / 6, a), h / 3, b), h / 3, c), h / 6, d);
     }
   }

@@ -131,15 +131,15 @@ inline record::Record by_frequency(record::Record r, const std::vector<double>& 
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal(0, noise);
   const double nominal = constants::turn * r.base.frequency;
-  std::vector<double> slope;  // [rad/s]
+  std::vector<double> derivative;  // [rad/s]
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
     const bool jumps = std::ranges::any_of(switched, [&](double s) { return r.t[k] <= s && s < r.t[k + 1]; });
     const std::size_t from = jumps ? k - 1 : k;
-    slope.push_back((r.theta[from + 1] - r.theta[from]) / (r.t[from + 1] - r.t[from]));
+    derivative.push_back((r.theta[from + 1] - r.theta[from]) / (r.t[from + 1] - r.t[from]));
   }
-  slope.push_back(slope.back());
+  derivative.push_back(derivative.back());
   r.f.clear();
-  for (std::size_t k = 0; k < r.t.size(); ++k) r.f.push_back(slope[k] / nominal + normal(generator));
+  for (std::size_t k = 0; k < r.t.size(); ++k) r.f.push_back(derivative[k] / nominal + normal(generator));
   for (std::size_t k = 1; k < r.t.size(); ++k)
     r.theta[k] = r.theta[k - 1] + nominal * r.f[k - 1] * (r.t[k] - r.t[k - 1]);
   r.angle = record::AngleSource::integrated;

@@ -90,20 +90,20 @@ double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std:
     event.switchings[switching].turn = turn;
     const playin::Response r =
         play(tested, event, {}, {&along, 1}, {.until = event.record.t[samples.back()] + 1e-9});
-    double cost = 0, slope = 0, curvature = 0;
+    double cost = 0, gradient = 0, curvature = 0;
     for (const playin::Output o : {playin::Output::P, playin::Output::Q}) {
       if (std::ranges::count(event.channels, o) == 0) continue;
       const auto& by = r.sensitivities.front().value[static_cast<int>(o)];
       for (const std::size_t k : samples) {
         const double off = r.of(o)[k] - event.measured(o)[k];
         cost += off * off;
-        slope += off * by[k];
+        gradient += off * by[k];
         curvature += by[k] * by[k];
       }
     }
     if (cost < least) least = cost, best = turn;
     if (!(curvature > 0)) break;
-    const double move = std::clamp(-slope / curvature, -kFarthestTurn, kFarthestTurn);
+    const double move = std::clamp(-gradient / curvature, -kFarthestTurn, kFarthestTurn);
     if (std::abs(move) < kTurnFound) break;
     turn += move;
   }

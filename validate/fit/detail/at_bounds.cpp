@@ -40,13 +40,13 @@ bool AtBounds::hold() {
   for (const auto& of : fixed_) some.parameter_blocks.push_back(of.first);
   std::vector<double> gradient;
   if (!problem_.Evaluate(some, nullptr, nullptr, &gradient, nullptr)) return false;
-  auto slope = gradient.begin();
+  auto derivative = gradient.begin();
   for (const auto& [block, fixed] : fixed_) {
     std::vector<int>& held = held_[block];
     for (int i = 0, n = problem_.ParameterBlockSize(block); i < n; ++i) {
       const bool never_moves = std::ranges::binary_search(fixed, i);
-      if (never_moves || *slope * beyond(block, i) < 0) held.push_back(i);
-      if (!never_moves) ++slope;
+      if (never_moves || *derivative * beyond(block, i) < 0) held.push_back(i);
+      if (!never_moves) ++derivative;
     }
     apply(block, held);
   }

@@ -104,7 +104,7 @@ class Walls : public ceres::CostFunction {
         if (wall.axes[side] < 0) continue;
         const auto at = static_cast<std::size_t>(wall.axes[side]);
         const double value = plant.machine.p[static_cast<std::size_t>(wall.parameters[side])];
-        row[at] = (side == 0 ? -1.0 : 1.0) * weight * setting_.axes[at].slope(blocks[0][at]) / value;
+        row[at] = (side == 0 ? -1.0 : 1.0) * weight * setting_.axes[at].derivative(blocks[0][at]) / value;
       }
     }
     return true;

@@ -147,7 +147,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool wi
   if (with_sensitivities) {
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
       const Axis& a = setting_.axes[i];
-      along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.slope(z[i])});
+      along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.derivative(z[i])});
     }
     std::ranges::move(state_directions(event_), std::back_inserter(along));
   }

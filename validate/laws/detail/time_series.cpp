@@ -58,12 +58,12 @@ class Runner {
   void step(std::size_t k) {
     if (x_.empty()) return;
     const double h = trace_.t[k + 1] - trace_.t[k];
-    std::vector<double> sum(x_.size(), 0.0), slope(x_.size(), 0.0), at = x_;
+    std::vector<double> sum(x_.size(), 0.0), derivative(x_.size(), 0.0), at = x_;
     constexpr double shares[] = {0, 0.5, 0.5, 1}, weights[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     for (int stage = 0; stage < 4; ++stage) {
-      for (std::size_t i = 0; i < x_.size(); ++i) at[i] = x_[i] + shares[stage] * h * slope[i];
-      output(signals(k, shares[stage]), at, slope.data());
-      for (std::size_t i = 0; i < x_.size(); ++i) sum[i] += weights[stage] * slope[i];
+      for (std::size_t i = 0; i < x_.size(); ++i) at[i] = x_[i] + shares[stage] * h * derivative[i];
+      output(signals(k, shares[stage]), at, derivative.data());
+      for (std::size_t i = 0; i < x_.size(); ++i) sum[i] += weights[stage] * derivative[i];
     }
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += h * sum[i];
   }

@@ -5,10 +5,11 @@ namespace swingbank::validate::playin {
 
 /// Returns the cubic with these values and derivatives at the ends of an interval of length h, at the
 /// fraction `share`.
-inline double hermite(double share, double h, double from, double slope_from, double to, double slope_to) {
+inline double hermite(double share, double h, double from, double derivative_from, double to,
+                      double derivative_to) {
   const double rest = 1 - share;
-  return rest * rest * ((1 + 2 * share) * from + share * h * slope_from) +
-         share * share * ((1 + 2 * rest) * to - rest * h * slope_to);
+  return rest * rest * ((1 + 2 * share) * from + share * h * derivative_from) +
+         share * share * ((1 + 2 * rest) * to - rest * h * derivative_to);
 }
 
 }  // namespace swingbank::validate::playin
