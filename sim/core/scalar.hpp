@@ -10,13 +10,13 @@
 namespace swingbank::sim {
 
 /// Number of sensitivities carried by one dual.
-constexpr int kDirections = 8;
-using D8 = Dual<double, kDirections>;  ///< double with sensitivities
-using P4 = Pack<4>;                    ///< four doubles
-using P8 = Pack<8>;                    ///< eight doubles
+constexpr int kSensitivities = 8;
+using D8 = Dual<double, kSensitivities>;  ///< double with sensitivities
+using P4 = Pack<4>;                       ///< four doubles
+using P8 = Pack<8>;                       ///< eight doubles
 /// Scenarios in one batch with sensitivities. More than one register's worth would not fit the L1 cache.
 constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
-using DualPack = Dual<Pack<kDualLanes>, kDirections>;  ///< SIMD batch with sensitivities
+using DualPack = Dual<Pack<kDualLanes>, kSensitivities>;  ///< SIMD batch with sensitivities
 
 /// Every scalar type that an effect is instantiated for. New types are added only here.
 using Scalars = std::tuple<double, P4, P8, D8, DualPack>;

@@ -44,7 +44,7 @@ struct Trajectory {
   std::vector<int> plants;        ///< indices of the recorded plants in the grid
   std::vector<Channel> channels;  ///< recorded channels, the same for each plant
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
-  int directions = 0;                                ///< number of sensitivity parameters
+  int sensitivity_parameters = 0;                    ///< number of sensitivity parameters
   /// Sensitivities, as `values`, one block per parameter: see slope().
   std::vector<double, CacheAligned<double>> sensitivities;
   Outcome outcome = Outcome::stable;  ///< how the simulation ended
@@ -58,18 +58,18 @@ struct Trajectory {
     constexpr int kDoublesPerLine = 8;
     stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
-    sensitivities.resize(values.size() * static_cast<std::size_t>(directions));
+    sensitivities.resize(values.size() * static_cast<std::size_t>(sensitivity_parameters));
   }
-  /// Returns the sensitivity of at(plant, channel) to the parameter number `direction`.
-  [[nodiscard]] double* sensitivity(int direction, int plant, int channel) {
+  /// Returns the sensitivity of at(plant, channel) to the parameter number `parameter`.
+  [[nodiscard]] double* sensitivity(int parameter, int plant, int channel) {
     return sensitivities.data() +
-           static_cast<std::ptrdiff_t>(direction * rows() + plant * static_cast<int>(channels.size()) +
+           static_cast<std::ptrdiff_t>(parameter * rows() + plant * static_cast<int>(channels.size()) +
                                        channel) *
                stride;
   }
   /// The same, read only.
-  [[nodiscard]] const double* sensitivity(int direction, int plant, int channel) const {
-    return const_cast<Trajectory*>(this)->sensitivity(direction, plant, channel);
+  [[nodiscard]] const double* sensitivity(int parameter, int plant, int channel) const {
+    return const_cast<Trajectory*>(this)->sensitivity(parameter, plant, channel);
   }
   /// Returns row i = plant * channels + channel: `samples` values in the channel's unit.
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }

@@ -58,9 +58,9 @@ class Posterior : public ceres::CostFunction {
     std::ranges::copy(values, residuals);
     bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
     if (!finite || !jacobians || !jacobians[0]) return finite;
-    for (Index first = 0; first < unknowns(); first += kDirections) {
+    for (Index first = 0; first < unknowns(); first += kSensitivities) {
       const auto r = of<D8>(z, first);
-      const Index last = std::min<Index>(first + kDirections, unknowns());
+      const Index last = std::min<Index>(first + kSensitivities, unknowns());
       for (std::size_t i = 0; i < r.size(); ++i)
         for (Index k = first; k < last; ++k) {
           const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
@@ -72,14 +72,14 @@ class Posterior : public ceres::CostFunction {
   }
 
  private:
-  /// Returns the innovations, then the prior's residuals, with sensitivities to kDirections unknowns from
+  /// Returns the innovations, then the prior's residuals, with sensitivities to kSensitivities unknowns from
   /// `first` on.
   template <class T>
   [[nodiscard]] std::vector<T> of(const double* z, Index first) const {
     const auto at = [&](Index k, double scale) {
       T x(z[k] * scale);
       if constexpr (!std::is_same_v<T, double>)
-        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale;
+        if (k >= first && k < first + kSensitivities) x.d[static_cast<std::size_t>(k - first)] = scale;
       return x;
     };
     std::vector<T> p(p_.begin(), p_.end()), out(static_cast<std::size_t>(num_residuals()));

@@ -126,9 +126,9 @@ class Residuals : public ceres::CostFunction {
     bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
     if (!jacobians || !jacobians[0]) return finite;
     const Index width = scale_.size();
-    for (Index first = 0; first < width; first += kDirections) {
+    for (Index first = 0; first < width; first += kSensitivities) {
       const auto r = of<D8>(blocks[0], first);
-      for (Index k = first; k < std::min<Index>(first + kDirections, width); ++k)
+      for (Index k = first; k < std::min<Index>(first + kSensitivities, width); ++k)
         for (std::size_t i = 0; i < r.size(); ++i) {
           const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
           jacobians[0][static_cast<Index>(i) * width + k] = derivative;
@@ -150,7 +150,7 @@ class Residuals : public ceres::CostFunction {
     const auto at = [&](Index k) {
       T x(z[k] * scale_[k]);
       if constexpr (!std::is_same_v<T, double>)
-        if (k >= first && k < first + kDirections) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
+        if (k >= first && k < first + kSensitivities) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
       return x;
     };
     std::vector<T> p(p_.begin(), p_.end()), flux;

@@ -49,7 +49,7 @@ struct Job {
     friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };
   std::vector<BlockValues> parameters = {};  ///< blocks whose values differ from the grid's
-  std::vector<Seed> seeds = {};  ///< at most kDirections; used only with BatchOptions::sensitivities
+  std::vector<Seed> seeds = {};  ///< at most kSensitivities; used only with BatchOptions::sensitivities
 };
 
 /// Returns the plants whose parameters a job changes, by index. `grid`: the batch's grid.

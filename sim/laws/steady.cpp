@@ -81,8 +81,8 @@ class Search {
       return i < states_ ? x[static_cast<std::size_t>(i)] : c[static_cast<std::size_t>(searched(i))];
     };
     Matrix j(rows_, unknowns_);
-    for (Index from = 0; from < unknowns_; from += kDirections) {
-      const Index to = std::min<Index>(from + kDirections, unknowns_);
+    for (Index from = 0; from < unknowns_; from += kSensitivities) {
+      const Index to = std::min<Index>(from + kSensitivities, unknowns_);
       for (Index i = from; i < to; ++i) unknown(i).d[static_cast<std::size_t>(i - from)] = 1.0;
       const auto f = residual_of<D8>(law_, c.data(), x.data(), s);
       for (Index row = 0; row < rows_; ++row)
@@ -216,7 +216,7 @@ std::string steady(const Definition& law, const D8* p, D8* c, Signals<D8>& s, D8
   now.t = D8(-1.0);
   const auto f = Search::residual_of<D8>(law, c, x, now);
   if (!f.empty() && states + law.searched.size() > 0)
-    for (std::size_t k = 0; k < kDirections; ++k) {
+    for (std::size_t k = 0; k < kSensitivities; ++k) {
       Vector by(static_cast<Index>(f.size()));
       for (std::size_t i = 0; i < f.size(); ++i) by[static_cast<Index>(i)] = f[i].d[k];
       const Vector u = search.follow(by);

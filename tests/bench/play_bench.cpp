@@ -39,13 +39,13 @@ struct Bench {
       Cost& cost = costs[name];
       cost.seconds += processor_seconds() - begin;
       cost.steps += static_cast<double>(r.steps) / e.record.samples();
-      std::vector<playin::Direction> along;
+      std::vector<playin::SensitivityParameter> along;
       for (const auto& f : fit::free_parameters(tested.plant, 0.2))
-        along.push_back({.kind = playin::Direction::Kind::parameter,
+        along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                          .parameter = f.id,
                          .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
       const double middle = processor_seconds();
-      const int runs = static_cast<int>(along.size() + sim::kDirections - 1) / sim::kDirections;
+      const int runs = static_cast<int>(along.size() + sim::kSensitivities - 1) / sim::kSensitivities;
       const event::Playing how{.lenient = lenient, .linear_sensitivities = lenient};
       cost.sensitivity_steps += static_cast<double>(event::play(tested, e, {}, along, how).steps) /
                                 e.record.samples() / (lenient ? 1 : runs);
@@ -93,13 +93,13 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::
     const double begin = processor_seconds();
     for (std::size_t e = 0; e < events.size(); ++e) {
       const event::FitEvent& event = events[e];
-      std::vector<playin::Direction> along;
+      std::vector<playin::SensitivityParameter> along;
       if (gradient) {
         for (const auto& f : fit::free_parameters(tested.plant, 0.2))
-          along.push_back({.kind = playin::Direction::Kind::parameter,
+          along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                            .parameter = f.id,
                            .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
-        std::ranges::move(fit::state_directions(event), std::back_inserter(along));
+        std::ranges::move(fit::state_parameters(event), std::back_inserter(along));
       }
       const playin::Response r =
           event::play(tested, event, {}, along,

@@ -43,10 +43,10 @@ class EventResidual : public ceres::CostFunction {
     const sim::plant::Plant plant = setting_.plant(blocks[0]);
     if (!playin::can_run(plant)) return false;
     double* jacobian = jacobians ? jacobians[0] : nullptr;
-    std::vector<playin::Direction> along;
+    std::vector<playin::SensitivityParameter> along;
     if (jacobian)
       for (std::size_t i = 0; i < setting_.free.size(); ++i)
-        along.push_back({.kind = playin::Direction::Kind::parameter,
+        along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                          .parameter = setting_.free[i].id,
                          .scale = setting_.start[i]});
     try {

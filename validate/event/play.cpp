@@ -70,7 +70,8 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
 }  // namespace
 
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
-                      const EventState& state, std::span<const playin::Direction> along, const Playing& how) {
+                      const EventState& state, std::span<const playin::SensitivityParameter> along,
+                      const Playing& how) {
   const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
   const auto given = playin::given_of(event.record, curve.switchings(), event.start);
   return playin::observe(run_of(tested, event, state, how, curve, given ? &*given : nullptr), along);
@@ -80,7 +81,7 @@ Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const F
                                const EventState& state, InputKind input) {
   const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
   const auto given = playin::given_of(event.record, curve.switchings(), event.start);
-  using Kind = playin::Direction::Kind;
+  using Kind = playin::SensitivityParameter::Kind;
   return playin::rates_by_input(run_of(tested, event, state, {}, curve, given ? &*given : nullptr),
                                 input == InputKind::torque ? Kind::torque : Kind::field);
 }

@@ -57,7 +57,7 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 /// Returns the plant's response through its instruments, and its sensitivities to the parameters `along`.
 /// Throws InputError as playin::observe.
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
-                      const EventState& state, std::span<const playin::Direction> along = {},
+                      const EventState& state, std::span<const playin::SensitivityParameter> along = {},
                       const Playing& how = {});
 /// Returns the responses of several plants that differ in values only, computed in SIMD batches of eight
 /// (playin::drive_together); an entry is empty where play() would throw.

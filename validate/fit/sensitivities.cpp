@@ -8,13 +8,13 @@
 namespace swingbank::validate::fit {
 namespace {
 
-using Kind = playin::Direction::Kind;
+using Kind = playin::SensitivityParameter::Kind;
 
 /// Tolerance at which sensitivities are accurate to 1e-5 of their values.
 constexpr event::Playing kExact{.tolerance = 1e-7, .hasty = false};
 
-std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
-  std::vector<playin::Direction> along;
+std::vector<playin::SensitivityParameter> own_parameters(const event::FitEvent& event) {
+  std::vector<playin::SensitivityParameter> along;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (event.switchings[k].uncertainty > 0)
       along.push_back(
@@ -27,7 +27,7 @@ std::vector<playin::Direction> own_directions(const event::FitEvent& event) {
 }
 
 /// Returns the state in units of these sensitivity parameters, each with a prior standard deviation of 1.
-Eigen::VectorXd on_directions(const event::FitEvent& event, const EventState& state) {
+Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventState& state) {
   std::vector<double> all;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (const playin::Switching& s = event.switchings[k]; s.uncertainty > 0)
@@ -61,10 +61,10 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
                                        const EventState& state, const std::vector<FreeParameter>& free) {
   const event::FitEvent& event = e.event;
-  std::vector<playin::Direction> along;
+  std::vector<playin::SensitivityParameter> along;
   for (const auto& f : free)
     along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
-  std::ranges::move(own_directions(event), std::back_inserter(along));
+  std::ranges::move(own_parameters(event), std::back_inserter(along));
   const playin::Response r = event::play(tested, event, state, along, kExact);
 
   EventSensitivities back;
@@ -83,8 +83,8 @@ EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested,
   const auto solved = inner.ldlt();
   const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.sensitivities);
   back.sensitivities -= own * absorbed;
-  back.score =
-      back.sensitivities.transpose() * back.residual - absorbed.transpose() * on_directions(event, state);
+  back.score = back.sensitivities.transpose() * back.residual -
+               absorbed.transpose() * in_parameter_units(event, state);
   return back;
 }
 

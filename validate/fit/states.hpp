@@ -23,9 +23,9 @@ inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurn
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
 /// Kind of each state, in this order.
-inline constexpr std::array<playin::Direction::Kind, kStates> kStateKind = {
-    playin::Direction::Kind::P, playin::Direction::Kind::Q, playin::Direction::Kind::angle,
-    playin::Direction::Kind::speed};
+inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateKind = {
+    playin::SensitivityParameter::Kind::P, playin::SensitivityParameter::Kind::Q,
+    playin::SensitivityParameter::Kind::angle, playin::SensitivityParameter::Kind::speed};
 /// One unit of each state in the search, far below any effect and far above rounding.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
 /// Prior standard deviation of the initial state, in those units: a plant is nearly in steady state before an
@@ -72,9 +72,9 @@ inline event::EventState event_state(const event::FitEvent& event, const double*
 }
 
 /// Returns the sensitivity parameters of these variables.
-inline std::vector<playin::Direction> state_directions(const event::FitEvent& event) {
-  using Kind = playin::Direction::Kind;
-  std::vector<playin::Direction> along;
+inline std::vector<playin::SensitivityParameter> state_parameters(const event::FitEvent& event) {
+  using Kind = playin::SensitivityParameter::Kind;
+  std::vector<playin::SensitivityParameter> along;
   const int switchings = static_cast<int>(event.switchings.size());
   for (int k = 0; k < switchings; ++k)
     along.push_back({.kind = Kind::switching, .index = k, .scale = kSwitchScale});

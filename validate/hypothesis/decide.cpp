@@ -143,9 +143,9 @@ class Separations {
   [[nodiscard]] std::optional<Answer> play_one(std::size_t scene, std::size_t competitor) const {
     const Judgement& j = *competitors_[competitor];
     const Scene& s = scenes_[scene];
-    std::vector<playin::Direction> along;
+    std::vector<playin::SensitivityParameter> along;
     for (const auto& f : free_[competitor])
-      along.push_back({.kind = playin::Direction::Kind::parameter,
+      along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                        .parameter = f.id,
                        .scale = fit::axis_unit(j.fit.plant, f)});
     try {

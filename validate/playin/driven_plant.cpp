@@ -19,7 +19,7 @@ namespace swingbank::validate::playin {
 namespace {
 
 using sim::D8;
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 
 constexpr double kRoughFrom = 1e-5;     ///< tolerance from which the 3(2) pair is used
 constexpr double kShortestStep = 1e-9;  ///< [s]
@@ -30,8 +30,8 @@ constexpr double kRateOver = 1e-6;      ///< interval for the rate of a guard at
 template <class T>
 class Driven {
  public:
-  Driven(const Drive& run, std::span<const Direction> directions)
-      : run_(run), directions_(directions), equations_(run, directions), x_(equations_.x0) {
+  Driven(const Drive& run, std::span<const SensitivityParameter> parameters)
+      : run_(run), parameters_(parameters), equations_(run, parameters), x_(equations_.x0) {
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
@@ -48,7 +48,7 @@ class Driven {
   Response run(Trace* trace = nullptr) {
     trace_ = trace;
     Response back;
-    back.sensitivities.resize(directions_.size());
+    back.sensitivities.resize(parameters_.size());
     const record::Record& r = *run_.record;
     for (auto& values : back.value) values.reserve(r.t.size());
     for (auto& sensitivity : back.sensitivities)
@@ -70,8 +70,8 @@ class Driven {
     const auto n = static_cast<Eigen::Index>(x_.size());
     Eigen::MatrixXd by(n + kOutputs, n + 2);
     const Complex v = run_.start.voltage;
-    for (Eigen::Index first = 0; first < n + 2; first += sim::kDirections) {
-      const Eigen::Index count = std::min<Eigen::Index>(sim::kDirections, n + 2 - first);
+    for (Eigen::Index first = 0; first < n + 2; first += sim::kSensitivities) {
+      const Eigen::Index count = std::min<Eigen::Index>(sim::kSensitivities, n + 2 - first);
       auto x = x_;
       for (T& value : x) value = value + T(1e-9);  // off the corner of a dead-band of zero width
       T vr(v.real()), vi(v.imag());
@@ -133,7 +133,7 @@ class Driven {
     const T* after = derivative_at(at.time, 1);
     mark(Trace::Node::Kind::after, at.switching, after);
     if (at.switching < 0) return;
-    equations_.each([&](const Direction& d, std::size_t i) {
+    equations_.each([&](const SensitivityParameter& d, std::size_t i) {
       if (d.kind != Kind::switching || d.index != at.switching) return;
       for (std::size_t j = 0; j < x_.size(); ++j)
         Seeds<T>::add(x_[j], i, d.scale * (sim::value_of(before[j]) - sim::value_of(after[j])));
@@ -231,10 +231,10 @@ class Driven {
     refresh();
     mark(Trace::Node::Kind::after, -1, k_[0].data());
     for (std::size_t i = 0; i < x_.size() && !run_.instants_stand; ++i)
-      for (std::size_t d = 0; d < directions_.size(); ++d)
+      for (std::size_t d = 0; d < parameters_.size(); ++d)
         Seeds<T>::add(x_[i], d,
                       Seeds<T>::get(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
-    fresh_ = fresh_ || !directions_.empty();
+    fresh_ = fresh_ || !parameters_.empty();
     if (++steps_ > run_.step_limit) give_up();
   }
   struct Jump {
@@ -363,7 +363,7 @@ class Driven {
     out[static_cast<std::size_t>(Output::speed)] = equations_.signals.speed + T(frame);
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));
-      for (std::size_t d = 0; d < directions_.size(); ++d)
+      for (std::size_t d = 0; d < parameters_.size(); ++d)
         back.sensitivities[d].value[o].push_back(Seeds<T>::get(out[static_cast<std::size_t>(o)], d));
     }
   }
@@ -376,7 +376,7 @@ class Driven {
   const Drive& run_;
   const Pair& pair_ = run_.tolerance < kRoughFrom ? kFineSteps : kRoughSteps;
   bool fresh_ = true;  ///< k_[0] must be evaluated again
-  std::span<const Direction> directions_;
+  std::span<const SensitivityParameter> parameters_;
   DrivenEquations<T> equations_;
   std::vector<T> x_, trial_, missed_;
   std::array<std::vector<T>, 7> k_;
@@ -456,7 +456,7 @@ SeenAlong seen_along(const Drive& run, std::span<const double> times) {
 
 LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
 
-Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input) {
+Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind input) {
   constexpr double kInputStep = 1e-3;  // [pu]
   DrivenEquations<double> equations(run, {});
   const auto n = equations.x0.size();
@@ -470,9 +470,9 @@ Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input) {
          kInputStep;
 }
 
-Response drive(const Drive& run, std::span<const Direction> directions) {
+Response drive(const Drive& run, std::span<const SensitivityParameter> parameters) {
   const bool linear = !run.linear_sensitivities.empty() && can_be_linear(run);
-  if (directions.empty()) {
+  if (parameters.empty()) {
     if (!run.past || !linear) return Driven<double>(run, {}).run();
     *run.past = std::make_shared<const Past>(run);
     return (*run.past)->answer;
@@ -480,13 +480,13 @@ Response drive(const Drive& run, std::span<const Direction> directions) {
   if (linear) {
     const auto past = run.past && *run.past ? *run.past : std::make_shared<const Past>(run);
     Response answer = past->answer;
-    if (add_linear_sensitivities(run, directions, past->trace, answer)) return answer;
+    if (add_linear_sensitivities(run, parameters, past->trace, answer)) return answer;
   }
   Response all;
-  constexpr std::size_t kSeedsAtOnce = sim::kDirections;
-  for (std::size_t first = 0; first < directions.size(); first += kSeedsAtOnce) {
+  constexpr std::size_t kSeedsAtOnce = sim::kSensitivities;
+  for (std::size_t first = 0; first < parameters.size(); first += kSeedsAtOnce) {
     Response some =
-        Driven<D8>(run, directions.subspan(first, std::min(kSeedsAtOnce, directions.size() - first))).run();
+        Driven<D8>(run, parameters.subspan(first, std::min(kSeedsAtOnce, parameters.size() - first))).run();
     if (first == 0) {
       all = std::move(some);
       continue;

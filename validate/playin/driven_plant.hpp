@@ -74,7 +74,7 @@ struct Drive {
 };
 
 /// Sensitivity parameter; `scale` is its unit, and sensitivities are per such unit.
-struct Direction {
+struct SensitivityParameter {
   /// Kind of a sensitivity parameter.
   enum class Kind {
     parameter,  ///< `parameter` of the plant
@@ -92,7 +92,7 @@ struct Direction {
   int index = 0;                           ///< of a switching time or knot
   double scale = 1.0;                      ///< unit of the parameter, in the kind's own unit
   /// Compares all members.
-  friend bool operator==(const Direction&, const Direction&) = default;
+  friend bool operator==(const SensitivityParameter&, const SensitivityParameter&) = default;
 };
 
 /// Response [output][sample] and sensitivities [parameter][output][sample]; outputs without requested
@@ -115,7 +115,7 @@ struct Response {
 /// effect. At a switching time that is a sensitivity parameter, the sensitivities step by the difference of
 /// the derivatives before and after it. Throws InputError if the operating point has no steady state or the
 /// integration fails.
-Response drive(const Drive& run, std::span<const Direction> directions = {});
+Response drive(const Drive& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
 struct Seen {
@@ -143,6 +143,6 @@ struct LinearPlant {
 LinearPlant linearise(const Drive& run);
 /// Returns the derivative of each state's rate with respect to the run's torque or field at the start [1/s
 /// per pu]. Throws as linearise().
-Eigen::VectorXd rates_by_input(const Drive& run, Direction::Kind input);
+Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind input);
 
 }  // namespace swingbank::validate::playin

@@ -8,7 +8,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 
 /// Oversampling of the response for instruments with memory. A step is then filtered over a time that is
 /// shorter by this factor.
@@ -61,9 +61,9 @@ void thin(std::vector<T>& values, std::size_t stride) {
 /// One run and its sensitivities.
 class Observed {
  public:
-  /// `directions` must not contain parameters of the instruments.
-  Observed(const Drive& run, std::span<const Direction> directions)
-      : run_(run), chain_(run.plant->measurements), inner_(run), directions_(directions) {
+  /// `parameters` must not contain parameters of the instruments.
+  Observed(const Drive& run, std::span<const SensitivityParameter> parameters)
+      : run_(run), chain_(run.plant->measurements), inner_(run), parameters_(parameters) {
     const record::Record& r = *run.record;
     const double rate = 1 / r.step(), frequency = run.conventions.frequency;
     const Standing gain = gain_ = standing(chain_, rate, frequency);
@@ -76,7 +76,7 @@ class Observed {
     if (sim::plant::memory(chain_) > 0) refine(r);
   }
   Response run() {
-    Response r = drive(inner_, directions_);
+    Response r = drive(inner_, parameters_);
     turn_starts(r);
     const double rate = fine_rate(), frequency = run_.conventions.frequency;
     auto& P = r.value[static_cast<int>(Output::P)];
@@ -110,7 +110,7 @@ class Observed {
   }
   /// Returns the sensitivity to a parameter of an instrument, after run(). If it does not change the gain for
   /// constant phasors, the plant's run is unchanged, and only the instruments' outputs are recomputed.
-  [[nodiscard]] Response::Sensitivity along(const Direction& d) const {
+  [[nodiscard]] Response::Sensitivity along(const SensitivityParameter& d) const {
     const auto& record = sim::plant::parameter_record(*run_.plant, d.parameter);
     const double move = kMove * (record.high - record.low);
     sim::plant::Plant above = *run_.plant, below = above;
@@ -135,7 +135,8 @@ class Observed {
     return gain.V == gain_.V && gain.I == gain_.I &&
            (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
   }
-  [[nodiscard]] Response::Sensitivity along_both(const Direction& d, const sim::plant::Plant& above,
+  [[nodiscard]] Response::Sensitivity along_both(const SensitivityParameter& d,
+                                                 const sim::plant::Plant& above,
                                                  const sim::plant::Plant& below, double move) const {
     const auto of = [&](const sim::plant::Plant& plant) {
       Drive moved = run_;
@@ -163,11 +164,11 @@ class Observed {
   /// Converts sensitivities to P and Q of the start from the plant's values to the measured ones.
   void turn_starts(Response& r) const {
     const auto find = [&](Kind kind) {
-      return std::ranges::find(directions_, kind, &Direction::kind) - directions_.begin();
+      return std::ranges::find(parameters_, kind, &SensitivityParameter::kind) - parameters_.begin();
     };
     const auto p = static_cast<std::size_t>(find(Kind::P)), q = static_cast<std::size_t>(find(Kind::Q));
-    if (p == directions_.size() || q == directions_.size()) return;
-    const double toP = directions_[p].scale, toQ = directions_[q].scale;
+    if (p == parameters_.size() || q == parameters_.size()) return;
+    const double toP = parameters_[p].scale, toQ = parameters_[q].scale;
     for (int o = 0; o < kOutputs; ++o)
       for (std::size_t k = 0; k < r.sensitivities[p].value[o].size(); ++k) {
         double &a = r.sensitivities[p].value[o][k], &b = r.sensitivities[q].value[o][k];
@@ -180,7 +181,7 @@ class Observed {
   const Drive& run_;
   const std::vector<sim::plant::Block>& chain_;
   Drive inner_;
-  std::span<const Direction> directions_;
+  std::span<const SensitivityParameter> parameters_;
   record::Record fine_;
   Standing gain_;
   sim::Phasors shown_;  ///< inputs of the chain
@@ -190,20 +191,20 @@ class Observed {
 
 }  // namespace
 
-Response observe(const Drive& run, std::span<const Direction> directions) {
-  if (run.plant->measurements.empty()) return drive(run, directions);
+Response observe(const Drive& run, std::span<const SensitivityParameter> parameters) {
+  if (run.plant->measurements.empty()) return drive(run, parameters);
   const int first = sim::plant::first_measurement(*run.plant);
-  const auto instrument = [&](const Direction& d) {
+  const auto instrument = [&](const SensitivityParameter& d) {
     return d.kind == Kind::parameter && d.parameter.block >= first;
   };
-  std::vector<Direction> others;
-  std::ranges::copy_if(directions, std::back_inserter(others),
-                       [&](const Direction& d) { return !instrument(d); });
+  std::vector<SensitivityParameter> others;
+  std::ranges::copy_if(parameters, std::back_inserter(others),
+                       [&](const SensitivityParameter& d) { return !instrument(d); });
   Observed observed(run, others);
   Response r = observed.run();
   std::vector<Response::Sensitivity> sensitivities;
   std::size_t next = 0;
-  for (const Direction& d : directions)
+  for (const SensitivityParameter& d : parameters)
     sensitivities.push_back(instrument(d) ? observed.along(d) : std::move(r.sensitivities[next++]));
   r.sensitivities = std::move(sensitivities);
   return r;

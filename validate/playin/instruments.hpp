@@ -12,7 +12,7 @@ namespace swingbank::validate::playin {
 /// whose blocks follow those of sim::plant::block_parameters(). Their sensitivities are central differences:
 /// of the instruments' outputs for one run of the plant if constant phasors pass as before, else of whole
 /// runs. Throws InputError as drive().
-Response observe(const Drive& run, std::span<const Direction> directions = {});
+Response observe(const Drive& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Returns whether the effect of instruments of this kind, away from null values, can be removed. It can if
 /// their output is proportional to their input and deterministic (unlike noise or quantisation), and if they

@@ -12,7 +12,7 @@
 namespace swingbank::validate::reduced {
 namespace {
 
-using Kind = playin::Direction::Kind;
+using Kind = playin::SensitivityParameter::Kind;
 using detail::Normal, detail::Point;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
@@ -239,7 +239,7 @@ class Inferring {
                                                        std::size_t e) const {
     const event::FitEvent& event = events_[e];
     const event::EventState state = state_at(p, e);
-    std::vector<playin::Direction> along;
+    std::vector<playin::SensitivityParameter> along;
     std::vector<Index> numbers;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       if (!ids_[i]) continue;
@@ -248,7 +248,7 @@ class Inferring {
                        .parameter = *ids_[i],
                        .scale = axes_[i].derivative(p.z[static_cast<Index>(i)])});
     }
-    std::ranges::move(fit::state_directions(event), std::back_inserter(along));
+    std::ranges::move(fit::state_parameters(event), std::back_inserter(along));
     const Index own = p.states[e].size(), knots = p.torques[e].size();
     std::vector<Kind> kinds;
     if (inputs_.torque) kinds.push_back(Kind::torque);

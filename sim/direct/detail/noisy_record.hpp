@@ -15,7 +15,7 @@ enum Output { kP, kQ, kSpeed, kIfd, kOutputs };
 /// Played-in signals, which are noisy too.
 enum Input { kV, kTheta, kInputs };
 /// Largest number of states: one dual holds the states and the input noise.
-constexpr std::size_t kMostFlowing = kDirections - kInputs;
+constexpr std::size_t kMostFlowing = kSensitivities - kInputs;
 
 using Inputs = std::array<double, kInputs>;
 

@@ -223,13 +223,13 @@ unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr double longest = 0.3;  // [pu]: a constant-power load may cause too large first steps
   // The difference quotients still affect the derivatives after the last Newton step. Dual numbers therefore
   // take two more steps and always use new factors.
-  constexpr int more = Traits::directions > 0 ? 2 : 0;
+  constexpr int more = Traits::sensitivities > 0 ? 2 : 0;
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
   auto seeking = Traits::mask(open);
   std::array<LaneSearch, kLanes> search{};
   for (int step = 0; step < limit && open != 0; ++step) {
-    const unsigned anew = open & (Traits::directions > 0 || step >= patience ? all : ~k.factored);
+    const unsigned anew = open & (Traits::sensitivities > 0 || step >= patience ? all : ~k.factored);
     const Flat largest = newton_step(k, x, steady_.data(), anew);
     const T scale = Traits::constant(Flat(longest) / maximum(Flat(longest), largest));
     for (std::size_t i = 0; i < count; ++i) {

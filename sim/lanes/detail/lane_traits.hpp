@@ -17,7 +17,7 @@ template <>
 struct LaneTraits<double> {
   using Flat = double;
   using Real = double;  ///< type of one lane
-  static constexpr int lanes = 1, directions = 0;
+  static constexpr int lanes = 1, sensitivities = 0;
   static double get(double v, int) { return v; }
   static void set(double& v, int, double a) { v = a; }
   static bool mask(unsigned bits) { return (bits & 1U) != 0; }
@@ -57,7 +57,7 @@ template <class S, int N>
 struct LaneTraits<Packed<S, N>> {
   using Flat = Packed<S, N>;
   using Real = S;
-  static constexpr int lanes = N, directions = 0;
+  static constexpr int lanes = N, sensitivities = 0;
   static double get(const Flat& v, int l) { return v[l]; }
   static void set(Flat& v, int l, double a) { reinterpret_cast<S*>(&v)[l] = static_cast<S>(a); }
   static typename Flat::Mask mask(unsigned bits) { return Flat::mask(bits); }
@@ -94,15 +94,15 @@ struct LaneTraits<Dual<Pack<N>, D>> {
   using Flat = Pack<N>;
   using Of = LaneTraits<Flat>;
   using Real = double;
-  static constexpr int lanes = N, directions = D;
+  static constexpr int lanes = N, sensitivities = D;
   static_assert(sizeof(T) == (1 + D) * sizeof(Flat));
   static double get(const T& v, int l) { return v.a[l]; }
   static void set(T& v, int l, double a) {
     Of::set(v.a, l, a);
     for (auto& d : v.d) Of::set(d, l, 0.0);
   }
-  static void set_sensitivity(T& v, int l, int direction, double a) {
-    Of::set(v.d[static_cast<std::size_t>(direction)], l, a);
+  static void set_sensitivity(T& v, int l, int parameter, double a) {
+    Of::set(v.d[static_cast<std::size_t>(parameter)], l, a);
   }
   static typename Flat::Mask mask(unsigned bits) { return Of::mask(bits); }
   static Flat value(const T& v) { return v.a; }

@@ -44,7 +44,7 @@ class Lanes {
   static constexpr double kKinkShare = 0.003;
   /// Minimum weight of a state in the kink error: the error is visible at once, even if it decays quickly.
   static constexpr double kKinkWeight = 0.3;
-  static constexpr std::size_t kFlats = 1 + Traits::directions;  ///< number of flats in one T
+  static constexpr std::size_t kFlats = 1 + Traits::sensitivities;  ///< number of flats in one T
   struct PlantSlice {
     plant::PlantEquations<T> equations;
     int x, c, m;        ///< offsets of states, coefficients and scratch

@@ -132,8 +132,8 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
   const PlantSlice& p = plants_[plant];
   const auto put = [lane](T& to, const Value& from) {
     Traits::set(to, lane, value_of(from));
-    if constexpr (Traits::directions > 0 && !std::is_same_v<Value, double>)
-      for (int d = 0; d < Traits::directions; ++d)
+    if constexpr (Traits::sensitivities > 0 && !std::is_same_v<Value, double>)
+      for (int d = 0; d < Traits::sensitivities; ++d)
         Traits::set_sensitivity(to, lane, d, from.d[static_cast<std::size_t>(d)]);
   };
   for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
@@ -185,7 +185,7 @@ void Lanes<T>::load(int lane) {
   const auto changed = changed_plants(grid_, run.job);
   for (const auto& [index, plant] : changed)
     load_plant(lane, static_cast<std::size_t>(index), state.bring(plant));
-  if constexpr (Traits::directions > 0) load_seeded(lane, changed);
+  if constexpr (Traits::sensitivities > 0) load_seeded(lane, changed);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
     const auto source = static_cast<std::size_t>(nonlinear_[i]);
     const auto& at = source < plants_.size() ? state.plants[source] : state.loads[source - plants_.size()];
@@ -232,9 +232,10 @@ void Lanes<T>::find_weights() {
 template <class T>
 void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed) {
   const auto& seeds = lanes_[static_cast<std::size_t>(lane)].job.seeds;
-  if (seeds.size() > static_cast<std::size_t>(Traits::directions))
+  if (seeds.size() > static_cast<std::size_t>(Traits::sensitivities))
     throw InputError({fmt::format("{} seeds", seeds.size()), "job",
-                      fmt::format("a lane carries {} sensitivities", Traits::directions), "split the job"});
+                      fmt::format("a lane carries {} sensitivities", Traits::sensitivities),
+                      "split the job"});
   const grid::Grid& grid = state_[static_cast<std::size_t>(lane)]->grid;
   std::set<int> seeded;
   for (const Seed& seed : seeds) seeded.insert(seed.plant);
@@ -385,7 +386,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.samples = samples_;
   record.plants = recorded_;
   record.channels = channels_;
-  record.directions = Traits::directions;
+  record.sensitivity_parameters = Traits::sensitivities;
   record.allocate(true);
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;

@@ -10,7 +10,7 @@ namespace swingbank::sim::lanes {
 /// method reads the lanes' matrices. A single lane has nothing to share.
 template <class T>
 void Lanes<T>::share() {
-  shares_ = Traits::directions == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
+  shares_ = Traits::sensitivities == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
   if (!shares_) return;
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t i = 0; i < n; ++i) {
@@ -54,7 +54,7 @@ const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topolog
     Traits::set(per_lane_.far_g[i], lane, matrix.far_g[i]);
     Traits::set(per_lane_.far_b[i], lane, matrix.far_b[i]);
   }
-  if constexpr (Traits::directions > 0) matrix_sensitivities(lane, matrix);
+  if constexpr (Traits::sensitivities > 0) matrix_sensitivities(lane, matrix);
   return matrix;
 }
 
@@ -117,7 +117,7 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
 template <class T>
 void Lanes<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);
-  for (int d = 0; d < Traits::directions; ++d)
+  for (int d = 0; d < Traits::sensitivities; ++d)
     for (std::size_t k = 0; k < plants_.size(); ++k) {
       const T* z = source_impedance(per_lane_, static_cast<int>(k));
       const auto sensitivity = [&](const T& v) {

@@ -275,8 +275,8 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
     };
     const int plant = static_cast<int>(k), channel = static_cast<int>(j);
     put(Traits::value(v), run.record.at(plant, channel));
-    if constexpr (Traits::directions > 0)
-      for (int d = 0; d < Traits::directions; ++d)
+    if constexpr (Traits::sensitivities > 0)
+      for (int d = 0; d < Traits::sensitivities; ++d)
         put(v.d[static_cast<std::size_t>(d)], run.record.sensitivity(d, plant, channel));
   }
 }
@@ -311,7 +311,7 @@ void Lanes<T>::hold(LaneRun& run, int until) const {
         for (; i < until; ++i) v[i] = last;
       };
       repeat(run.record.at(static_cast<int>(k), static_cast<int>(j)));
-      for (int d = 0; d < Traits::directions; ++d)
+      for (int d = 0; d < Traits::sensitivities; ++d)
         repeat(run.record.sensitivity(d, static_cast<int>(k), static_cast<int>(j)));
     }
   run.recorded = until;

@@ -419,13 +419,13 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
   std::vector<D8>&x = scratch<D8>().x, &dx = scratch<D8>().dx;
   x.resize(static_cast<std::size_t>(members));
   dx.resize(static_cast<std::size_t>(n));
-  for (int from = 0; from < members; from += kDirections) {
+  for (int from = 0; from < members; from += kSensitivities) {
     for (int i = 0; i < n; ++i) x[i] = D8(y[unit.first + i]);
     for (int i = n; i < members; ++i) {
       const int k = i - n;  // voltages of its own bus, then of its remote buses
       x[i] = D8(y[(k < 2 ? row : bus_row(unit.seen[k / 2 - 1])) + k % 2]);
     }
-    const int to = std::min(from + kDirections, members);
+    const int to = std::min(from + kSensitivities, members);
     for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
     D8 ir, ii;
     (void)evaluate<D8>(u, t, x.data(), &x[n], &x[n] + 2, dx.data(), ir, ii);

@@ -10,7 +10,7 @@ namespace swingbank::sim::lanes {
 namespace {
 
 constexpr int kPlant = 1;
-constexpr int kAtOnce = kDirections;
+constexpr int kAtOnce = kSensitivities;
 
 plant::Block standard(const Effect& effect) { return {&effect, effect.default_parameters()}; }
 

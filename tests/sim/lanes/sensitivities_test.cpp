@@ -44,9 +44,9 @@ network::Event fault(const grid::Grid& grid, int bus) {
 }
 
 /// Largest difference of a column from `other`, over the column's largest value.
-double worst_column(const Trajectory& t, int direction, const std::vector<double>& other, int row) {
+double worst_column(const Trajectory& t, int parameter, const std::vector<double>& other, int row) {
   const auto channels = static_cast<int>(t.channels.size());
-  const double* own = t.sensitivity(direction, row / channels, row % channels);
+  const double* own = t.sensitivity(parameter, row / channels, row % channels);
   double largest = 0.0, worst = 0.0;
   for (int k = 0; k < t.samples; ++k)
     largest = std::max(largest, std::abs(other[static_cast<std::size_t>(k)]));

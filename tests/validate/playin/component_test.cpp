@@ -101,7 +101,7 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   const Given given(r, curve.switchings(), start);
   const sim::plant::Plant part = component_of(c.plant(), Component::exciter);
   const auto drive_from = [&](const sim::plant::Plant& plant, double level,
-                              std::span<const Direction> along) {
+                              std::span<const SensitivityParameter> along) {
     OperatingPoint from = start;
     from.Efd += level;
     return drive({.plant = &plant,
@@ -118,19 +118,19 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::Plant more = part, less = part;
   sim::plant::parameter_value(more, gain) += h;
   sim::plant::parameter_value(less, gain) -= h;
-  const Direction along[] = {{.kind = Direction::Kind::parameter, .parameter = gain},
-                             {.kind = Direction::Kind::P}};
+  const SensitivityParameter along[] = {{.kind = SensitivityParameter::Kind::parameter, .parameter = gain},
+                                        {.kind = SensitivityParameter::Kind::P}};
   const Response base = drive_from(part, 0, along);
-  const auto compare = [&](std::size_t direction, const Response& up, const Response& down, double step) {
+  const auto compare = [&](std::size_t parameter, const Response& up, const Response& down, double step) {
     double error = 0, largest = 0;
     for (std::size_t k = 0; k < r.t.size(); ++k) {
       const double difference = (up.of(Output::Efd)[k] - down.of(Output::Efd)[k]) / (2 * step);
-      const double sensitivity = base.sensitivities[direction].value[static_cast<int>(Output::Efd)][k];
+      const double sensitivity = base.sensitivities[parameter].value[static_cast<int>(Output::Efd)][k];
       error = std::max(error, std::abs(sensitivity - difference));
       largest = std::max(largest, std::abs(difference));
     }
-    EXPECT_GT(largest, 1e-5) << direction;
-    EXPECT_LT(error, 2e-3 * largest) << direction;
+    EXPECT_GT(largest, 1e-5) << parameter;
+    EXPECT_LT(error, 2e-3 * largest) << parameter;
   };
   compare(0, drive_from(more, 0, {}), drive_from(less, 0, {}), h);
   compare(1, drive_from(part, 1e-5, {}), drive_from(part, -1e-5, {}), 1e-5);

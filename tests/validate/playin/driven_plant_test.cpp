@@ -11,7 +11,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 
 /// The example's fault and a GENROU with exciter and governor, so that every sensitivity parameter has an
 /// effect.
@@ -66,7 +66,8 @@ class DrivenPlantTest : public ::testing::Test {
     }
   }
   /// Response with every sensitivity parameter moved by `by` units.
-  Response answer(const std::vector<Direction>& along, double by, bool with_sensitivities = false) {
+  Response answer(const std::vector<SensitivityParameter>& along, double by,
+                  bool with_sensitivities = false) {
     plant::PlantModel model = model_;
     auto switchings = switchings_;
     Drive run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
@@ -74,7 +75,7 @@ class DrivenPlantTest : public ::testing::Test {
     run.torque = {knots_, zeros_};
     run.field = {knots_, zeros_};
     run.until = 6.0;
-    for (const Direction& d : along) {
+    for (const SensitivityParameter& d : along) {
       const double move = by * d.scale;
       const auto index = static_cast<std::size_t>(d.index);
       switch (d.kind) {
@@ -109,12 +110,12 @@ class DrivenPlantTest : public ::testing::Test {
     }
     const VoltageCurve curve(record_, switchings);
     run.curve = &curve;
-    return drive(run, with_sensitivities ? std::span(along) : std::span<const Direction>());
+    return drive(run, with_sensitivities ? std::span(along) : std::span<const SensitivityParameter>());
   }
-  void expect_sensitivities(const std::vector<Direction>& directions) {
-    const Response at = answer(directions, 0.0, true);
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      const Response up = answer({directions[i]}, 1.0), down = answer({directions[i]}, -1.0);
+  void expect_sensitivities(const std::vector<SensitivityParameter>& parameters) {
+    const Response at = answer(parameters, 0.0, true);
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const Response up = answer({parameters[i]}, 1.0), down = answer({parameters[i]}, -1.0);
       for (int o = 0; o < kOutputs; ++o) {
         double worst = 0, largest = 0;
         for (std::size_t k = 0; k < at.value[o].size(); ++k) {
@@ -135,7 +136,7 @@ class DrivenPlantTest : public ::testing::Test {
 };
 
 TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
-  std::vector<Direction> directions;
+  std::vector<SensitivityParameter> parameters;
   const auto blocks = sim::plant::block_parameters(model_.plant);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto* effect = b == 0 ? model_.plant.machine.effect : model_.plant.controls[b - 1].effect;
@@ -144,13 +145,13 @@ TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
       // S10 = S12 = 0 and a dead band of 0 have no two-sided derivative; limits that are not reached have
       // sensitivity 0.
       if (name == "S10" || name == "S12" || name == "deadband" || blocks[b][p] == 0.0) continue;
-      directions.push_back({.kind = Kind::parameter,
+      parameters.push_back({.kind = Kind::parameter,
                             .parameter = {static_cast<int>(b), static_cast<int>(p)},
                             .scale = 1e-4 * blocks[b][p]});
     }
   }
-  EXPECT_GT(directions.size(), 15u);
-  expect_sensitivities(directions);
+  EXPECT_GT(parameters.size(), 15u);
+  expect_sensitivities(parameters);
 }
 TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
   expect_sensitivities({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
@@ -197,17 +198,17 @@ TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
-  std::vector<Direction> directions = {{.kind = Kind::switching, .index = 1, .scale = 1e-5},
-                                       {.kind = Kind::P, .scale = 1e-5},
-                                       {.kind = Kind::Q, .scale = 1e-5},
-                                       {.kind = Kind::angle, .scale = 1e-5}};
+  std::vector<SensitivityParameter> parameters = {{.kind = Kind::switching, .index = 1, .scale = 1e-5},
+                                                  {.kind = Kind::P, .scale = 1e-5},
+                                                  {.kind = Kind::Q, .scale = 1e-5},
+                                                  {.kind = Kind::angle, .scale = 1e-5}};
   for (const char* name : {"H", "Xdp", "Xdpp", "Xqpp", "Xl", "S10", "S12", "Kis"}) {
     const int p = gentpj->parameter_index(name);
-    directions.push_back({.kind = Kind::parameter,
+    parameters.push_back({.kind = Kind::parameter,
                           .parameter = {sim::plant::kMachineBlock, p},
                           .scale = 1e-4 * model_.plant.machine.p[static_cast<std::size_t>(p)]});
   }
-  expect_sensitivities(directions);
+  expect_sensitivities(parameters);
 }
 TEST_F(DrivenPlantTest, SensitivitiesToAddedInputs) {
   expect_sensitivities({{.kind = Kind::torque, .index = 1, .scale = 1e-4},

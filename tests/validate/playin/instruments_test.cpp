@@ -12,7 +12,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 
 sim::plant::Block instrument(const std::string& text) {
   Problems problems;
@@ -104,7 +104,7 @@ TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::Plant plant = model_.plant;
   plant.measurements = {instrument("PTERROR:gain=0.02,phase=0.03"), instrument("SKEW:skew=0.004")};
   const int first = sim::plant::first_measurement(plant);
-  const std::vector<Direction> along = {
+  const std::vector<SensitivityParameter> along = {
       {.kind = Kind::parameter, .parameter = {0, 0}, .scale = 1e-4},
       {.kind = Kind::P, .scale = 1e-4},
       {.kind = Kind::parameter, .parameter = {first, 0}, .scale = 1e-4},

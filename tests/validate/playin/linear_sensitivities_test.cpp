@@ -11,7 +11,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 
 const std::vector<Output> kShown = {Output::P, Output::Q, Output::speed, Output::Ifd};
 
@@ -34,7 +34,7 @@ class LinearSensitivitiesTest : public ::testing::Test {
         return sim::plant::parameter_value(model_.plant, {b, effect.parameter_index(name)});
     throw std::logic_error(block);
   }
-  Response answer(const std::vector<Direction>& along, bool linear) const {
+  Response answer(const std::vector<SensitivityParameter>& along, bool linear) const {
     const VoltageCurve curve(record_, switchings_);
     const Drive run{.plant = &model_.plant,
                     .conventions = model_.conventions,
@@ -49,8 +49,8 @@ class LinearSensitivitiesTest : public ::testing::Test {
   }
   /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
   /// an event.
-  [[nodiscard]] std::vector<Direction> all() const {
-    std::vector<Direction> along;
+  [[nodiscard]] std::vector<SensitivityParameter> all() const {
+    std::vector<SensitivityParameter> along;
     const auto blocks = sim::plant::block_parameters(model_.plant);
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (std::size_t p = 0; p < blocks[b].size(); ++p)
@@ -71,7 +71,7 @@ class LinearSensitivitiesTest : public ::testing::Test {
     return along;
   }
   /// Largest RMS error of any sensitivity of P, Q, speed and Ifd, relative to the RMS of the sensitivity.
-  [[nodiscard]] double worst(const std::vector<Direction>& along) const {
+  [[nodiscard]] double worst(const std::vector<SensitivityParameter>& along) const {
     const Response exact = answer(along, false), linear = answer(along, true);
     double most = 0;
     for (std::size_t d = 0; d < along.size(); ++d)
@@ -143,12 +143,12 @@ class Limited : public LinearSensitivitiesTest {
   }
 };
 TEST_F(Limited, LimiterTimeHasSensitivities) {
-  const std::vector<Direction> along = all();
+  const std::vector<SensitivityParameter> along = all();
   const Response exact = answer(along, false), linear = answer(along, true);
   constexpr double kAside = 1e-4;
   int limiter_moved = 0;
   for (std::size_t d = 0; d < along.size(); ++d) {
-    const Direction& a = along[d];
+    const SensitivityParameter& a = along[d];
     if (a.kind != Kind::parameter) continue;
     double& value = sim::plant::parameter_value(model_.plant, a.parameter);
     const double at = value;

@@ -97,7 +97,7 @@ Eigen::Index BlindSize::first_row(std::size_t event) const {
 }
 
 playin::Response BlindSize::answer(std::size_t event, const record::Record& record,
-                                   const std::vector<playin::Direction>& along) const {
+                                   const std::vector<playin::SensitivityParameter>& along) const {
   event::FitEvent played = prepared_[event];
   played.record = record;
   played.start = playin::pre_event_point(record, played.switchings, 1.0);
@@ -113,8 +113,8 @@ Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& rec
 }
 
 void BlindSize::add_columns(std::size_t event) {
-  using Kind = playin::Direction::Kind;
-  std::vector<playin::Direction> along;
+  using Kind = playin::SensitivityParameter::Kind;
+  std::vector<playin::SensitivityParameter> along;
   for (const fit::FreeParameter& f : fit::free_parameters(plant_, 1.0))
     along.push_back(
         {.kind = Kind::parameter, .parameter = f.id, .scale = sim::plant::parameter_value(plant_, f.id)});

@@ -16,7 +16,7 @@ struct Answer {
   Eigen::MatrixXd sensitivities;
 };
 Answer answer(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
-              const std::vector<playin::Direction>& along) {
+              const std::vector<playin::SensitivityParameter>& along) {
   const playin::Response r = event::play(tested, e.event, {}, along, {.tolerance = 1e-8, .hasty = false});
   const auto n = static_cast<Eigen::Index>(along.size());
   event::RowMatrix all(e.event.values(), n + 1);
@@ -34,9 +34,9 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
                          const fit::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free) {
   double samples = 0;
   for (const auto& e : events) samples += e.record.samples();
-  std::vector<playin::Direction> along;
+  std::vector<playin::SensitivityParameter> along;
   for (const auto& f : free)
-    along.push_back({.kind = playin::Direction::Kind::parameter,
+    along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                      .parameter = f.id,
                      .scale = fit::axis_unit(tested.plant, f)});
   const event::FitEvent quiet = fit::at_rest(events.front(), kSettle + kFade);

@@ -84,7 +84,8 @@ std::vector<std::size_t> samples_behind(const FitEvent& event, std::size_t switc
 double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std::size_t switching) {
   const std::vector<std::size_t> samples = samples_behind(event, switching);
   if (samples.empty()) return 0.0;
-  const playin::Direction along{.kind = playin::Direction::Kind::turn, .index = static_cast<int>(switching)};
+  const playin::SensitivityParameter along{.kind = playin::SensitivityParameter::Kind::turn,
+                                           .index = static_cast<int>(switching)};
   double turn = 0, best = 0, least = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kTurnSteps; ++step) {
     event.switchings[switching].turn = turn;

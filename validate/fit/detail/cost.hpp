@@ -12,7 +12,7 @@
 
 namespace swingbank::validate::fit::fitting {
 
-using Kind = playin::Direction::Kind;
+using Kind = playin::SensitivityParameter::Kind;
 
 /// Quantities that stay constant during a fit.
 struct Setting {

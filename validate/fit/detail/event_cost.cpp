@@ -143,13 +143,13 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool wi
   const sim::plant::Plant plant = moved(setting_, z);
   if (!(setting_.can_exist ? playin::can_exist_beside(plant, *setting_.plant) : playin::can_run(plant)))
     return {};
-  std::vector<playin::Direction> along;
+  std::vector<playin::SensitivityParameter> along;
   if (with_sensitivities) {
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
       const Axis& a = setting_.axes[i];
       along.push_back({.kind = Kind::parameter, .parameter = a.where.id, .scale = a.derivative(z[i])});
     }
-    std::ranges::move(state_directions(event_), std::back_inserter(along));
+    std::ranges::move(state_parameters(event_), std::back_inserter(along));
   }
   try {
     const playin::Response r = event::play({plant, *setting_.conventions}, event_, at(state), along,

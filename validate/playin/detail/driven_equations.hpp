@@ -33,8 +33,8 @@ struct Seeds {
 };
 template <>
 struct Seeds<sim::D8> {
-  static void add(sim::D8& x, std::size_t direction, double by) { x.d[direction] += by; }
-  static double get(const sim::D8& x, std::size_t direction) { return x.d[direction]; }
+  static void add(sim::D8& x, std::size_t parameter, double by) { x.d[parameter] += by; }
+  static double get(const sim::D8& x, std::size_t parameter) { return x.d[parameter]; }
   /// Returns the size for error control; sensitivities count a hundredth, because a fit tolerates their
   /// errors better.
   static double size(const sim::D8& x) {
@@ -54,21 +54,22 @@ struct Side {
 template <class T>
 class DrivenEquations {
  public:
-  using Kind = Direction::Kind;
+  using Kind = SensitivityParameter::Kind;
 
   /// Constructs the equations at the operating point, with sensitivities if T carries them.
-  DrivenEquations(const Drive& run, std::span<const Direction> directions)
-      : DrivenEquations(run, directions, sim::plant::OperatingOf<T>{}) {
+  DrivenEquations(const Drive& run, std::span<const SensitivityParameter> parameters)
+      : DrivenEquations(run, parameters, sim::plant::OperatingOf<T>{}) {
     start();
   }
   /// Constructs the equations from a known operating point.
-  DrivenEquations(const Drive& run, std::span<const Direction> directions, sim::plant::OperatingOf<T> at)
+  DrivenEquations(const Drive& run, std::span<const SensitivityParameter> parameters,
+                  sim::plant::OperatingOf<T> at)
       : c(std::move(at.c)),
         x0(std::move(at.x)),
         Efd(at.Efd),
         Tm(at.Tm),
         run_(run),
-        directions_(directions),
+        parameters_(parameters),
         equations_(*run.plant),
         scratch_(static_cast<std::size_t>(equations_.scratch())),
         recorded_(is_recorded(*run.plant)),
@@ -88,7 +89,7 @@ class DrivenEquations {
   [[nodiscard]] const sim::plant::PlantEquations<T>& of_plant() const { return equations_; }
   template <class F>
   void each(F f) const {
-    for (std::size_t i = 0; i < directions_.size(); ++i) f(directions_[i], i);
+    for (std::size_t i = 0; i < parameters_.size(); ++i) f(parameters_[i], i);
   }
   /// Moves to the other side of a switching of the curve. A turn of the voltage's angle that the record lacks
   /// is applied to the rotor with opposite sign, because only the angle between the two matters.
@@ -97,7 +98,7 @@ class DrivenEquations {
     side.isolated = side.isolated || breaker_;
     if (!has_rotor()) return;
     x[0] = x[0] - T(run_.curve->switchings()[static_cast<std::size_t>(switching)].turn);
-    each([&](const Direction& d, std::size_t i) {
+    each([&](const SensitivityParameter& d, std::size_t i) {
       if (d.kind == Kind::turn && d.index == switching) Seeds<T>::add(x[0], i, -d.scale);
     });
   }
@@ -164,7 +165,7 @@ class DrivenEquations {
     const double to_machine = run_.record->base.mva / plant.mva;
     T P(run_.start.P * to_machine), Q(run_.start.Q * to_machine);
     T field(run_.start.Efd), Pm(run_.start.Pm * to_machine);
-    each([&](const Direction& d, std::size_t i) {
+    each([&](const SensitivityParameter& d, std::size_t i) {
       const auto [block, index] = d.parameter;
       if (d.kind == Kind::parameter)
         Seeds<T>::add(p[static_cast<std::size_t>(block)][static_cast<std::size_t>(index)], i, d.scale);
@@ -186,7 +187,7 @@ class DrivenEquations {
     if (plant.machine.effect->converter) return;
     x0[0] = x0[0] + T(run_.angle);
     x0[1] = x0[1] + T(run_.speed);
-    each([&](const Direction& d, std::size_t i) {
+    each([&](const SensitivityParameter& d, std::size_t i) {
       if (d.kind == Kind::angle) Seeds<T>::add(x0[0], i, d.scale);
       if (d.kind == Kind::speed) Seeds<T>::add(x0[1], i, d.scale);
     });
@@ -248,7 +249,7 @@ class DrivenEquations {
   }
   T added(const PiecewiseLinear& input, Kind kind, double t) const {
     T value(input(t));
-    each([&](const Direction& d, std::size_t i) {
+    each([&](const SensitivityParameter& d, std::size_t i) {
       if (d.kind == kind)
         Seeds<T>::add(value, i, d.scale * hat(input.hats(), static_cast<std::size_t>(d.index), t));
     });
@@ -256,7 +257,7 @@ class DrivenEquations {
   }
 
   const Drive& run_;
-  std::span<const Direction> directions_;
+  std::span<const SensitivityParameter> parameters_;
   sim::plant::PlantEquations<T> equations_;
   std::vector<T> scratch_;
   bool recorded_, breaker_;  ///< the machine is the recorded one; its breaker opens

@@ -12,7 +12,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-using Kind = Direction::Kind;
+using Kind = SensitivityParameter::Kind;
 using NodeKind = Trace::Node::Kind;
 using sim::P8;
 
@@ -104,15 +104,15 @@ struct Linear {
 
 class LinearSensitivities {
  public:
-  LinearSensitivities(const Drive& run, std::span<const Direction> directions, const Trace& trace,
+  LinearSensitivities(const Drive& run, std::span<const SensitivityParameter> parameters, const Trace& trace,
                       Response& answer)
       : run_(run),
-        directions_(directions),
+        parameters_(parameters),
         trace_(trace),
         answer_(answer),
         n_(trace.x.size() / trace.nodes.size()),
-        m_(directions.size()),
-        inputs_(n_ + (std::ranges::any_of(directions, is_input) ? 2 : 0)),
+        m_(parameters.size()),
+        inputs_(n_ + (std::ranges::any_of(parameters, is_input) ? 2 : 0)),
         S_(n_, m_),
         limits_(n_, m_),
         some_(n_, 1),
@@ -136,11 +136,11 @@ class LinearSensitivities {
     start();
     for (std::size_t d = 0; d < m_; ++d) {
       double begin = -std::numeric_limits<double>::infinity();
-      if (is_input(directions_[d])) {
-        const auto& knots = input_of(directions_[d].kind).hats();
-        const auto index = static_cast<std::size_t>(directions_[d].index);
+      if (is_input(parameters_[d])) {
+        const auto& knots = input_of(parameters_[d].kind).hats();
+        const auto index = static_cast<std::size_t>(parameters_[d].index);
         begin = knots[std::max<std::size_t>(index, 1) - 1];
-        auto& hats = hats_[directions_[d].kind == Kind::torque ? 0 : 1];
+        auto& hats = hats_[parameters_[d].kind == Kind::torque ? 0 : 1];
         hats.resize(knots.size(), m_);
         hats[index] = d;
       }
@@ -185,11 +185,13 @@ class LinearSensitivities {
   static std::size_t copies_for(std::size_t columns) { return (columns + kLanes - 1) / kLanes; }
   /// Returns the number of packs of parameters whose input has begun.
   [[nodiscard]] std::size_t wide() const { return copies_for(active_); }
-  static bool is_input(const Direction& d) { return d.kind == Kind::torque || d.kind == Kind::field; }
+  static bool is_input(const SensitivityParameter& d) {
+    return d.kind == Kind::torque || d.kind == Kind::field;
+  }
   [[nodiscard]] const PiecewiseLinear& input_of(Kind kind) const {
     return kind == Kind::torque ? run_.torque : run_.field;
   }
-  static bool moves_coefficients(const Direction& d) {
+  static bool moves_coefficients(const SensitivityParameter& d) {
     return d.kind == Kind::parameter || d.kind == Kind::P || d.kind == Kind::Q;
   }
 
@@ -198,7 +200,7 @@ class LinearSensitivities {
   void start() {
     sim::plant::OperatingOf<P8> at;
     for (std::size_t first = 0; first < m_; first += kLanes) {
-      const auto some = directions_.subspan(first, std::min(kLanes, m_ - first));
+      const auto some = parameters_.subspan(first, std::min(kLanes, m_ - first));
       if (first > 0 && std::ranges::all_of(some, is_input)) continue;
       const DrivenEquations<sim::D8> seeded(run_, some);
       if (first == 0) {
@@ -311,7 +313,7 @@ class LinearSensitivities {
       active_ = std::max(active_, begins_[begun_++].second);
     for (const std::size_t p : now_.hats)
       for (std::size_t lane = 0; lane < kLanes && p * kLanes + lane < m_; ++lane)
-        if (is_input(directions_[p * kLanes + lane])) set_column(p * kLanes + lane, n_, 0.0);
+        if (is_input(parameters_[p * kLanes + lane])) set_column(p * kLanes + lane, n_, 0.0);
     now_.hats.clear();
     for (const Kind kind : {Kind::torque, Kind::field}) {
       const auto& hats = hats_[kind == Kind::torque ? 0 : 1];
@@ -320,7 +322,7 @@ class LinearSensitivities {
       const auto behind = static_cast<std::size_t>(std::ranges::upper_bound(knots, t) - knots.begin());
       for (std::size_t k = std::max<std::size_t>(behind, 1) - 1; k < std::min(behind + 1, knots.size()); ++k)
         if (const double height = hat(knots, k, t); hats[k] < m_ && height != 0.0) {
-          set_column(hats[k], n_ + (kind == Kind::torque ? 0 : 1), directions_[hats[k]].scale * height);
+          set_column(hats[k], n_ + (kind == Kind::torque ? 0 : 1), parameters_[hats[k]].scale * height);
           now_.hats.push_back(hats[k] / kLanes);
         }
     }
@@ -383,7 +385,7 @@ class LinearSensitivities {
     const int switching = trace_.nodes[k].switching;
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
     for (std::size_t d = 0; d < m_; ++d) {
-      const Direction& along = directions_[d];
+      const SensitivityParameter& along = parameters_[d];
       if (switching < 0 || along.index != switching) continue;
       if (along.kind == Kind::turn && copies_.front().equations.has_rotor()) S_(0, d) -= along.scale;
       for (std::size_t i = 0; along.kind == Kind::switching && i < n_; ++i)
@@ -400,7 +402,7 @@ class LinearSensitivities {
   }
 
   const Drive& run_;
-  std::span<const Direction> directions_;
+  std::span<const SensitivityParameter> parameters_;
   const Trace& trace_;
   Response& answer_;
   const std::size_t n_, m_, inputs_;  ///< states; sensitivity parameters; states, torque and field voltage
@@ -428,9 +430,9 @@ bool can_be_linear(const Drive& run) {
   return !is_recorded(*run.plant) && !run.given && !run.record->breaker() && !run.record->open_circuit();
 }
 
-bool add_linear_sensitivities(const Drive& run, std::span<const Direction> directions, const Trace& trace,
-                              Response& answer) {
-  return LinearSensitivities(run, directions, trace, answer).run();
+bool add_linear_sensitivities(const Drive& run, std::span<const SensitivityParameter> parameters,
+                              const Trace& trace, Response& answer) {
+  return LinearSensitivities(run, parameters, trace, answer).run();
 }
 
 }  // namespace swingbank::validate::playin

@@ -37,7 +37,7 @@ bool can_be_linear(const Drive& run);
 /// integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
 /// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671), which damps modes faster than a step at
 /// once. Returns false if the result is not finite.
-bool add_linear_sensitivities(const Drive& run, std::span<const Direction> directions, const Trace& trace,
-                              Response& answer);
+bool add_linear_sensitivities(const Drive& run, std::span<const SensitivityParameter> parameters,
+                              const Trace& trace, Response& answer);
 
 }  // namespace swingbank::validate::playin

@@ -100,7 +100,7 @@ class BlindSize {
 
  private:
   [[nodiscard]] playin::Response answer(std::size_t event, const record::Record& record,
-                                        const std::vector<playin::Direction>& along) const;
+                                        const std::vector<playin::SensitivityParameter>& along) const;
   [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const record::Record& record) const;
   void add_columns(std::size_t event);
   /// Number of sensitivity parameters of one event: its switching times and its start.
