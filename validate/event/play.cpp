@@ -57,7 +57,7 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
     if (how.allowance) *how.allowance = run.allowance;
   }
   if (how.linear_sensitivities) {
-    run.past = how.past;
+    run.cache = how.cache;
     run.linear_sensitivities = event.channels;
     for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
       if (std::ranges::count(event.channels, o) == 0) run.linear_sensitivities.push_back(o);

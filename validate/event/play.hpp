@@ -44,10 +44,10 @@ struct Playing {
   /// Cache of these allowances for further playbacks of the same plant with other values. Empty: computed and
   /// stored here. Null: computed each time.
   std::vector<double>* allowance = nullptr;
-  bool linear_sensitivities = false;                    ///< sensitivities as in playin::Drive, for a search
-  std::shared_ptr<const playin::Past>* past = nullptr;  ///< as in playin::Drive
-  bool instants_stand = false;                          ///< as in playin::Drive
-  double until = 1e300;                                 ///< later samples are left out [s]
+  bool linear_sensitivities = false;  ///< sensitivities as in playin::Drive, for a search
+  std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::Drive
+  bool instants_stand = false;                                      ///< as in playin::Drive
+  double until = 1e300;                                             ///< later samples are left out [s]
 };
 
 /// Returns the event's switchings at the switching times of `state`.

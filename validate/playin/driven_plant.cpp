@@ -408,9 +408,9 @@ std::string_view output_name(Output output) {
 }
 
 /// A run and its trajectory.
-class Past {
+class TrajectoryCache {
  public:
-  explicit Past(const Drive& run) : answer(Driven<double>(run, {}).run(&trace)) {}
+  explicit TrajectoryCache(const Drive& run) : answer(Driven<double>(run, {}).run(&trace)) {}
   Trace trace;
   Response answer;
 };
@@ -473,14 +473,14 @@ Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind inpu
 Response drive(const Drive& run, std::span<const SensitivityParameter> parameters) {
   const bool linear = !run.linear_sensitivities.empty() && can_be_linear(run);
   if (parameters.empty()) {
-    if (!run.past || !linear) return Driven<double>(run, {}).run();
-    *run.past = std::make_shared<const Past>(run);
-    return (*run.past)->answer;
+    if (!run.cache || !linear) return Driven<double>(run, {}).run();
+    *run.cache = std::make_shared<const TrajectoryCache>(run);
+    return (*run.cache)->answer;
   }
   if (linear) {
-    const auto past = run.past && *run.past ? *run.past : std::make_shared<const Past>(run);
-    Response answer = past->answer;
-    if (add_linear_sensitivities(run, parameters, past->trace, answer)) return answer;
+    const auto cache = run.cache && *run.cache ? *run.cache : std::make_shared<const TrajectoryCache>(run);
+    Response answer = cache->answer;
+    if (add_linear_sensitivities(run, parameters, cache->trace, answer)) return answer;
   }
   Response all;
   constexpr std::size_t kSeedsAtOnce = sim::kSensitivities;

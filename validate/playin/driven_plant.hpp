@@ -42,7 +42,7 @@ constexpr int kOutputs = 8;  ///< number of outputs
 std::string_view output_name(Output output);
 
 class Given;
-class Past;
+class TrajectoryCache;
 
 /// Specification of one run: plant, inputs and initial state. If the record's breaker opens, the voltage is
 /// constant until the first switching. From then on, or from the start of an open circuit, the current is
@@ -70,7 +70,7 @@ struct Drive {
   bool instants_stand = false;  ///< exact sensitivities neglect the shift of a guard's switching time
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
   /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
-  std::shared_ptr<const Past>* past = nullptr;
+  std::shared_ptr<const TrajectoryCache>* cache = nullptr;
 };
 
 /// Sensitivity parameter; `scale` is its unit, and sensitivities are per such unit.

@@ -141,7 +141,7 @@ class Observed {
     const auto of = [&](const sim::plant::Plant& plant) {
       Drive moved = run_;
       moved.plant = &plant;
-      moved.past = nullptr;
+      moved.cache = nullptr;
       return Observed(moved, {}).run();
     };
     const Response more = of(above), less = of(below);

@@ -157,7 +157,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool wi
                                             .lenient = setting_.lenient,
                                             .allowance = &allowance_,
                                             .linear_sensitivities = setting_.linear_sensitivities,
-                                            .past = &last_.past});
+                                            .cache = &last_.cache});
     const auto n = static_cast<Eigen::Index>(along.size());
     event::RowMatrix e(event_.values(), n + 1);
     for (Eigen::Index d = 0; d < n; ++d)

@@ -54,7 +54,7 @@ class EventCost : public ceres::CostFunction {
   /// The point of the last evaluation.
   struct Last {
     Eigen::VectorXd at, residual;
-    std::shared_ptr<const playin::Past> past;
+    std::shared_ptr<const playin::TrajectoryCache> cache;
   };
   mutable Last last_;
   /// The point with sensitivities: its residuals and sensitivities `e`, the correction `off` of newly
