@@ -36,7 +36,7 @@ double angle_drift(const record::Record& r, int n) {
 }
 
 /// Polynomial through the first n values, in powers of a time that runs from -1 to 1 over them.
-struct Course {
+struct PolynomialFit {
   Eigen::VectorXd by_power, residual;
   double last_error = 0;  ///< standard error of the highest power, with autocorrelation of the residual
 };
@@ -52,14 +52,15 @@ double memory(const Eigen::VectorXd& r) {
   }
   return sum;
 }
-Course course_of(const std::vector<double>& t, const std::vector<double>& values, int n, int powers) {
+PolynomialFit polynomial_fit(const std::vector<double>& t, const std::vector<double>& values, int n,
+                             int powers) {
   Eigen::MatrixXd basis(n, powers + 1);
   const double half = (t[static_cast<std::size_t>(n - 1)] - t.front()) / 2;
   for (int k = 0; k < n; ++k)
     for (int p = 0; p <= powers; ++p)
       basis(k, p) = std::pow((t[static_cast<std::size_t>(k)] - t.front()) / half - 1, p);
   const auto y = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
-  Course c;
+  PolynomialFit c;
   c.by_power = basis.colPivHouseholderQr().solve(y);
   c.residual = y - basis * c.by_power;
   const double variance = c.residual.squaredNorm() / (n - powers - 1) * memory(c.residual);
@@ -69,7 +70,7 @@ Course course_of(const std::vector<double>& t, const std::vector<double>& values
 /// Sets the start to the trajectories of angle, V, P and Q at the first sample if the angle is curved: then
 /// the grid accelerates or decelerates before the event, and a uniformly rotating frame deviates at both
 /// ends. Returns false if it is not curved.
-bool start_on_course(const record::Record& record, OperatingPoint& point) {
+bool start_on_trajectory(const record::Record& record, OperatingPoint& point) {
   // [rad]; across a transient reactance of 0.3 pu this is a third of a per cent of MVA
   constexpr double kLeastBend = 1e-3;
   constexpr double kErrors = 5;            // standard errors, as for the rate
@@ -77,12 +78,12 @@ bool start_on_course(const record::Record& record, OperatingPoint& point) {
   const int n = point.samples;
   const double length = record.t[static_cast<std::size_t>(n - 1)] - record.t.front();
   if (length < kLongerThanASwing || record.component != record::Component::plant) return false;
-  const Course angle = course_of(record.t, record.theta, n, 2);
+  const PolynomialFit angle = polynomial_fit(record.t, record.theta, n, 2);
   const double bend = angle.by_power[2];
   if (std::abs(bend) < std::max(kErrors * angle.last_error, kLeastBend)) return false;
   const auto first = [&](const std::vector<double>& values) {
     if (values.empty()) return 0.0;
-    const Course line = course_of(record.t, values, n, 1);
+    const PolynomialFit line = polynomial_fit(record.t, values, n, 1);
     return line.by_power[0] - line.by_power[1];
   };
   point.drift = (angle.by_power[1] - 2 * bend) / (length / 2);
@@ -109,7 +110,7 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
     throw InputError({fmt::format("{} samples before the event", n), record.name,
                       fmt::format("the operating point is a mean over at least {}", kMinSteady),
                       "give a record that starts earlier, or a longer --pre-event"});
-  if (start_on_course(record, point)) return point;
+  if (start_on_trajectory(record, point)) return point;
   point.drift = angle_drift(record, n);
   for (int k = 0; k < n; ++k) {
     point.voltage +=

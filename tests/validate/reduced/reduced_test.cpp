@@ -106,13 +106,13 @@ TEST_F(Reduced, QuadraticModelMatchesTheCost) {
     }
     const double gain = 0.1, h = 1e-4;
     const auto quadratic = plant.quadratic(series, gain, along);
-    const auto cost = [&](double by_gain, double by_course) {
-      return plant.costs(series + by_course * along, Eigen::VectorXd::Constant(1, gain + by_gain))[0];
+    const auto cost = [&](double by_gain, double by_series) {
+      return plant.costs(series + by_series * along, Eigen::VectorXd::Constant(1, gain + by_gain))[0];
     };
     const double by_gain = (cost(h, 0) - cost(-h, 0)) / (4 * h),
-                 by_course = (cost(0, h) - cost(0, -h)) / (4 * h);
+                 by_series = (cost(0, h) - cost(0, -h)) / (4 * h);
     EXPECT_NEAR(quadratic.gradient[0], by_gain, 1e-4 * std::abs(by_gain));
-    EXPECT_NEAR(quadratic.gradient[1], by_course, 1e-4 * std::abs(by_course));
+    EXPECT_NEAR(quadratic.gradient[1], by_series, 1e-4 * std::abs(by_series));
   }
 }
 

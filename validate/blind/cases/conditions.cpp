@@ -24,12 +24,12 @@ constexpr double kPerMinute = 60.0;  ///< [s]
 Complex power_of(const sim::network::Load& load) { return load.power + load.current + load.admittance; }
 
 /// Adds load steps up to `end`: `course(k, t)` is the change of each load as a share of its power.
-template <class Course>
-void move(BlindEvent& event, const sim::network::Network& network, double end, Course course) {
+template <class Profile>
+void move(BlindEvent& event, const sim::network::Network& network, double end, Profile profile) {
   for (const sim::network::Load& load : network.loads) {
     const double P = power_of(load).real();
     for (int k = 0; kOffset + k * kStair < end; ++k) {
-      const double t = kOffset + k * kStair, part = course(k, t);
+      const double t = kOffset + k * kStair, part = profile(k, t);
       event.event.load_steps.push_back({load.bus, Complex(part * P, kReactive * part * P), t, t + kStair});
     }
   }
