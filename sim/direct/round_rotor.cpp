@@ -97,16 +97,19 @@ Field field(const VectorXd& beyond, const VectorXd& armature, const Axes& axes) 
     Field f;
     f.A = A;
     const Eigen::ArrayXd psi = (axes.psi_d.array().square() + axes.psi_q.array().square()).sqrt();
-    const VectorXd bent = axes.psi_d.array() * (psi - A).max(0.0).square() / psi;
-    const double gg = armature.squaredNorm(), gs = armature.dot(bent), ss = bent.squaredNorm() + 1e-9;
-    const double bg = armature.dot(beyond), bs = bent.dot(beyond), det = gg * ss - gs * gs + 1e-12 * gg * ss;
+    const VectorXd saturation = axes.psi_d.array() * (psi - A).max(0.0).square() / psi;
+    const double gg = armature.squaredNorm(), gs = armature.dot(saturation),
+                 ss = saturation.squaredNorm() + 1e-9;
+    const double bg = armature.dot(beyond), bs = saturation.dot(beyond),
+                 det = gg * ss - gs * gs + 1e-12 * gg * ss;
     f.dXd = (bg * ss - bs * gs) / det;
     f.B = (bs * gg - bg * gs) / det;
     if (f.B < 0) {
       f.B = 0;
       f.dXd = bg / gg;
     }
-    f.left = (beyond - f.dXd * armature - f.B * bent).norm() / std::sqrt(static_cast<double>(beyond.size()));
+    f.left =
+        (beyond - f.dXd * armature - f.B * saturation).norm() / std::sqrt(static_cast<double>(beyond.size()));
     return f;
   };
   constexpr double kLowestKnee = -1.2,
@@ -147,10 +150,12 @@ struct QuadratureAxis {
 /// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl), which converges in three iterations.
 QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, const RoundRotor& r) {
   const Index n = axes.psi_q.size();
-  VectorXd bent(n);
-  for (Index k = 0; k < n; ++k) bent[k] = axes.psi_q[k] * se(A, B, std::hypot(axes.psi_d[k], axes.psi_q[k]));
+  VectorXd saturation(n);
+  for (Index k = 0; k < n; ++k)
+    saturation[k] = axes.psi_q[k] * se(A, B, std::hypot(axes.psi_d[k], axes.psi_q[k]));
   const VectorXd flux = integral(axes.psi_q, step), current = integral(axes.i_q, step);
-  const VectorXd field = integral(bent, step), field2 = integral(field, step), flux2 = integral(flux, step);
+  const VectorXd field = integral(saturation, step), field2 = integral(field, step),
+                 flux2 = integral(flux, step);
   MatrixXd columns(n, 7);
   columns << -flux, -axes.psi_q, -integral(current, step), -current, -field,
       VectorXd::LinSpaced(n, 0.0, step * static_cast<double>(n - 1)), VectorXd::Ones(n);

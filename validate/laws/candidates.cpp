@@ -13,7 +13,7 @@ namespace swingbank::validate::laws {
 namespace {
 
 enum class Filter { none, lag, washout };
-enum class Shape { straight, limited, dead_band, bent, even, curve };
+enum class Shape { straight, limited, dead_band, signed_square, even, curve };
 
 struct Form {
   std::size_t signal = 0;
@@ -65,7 +65,7 @@ TimeSeries shaped(TimeSeries time_series, const Form& f) {
         case Shape::dead_band:
           x = std::max(0.0, x - f.width) - std::max(0.0, -x - f.width);
           break;
-        case Shape::bent:
+        case Shape::signed_square:
           x *= std::abs(x);
           break;
         case Shape::even:
@@ -147,7 +147,7 @@ void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate&
       law.words = "{K} × {x} outside a dead band of ± {w}";
       law.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), band};
       break;
-    case Shape::bent:
+    case Shape::signed_square:
       law.value = "K * " + y + " * abs(" + y + ")";
       law.words = "{K} × the square (with its sign) of {x}";
       law.parameters = {gain_of("K", factor, kMostGain, "gain")};
@@ -247,7 +247,7 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
         form.width = part * most;
         keep(regression.fit({regression.at_knots(shaped(base, form))}, filter + (part > 0 ? 1 : 0)));
       };
-      for (const Shape shape : {Shape::straight, Shape::bent, Shape::even}) consider(shape, 0);
+      for (const Shape shape : {Shape::straight, Shape::signed_square, Shape::even}) consider(shape, 0);
       for (const double part : {0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7}) {
         consider(Shape::limited, part);
         consider(Shape::dead_band, part);

@@ -192,7 +192,7 @@ class Lanes {
   bool limited_ = false, timed_ = false;  ///< true if any state has limits, if any effect depends on time
   bool shares_ = false;                   ///< true if the lanes share one matrix (grids of many sources)
   std::vector<int> stopped_;              ///< states with limits
-  std::vector<int> bent_;                 ///< states with a kink error estimate in every step (State::bends)
+  std::vector<int> kinked_;               ///< states with a kink error estimate in every step (State::bends)
   std::vector<Resting> resting_;
   std::vector<Weighed> weighed_;
   bool weighs_ = false;                ///< true if a coefficient of weighed_ exceeds 1 in any lane

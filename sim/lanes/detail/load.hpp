@@ -44,7 +44,7 @@ void Lanes<T>::build_slices() {
       const auto [first, second] = state.moved_by;
       if (first >= 0) resting_.push_back({static_cast<int>(weight_.size()), at(first), at(second)});
       if (state.low >= 0 || state.high >= 0) stopped_.push_back(static_cast<int>(weight_.size()));
-      if (state.bends) bent_.push_back(static_cast<int>(weight_.size()));
+      if (state.bends) kinked_.push_back(static_cast<int>(weight_.size()));
       if (state.weighed_by >= 0) weighed_.push_back({static_cast<int>(weight_.size()), at(state.weighed_by)});
       weight_.push_back(state.weight / options_.tolerance);
       needed_.push_back(needed);

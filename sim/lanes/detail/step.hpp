@@ -60,7 +60,7 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
     for (int i = watch.first; i < watch.first + watch.count; ++i)
       add(kink * kink_error(static_cast<std::size_t>(i)));
   }
-  for (const int i : bent_) add(kink_error(static_cast<std::size_t>(i)));
+  for (const int i : kinked_) add(kink_error(static_cast<std::size_t>(i)));
   for (const int i : stopped_) {
     const auto state = static_cast<std::size_t>(i);
     add(leaves_limit(state) * kink_error(state));
