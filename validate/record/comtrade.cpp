@@ -353,15 +353,15 @@ bool put_onto_mean_rate(Comtrade& c) {
 }
 }  // namespace
 
-void make_even(Comtrade& c, double fewest, Problems& problems) {
+void make_even(Comtrade& c, double min_rate, Problems& problems) {
   const auto& all = c.stretches;
-  if (all.size() < 2 || (fewest > 0 && put_onto_mean_rate(c))) return;
+  if (all.size() < 2 || (min_rate > 0 && put_onto_mean_rate(c))) return;
   // The longest run of stretches that are fast enough.
   std::size_t from = 0, to = 0;
   double longest = -1;
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::size_t j = i;
-    while (j < all.size() && all[j].rate >= fewest) ++j;
+    while (j < all.size() && all[j].rate >= min_rate) ++j;
     const double lasts = j > i ? c.t[all[j - 1].end - 1] - c.t[all[i].first] : -1;
     if (lasts > longest) longest = lasts, from = i, to = j;
   }

@@ -55,9 +55,9 @@ Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::s
                         const std::string& dat_name);
 
 /// Converts the record to a single sampling rate: keeps the longest run of consecutive stretches of at least
-/// `fewest` samples/s, and decimates its faster stretches to the rate of its slowest. The changes are noted;
-/// rates that are not multiples of the slowest become a problem.
-void make_even(Comtrade& comtrade, double fewest, Problems& problems);
+/// `min_rate` samples/s, and decimates its faster stretches to the rate of its slowest. The changes are
+/// noted; rates that are not multiples of the slowest become a problem.
+void make_even(Comtrade& comtrade, double min_rate, Problems& problems);
 
 /// Returns the record of one .cff file (2013), which contains configuration and data.
 Comtrade parse_cff(std::string_view cff, const std::string& name);
