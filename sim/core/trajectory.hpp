@@ -45,7 +45,7 @@ struct Trajectory {
   std::vector<Channel> channels;  ///< recorded channels, the same for each plant
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   int sensitivity_parameters = 0;                    ///< number of sensitivity parameters
-  /// Sensitivities, as `values`, one block per parameter: see slope().
+  /// Sensitivities, as `values`, one block per parameter: see sensitivity().
   std::vector<double, CacheAligned<double>> sensitivities;
   Outcome outcome = Outcome::stable;  ///< how the simulation ended
   double stopped_at = 0.0;            ///< [s]: t_end, or the time at which synchronism was lost
@@ -60,7 +60,7 @@ struct Trajectory {
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
     sensitivities.resize(values.size() * static_cast<std::size_t>(sensitivity_parameters));
   }
-  /// Returns the sensitivity of at(plant, channel) to the parameter number `parameter`.
+  /// Returns the sensitivity of at(plant, channel) to parameter number `parameter`.
   [[nodiscard]] double* sensitivity(int parameter, int plant, int channel) {
     return sensitivities.data() +
            static_cast<std::ptrdiff_t>(parameter * rows() + plant * static_cast<int>(channels.size()) +

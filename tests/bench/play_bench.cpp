@@ -68,7 +68,7 @@ struct Bench {
 
 void tell(const Bench& bench) {
   fmt::print("{}\n{:22} {:>5} {:>13} {:>8} {:>13} {:>8} {:>10} {:>12}\n",
-             bench.lenient ? "leniently" : "one tolerance", "", "runs", "steps/sample", "ms", "with slopes",
+             bench.lenient ? "leniently" : "one tolerance", "", "runs", "steps/sample", "ms", "with sensitivities",
              "ms", "largest", "mean square");
   Cost all;
   for (const auto& [name, c] : bench.costs) {
@@ -79,7 +79,7 @@ void tell(const Bench& bench) {
     all.sensitivity_seconds += c.sensitivity_seconds;
     all.runs += c.runs;
   }
-  fmt::print("{} runs in {:.3f} s, with slopes in {:.3f} s\n", all.runs, all.seconds,
+  fmt::print("{} runs in {:.3f} s, with sensitivities in {:.3f} s\n", all.runs, all.seconds,
              all.sensitivity_seconds);
 }
 

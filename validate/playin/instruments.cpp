@@ -61,7 +61,7 @@ void thin(std::vector<T>& values, std::size_t stride) {
 /// One run and its sensitivities.
 class Observed {
  public:
-  /// `parameters` must not contain parameters of the instruments.
+  /// `parameters` must not belong to the instruments.
   Observed(const Drive& run, std::span<const SensitivityParameter> parameters)
       : run_(run), chain_(run.plant->measurements), inner_(run), parameters_(parameters) {
     const record::Record& r = *run.record;

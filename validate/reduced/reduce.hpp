@@ -96,7 +96,7 @@ class ReducedPlant {
   /// parameter.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
   /// Half the gradient and half the Gauss-Newton Hessian of the cost of one time series. The variables are
-  /// the gain's parameter and the parameters of the Jacobian `jacobian` [knot][parameter]; all other plant
+  /// the gain's parameter and the parameters of `jacobian` [knot][parameter]; all other plant
   /// parameters are eliminated.
   struct Quadratic {
     Eigen::MatrixXd curvature;  ///< half the Hessian

@@ -46,7 +46,7 @@ struct DrivenMachine {
 };
 
 /// Performs one step of the classical fourth-order Runge-Kutta method from x. `first`: derivative at x;
-/// slope(stage, y) returns the derivatives in the middle (stages 1 and 2) and at the end (3).
+/// derivative(stage, y) returns the derivatives in the middle (stages 1 and 2) and at the end (3).
 template <class Vector, class Derivative>
 void runge_kutta(Vector& x, const Vector& first, double h, const Derivative& derivative) {
   using T = typename Vector::value_type;

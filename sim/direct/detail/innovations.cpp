@@ -50,7 +50,7 @@ class Played {
     correct(x, r.at_first);
     return x;
   }
-  /// Integrates from sample k to the next; `first`: slope() at the sample.
+  /// Integrates from sample k to the next; `first`: derivative() at the sample.
   void step(const NoisyRecord& r, std::size_t k, States<T>& x, const States<T>& first) {
     const Interval& i = r.behind[k];
     if (!i.leaps) return go(x, first, i.middle, r.in[k + 1], r.step);

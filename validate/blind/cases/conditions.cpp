@@ -23,7 +23,7 @@ constexpr double kPerMinute = 60.0;  ///< [s]
 
 Complex power_of(const sim::network::Load& load) { return load.power + load.current + load.admittance; }
 
-/// Adds load steps up to `end`: `course(k, t)` is the change of each load as a share of its power.
+/// Adds load steps up to `end`: `profile(k, t)` is the change of each load as a share of its power.
 template <class Profile>
 void move(BlindEvent& event, const sim::network::Network& network, double end, Profile profile) {
   for (const sim::network::Load& load : network.loads) {

@@ -176,7 +176,7 @@ class LinearSensitivities {
   }
 
  private:
-  /// Eight copies of the plant in a SIMD batch, each perturbed in another direction.
+  /// Eight copies of the plant in a SIMD batch, each perturbed along another sensitivity parameter.
   struct Copies {
     DrivenEquations<P8> equations;
     bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
