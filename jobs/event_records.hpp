@@ -17,8 +17,8 @@
 #include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/given_switching_times.hpp"
 #include "jobs/progress_plan.hpp"
-#include "jobs/told_instants.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
 #include "validate/event/point.hpp"
@@ -125,7 +125,7 @@ struct Reading {
         for (std::size_t k = told; k < model.warnings.size(); ++k)
           fmt::print(stderr, "note: {}\n", model.warnings[k]);
       }
-    return [told = told_instants(switches, records), at](validate::record::Record r) {
+    return [told = given_switching_times(switches, records), at](validate::record::Record r) {
       if (const auto of = told.find(r.name); of != told.end()) r.switched = of->second;
       return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
     };

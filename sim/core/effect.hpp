@@ -306,7 +306,7 @@ struct Effect {
   /// such check.
   std::string (*remark)(const double* p) = nullptr;
   /// Returns the times at which the equations jump [s]; nullptr: never.
-  std::vector<double> (*instants)(const void* law, const double* p);
+  std::vector<double> (*switching_times)(const void* law, const double* p);
   /// Applies the instrument to the true phasors; `seed` drives its random numbers. Only for measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
@@ -413,8 +413,8 @@ Effect make_effect() {
   };
   e.unphysical = &M::unphysical;
   if constexpr (requires { &M::remark; }) e.remark = &M::remark;
-  if constexpr (requires { &M::instants; })
-    e.instants = +[](const void*, const double* p) { return M::instants(p); };
+  if constexpr (requires { &M::switching_times; })
+    e.switching_times = +[](const void*, const double* p) { return M::switching_times(p); };
   if constexpr (requires { &M::measure; }) e.measure = &M::measure;
   if constexpr (requires { &M::memory; }) e.memory = &M::memory;
   if constexpr (requires { &M::closed_form; }) e.closed_form = &M::closed_form;

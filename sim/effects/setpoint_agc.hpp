@@ -57,7 +57,7 @@ struct Model {
                    "give duration >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
-  static std::vector<double> instants(const double* p) {
+  static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
     for (int k = 0; k < kMoves; ++k) {
       all.push_back(begin(p, k));

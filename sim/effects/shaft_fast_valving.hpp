@@ -47,7 +47,7 @@ struct Model {
                      "valves move forward in time", fmt::format("give {} >= 0", parameters[i].name));
   }
   static std::string_view unphysical(const double*) { return ""; }
-  static std::vector<double> instants(const double* p) {
+  static std::vector<double> switching_times(const double* p) {
     const double closed = p[start] + p[closing], opens = closed + p[hold];
     return {p[start], closed, opens, opens + p[opening]};
   }

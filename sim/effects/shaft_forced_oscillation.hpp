@@ -43,7 +43,7 @@ struct Model {
                    "an oscillation ends after it began", "give end > start");
   }
   static std::string_view unphysical(const double*) { return ""; }
-  static std::vector<double> instants(const double* p) { return {p[start], p[end]}; }
+  static std::vector<double> switching_times(const double* p) { return {p[start], p[end]}; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -31,7 +31,7 @@ double number(const std::string& text, const std::string& where, Problems& probl
   return 0.0;
 }
 
-double instant(const std::string& text, double t_end, const std::string& where, Problems& problems) {
+double event_time(const std::string& text, double t_end, const std::string& where, Problems& problems) {
   const double t = number(text, where, problems);
   if (t > t_end)
     problems.add(fmt::format("an event at {:g} s in a run of {:g} s", t, t_end), where,
@@ -188,7 +188,7 @@ network::GeneratorTrip read_generator_trip(const std::string& text, const networ
   const auto part = fields(text, 2, 3, "BUS[/ID]:T[:PART] in s and parts of the whole", where, problems);
   if (part.empty()) return {-1, 0.0};
   const int generator = generator_named(network, part[0], where, problems);
-  const double t = instant(part[1], t_end, where, problems);
+  const double t = event_time(part[1], t_end, where, problems);
   return {generator, t, part.size() == 3 ? number(part[2], where, problems) : 1.0};
 }
 
@@ -200,8 +200,8 @@ network::LoadStep read_load_step(const std::string& text, const network::Network
   step.bus = read_bus(part[0], network, where, problems);
   const double p = number(part[1], where, problems), q = number(part[2], where, problems);
   step.power = Complex(p, q) / network.base_mva;
-  step.t_on = instant(part[3], t_end, where, problems);
-  if (part.size() == 5) step.t_off = instant(part[4], t_end, where, problems);
+  step.t_on = event_time(part[3], t_end, where, problems);
+  if (part.size() == 5) step.t_off = event_time(part[4], t_end, where, problems);
   return step;
 }
 
@@ -211,7 +211,7 @@ network::SetpointStep read_setpoint_step(const std::string& text, const network:
   const auto part = fields(text, 3, 3, "BUS[/ID]:T:STEP in s and pu", where, problems);
   if (part.empty()) return {-1, 0.0, 0.0, 0.0};
   const int generator = generator_named(network, part[0], where, problems);
-  const double t = instant(part[1], t_end, where, problems), step = number(part[2], where, problems);
+  const double t = event_time(part[1], t_end, where, problems), step = number(part[2], where, problems);
   return {generator, t, voltage ? step : 0.0, voltage ? 0.0 : step};
 }
 

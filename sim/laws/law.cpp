@@ -120,11 +120,11 @@ void check(const void* data, const double* p, const std::string& where, Problems
                    "law " + law.name + " needs a finite number", "change the parameters");
 }
 
-std::vector<double> instants(const void* data, const double* p) {
+std::vector<double> switching_times(const void* data, const double* p) {
   const Definition& law = of(data);
   const auto c = coefficients(law, p);
   std::vector<double> all;
-  for (const int i : law.instants) all.push_back(c[static_cast<std::size_t>(i)]);
+  for (const int i : law.switching_times) all.push_back(c[static_cast<std::size_t>(i)]);
   return all;
 }
 
@@ -145,7 +145,7 @@ Effect make_effect(Definition definition) {
   e.coefficients = law.code.coefficients;
   e.check = &check;
   e.unphysical = +[](const double*) { return std::string_view(); };
-  if (!law.instants.empty()) e.instants = &instants;
+  if (!law.switching_times.empty()) e.switching_times = &switching_times;
   e.ops = all_ops(static_cast<Scalars*>(nullptr));
   e.law = shared;
   return e;

@@ -194,7 +194,7 @@ double Topology::connected(int generator) const {
 }
 
 std::vector<Segment> segments(const Event& event, const Network& network,
-                              const std::vector<double>& instants) {
+                              const std::vector<double>& switching_times) {
   Problems problems;
   const auto faults = fault_intervals(event, network, problems);
   const auto trips = trip_intervals(event, network, problems);
@@ -211,7 +211,7 @@ std::vector<Segment> segments(const Event& event, const Network& network,
         if (std::isfinite(t)) all.insert(t);
   for (const SetpointStep& step : event.setpoint_steps) all.insert(step.time);
   for (const GeneratorTrip& trip : event.generator_trips) all.insert(trip.time);
-  const std::set<double> jumps(instants.begin(), instants.end());
+  const std::set<double> jumps(switching_times.begin(), switching_times.end());
   for (const double t : jumps)
     if (t > 0.0 && std::isfinite(t)) all.insert(t);
 

@@ -4,11 +4,11 @@
 
 namespace swingbank::sim::plant {
 
-std::vector<double> instants_of(const Plant& plant) {
+std::vector<double> switching_times_of(const Plant& plant) {
   std::vector<double> all;
   for (const Block& block : plant.controls) {
-    if (!block.effect->instants) continue;
-    const auto more = block.effect->instants(block.effect->law.get(), block.p.data());
+    if (!block.effect->switching_times) continue;
+    const auto more = block.effect->switching_times(block.effect->law.get(), block.p.data());
     all.insert(all.end(), more.begin(), more.end());
   }
   std::ranges::sort(all);

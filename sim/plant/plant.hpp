@@ -54,7 +54,7 @@ struct Consumer {
 };
 
 /// Returns the switching times of the plant's effects, sorted [s].
-std::vector<double> instants_of(const Plant& plant);
+std::vector<double> switching_times_of(const Plant& plant);
 /// Margin before a segment's end [s]. Effects are evaluated at most at the end less this margin, so that a
 /// jump at the end belongs to the next segment.
 constexpr double kBeforeSwitching = 1e-9;

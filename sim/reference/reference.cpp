@@ -13,7 +13,7 @@
 namespace swingbank::sim::reference {
 namespace {
 
-constexpr double kSameInstant = 1e-9;  ///< largest distance of a sample from its switching time [s]
+constexpr double kSameTime = 1e-9;  ///< largest distance of a sample from its switching time [s]
 
 constexpr double kNoAngle = 1e-9;  ///< voltage without a defined angle, for rounding near a bolted fault [pu]
 
@@ -219,7 +219,8 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
   ReferenceRun run;
   const ReferencePlants plants(grid);
   Recorder recorder(grid, plants, options, run);
-  const std::vector<network::Segment> parts = network::segments(event, grid.network, plants.instants());
+  const std::vector<network::Segment> parts =
+      network::segments(event, grid.network, plants.switching_times());
 
   SUNContext raw = nullptr;
   require(SUNContext_Create(nullptr, &raw), "SUNContext_Create");
@@ -236,7 +237,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
       (parts.front().topology == network::Topology{} && parts.front().setpoints.empty())) {
     if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
   }
-  for (std::size_t p = 0; p < parts.size() && parts[p].start < options.t_end + kSameInstant; ++p) {
+  for (std::size_t p = 0; p < parts.size() && parts[p].start < options.t_end + kSameTime; ++p) {
     const double start = parts[p].start;
     const bool last = p + 1 == parts.size() || parts[p + 1].start > options.t_end;
     const double end = last ? options.t_end : parts[p + 1].start;
@@ -245,8 +246,8 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
     system.solve_voltages(start, values);
     system.derivatives(start, values, N_VGetArrayPointer(yp.get()));
     const auto time = [&] { return k / options.rate; };
-    if (k < run.samples && time() < start + kSameInstant && !recorder.record(k++, system, values)) return run;
-    if (end - start < kSameInstant) continue;
+    if (k < run.samples && time() < start + kSameTime && !recorder.record(k++, system, values)) return run;
+    if (end - start < kSameTime) continue;
 
     const auto solver_from = [&](double from) {
       return std::make_unique<SegmentSolver>(raw, system, y.get(), yp.get(), from, end, options, seen);
@@ -262,7 +263,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
       return at >= to || solver->advance(to);
     };
     // A sample at the end of the segment is this segment's left limit or the next one's first value.
-    const double until = last || !options.after_switching ? end + kSameInstant : end - kSameInstant;
+    const double until = last || !options.after_switching ? end + kSameTime : end - kSameTime;
     while (k < run.samples && time() < until) {
       if (!advance(std::min(time(), end))) {
         run.steps += solver->steps();

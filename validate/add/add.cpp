@@ -308,7 +308,7 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
   if (effect == nullptr)
     throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
                       suggestion(name, names, remedy)});
-  if (effect->instants)
+  if (effect->switching_times)
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
                       "it acts at given times and so belongs to one event, not to the plant",
                       "write it into the model file by hand"});

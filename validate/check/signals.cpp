@@ -10,7 +10,7 @@
 #include "base/constants.hpp"
 #include "base/median.hpp"
 #include "validate/check/detail/jumps.hpp"
-#include "validate/playin/instants.hpp"
+#include "validate/playin/switching_times.hpp"
 
 namespace swingbank::validate::check {
 namespace {

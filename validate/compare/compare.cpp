@@ -415,7 +415,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
                                                options.jump_threshold);
     else
       for (const double t : e.record.switched) e.switchings.push_back({.time = t});
-    if (e.detected && e.record.breaker()) e.switchings = playin::breaker_instants(e.record, e.switchings);
+    if (e.detected && e.record.breaker()) e.switchings = playin::breaker_times(e.record, e.switchings);
     step("the voltage is played in", 0);
     if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
     const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;

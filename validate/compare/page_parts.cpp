@@ -113,7 +113,7 @@ void residual_panels(report::Page& page, const std::vector<Played>& played, cons
   }
 }
 
-std::string instants_of(const EventComparison& e) {
+std::string switching_times_text(const EventComparison& e) {
   std::string text;
   for (const auto& s : e.switchings) text += fmt::format("{}{:.4f} s", text.empty() ? "" : ", ", s.time);
   return text.empty() ? "none"
@@ -130,8 +130,8 @@ void event_panels(report::Page& page, const std::vector<Played>& played, std::si
   const auto begins = record::beginning(e.record);
   page.text(fmt::format(
       "{}{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
-      begins.empty() ? "" : "t = 0 is " + begins + ". ", e.record.samples(), e.record.rate(), instants_of(e),
-      e.playback.start.P * e.record.base.mva, e.playback.start.Q * e.record.base.mva,
+      begins.empty() ? "" : "t = 0 is " + begins + ". ", e.record.samples(), e.record.rate(),
+      switching_times_text(e), e.playback.start.P * e.record.base.mva, e.playback.start.Q * e.record.base.mva,
       std::abs(e.playback.start.voltage)));
   for (const auto& note : e.notes) page.note(note);
   page.begin_panels();

@@ -272,14 +272,14 @@ class DiagnosisPage {
     const ReportEvent& e = figures_.events[index];
     const record::Record& r = e.event->record;
     page_.subsection(r.name);
-    std::string instants;
+    std::string switching_times;
     for (const auto& s : e.event->switchings)
-      instants += fmt::format("{}{:.3f} s", instants.empty() ? "" : ", ", s.time);
+      switching_times += fmt::format("{}{:.3f} s", switching_times.empty() ? "" : ", ", s.time);
     page_.text(fmt::format(
         "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = "
         "{:.4f} pu.",
-        r.samples(), r.rate(), instants.empty() ? "none" : instants, e.event->start.P * r.base.mva,
-        e.event->start.Q * r.base.mva, std::abs(e.event->start.voltage)));
+        r.samples(), r.rate(), switching_times.empty() ? "none" : switching_times,
+        e.event->start.P * r.base.mva, e.event->start.Q * r.base.mva, std::abs(e.event->start.voltage)));
     input(index, d_.torque, "Inferred missing torque", "added to Tm [pu]");
     input(index, d_.field, "Inferred missing field voltage", "added to Efd [pu]");
     if (figures_.events.size() < 2) return;

@@ -10,8 +10,8 @@
 #include "validate/event/play.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
-#include "validate/playin/instants.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/playin/switching_times.hpp"
 
 namespace swingbank::validate::event {
 namespace {
@@ -201,7 +201,7 @@ FitEvent prepare(record::Record record, const record::Record& seen, const FitEve
   if (!e.record.switched.empty())
     take_told(e, jumps);
   else if (e.record.breaker()) {
-    e.switchings = playin::breaker_instants(e.record, e.switchings);
+    e.switchings = playin::breaker_times(e.record, e.switchings);
     e.smeared.assign(e.smeared.size(), 0);
   }
   if (std::ranges::count(e.smeared, 1) > 0)

@@ -45,7 +45,7 @@ playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& e
                     .speed = state.speed,
                     .tolerance = how.tolerance,
                     .until = how.until,
-                    .instants_stand = how.instants_stand};
+                    .fixed_guard_times = how.fixed_guard_times};
   if (how.hasty) {
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();

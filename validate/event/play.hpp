@@ -46,7 +46,7 @@ struct Playing {
   std::vector<double>* allowance = nullptr;
   bool linear_sensitivities = false;  ///< sensitivities as in playin::Drive, for a search
   std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::Drive
-  bool instants_stand = false;                                      ///< as in playin::Drive
+  bool fixed_guard_times = false;                                   ///< as in playin::Drive
   double until = 1e300;                                             ///< later samples are left out [s]
 };
 

@@ -261,7 +261,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd le
 /// Fits the switching times within their sample intervals, and the turns of an integrated angle, to the sum
 /// of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of several
 /// per cent of the units' power during a fault.
-EventState fitted_instants(const std::vector<Standing>& units, const record::Record& whole) {
+EventState fit_switching_times(const std::vector<Standing>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
   constexpr double kAside = 0.02,
                    kPointSettled = 1e-4;  // fraction of the half interval, or of the largest turn
@@ -337,7 +337,7 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   }
   units.push_back(standing(models.back(), seen, mva, whole - others));
   EventState state;
-  if (!units[0].events[0].switchings.empty()) state = fitted_instants(units, record);
+  if (!units[0].events[0].switchings.empty()) state = fit_switching_times(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {
     const playin::Response r = units[u].answer(state, {.tolerance = 1e-8, .hasty = false});
     for (std::size_t k = 0; k < record.t.size(); ++k) {

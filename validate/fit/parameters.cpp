@@ -23,13 +23,13 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters) {
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread) {
   const sim::Effect& effect = block_effect(plant, block);
   const auto& values = block_at(plant, block).p;
-  std::vector<double> instants;
-  if (effect.instants) instants = effect.instants(effect.law.get(), values.data());
+  std::vector<double> switching_times;
+  if (effect.switching_times) switching_times = effect.switching_times(effect.law.get(), values.data());
   std::vector<FreeParameter> free;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& p = effect.parameters[i];
     if (p.is_code() || values[i] == 0.0 || values[i] == p.null_value) continue;
-    if (std::ranges::count(instants, values[i])) continue;
+    if (std::ranges::count(switching_times, values[i])) continue;
     free.push_back({{block, static_cast<int>(i)}, spread});
   }
   return free;

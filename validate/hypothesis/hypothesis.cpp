@@ -168,7 +168,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
-    if (!fits || !tried || effect->instants || occupied(tested.plant, *effect)) continue;
+    if (!fits || !tried || effect->switching_times || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(component, effect->slot)) continue;
     if (!sim::slot_conflict(*tested.plant.machine.effect, *effect).empty()) continue;
     if (instrument && !(playin::can_be_taken_back(*effect) && playin::touches_phasors(*effect))) continue;
@@ -357,7 +357,7 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
     sim::plant::Plant room = tested.plant;
     room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
     for (const sim::Effect* effect : library.all()) {
-      if (effect->slot != there.slot || effect == &there || effect->instants) continue;
+      if (effect->slot != there.slot || effect == &there || effect->switching_times) continue;
       if (sim::library::variant_of(*effect)) continue;
       Hypothesis h = added_to({room, tested.conventions}, *effect);
       h.name += fmt::format(" in place of {}", there.name);

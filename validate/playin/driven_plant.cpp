@@ -41,7 +41,7 @@ class Driven {
     const auto guards = static_cast<std::size_t>(equations_.of_plant().guards());
     guards_.resize(guards);
     guards_at_end_.resize(guards);
-    collect_instants();
+    collect_switching_times();
   }
 
   /// Runs the simulation; `trace`, if given, receives the trajectory.
@@ -57,7 +57,7 @@ class Driven {
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > run_.until) break;
-      while (next_ < instants_.size() && sample > instants_[next_].time + slack) pass_instant();
+      while (next_ < times_.size() && sample > times_[next_].time + slack) pass_switching();
       advance(sample);
       record(back);
     }
@@ -96,30 +96,30 @@ class Driven {
   }
 
  private:
-  struct Instant {
+  struct SwitchingTime {
     double time;
     int switching;  ///< index in the curve; -1: of an effect
   };
 
-  void collect_instants() {
+  void collect_switching_times() {
     const auto& switchings = run_.curve->switchings();
     for (std::size_t k = 0; k < switchings.size(); ++k)
-      instants_.push_back({switchings[k].time, static_cast<int>(k)});
+      times_.push_back({switchings[k].time, static_cast<int>(k)});
     const auto add = [&](double t) {
-      if (t > run_.record->t.front() && t < run_.record->t.back()) instants_.push_back({t, -1});
+      if (t > run_.record->t.front() && t < run_.record->t.back()) times_.push_back({t, -1});
     };
-    for (const double t : sim::plant::instants_of(*run_.plant)) add(t);
+    for (const double t : sim::plant::switching_times_of(*run_.plant)) add(t);
     for (const record::StagedEvent& e : run_.record->staged) {
       if (e.opens_breaker()) continue;
       add(e.time);
       add(e.until);
     }
-    std::ranges::stable_sort(instants_, {}, &Instant::time);
+    std::ranges::stable_sort(times_, {}, &SwitchingTime::time);
     look_ahead();
   }
   /// Integrates to the next switching time and moves to its other side.
-  void pass_instant() {
-    const Instant at = instants_[next_];
+  void pass_switching() {
+    const SwitchingTime at = times_[next_];
     advance(at.time);
     const T* before = derivative_at(at.time, 0);
     mark(Trace::Node::Kind::before, at.switching, before);
@@ -155,7 +155,7 @@ class Driven {
   /// Limits the time that effects receive to just before the next switching time.
   void look_ahead() {
     equations_.side.last_moment =
-        next_ < instants_.size() ? instants_[next_].time - sim::plant::kBeforeSwitching : 1e300;
+        next_ < times_.size() ? times_[next_].time - sim::plant::kBeforeSwitching : 1e300;
   }
   const T* derivative_at(double t, std::size_t keep) {
     equations_.evaluate(t, x_.data(), k_[keep].data());
@@ -230,7 +230,7 @@ class Driven {
     take(after - before);
     refresh();
     mark(Trace::Node::Kind::after, -1, k_[0].data());
-    for (std::size_t i = 0; i < x_.size() && !run_.instants_stand; ++i)
+    for (std::size_t i = 0; i < x_.size() && !run_.fixed_guard_times; ++i)
       for (std::size_t d = 0; d < parameters_.size(); ++d)
         Seeds<T>::add(x_[i], d,
                       Seeds<T>::get(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
@@ -383,7 +383,7 @@ class Driven {
   std::vector<T> guards_, guards_at_end_;
   std::vector<double> allowed_;  ///< error of each state per step, relative to 1 + |state|
   const bool breaker_ = run_.record->breaker() != nullptr;
-  std::vector<Instant> instants_;
+  std::vector<SwitchingTime> times_;
   std::size_t next_ = 0;
   int steps_ = 0;
   double t_ = 0, h_ = 1e-3;

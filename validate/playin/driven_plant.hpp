@@ -67,7 +67,7 @@ struct Drive {
   /// Outputs with approximate sensitivities, from the plant linearised at both ends of each step: one or two
   /// per cent off, at a fraction of the cost. Empty: exact sensitivities of every output.
   std::vector<Output> linear_sensitivities = {};
-  bool instants_stand = false;  ///< exact sensitivities neglect the shift of a guard's switching time
+  bool fixed_guard_times = false;  ///< exact sensitivities neglect the shift of a guard's switching time
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
   /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
   std::shared_ptr<const TrajectoryCache>* cache = nullptr;

@@ -198,7 +198,7 @@ bool can_go_together(const Drive& run) {
   constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&
          run.field.t.empty() && run.record->staged.empty() && !run.record->breaker() &&
-         !run.record->open_circuit() && sim::plant::instants_of(*run.plant).empty();
+         !run.record->open_circuit() && sim::plant::switching_times_of(*run.plant).empty();
 }
 
 std::optional<Response> alone(const Drive& run) {

@@ -76,7 +76,7 @@ Given::At Given::operator()(int segment, double t) const {
   return at;
 }
 
-std::vector<Switching> breaker_instants(const record::Record& record, const std::vector<Switching>& found) {
+std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found) {
   const record::StagedEvent& breaker = *record.breaker();
   if (record.open_circuit()) return {};
   for (const Switching& s : found)

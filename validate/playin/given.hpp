@@ -39,7 +39,7 @@ inline bool is_part(const record::Record& r) {
 }
 /// Returns the switching times of a record whose breaker opens: the step found within kNearBreaker of the
 /// given time, or the time at which P falls by half, else the given time.
-std::vector<Switching> breaker_instants(const record::Record& record, const std::vector<Switching>& found);
+std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found);
 constexpr double kNearBreaker = 0.2;  ///< [s]
 /// Sets every input and every compared channel of a component to its initial value.
 void stand_still(record::Record& record, const OperatingPoint& start);

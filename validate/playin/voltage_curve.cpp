@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/median.hpp"
-#include "validate/playin/instants.hpp"
+#include "validate/playin/switching_times.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -103,8 +103,8 @@ VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switc
   bool same = switchings.size() == switchings_.size();
   for (std::size_t s = 0; same && s < switchings.size(); ++s) {
     const Switching &from = switchings_[s], &to = switchings[s];
-    const auto before = [&](double instant) {
-      return std::ranges::upper_bound(record.t, instant + slack) - record.t.begin();
+    const auto before = [&](double switching_time) {
+      return std::ranges::upper_bound(record.t, switching_time + slack) - record.t.begin();
     };
     const bool within = std::abs(to.time - from.time) <= from.uncertainty;
     same = !from.has_before && !from.has_after && !to.has_before && !to.has_after &&

@@ -218,7 +218,7 @@ SystemCase load_system(const fs::path& file) {
   s.base.mva = c.require<double>("record.base_mva", {1e-9, 1e9, "MVA"});
   s.base.kv = c.optional<double>("record.base_kv", 0.0, {1e-9, 1e9, "kV"});
   s.texts = read_texts(c);
-  s.find_instants = c.choice("event.instants", {"given", "found"}, "given") == "found";
+  s.switching_times_from_records = c.choice("event.instants", {"given", "found"}, "given") == "found";
   s.steady_state = c.choice("compare.steady_state", {"judge", "shift"}, "judge") == "shift"
                        ? SteadyState::shift
                        : SteadyState::judge;

@@ -46,9 +46,9 @@ std::string place_of(const SystemCase& s, const SystemTerminal& t) {
   return t.plant >= 0 ? "plant " + s.grid.plants[static_cast<std::size_t>(t.plant)].name
                       : fmt::format("bus {}", s.grid.network.buses[static_cast<std::size_t>(t.bus)].number);
 }
-std::string instants_text(const SystemComparison& c) {
+std::string switching_times_text(const SystemComparison& c) {
   std::string text;
-  for (const double t : c.instants) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", t);
+  for (const double t : c.switching_times) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", t);
   return text + (c.uncertainty > 0 ? " (found)" : " (given)");
 }
 std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
@@ -123,7 +123,8 @@ void add_terminal(report::Page& page, const SystemCase& s, const SystemCompariso
   page.text(fmt::format("At {}. {}: {} samples at {:.6g} per second.", place_of(s, t), t.record.name,
                         t.record.samples(), t.record.rate()));
   for (const auto& note : e.notes) page.note(note);
-  const std::vector<std::pair<double, double>> fault = {{c.instants.front(), c.instants.back()}};
+  const std::vector<std::pair<double, double>> fault = {
+      {c.switching_times.front(), c.switching_times.back()}};
   for (const auto& channel : e.channels) {
     const auto curves = [&](const std::string& title, const std::string& label) {
       return report::Curves{title, "t [s]", label, "system", e.record.t, {}, fault};
@@ -179,7 +180,7 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
   out += report::padded(initial_table(s, c));
   out += "\nTerminals, sorted by error (largest ratio of a bin to its bound):\n";
   out += report::padded(ranking_table(s, c), 6);
-  out += "\nswitching at " + instants_text(c) + "\n";
+  out += "\nswitching at " + switching_times_text(c) + "\n";
   for (const auto& note : c.notes) out += "note: " + note + "\n";
   for (const auto& e : c.terminals)
     for (const auto& note : e.notes) out += "note on " + e.record.name + ": " + note + "\n";
@@ -197,8 +198,8 @@ std::string system_json(const SystemCase& s, const SystemComparison& c, const re
             {"cells_exceeding", c.adequacy.exceeding},
             {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
             {"event", event_lines(s.texts)},
-            {"instants_s", c.instants},
-            {"instants_found", s.find_instants},
+            {"instants_s", c.switching_times},
+            {"instants_found", s.switching_times_from_records},
             {"instants_uncertainty_s", c.uncertainty},
             {"outcome", sim::outcome_name(c.outcome)},
             {"reference",
@@ -237,7 +238,7 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
   page.table(initial_table(s, c));
   std::string event;
   for (const auto& line : event_lines(s.texts)) event += (event.empty() ? "" : "; ") + line;
-  page.text("Event: " + event + ". Switching: " + instants_text(c) + ".");
+  page.text("Event: " + event + ". Switching: " + switching_times_text(c) + ".");
   page.text(
       "Drag across a chart to zoom in on a time range (all charts follow); double-click to see "
       "the whole record. The shaded band is the fault.");

@@ -65,12 +65,13 @@ class Comparer {
     e.record.name = t.name;
     e.notes = t.warnings;
     e.left_out = e.record.lost;
-    for (const double at : out_.instants)
+    for (const double at : out_.switching_times)
       e.switchings.push_back({.time = at, .uncertainty = out_.uncertainty});
-    e.detected = s_.find_instants;
-    if (const auto doubt = clock_doubt(t.record, out_.instants); !doubt.empty()) e.notes.push_back(doubt);
+    e.detected = s_.switching_times_from_records;
+    if (const auto doubt = clock_doubt(t.record, out_.switching_times); !doubt.empty())
+      e.notes.push_back(doubt);
     leave_out_smeared(e, smear);
-    const double begins = out_.instants.front() - smear + 1e-4 * t.record.step();
+    const double begins = out_.switching_times.front() - smear + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kMinQuiet)
@@ -94,7 +95,7 @@ class Comparer {
   void leave_out(compare::EventComparison& e, double reach) const {
     e.left_out.resize(e.record.t.size(), 0);
     for (std::size_t k = 0; k < e.record.t.size(); ++k)
-      if (std::ranges::any_of(out_.instants,
+      if (std::ranges::any_of(out_.switching_times,
                               [&](double at) { return std::abs(e.record.t[k] - at) <= reach; }))
         e.left_out[k] = 1;
   }
@@ -216,7 +217,8 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
   model.conventions = s.grid.conventions;
   model.record_base = s.base;
   record::Record record = t.record;
-  if (clock_doubt(record, c.instants).empty()) record.switched = c.instants;  // else the record's own steps
+  if (clock_doubt(record, c.switching_times).empty())
+    record.switched = c.switching_times;  // else the record's own steps
   try {
     std::vector<compare::EventComparison> one = {compare::compare_event(model, std::move(record))};
     one.front().record.name = t.name;
@@ -267,19 +269,19 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
 
 SystemComparison compare_system(const SystemCase& s) {
   SystemComparison c;
-  c.instants = instants_of(s.event);
+  c.switching_times = switching_times_of(s.event);
   sim::network::Event event = s.event;
-  if (s.find_instants) {
-    const auto written = c.instants;
-    c.instants = found_instants(s, c.uncertainty);
+  if (s.switching_times_from_records) {
+    const auto written = c.switching_times;
+    c.switching_times = estimate_switching_times(s, c.uncertainty);
     event = moved(event, [&](double t) {
       const auto at = std::ranges::lower_bound(written, t) - written.begin();
-      return c.instants[static_cast<std::size_t>(at)];
+      return c.switching_times[static_cast<std::size_t>(at)];
     });
   }
   for (const auto& t : s.terminals)
-    if (c.instants.front() < t.record.t.front())
-      throw InputError({fmt::format("an event at {:g} s", c.instants.front()), "terminal " + t.name,
+    if (c.switching_times.front() < t.record.t.front())
+      throw InputError({fmt::format("an event at {:g} s", c.switching_times.front()), "terminal " + t.name,
                         fmt::format("its record begins at {:g} s", t.record.t.front()),
                         "give the event's switching times on the records' clock"});
   const SystemRun run = run_system(s, event);
@@ -293,7 +295,7 @@ SystemComparison compare_system(const SystemCase& s) {
     c.notes.push_back(
         fmt::format("The simulation ended at {:.3f} s: {}. Later samples repeat its last value.",
                     c.stopped_at, sim::outcome_name(c.outcome)));
-  if (s.find_instants)
+  if (s.switching_times_from_records)
     c.notes.push_back(
         fmt::format("Switching times were estimated from the records (each to ± {:.1f} ms) and refined by "
                     "the fit of the model to the records. Give them (event.instants = \"given\") where they "

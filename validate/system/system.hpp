@@ -34,8 +34,8 @@ struct SystemCase {
   sim::grid::EventTexts texts;
   sim::network::Event event;  ///< with times on the records' clock
   record::RecordBase base;
-  int reference = -1;          ///< terminal of the reference angle; -1: frequencies are compared
-  bool find_instants = false;  ///< switching times are estimated from the records
+  int reference = -1;  ///< terminal of the reference angle; -1: frequencies are compared
+  bool switching_times_from_records = false;  ///< switching times are estimated from the records
   SteadyState steady_state = SteadyState::judge;
   double tolerance = 1e-8;  ///< relative tolerance of the integrator
   std::vector<SystemTerminal> terminals;
@@ -56,11 +56,11 @@ struct TerminalRank {
 };
 struct SystemComparison {
   std::vector<compare::EventComparison>
-      terminals;                 ///< in the order of the case; record.name is the terminal's name
-  std::vector<double> initial;   ///< model - record before the event [pu, rad], NaN: not compared;
-                                 ///< [terminal * 4 + (V, angle, P, Q)]
-  std::vector<double> instants;  ///< switching times used [s]
-  double uncertainty = 0;        ///< half-interval of estimated switching times [s]; 0: given
+      terminals;                        ///< in the order of the case; record.name is the terminal's name
+  std::vector<double> initial;          ///< model - record before the event [pu, rad], NaN: not compared;
+                                        ///< [terminal * 4 + (V, angle, P, Q)]
+  std::vector<double> switching_times;  ///< switching times used [s]
+  double uncertainty = 0;               ///< half-interval of estimated switching times [s]; 0: given
   sim::Outcome outcome = sim::Outcome::stable;
   double stopped_at = 0;  ///< on the first record's clock [s]
   compare::Adequacy adequacy;

@@ -48,14 +48,14 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
   n.step = record.step;
   n.outputs = record.Ifd.empty() ? kOutputs - 1 : kOutputs;
   // An event without a recorded time is assumed midway between two samples.
-  const double instant =
+  const double event_position =
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
   // A sample at the event's time may show either side; it counts on neither.
   constexpr double kWithinSample = 1e-6;  // [samples]
-  const auto count = std::min(static_cast<std::size_t>(std::ceil(instant - kWithinSample)), size);
-  const auto first = std::min(static_cast<std::size_t>(instant + kWithinSample) + 1, size);
-  n.first_step = (static_cast<double>(first) - instant) * record.step;
+  const auto count = std::min(static_cast<std::size_t>(std::ceil(event_position - kWithinSample)), size);
+  const auto first = std::min(static_cast<std::size_t>(event_position + kWithinSample) + 1, size);
+  n.first_step = (static_cast<double>(first) - event_position) * record.step;
   n.before = static_cast<double>(count);
   n.P0 = mean(record.P, count);
   n.Q0 = mean(record.Q, count);

@@ -44,7 +44,7 @@ struct SetpointStep : SetpointMove {
       problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
                    "a step ends after it came", "give end > start");
   }
-  static std::vector<double> instants(const double* p) { return {p[start], p[end]}; }
+  static std::vector<double> switching_times(const double* p) { return {p[start], p[end]}; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
@@ -74,7 +74,7 @@ struct SetpointRamp : SetpointMove {
       problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a ramp goes forward in time",
                    "give duration >= 0");
   }
-  static std::vector<double> instants(const double* p) { return {p[start], p[start] + p[duration]}; }
+  static std::vector<double> switching_times(const double* p) { return {p[start], p[start] + p[duration]}; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -259,13 +259,13 @@ void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed)
   }
 }
 
-/// Returns the last time before a discontinuity of effects at `instant`, in the lane's precision [s].
+/// Returns the last time before a discontinuity of effects at `switching_time`, in the lane's precision [s].
 template <class Real>
-double moment_before(double instant) {
+double moment_before(double switching_time) {
   if constexpr (std::is_same_v<Real, float>)
-    return std::nextafter(static_cast<float>(instant), 0.0F);
+    return std::nextafter(static_cast<float>(switching_time), 0.0F);
   else
-    return instant - plant::kBeforeSwitching;
+    return switching_time - plant::kBeforeSwitching;
 }
 
 /// Sets the matrices and setpoints of the lane's current segment and restarts the step control.
@@ -354,7 +354,7 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
     run.jumps.clear();
     for (std::size_t i = 0; i < plants_.size(); ++i) {
       const auto other = changed.find(static_cast<int>(i));
-      const auto more = plant::instants_of(other == changed.end() ? grid_.plants[i] : other->second);
+      const auto more = plant::switching_times_of(other == changed.end() ? grid_.plants[i] : other->second);
       run.jumps.insert(run.jumps.end(), more.begin(), more.end());
     }
     std::ranges::sort(run.jumps);

@@ -34,7 +34,7 @@ struct Definition {
   std::vector<int> searched;                   ///< coefficients that steady() solves for
   std::vector<int> start;                      ///< per state: coefficient with the initial guess
   std::vector<Requirement> requirements;       ///< both sides are coefficients
-  std::vector<int> instants;                   ///< coefficients with switching times [s]
+  std::vector<int> switching_times;            ///< coefficients with switching times [s]
   std::vector<std::pair<int, std::string>>
       finite;  ///< coefficients that depend on parameters only, with their text; they must be finite
   Compiled code;

@@ -206,8 +206,8 @@ void Reader::read_requirements() {
       problem(key, fault.at, fault.what, fault.why, fault.remedy);
       continue;
     }
-    instant_vertices_.push_back(lower(tree, key));
-    if (!graph_[instant_vertices_.back()].parameters)
+    switching_time_vertices_.push_back(lower(tree, key));
+    if (!graph_[switching_time_vertices_.back()].parameters)
       problem(key, 0, "an instant that is not known beforehand", "a run is cut at it", "use parameters only");
   }
 }
@@ -278,7 +278,7 @@ void Reader::finish() {
       if (v >= 0) also.push_back(v);
   }
   for (const auto& [a, b] : requirement_vertices_) also.insert(also.end(), {a, b});
-  also.insert(also.end(), instant_vertices_.begin(), instant_vertices_.end());
+  also.insert(also.end(), switching_time_vertices_.begin(), switching_time_vertices_.end());
   law_.code = compile(graph_, derivatives, output_, also, coefficients_);
   const auto coefficient = [&](int vertex) {
     return vertex < 0 ? -1 : law_.code.coefficient_of[static_cast<std::size_t>(vertex)];
@@ -299,7 +299,7 @@ void Reader::finish() {
     law_.requirements[i].left = coefficient(requirement_vertices_[i].first);
     law_.requirements[i].right = coefficient(requirement_vertices_[i].second);
   }
-  for (const int v : instant_vertices_) law_.instants.push_back(coefficient(v));
+  for (const int v : switching_time_vertices_) law_.switching_times.push_back(coefficient(v));
   for (const auto& [key, vertex] : values_) {
     const int index = coefficient(vertex);
     if (index >= 0 && graph_[vertex].parameters) law_.finite.emplace_back(index, key);

@@ -102,7 +102,7 @@ class Reader {
   int own_ = -1;                  ///< state whose derivative is being read
   int output_ = -1;               ///< vertex of the output
   std::vector<std::pair<int, int>> requirement_vertices_;
-  std::vector<int> instant_vertices_;
+  std::vector<int> switching_time_vertices_;
 };
 
 }  // namespace swingbank::sim::laws

@@ -113,8 +113,8 @@ ReferencePlants::ReferencePlants(const grid::Grid& grid) {
     unit.delta = delta_state(*plant.machine.effect);
     unit.scale = plant.mva / grid.network.base_mva;
     place(std::move(unit));
-    const auto more = plant::instants_of(plant);
-    instants_.insert(instants_.end(), more.begin(), more.end());
+    const auto more = plant::switching_times_of(plant);
+    switching_times_.insert(switching_times_.end(), more.begin(), more.end());
   }
   for (const plant::Consumer& load : grid.loads) {
     Unit unit;

@@ -46,11 +46,11 @@ class ReferencePlants {
   [[nodiscard]] const std::vector<Unit>& units() const { return units_; }  ///< plants, then loads
   [[nodiscard]] int states() const { return states_; }
   /// Further switching times: jumps of the plants' effects [s].
-  [[nodiscard]] const std::vector<double>& instants() const { return instants_; }
+  [[nodiscard]] const std::vector<double>& switching_times() const { return switching_times_; }
 
  private:
   std::vector<Unit> units_;
-  std::vector<double> instants_;
+  std::vector<double> switching_times_;
   int states_ = 0;
 };
 

@@ -11,7 +11,7 @@ namespace swingbank::blind_second {
 /// Rises linearly from -A to A, then falls in one step.
 inline UnlistedDrive sawtooth(double A, double hz, double start, double until) {
   UnlistedDrive d;
-  for (double t = start; t < until; t += 1 / hz) d.instants.push_back(t);
+  for (double t = start; t < until; t += 1 / hz) d.step_times.push_back(t);
   d.torque = [=](double t, double within, double, const UnlistedDrive::Memory&) {
     if (within < start) return 0.0;
     const double tooth = std::floor((within - start) * hz);
@@ -21,7 +21,7 @@ inline UnlistedDrive sawtooth(double A, double hz, double start, double until) {
 }
 inline UnlistedDrive field_loss(double part, double start) {
   UnlistedDrive d;
-  d.instants = {start};
+  d.step_times = {start};
   d.field = [=](double within, double Efd, const UnlistedDrive::Memory&) {
     return within < start ? Efd : Efd * (1 - part);
   };
@@ -53,7 +53,7 @@ inline UnlistedDrive random_walk(double A, double step, double start, double unt
   std::normal_distribution<double> normal;
   std::vector<double> knots{0.0};
   for (double t = start; t < until; t += step) {
-    d.instants.push_back(t);
+    d.step_times.push_back(t);
     knots.push_back(knots.back() + A * normal(engine));
   }
   d.torque = [=](double t, double within, double, const UnlistedDrive::Memory&) {

@@ -45,7 +45,7 @@ class Simulation {
   [[nodiscard]] Vector start() const { return pack(start_); }
   /// Times of all steps [s], sorted.
   [[nodiscard]] std::vector<double> jumps() const {
-    std::vector<double> all = s_.unlisted.instants;
+    std::vector<double> all = s_.unlisted.step_times;
     for (const Stretch& g : stretch_) all.push_back(g.start);
     all.push_back(s_.dip.start);
     std::ranges::sort(all);

@@ -31,7 +31,7 @@ struct UnlistedDrive {
   std::function<double(double within, double Efd, const Memory&)> field;
   /// Derivatives of the memory; dV is the deviation of the voltage from its pre-event value.
   std::function<Memory(double dV, const Memory&)> rates;
-  std::vector<double> instants;  ///< times of its steps [s]
+  std::vector<double> step_times;  ///< times of its steps [s]
 };
 
 struct Setup {

@@ -70,14 +70,14 @@ TEST(Drives, ForcedOscillationIsASine) {
 }
 
 TEST(Drives, EveryStepAndKinkIsListed) {
-  const auto instants = [](const char* name, const Values& p) {
-    return library::compiled().find(name)->instants(nullptr, p.data());
+  const auto switching_times = [](const char* name, const Values& p) {
+    return library::compiled().find(name)->switching_times(nullptr, p.data());
   };
-  EXPECT_EQ(instants("VREFSTEP", {0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
-  EXPECT_EQ(instants("PREFRAMP", {0.0, 2.0, 3.0}), (Values{2.0, 5.0}));
-  EXPECT_EQ(instants("FORCEDOSC", {0.0, 1.0, 0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
-  EXPECT_EQ(instants("FASTVALVE", {0.0, 1.0, 0.5, 0.25, 2.0}), (Values{1.0, 1.5, 1.75, 3.75}));
-  EXPECT_EQ(instants("AGCMOVES", {1.0, 4.0, 2.0, 0, 0, 0, 0, 0, 0}),
+  EXPECT_EQ(switching_times("VREFSTEP", {0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
+  EXPECT_EQ(switching_times("PREFRAMP", {0.0, 2.0, 3.0}), (Values{2.0, 5.0}));
+  EXPECT_EQ(switching_times("FORCEDOSC", {0.0, 1.0, 0.0, 2.0, 3.0}), (Values{2.0, 3.0}));
+  EXPECT_EQ(switching_times("FASTVALVE", {0.0, 1.0, 0.5, 0.25, 2.0}), (Values{1.0, 1.5, 1.75, 3.75}));
+  EXPECT_EQ(switching_times("AGCMOVES", {1.0, 4.0, 2.0, 0, 0, 0, 0, 0, 0}),
             (Values{1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 17.0, 19.0, 21.0, 23.0}));
 }
 

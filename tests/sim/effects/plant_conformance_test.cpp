@@ -121,8 +121,8 @@ std::vector<double> shifts(const plant::Plant& plant, std::mt19937_64& random) {
 
 /// Time at which every drive acts: half a second after its first step.
 double busy_time(const plant::Plant& plant) {
-  const auto instants = plant::instants_of(plant);
-  return instants.empty() ? 1.0 : instants.front() + 0.5;
+  const auto switching_times = plant::switching_times_of(plant);
+  return switching_times.empty() ? 1.0 : switching_times.front() + 0.5;
 }
 
 TEST(PlantConformance, StaysAtItsOperatingPoint) {

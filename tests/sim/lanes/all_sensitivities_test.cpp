@@ -48,11 +48,11 @@ std::vector<const Effect*> effects_of_a_plant() {
     if (e->slot != Slot::load && e->slot != Slot::measurement) list.push_back(e);
   return list;
 }
-bool moves_an_instant(const Effect& e, std::vector<double> p, std::size_t i) {
-  if (!e.instants) return false;
-  const auto before = e.instants(e.law.get(), p.data());
+bool moves_switching_time(const Effect& e, std::vector<double> p, std::size_t i) {
+  if (!e.switching_times) return false;
+  const auto before = e.switching_times(e.law.get(), p.data());
   p[i] *= 1.01;
-  return e.instants(e.law.get(), p.data()) != before;
+  return e.switching_times(e.law.get(), p.data()) != before;
 }
 
 /// Every parameter with a derivative at its default, except those that move a switching time: only the
@@ -70,7 +70,7 @@ std::vector<Seed> seeds(const grid::Grid& grid, const Effect& e) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Parameter& record = e.parameters[i];
     // At zero a time constant is a bypass, and a limit or block is off: not differentiable there.
-    if (record.is_code() || p[i] == 0.0 || moves_an_instant(e, p, i) || falls_short(e, record)) continue;
+    if (record.is_code() || p[i] == 0.0 || moves_switching_time(e, p, i) || falls_short(e, record)) continue;
     list.push_back({kPlant, {block, static_cast<int>(i)}, std::abs(p[i])});
   }
   return list;

@@ -184,10 +184,11 @@ struct Difference {
 inline Difference difference(const grid::Grid& grid, const network::Event& event, const Trajectory& a,
                              const Trajectory& b, double efd = 1.0) {
   constexpr double near = 2e-3;  // samples this close to a switching time are excluded [s]
-  std::vector<double> instants, jumps;
+  std::vector<double> switching_times, jumps;
   for (const plant::Plant& p : grid.plants)
-    for (const double t : plant::instants_of(p)) jumps.push_back(t);
-  for (const network::Segment& s : network::segments(event, grid.network, jumps)) instants.push_back(s.start);
+    for (const double t : plant::switching_times_of(p)) jumps.push_back(t);
+  for (const network::Segment& s : network::segments(event, grid.network, jumps))
+    switching_times.push_back(s.start);
   Difference worst;
   const auto channels = static_cast<int>(a.channels.size());
   for (int row = 0; row < a.rows(); ++row) {
@@ -197,7 +198,7 @@ inline Difference difference(const grid::Grid& grid, const network::Event& event
     for (int k = 0; k < a.samples; ++k) {
       const double t = k / a.rate, error = std::abs(a.row(row)[k] - b.row(row)[k]) / unit;
       if (error <= worst.value) continue;
-      if (std::ranges::any_of(instants, [&](double i) { return std::abs(t - i) < near; })) continue;
+      if (std::ranges::any_of(switching_times, [&](double i) { return std::abs(t - i) < near; })) continue;
       worst.value = error;
       worst.where = grid.plants[static_cast<std::size_t>(row / channels)].name + "." +
                     std::string(kChannels[static_cast<std::size_t>(channel)].name) + " at " +

@@ -179,8 +179,8 @@ instants = ["start", "start + 2"]
 start = { unit = "s", standard = 1, low = 0, high = 20, meaning = "when" })law"),
                               "x.toml");
   const double start = 3.0;
-  ASSERT_NE(law.instants, nullptr);
-  EXPECT_EQ(law.instants(law.law.get(), &start), (std::vector<double>{3.0, 5.0}));
+  ASSERT_NE(law.switching_times, nullptr);
+  EXPECT_EQ(law.switching_times(law.law.get(), &start), (std::vector<double>{3.0, 5.0}));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ class PsseStepper {
       : h_(h),
         exciter_steps_(exciter_steps),
         plants_(grid),
-        parts_(network::segments(event, grid.network, plants_.instants())),
+        parts_(network::segments(event, grid.network, plants_.switching_times())),
         before_(grid, plants_, parts_.at(0), 2 * end),
         after_(grid, plants_, parts_.at(1), 2 * end),
         network_before_(grid, before_, tolerance),

@@ -30,7 +30,7 @@ TEST(Hypotheses, IncludeEveryFittingEffectAndNullGroup) {
     const bool instrument =
         e.slot == sim::Slot::measurement && playin::can_be_taken_back(e) && playin::touches_phasors(e);
     const bool joins = (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) &&
-                       e.instants == nullptr && sim::library::variant_of(e) == nullptr;
+                       e.switching_times == nullptr && sim::library::variant_of(e) == nullptr;
     const bool suits = sim::slot_conflict(*model.plant.machine.effect, e).empty();
     EXPECT_EQ(std::ranges::count(names, e.name), joins && suits ? 1 : 0) << e.name;
   }

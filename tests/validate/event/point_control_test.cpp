@@ -53,7 +53,7 @@ struct Plant : ::testing::Test {
   }
   [[nodiscard]] double missed(const sim::plant::Plant& plant) const {
     const record::Record r = test::record_of(run, 1, 2);
-    const playin::VoltageCurve curve(r, test::instants(run, 1, true));
+    const playin::VoltageCurve curve(r, test::exact_switchings(run, 1, true));
     plant::PlantModel model;
     model.plant = plant;
     model.conventions = sim::Conventions::psse();

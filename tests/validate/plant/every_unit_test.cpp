@@ -198,7 +198,7 @@ TEST_P(ReplayFull, ExtractedUnitReproducesTheSimulation) {
     record::Record r = test::record_of(s, row, 1);
     r.base.mva = before[k].mva;
     const auto back =
-        playin::play_in(model.under_test(), r, playin::VoltageCurve(r, test::instants(s, row, true)));
+        playin::play_in(model.under_test(), r, playin::VoltageCurve(r, test::exact_switchings(s, row, true)));
     double worst = 0.0;
     for (std::size_t i = 0; i < r.t.size(); ++i)
       worst = std::max({worst, std::abs(back.P[i] - r.P[i]), std::abs(back.Q[i] - r.Q[i])});

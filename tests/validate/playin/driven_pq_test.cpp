@@ -41,7 +41,7 @@ Errors errors(const test::Simulated& s, int stride) {
     record::Record r = test::record_of(s, plant, stride);
     for (int k = 0; k < s.before.samples; k += stride) r.speed.push_back(s.before.at(plant, 4)[k]);
     const PowerResponse back = play_back({s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions},
-                                         r, test::instants(s, plant, false));
+                                         r, test::exact_switchings(s, plant, false));
     e.V = std::max(e.V, worst_of(back.V, r.V));
     e.theta = std::max(e.theta, worst_of(back.theta, r.theta));
     e.speed = std::max(e.speed, worst_of(back.speed, r.speed));
@@ -75,7 +75,7 @@ TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
   record::Record r = test::record_of(s, 2, 1);
   for (std::size_t k = 300; k < 400; ++k) r.P[k] *= 30;
   EXPECT_THAT(test::messages([&] {
-                play_back({s.grid.plants[2], s.grid.conventions}, r, test::instants(s, 2, false));
+                play_back({s.grid.plants[2], s.grid.conventions}, r, test::exact_switchings(s, 2, false));
               }),
               ElementsAre(HasSubstr("no terminal voltage for P = ")));
 }
@@ -86,7 +86,8 @@ TEST(DrivenByPowerTest, DetectsWrongReactance) {
   sim::plant::Plant wrong = s.grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("Xdp"))] *= 1.2;
   // 20 % of X'd, times a change of current of some tenths, is more than a hundredth of the voltage.
-  EXPECT_GT(worst_of(play_back({wrong, s.grid.conventions}, r, test::instants(s, 2, false)).V, r.V), 0.01);
+  EXPECT_GT(worst_of(play_back({wrong, s.grid.conventions}, r, test::exact_switchings(s, 2, false)).V, r.V),
+            0.01);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ double playback_error(const test::Simulated& s, int stride, bool one_sided) {
   double error = 0;
   for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
     const record::Record r = test::record_of(s, plant, stride);
-    const VoltageCurve curve(r, test::instants(s, plant, one_sided));
+    const VoltageCurve curve(r, test::exact_switchings(s, plant, one_sided));
     const Playback back =
         play_in({s.grid.plants[static_cast<std::size_t>(plant)], s.grid.conventions}, r, curve);
     error = std::max({error, worst(back.P, r.P), worst(back.Q, r.Q)});
@@ -100,7 +100,7 @@ VoltageError voltage_error(const test::Simulated& s, int stride, int points) {
   for (int plant = 0; plant < static_cast<int>(s.grid.plants.size()); ++plant) {
     const auto phasor = [&](int k) { return std::polar(s.before.at(plant, 0)[k], s.before.at(plant, 1)[k]); };
     const record::Record r = test::record_of(s, plant, stride);
-    const VoltageCurve curve(r, test::instants(s, plant, false));
+    const VoltageCurve curve(r, test::exact_switchings(s, plant, false));
     const int last = first + (s.before.samples - 1 - first) / stride * stride;
     for (int k = first; k <= last; ++k) {
       const int below = first + (k - first) / stride * stride;
@@ -160,8 +160,8 @@ TEST(PlayInTest, DetectsWrongParameter) {
   const record::Record r = test::record_of(genrou(), 2, 4);
   sim::plant::Plant wrong = genrou().grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("H"))] *= 1.1;
-  const Playback back =
-      play_in({wrong, genrou().grid.conventions}, r, VoltageCurve(r, test::instants(genrou(), 2, true)));
+  const Playback back = play_in({wrong, genrou().grid.conventions}, r,
+                                VoltageCurve(r, test::exact_switchings(genrou(), 2, true)));
   EXPECT_GT(worst(back.P, r.P),
             0.01);  // 10 % of H moves P by some per cent of the machine in its first swing
 }
@@ -184,12 +184,12 @@ TEST(PlayInTest, StaysAtRest_WithoutAnEvent) {
 TEST(PlayInTest, OffNominalFrequencyRotatesTheFrame) {
   const test::Simulated& s = genrou();
   record::Record r = test::record_of(s, 3, 4);
-  const Playback still =
-      play_in({s.grid.plants[3], s.grid.conventions}, r, VoltageCurve(r, test::instants(s, 3, false)));
+  const Playback still = play_in({s.grid.plants[3], s.grid.conventions}, r,
+                                 VoltageCurve(r, test::exact_switchings(s, 3, false)));
   const double drift = 2 * std::numbers::pi * 0.02;  // 20 mHz
   for (std::size_t k = 0; k < r.t.size(); ++k) r.theta[k] += drift * r.t[k];
-  const Playback turning =
-      play_in({s.grid.plants[3], s.grid.conventions}, r, VoltageCurve(r, test::instants(s, 3, false)));
+  const Playback turning = play_in({s.grid.plants[3], s.grid.conventions}, r,
+                                   VoltageCurve(r, test::exact_switchings(s, 3, false)));
   EXPECT_NEAR(turning.start.drift, drift, 1e-6);
   // Phasors of 120/s turn by 1 mrad per sample; splines through them differ by h^4 of that: a few 1e-6 pu.
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
@@ -235,7 +235,7 @@ TEST(PlayInTest, UsesTheRecordsOwnBase) {
   const double factor = own.base.mva / 100;
   for (auto* channel : {&system.P, &system.Q})
     for (auto& v : *channel) v *= factor;
-  const auto at = test::instants(s, 1, true);
+  const auto at = test::exact_switchings(s, 1, true);
   const Playback a = play_in({s.grid.plants[1], s.grid.conventions}, own, VoltageCurve(own, at));
   const Playback b = play_in({s.grid.plants[1], s.grid.conventions}, system, VoltageCurve(system, at));
   for (std::size_t k = 0; k < a.P.size(); ++k) ASSERT_NEAR(a.P[k] * factor, b.P[k], 1e-9);

@@ -148,7 +148,7 @@ inline record::Record by_frequency(record::Record r, const std::vector<double>& 
 
 /// Returns the exact switching times, with both one-sided voltages if requested (they must be samples of the
 /// run).
-inline std::vector<playin::Switching> instants(const Simulated& s, int plant, bool one_sided) {
+inline std::vector<playin::Switching> exact_switchings(const Simulated& s, int plant, bool one_sided) {
   std::vector<playin::Switching> list;
   for (const double t : {s.t_on, s.t_off}) {
     playin::Switching w{.time = t};

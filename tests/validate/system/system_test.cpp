@@ -174,7 +174,7 @@ TEST_F(SystemCompare, SameGridIsAdequate) {
   const SystemCase s = load_system(system());
   const SystemComparison c = compare_system(s);
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
-  EXPECT_EQ(c.instants, (std::vector<double>{2.0, 2.1}));
+  EXPECT_EQ(c.switching_times, (std::vector<double>{2.0, 2.1}));
   ASSERT_EQ(c.terminals.size(), 4);  // sorted by name: eight, five, one, two
   std::vector<std::string> names;
   for (const auto& channel : c.terminals[3].channels) names.push_back(channel.name);
@@ -242,14 +242,14 @@ TEST_F(SystemCompare, DeclaredFiltersGiveSwitchingTimes) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto found = system("[event]", "[event]\ninstants = \"found\"");
   const SystemComparison undeclared = compare_system(load_system(found));
-  EXPECT_NEAR(undeclared.instants[0], kOn,
+  EXPECT_NEAR(undeclared.switching_times[0], kOn,
               2e-3);  // from the samples after the filtered ones: 0.6 and 0.4 ms off
-  EXPECT_NEAR(undeclared.instants[1], kOff, 2e-3);
+  EXPECT_NEAR(undeclared.switching_times[1], kOff, 2e-3);
   instruments = "instruments = [\"PMUFILTER\"]\n";
   const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
-  EXPECT_NEAR(c.instants[0], kOn, 1e-4);
-  EXPECT_NEAR(c.instants[1], kOff, 1e-4);
+  EXPECT_NEAR(c.switching_times[0], kOn, 1e-4);
+  EXPECT_NEAR(c.switching_times[1], kOff, 1e-4);
 }
 TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
   std::vector<std::string> changed = {"1:TGOV1:R=0.05,T1=0.5", "3:TGOV1:R=0.05,T1=0.5",
@@ -292,8 +292,8 @@ TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
   const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   // Half a sample is 8.3 ms; P and Q after the fault determine the time to 5 % of that.
-  EXPECT_NEAR(c.instants[0], 2.013, 4e-4);
-  EXPECT_NEAR(c.instants[1], 2.107, 4e-4);
+  EXPECT_NEAR(c.switching_times[0], 2.013, 4e-4);
+  EXPECT_NEAR(c.switching_times[1], 2.107, 4e-4);
 }
 
 TEST_F(SystemCompare, DetectsClockOffset) {

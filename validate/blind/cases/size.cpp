@@ -34,7 +34,7 @@ std::vector<char> beside_switchings(const record::Record& record, const std::vec
   std::vector<char> beside;
   for (const double t : record.t)
     beside.push_back(std::ranges::any_of(
-        switchings, [&](double instant) { return std::abs(t - instant) < record.step(); }));
+        switchings, [&](double switching_time) { return std::abs(t - switching_time) < record.step(); }));
   return beside;
 }
 

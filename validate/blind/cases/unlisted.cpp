@@ -31,7 +31,7 @@ struct Sawtooth : Unlisted {
       {"f", "f", "Hz", 0.37, 0.01, 20.0, sim::kNoNullValue, "frequency"},
       {"start", "t1", "s", 2.7, 0.0, 1e5, sim::kNoNullValue, "when it begins"}};
   static constexpr std::array<sim::State, 0> states{};
-  static std::vector<double> instants(const double* p) {
+  static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
     for (double t = p[start]; t < kLongestRecord; t += 1.0 / p[f]) all.push_back(t);
     return all;
@@ -58,7 +58,7 @@ struct RandomWalk : Unlisted {
       {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "when it begins"},
       {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "which walk"}};
   static constexpr std::array<sim::State, 0> states{};
-  static std::vector<double> instants(const double* p) {
+  static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
     for (double t = p[start]; t < kLongestRecord; t += p[step]) all.push_back(t);
     return all;
@@ -140,7 +140,7 @@ struct FieldLoss : Unlisted {
       {"part", "k", "-", 0.1, 0.0, 1.0, 0.0, "part of Efd that is lost"},
       {"start", "t1", "s", 5.3, 0.0, 1e5, sim::kNoNullValue, "when"}};
   static constexpr std::array<sim::State, 0> states{};
-  static std::vector<double> instants(const double* p) { return {p[start]}; }
+  static std::vector<double> switching_times(const double* p) { return {p[start]}; }
   template <class T>
   static void evaluate(const T* c, const T*, sim::Signals<T>& s, T*) {
     if (sim::value_of(s.t) >= sim::value_of(c[start])) s.Efd = s.Efd * (T(1.0) - c[part]);
@@ -200,8 +200,8 @@ sim::Effect unlisted() {
   e.coefficients = M::coefficients;
   e.check = &M::check;
   e.unphysical = &M::unphysical;
-  if constexpr (requires { &M::instants; })
-    e.instants = +[](const void*, const double* p) { return M::instants(p); };
+  if constexpr (requires { &M::switching_times; })
+    e.switching_times = +[](const void*, const double* p) { return M::switching_times(p); };
   fill<M, double>(e);
   fill<M, sim::D8>(e);
   return e;

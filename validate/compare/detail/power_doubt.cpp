@@ -25,9 +25,9 @@ class PowerDoubt {
   void run() {
     for (auto power : {&record::Record::P, &record::Record::Q}) {
       noise(power);
-      beside_instants(power);
+      beside_switchings(power);
     }
-    instants();
+    switching_times();
   }
 
  private:
@@ -46,7 +46,7 @@ class PowerDoubt {
   }
   /// Adds the uncertainty between a switching and the samples beside it, where P and Q are extrapolated. It
   /// is estimated as the error of extrapolating the adjacent sample from those behind it.
-  void beside_instants(std::vector<double> record::Record::*power) {
+  void beside_switchings(std::vector<double> record::Record::*power) {
     constexpr double kOfStep = 0.3;  // share of a whole step's error, RMS over the position in the step
     for (const playin::Switching& s : e_.switchings) {
       const auto next =
@@ -83,7 +83,7 @@ class PowerDoubt {
                                 [&](const playin::Switching& s) { return from <= s.time && s.time < to; });
   }
   /// Shifts each switching time by the standard deviation of a uniform distribution over its interval.
-  void instants() {
+  void switching_times() {
     for (std::size_t k = 0; k < e_.switchings.size(); ++k) {
       if (!(e_.switchings[k].uncertainty > 0)) continue;
       auto moved = e_.switchings;

@@ -33,8 +33,8 @@ const Eigen::Matrix4d& bends() {
 }  // namespace
 
 SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
-                           const std::vector<double>& instants, double roughness) {
-  set_segments(stretch, window, instants);
+                           const std::vector<double>& switching_times, double roughness) {
+  set_segments(stretch, window, switching_times);
   const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
   // weights of real part, imaginary part and their product: the noise has components along and across the
   // phasor
@@ -76,7 +76,7 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
 }
 
 void SmearedCurve::set_segments(const SmearedStretch& stretch, const FilterWindow& window,
-                                const std::vector<double>& instants) {
+                                const std::vector<double>& switching_times) {
   const double aim = std::max(stretch.step / 2, window.half() / 8);
   double from = stretch.t.front() - window.half();
   const auto add = [&](double to) {
@@ -85,7 +85,7 @@ void SmearedCurve::set_segments(const SmearedStretch& stretch, const FilterWindo
     count_ += spans + 3;
     from = to;
   };
-  for (const double instant : instants) add(instant);
+  for (const double switching_time : switching_times) add(switching_time);
   add(stretch.t.back() + window.half());
 }
 

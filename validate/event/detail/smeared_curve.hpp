@@ -23,9 +23,9 @@ struct SmearedStretch {
 /// extends half a window beyond the stretch.
 class SmearedCurve {
  public:
-  /// `instants`: switching times, ascending, within the stretch [s].
-  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window, const std::vector<double>& instants,
-               double roughness);
+  /// `switching_times`: switching times, ascending, within the stretch [s].
+  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
+               const std::vector<double>& switching_times, double roughness);
   /// Returns the log evidence of window, switching times and roughness, up to a constant.
   [[nodiscard]] double evidence() const { return evidence_; }
   /// Returns the voltage phasor [pu] at t [s] in segment 0 (before the first switching time), 1, ...
@@ -38,7 +38,7 @@ class SmearedCurve {
     int spans, first;
   };
   void set_segments(const SmearedStretch& stretch, const FilterWindow& window,
-                    const std::vector<double>& instants);
+                    const std::vector<double>& switching_times);
   [[nodiscard]] Eigen::MatrixXd averages(const SmearedStretch& stretch, const FilterWindow& window) const;
   [[nodiscard]] Eigen::MatrixXd prior(double roughness) const;
   std::vector<Segment> segments_;

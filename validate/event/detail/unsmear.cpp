@@ -37,7 +37,7 @@ struct Cluster {
 };
 /// Reconstruction of a cluster with one window.
 struct BroughtBack {
-  std::vector<double> instants;
+  std::vector<double> switching_times;
   double roughness = kFirstRoughness;
   std::optional<SmearedCurve> curve = {};
 };
@@ -70,10 +70,10 @@ std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double wi
 }
 
 /// Returns whether the switching times are ascending within the stretch.
-bool in_order(const std::vector<double>& instants, const SmearedStretch& stretch) {
+bool in_order(const std::vector<double>& switching_times, const SmearedStretch& stretch) {
   const double edge = 1e-2 * stretch.step;
   double last = stretch.t.front();
-  for (const double t : instants) {
+  for (const double t : switching_times) {
     if (t < last + edge) return false;
     last = t;
   }
@@ -81,20 +81,21 @@ bool in_order(const std::vector<double>& instants, const SmearedStretch& stretch
 }
 
 /// Search for a cluster's switching times: neighbouring pairs on a grid that is refined around the optimum.
-class InstantSearch {
+class SwitchingTimeSearch {
  public:
-  InstantSearch(const Cluster& cluster, const FilterWindow& window) : cluster_(cluster), window_(window) {}
+  SwitchingTimeSearch(const Cluster& cluster, const FilterWindow& window)
+      : cluster_(cluster), window_(window) {}
   /// Scans neighbouring pairs on a uniform grid over the whole uncertainty, because the evidence has many
   /// narrow maxima.
   void scan(BroughtBack& best, const std::vector<double>& width) const {
-    const std::vector<double> middle = best.instants;
-    best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
+    const std::vector<double> middle = best.switching_times;
+    best.curve.emplace(cluster_.stretch, window_, best.switching_times, best.roughness);
     const double step = kScanStep * cluster_.stretch.step;
     const auto steps = [&](std::size_t i) {
       return i < width.size() ? static_cast<int>(width[i] / step) : 0;
     };
     for (std::size_t i = 0; i == 0 || i + 1 < middle.size(); ++i) {
-      std::vector<double> about = best.instants;
+      std::vector<double> about = best.switching_times;
       for (std::size_t k = i; k < std::min(i + 2, middle.size()); ++k) about[k] = middle[k];
       grid(best, i, about, step, steps(i), steps(i + 1));
     }
@@ -102,10 +103,10 @@ class InstantSearch {
   /// Refines from `width` [s] in `rounds` rounds, at the present roughness.
   void run(BroughtBack& best, double width, int rounds) const {
     constexpr int kSide = 2;
-    best.curve.emplace(cluster_.stretch, window_, best.instants, best.roughness);
+    best.curve.emplace(cluster_.stretch, window_, best.switching_times, best.roughness);
     for (int round = 0; round < rounds; ++round, width /= 2)
-      for (std::size_t i = 0; i == 0 || i + 1 < best.instants.size(); ++i)
-        grid(best, i, std::vector(best.instants), width / kSide, kSide, kSide);
+      for (std::size_t i = 0; i == 0 || i + 1 < best.switching_times.size(); ++i)
+        grid(best, i, std::vector(best.switching_times), width / kSide, kSide, kSide);
   }
 
  private:
@@ -137,7 +138,8 @@ bool told(const FitEvent& e) { return !e.record.switched.empty(); }
 
 /// Returns approximate switching times; those given by the user are unchanged. All windows are even, so one
 /// of them suffices.
-std::vector<double> first_instants(const FitEvent& e, const Cluster& c, const FilterWindow& window) {
+std::vector<double> approximate_switching_times(const FitEvent& e, const Cluster& c,
+                                                const FilterWindow& window) {
   std::vector<double> middle, width;
   for (std::size_t s = c.first; s < c.first + c.count; ++s) {
     middle.push_back(e.switchings[s].time);
@@ -147,29 +149,29 @@ std::vector<double> first_instants(const FitEvent& e, const Cluster& c, const Fi
   BroughtBack best;
   for (const double roughness : kScanRoughness) {
     BroughtBack scanned{middle, roughness};
-    InstantSearch(c, window).scan(scanned, width);
+    SwitchingTimeSearch(c, window).scan(scanned, width);
     if (!best.curve || scanned.curve->evidence() > best.curve->evidence()) best = std::move(scanned);
   }
-  return best.instants;
+  return best.switching_times;
 }
 
 /// Sets the curve to the roughness with the largest evidence.
 void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& best) {
-  best.curve.emplace(c.stretch, window, best.instants, best.roughness);
+  best.curve.emplace(c.stretch, window, best.switching_times, best.roughness);
   for (const double other : kRoughness)
-    if (SmearedCurve curve(c.stretch, window, best.instants, other);
+    if (SmearedCurve curve(c.stretch, window, best.switching_times, other);
         curve.evidence() > best.curve->evidence())
-      best = {std::move(best.instants), other, std::move(curve)};
+      best = {std::move(best.switching_times), other, std::move(curve)};
 }
 
 BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow& window,
-                         const std::vector<double>& instants) {
-  BroughtBack best{instants};
+                         const std::vector<double>& switching_times) {
+  BroughtBack best{switching_times};
   if (told(e)) {
     take_roughness(c, window, best);
     return best;
   }
-  InstantSearch search(c, window);
+  SwitchingTimeSearch search(c, window);
   search.run(best, width_after(c, 0), kNarrowings);
   take_roughness(c, window, best);
   if (best.roughness != kFirstRoughness) search.run(best, width_after(c, kAgain), kNarrowings - kAgain);
@@ -183,10 +185,10 @@ struct Attempt {
   double evidence = -1e300;
 };
 Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>& clusters,
-                const std::vector<std::vector<double>>& instants, const FilterWindow& window) {
+                const std::vector<std::vector<double>>& switching_times, const FilterWindow& window) {
   Attempt a{window, {}, 0};
   for (std::size_t i = 0; i < clusters.size(); ++i) {
-    a.clusters.push_back(brought_back(events[clusters[i].event], clusters[i], window, instants[i]));
+    a.clusters.push_back(brought_back(events[clusters[i].event], clusters[i], window, switching_times[i]));
     a.evidence += a.clusters.back().curve->evidence();
   }
   return a;
@@ -194,14 +196,14 @@ Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>&
 
 /// Returns the log of the fraction of a switching time's uncertainty `open` [s] in which the evidence is near
 /// its maximum (Laplace approximation).
-double told_share(const Cluster& c, const FilterWindow& window, const BroughtBack& b, std::size_t instant,
+double told_share(const Cluster& c, const FilterWindow& window, const BroughtBack& b, std::size_t time_index,
                   double open) {
   const double aside = c.stretch.step / 50;
   double falls = 0;
   int sides = 0;
   for (const double by : {-aside, aside}) {
-    std::vector<double> at = b.instants;
-    at[instant] += by;
+    std::vector<double> at = b.switching_times;
+    at[time_index] += by;
     if (!in_order(at, c.stretch)) continue;
     falls += b.curve->evidence() - SmearedCurve(c.stretch, window, at, b.roughness).evidence();
     ++sides;
@@ -223,8 +225,8 @@ std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterW
     for (std::size_t i = 0, k = 0; i < c.count; ++i) {
       if (!stays[i]) continue;
       const double share = told_share(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
-      BroughtBack without{b.instants};
-      without.instants.erase(without.instants.begin() + static_cast<std::ptrdiff_t>(k++));
+      BroughtBack without{b.switching_times};
+      without.switching_times.erase(without.switching_times.begin() + static_cast<std::ptrdiff_t>(k++));
       take_roughness(c, window, without);
       const double gained = without.curve->evidence() - b.curve->evidence() - share;
       if (gained <= most) continue;
@@ -308,16 +310,16 @@ void replace(FitEvent& e, int segment, double from, double to, const SmearedCurv
 void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
   if (told(e)) return;
   for (std::size_t i = 0; i < c.count; ++i)
-    e.switchings[c.first + i] = {.time = b.instants[i], .uncertainty = e.record.step() / 5};
+    e.switchings[c.first + i] = {.time = b.switching_times[i], .uncertainty = e.record.step() / 5};
 }
 
 /// Fills all filtered samples of a cluster.
 void fill(FitEvent& e, const Cluster& c, const BroughtBack& b, double half) {
-  const double begin = std::max(b.instants.front() - half, c.stretch.t.front());
-  const double end = std::min(b.instants.back() + half, c.stretch.t.back());
+  const double begin = std::max(b.switching_times.front() - half, c.stretch.t.front());
+  const double end = std::min(b.switching_times.back() + half, c.stretch.t.back());
   for (std::size_t s = 0; s <= c.count; ++s)
-    replace(e, static_cast<int>(s), s == 0 ? begin : b.instants[s - 1], s == c.count ? end : b.instants[s],
-            *b.curve);
+    replace(e, static_cast<int>(s), s == 0 ? begin : b.switching_times[s - 1],
+            s == c.count ? end : b.switching_times[s], *b.curve);
 }
 
 }  // namespace
@@ -341,7 +343,7 @@ namespace {
 struct Smeared {
   std::vector<FilterWindow> windows;  ///< candidates; none if nothing is filtered
   std::vector<Cluster> clusters = {};
-  std::vector<std::vector<double>> instants = {};
+  std::vector<std::vector<double>> switching_times = {};
 };
 Smeared smeared_of(const std::vector<FitEvent>& events) {
   const auto first = std::ranges::find_if(events, [](const FitEvent& e) { return !e.smeared.empty(); });
@@ -354,13 +356,14 @@ Smeared smeared_of(const std::vector<FitEvent>& events) {
     if (!events[e].smeared.empty())
       std::ranges::move(clusters_of(events[e], e, widest), std::back_inserter(all.clusters));
   const FilterWindow one_cycle(FilterWindow::Shape::triangle, 1 / frequency);
-  for (const Cluster& c : all.clusters) all.instants.push_back(first_instants(events[c.event], c, one_cycle));
+  for (const Cluster& c : all.clusters)
+    all.switching_times.push_back(approximate_switching_times(events[c.event], c, one_cycle));
   return all;
 }
 Attempt most_probable(const std::vector<FitEvent>& events, const Smeared& all) {
   Attempt best;
   for (const FilterWindow& w : all.windows)
-    if (Attempt a = attempt(events, all.clusters, all.instants, w); a.evidence > best.evidence)
+    if (Attempt a = attempt(events, all.clusters, all.switching_times, w); a.evidence > best.evidence)
       best = std::move(a);
   return best;
 }
@@ -373,7 +376,7 @@ bool passed_filter(const std::vector<FitEvent>& events) {
   const FilterWindow none(FilterWindow::Shape::box, 1e-3 * all.clusters.front().stretch.step);
   const Attempt best = most_probable(events, all);
   return 2 * best.window.half() > (1 + kSameLength) * all.clusters.front().stretch.step &&
-         best.evidence > attempt(events, all.clusters, all.instants, none).evidence;
+         best.evidence > attempt(events, all.clusters, all.switching_times, none).evidence;
 }
 
 FilterWindow unsmear(std::vector<FitEvent>& events) {
@@ -383,7 +386,7 @@ FilterWindow unsmear(std::vector<FitEvent>& events) {
   std::vector<Cluster>& clusters = all.clusters;
   for (std::size_t i = 0; i < clusters.size(); ++i)
     if (!told(events[clusters[i].event]))
-      InstantSearch(clusters[i], best.window)
+      SwitchingTimeSearch(clusters[i], best.window)
           .run(best.clusters[i], width_after(clusters[i], kNarrowings), kLastNarrowings);
   drop_swings(events, clusters, best);
   for (std::size_t i = 0; i < clusters.size(); ++i)

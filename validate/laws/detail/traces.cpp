@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/playin/instants.hpp"
+#include "validate/playin/switching_times.hpp"
 
 namespace swingbank::validate::laws {
 namespace {

@@ -33,7 +33,7 @@ class DrivenByPower {
     terminal_ = {at.s.Vr, at.s.Vi};
     for (auto& k : k_) k.resize(x_.size());
     trial_.resize(x_.size());
-    collect_instants();
+    collect_switching_times();
   }
 
   PowerResponse run() {
@@ -41,9 +41,9 @@ class DrivenByPower {
     const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
     t_ = r.t.front();
     for (const double sample : r.t) {
-      while (next_ < instants_.size() && sample > instants_[next_].time + slack) {
-        advance(instants_[next_].time);
-        segment_ += instants_[next_].switches ? 1 : 0;
+      while (next_ < times_.size() && sample > times_[next_].time + slack) {
+        advance(times_[next_].time);
+        segment_ += times_[next_].switches ? 1 : 0;
         ++next_;
       }
       advance(sample);
@@ -54,15 +54,15 @@ class DrivenByPower {
   }
 
  private:
-  struct Instant {
+  struct SwitchingTime {
     double time;
     bool switches;  ///< of the record; otherwise an effect's
   };
-  void collect_instants() {
-    for (const auto& s : run_.power->switchings()) instants_.push_back({s.time, true});
-    for (const double t : sim::plant::instants_of(*run_.plant))
-      if (t > run_.record->t.front() && t < run_.record->t.back()) instants_.push_back({t, false});
-    std::ranges::stable_sort(instants_, {}, &Instant::time);
+  void collect_switching_times() {
+    for (const auto& s : run_.power->switchings()) times_.push_back({s.time, true});
+    for (const double t : sim::plant::switching_times_of(*run_.plant))
+      if (t > run_.record->t.front() && t < run_.record->t.back()) times_.push_back({t, false});
+    std::ranges::stable_sort(times_, {}, &SwitchingTime::time);
   }
 
   /// Returns the voltage from E conj(V) = |V|^2 + Z conj(S), a quadratic in |V|^2 with two solutions, whose
@@ -112,8 +112,7 @@ class DrivenByPower {
     signals_.Efd = Efd_;
     signals_.Tm = Tm_;
     signals_.dVref = signals_.dPref = 0;
-    signals_.t =
-        next_ < instants_.size() ? std::min(t, instants_[next_].time - sim::plant::kBeforeSwitching) : t;
+    signals_.t = next_ < times_.size() ? std::min(t, times_[next_].time - sim::plant::kBeforeSwitching) : t;
     const Complex s = (*run_.power)(segment_, t) * to_machine_;
     double er, ei, ir, ii;
     equations_.emf(c_.data(), x, scratch_.data(), er, ei);
@@ -205,7 +204,7 @@ class DrivenByPower {
   double Efd_ = 0, Tm_ = 0, to_machine_;
   Complex voltage_, terminal_;  ///< at the grid's side, at the machine
   sim::Signals<double> signals_;
-  std::vector<Instant> instants_;
+  std::vector<SwitchingTime> times_;
   std::size_t next_ = 0;
   int segment_ = 0, steps_ = 0;
   bool unsolved_ = false;  ///< at the last evaluation

@@ -126,8 +126,8 @@ class Player {
     if (!t.instruments.empty()) {
       sim::Phasors phasors = phasors_at(t, m, at.rate);
       if (sim::plant::memory(t.instruments) > 0)
-        for (const double instant : instants_of(event_))
-          for (auto* y : {&phasors.V, &phasors.I}) place_jump(*y, (instant - at.first) * at.rate);
+        for (const double switching_time : switching_times_of(event_))
+          for (auto* y : {&phasors.V, &phasors.I}) place_jump(*y, (switching_time - at.first) * at.rate);
       sim::plant::measure(t.instruments, 1, phasors);
       const sim::plant::TerminalRecord seen = sim::plant::terminal_of(phasors, m.theta.front());
       m.V = seen.V;
@@ -160,7 +160,7 @@ SystemRun run_system(const SystemCase& system, const sim::network::Event& event)
   return std::move(Player(system, event).out);
 }
 
-std::vector<double> instants_of(const sim::network::Event& e) {
+std::vector<double> switching_times_of(const sim::network::Event& e) {
   std::set<double> all;
   for (const auto& f : e.faults) all.insert({f.t_on, f.t_off});
   for (const auto& t : e.trips) {

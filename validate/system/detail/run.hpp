@@ -27,7 +27,7 @@ constexpr int kFine = 8;
 SystemRun run_system(const SystemCase& system, const sim::network::Event& event);
 
 /// Returns the switching times of the event, sorted [s].
-std::vector<double> instants_of(const sim::network::Event& event);
+std::vector<double> switching_times_of(const sim::network::Event& event);
 
 /// Returns the event with `move` applied to every switching time.
 template <class Move>
@@ -50,10 +50,10 @@ sim::network::Event moved(sim::network::Event e, Move move) {
 /// Within that interval they are fitted to V, P and Q of every terminal up to one second after the last, so
 /// that a wrong model cannot move them further. Sets `uncertainty` [s]. Throws InputError if no record has as
 /// many voltage steps as the event has switching times.
-std::vector<double> found_instants(const SystemCase& system, double& uncertainty);
+std::vector<double> estimate_switching_times(const SystemCase& system, double& uncertainty);
 
 /// Returns a warning if a record has as many voltage steps as there are switching times, but at other times;
 /// otherwise an empty text.
-std::string clock_doubt(const record::Record& record, const std::vector<double>& instants);
+std::string clock_doubt(const record::Record& record, const std::vector<double>& switching_times);
 
 }  // namespace swingbank::validate::system

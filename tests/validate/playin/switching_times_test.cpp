@@ -1,5 +1,5 @@
 // Time at which a signal leaves its level, and steps of the voltage.
-#include "validate/playin/instants.hpp"
+#include "validate/playin/switching_times.hpp"
 
 #include <gtest/gtest.h>
 

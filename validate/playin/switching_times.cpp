@@ -1,4 +1,4 @@
-#include "validate/playin/instants.hpp"
+#include "validate/playin/switching_times.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>

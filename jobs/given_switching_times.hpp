@@ -14,11 +14,11 @@ namespace swingbank::jobs {
 /// Returns the switching times [s] of each record, in ascending order. `words`: values of --switch, "2.0" for
 /// the only record or "event.csv=2.0" for a named one; `files`: values of --records. Throws InputError with
 /// every invalid word.
-inline std::map<std::string, std::vector<double>> told_instants(const std::vector<std::string>& words,
-                                                                const std::vector<std::string>& files) {
+inline std::map<std::string, std::vector<double>> given_switching_times(
+    const std::vector<std::string>& words, const std::vector<std::string>& files) {
   std::vector<std::string> records;
   for (const auto& file : files) records.push_back(validate::record::record_name(file));
-  std::map<std::string, std::vector<double>> instants;
+  std::map<std::string, std::vector<double>> switching_times;
   Problems problems;
   for (const auto& word : words) {
     const auto equals = word.rfind('=');
@@ -37,11 +37,11 @@ inline std::map<std::string, std::vector<double>> told_instants(const std::vecto
       problems.add("record '" + record + "'", "--switch", "no --record has that file name",
                    "use the name without its folder");
     else
-      instants[record].push_back(t);
+      switching_times[record].push_back(t);
   }
   problems.raise();
-  for (auto& [record, all] : instants) std::ranges::sort(all);
-  return instants;
+  for (auto& [record, all] : switching_times) std::ranges::sort(all);
+  return switching_times;
 }
 
 }  // namespace swingbank::jobs

@@ -33,9 +33,9 @@ SystemCase shortened(SystemCase s, double end) {
   return s;
 }
 
-class InstantFit {
+class SwitchingTimeFit {
  public:
-  InstantFit(const SystemCase& system, std::vector<double> written, std::vector<double> found)
+  SwitchingTimeFit(const SystemCase& system, std::vector<double> written, std::vector<double> found)
       : s_(shortened(system, found.back() + kAfterLast)),
         written_(std::move(written)),
         best_(std::move(found)) {
@@ -75,10 +75,11 @@ class InstantFit {
   /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
   /// time k at t [s].
   double reduced_chi2(std::size_t k, double t) {
-    auto instants = best_;
-    instants[k] = t;
+    auto switching_times = best_;
+    switching_times[k] = t;
     const sim::network::Event event = moved(s_.event, [&](double at) {
-      return instants[static_cast<std::size_t>(std::ranges::lower_bound(written_, at) - written_.begin())];
+      return switching_times[static_cast<std::size_t>(std::ranges::lower_bound(written_, at) -
+                                                      written_.begin())];
     });
     const SystemRun run = run_system(s_, event);
     double sum = 0;
@@ -114,8 +115,8 @@ class InstantFit {
 
 }  // namespace
 
-std::vector<double> found_instants(const SystemCase& s, double& uncertainty) {
-  const auto written = instants_of(s.event);
+std::vector<double> estimate_switching_times(const SystemCase& s, double& uncertainty) {
+  const auto written = switching_times_of(s.event);
   std::vector<double> sum(written.size(), 0.0);
   int votes = 0;
   std::string counts;
@@ -135,17 +136,17 @@ std::vector<double> found_instants(const SystemCase& s, double& uncertainty) {
                       "no record has this number of voltage steps (" + counts + ")",
                       "give the switching times (event.instants = \"given\")"});
   for (double& t : sum) t /= votes;
-  return InstantFit(s, written, sum).run(uncertainty);
+  return SwitchingTimeFit(s, written, sum).run(uncertainty);
 }
 
-std::string clock_doubt(const record::Record& record, const std::vector<double>& instants) {
+std::string clock_doubt(const record::Record& record, const std::vector<double>& switching_times) {
   const auto jumps = jumps_of(record);
-  if (jumps.size() != instants.size()) return {};
+  if (jumps.size() != switching_times.size()) return {};
   constexpr double kSlack = 1e-3;  // tolerance of time stamps [s]
   bool off = false;
   std::string seen;
   for (std::size_t k = 0; k < jumps.size(); ++k) {
-    off = off || std::abs(jumps[k].time - instants[k]) > jumps[k].uncertainty + kSlack;
+    off = off || std::abs(jumps[k].time - switching_times[k]) > jumps[k].uncertainty + kSlack;
     seen += fmt::format("{}{:.4f} s", seen.empty() ? "" : ", ", jumps[k].time);
   }
   if (!off) return {};
