@@ -26,7 +26,7 @@ struct AnalysisOptions {
   std::vector<std::string> records, law_files, held_out;
   bool json = false, verbose = false, measured_states = true;
   int threads = -1;  ///< 0: one per core; -1: option absent
-  double jump_threshold = validate::playin::kJumpThreshold;
+  double step_threshold = validate::playin::kStepThreshold;
   double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
   double spread = validate::thresholds::parameters.spread;          ///< prior standard deviation, relative
   Reading reading;
@@ -56,7 +56,7 @@ struct AnalysisOptions {
              .one_value_a_mention());
     line.group("Events");
     keep(reading.add_switch(line));
-    keep(line.add("--jump-threshold", jump_threshold, "smallest voltage step detected as a switching [pu]")
+    keep(line.add("--jump-threshold", step_threshold, "smallest voltage step detected as a switching [pu]")
              .shows_default()
              .positive());
     keep(line.add("--pre-event", pre_event, "steady state at the start of records without switching [s]")
@@ -126,13 +126,13 @@ struct AnalysisOptions {
   [[nodiscard]] validate::event::FitEventOptions events() const {
     validate::event::FitEventOptions options;
     options.measured_states = measured_states;
-    options.jump_threshold = jump_threshold;
+    options.step_threshold = step_threshold;
     options.pre_event = pre_event;
     return options;
   }
   [[nodiscard]] validate::compare::CompareOptions comparing() const {
     validate::compare::CompareOptions options;
-    options.jump_threshold = jump_threshold;
+    options.step_threshold = step_threshold;
     options.play_in.pre_event = pre_event;
     return options;
   }

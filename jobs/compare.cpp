@@ -93,7 +93,7 @@ int run(Arguments& a) {
   compare::CompareOptions options = a.of.comparing();
   options.drive = a.drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
   options.fit_switchings = a.fit_switchings;
-  options.jumps = event::jumps_of(records, options.jump_threshold);
+  options.step_shape = event::step_shape_of(records, options.step_threshold);
   options.progress = jobs::progress_line();
   std::vector<compare::EventComparison> events;
   try {

@@ -64,9 +64,9 @@ inline void terminal_frequency(const double* theta, std::size_t samples, double 
   double turned = 0.0;
   if (samples > 0) out[0] = 0.0;
   for (std::size_t k = 1; k < samples; ++k) {
-    const double jump = theta[k] - theta[k - 1];
+    const double change = theta[k] - theta[k - 1];
     // Unwraps: the angle changes by less than half a turn per sample.
-    turned -= constants::turn * std::round(jump / constants::turn);
+    turned -= constants::turn * std::round(change / constants::turn);
     out[k] = lags.frequency(theta[k] - theta[0] + turned);
   }
 }

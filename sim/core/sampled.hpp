@@ -18,7 +18,7 @@ class SampledCurve {
   /// Constructs the curve. The samples `y` are referenced, not copied, and must outlive it.
   explicit SampledCurve(std::span<const T> y) : y_(y), derivative_(y.size(), T{}) {
     for (std::ptrdiff_t k = 0; k < size(); ++k) {
-      const bool left = k > 0 && !jump(k - 1), right = k + 1 < size() && !jump(k);
+      const bool left = k > 0 && !is_step(k - 1), right = k + 1 < size() && !is_step(k);
       if (left && right)
         derivative_[index(k)] = 0.5 * (at(k + 1) - at(k - 1));
       else if (left || right)
@@ -33,7 +33,7 @@ class SampledCurve {
     const double u = place - static_cast<double>(k);
     if (k < 0 || u == 0.0) return at(k < 0 ? 0 : k);
     const T rise = at(k + 1) - at(k);
-    if (jump(k)) return at(k) + u * rise;
+    if (is_step(k)) return at(k) + u * rise;
     const T a = derivative_[index(k)] - rise, b = rise - derivative_[index(k + 1)];
     return at(k) + u * (rise + (1.0 - u) * ((1.0 - u) * a + u * b));
   }
@@ -41,7 +41,7 @@ class SampledCurve {
  private:
   /// Whether there is a step between samples k and k + 1: a change `kFarMore` times larger than both
   /// neighbours.
-  [[nodiscard]] bool jump(std::ptrdiff_t k) const {
+  [[nodiscard]] bool is_step(std::ptrdiff_t k) const {
     constexpr double kFarMore = 8.0;
     const double rise = std::norm(at(k + 1) - at(k));
     const double before = k > 0 ? std::norm(at(k) - at(k - 1)) : 0.0;

@@ -211,8 +211,8 @@ std::vector<Segment> segments(const Event& event, const Network& network,
         if (std::isfinite(t)) all.insert(t);
   for (const SetpointStep& step : event.setpoint_steps) all.insert(step.time);
   for (const GeneratorTrip& trip : event.generator_trips) all.insert(trip.time);
-  const std::set<double> jumps(switching_times.begin(), switching_times.end());
-  for (const double t : jumps)
+  const std::set<double> discontinuities(switching_times.begin(), switching_times.end());
+  for (const double t : discontinuities)
     if (t > 0.0 && std::isfinite(t)) all.insert(t);
 
   std::vector<Segment> result;
@@ -234,7 +234,7 @@ std::vector<Segment> segments(const Event& event, const Network& network,
     std::ranges::stable_sort(topology.load_steps, {}, &std::pair<int, Complex>::first);
     auto setpoints = setpoints_at(event, t);
     const bool same = !result.empty() && result.back().topology == topology &&
-                      result.back().setpoints == setpoints && !jumps.contains(t);
+                      result.back().setpoints == setpoints && !discontinuities.contains(t);
     if (!same) result.push_back({t, std::move(topology), std::move(setpoints)});
   }
   return result;

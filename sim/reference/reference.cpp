@@ -189,7 +189,7 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
 
 /// Handles the points where IDA fails because the converters' voltage solution ends and the voltages jump.
 /// Returns true with y after the jump at the new time t, false if there is no jump.
-bool jumps(const ReferenceSystem& system, double& t, double* y, const double* yp) {
+bool cross_voltage_step(const ReferenceSystem& system, double& t, double* y, const double* yp) {
   constexpr double kOtherVoltage = 1e-3;     // [pu]
   constexpr double kLongestCrossing = 1e-4;  // [s], the states advance by their derivatives meanwhile
   const auto is_converter = [](const ReferenceSystem::Unit& u) {
@@ -256,7 +256,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
     const auto advance = [&](double to) {
       if (solver->advance(to)) return true;
       double at = solver->reached();
-      if (!jumps(system, at, values, N_VGetArrayPointer(yp.get())) || at >= end) return false;
+      if (!cross_voltage_step(system, at, values, N_VGetArrayPointer(yp.get())) || at >= end) return false;
       system.derivatives(at, values, N_VGetArrayPointer(yp.get()));
       run.steps += solver->steps();
       solver = solver_from(at);

@@ -11,9 +11,9 @@
 
 #include "base/constants.hpp"
 #include "validate/check/detail/findings.hpp"
-#include "validate/check/detail/jumps.hpp"
 #include "validate/check/detail/mistakes.hpp"
 #include "validate/check/detail/power.hpp"
+#include "validate/check/detail/voltage_steps.hpp"
 #include "validate/check/signals.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -32,7 +32,7 @@ class Check : Findings {
   std::vector<Finding> run() {
     if (!complete()) return taken();
     signals_ = record_signals(r_);
-    jumps_ = clear_jumps(r_);
+    steps_ = find_large_steps(r_);
     rate();
     dropouts();
     event();
@@ -43,7 +43,7 @@ class Check : Findings {
     power();
     quantised();
     if (plant_.synchronous && r_.angle == record::AngleSource::measured)
-      jumps();  // requires measured phasors
+      steps();  // requires measured phasors
     return taken();
   }
 
@@ -307,16 +307,16 @@ class Check : Findings {
   /// terminals.
   [[nodiscard]] bool radians_beyond_a_turn() const {
     if (const double ratio = signals_.angle_per_frequency; ratio > 0) return within(ratio, 0.5, 2);
-    const int delay = power_delay(r_, jumps_);
-    const JumpFit radians = fit_jumps(r_, jumps_, delay);
+    const int delay = power_delay(r_, steps_);
+    const StepFit radians = fit_steps(r_, steps_, delay);
     const record::Record other = reinterpreted([](const Reading& x) {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
     // If the angle hardly steps, it fits in either unit, which is not conclusive.
-    return fits(radians) && 3 * radians.residual < fit_jumps(other, jumps_, delay).residual;
+    return fits(radians) && 3 * radians.residual < fit_steps(other, steps_, delay).residual;
   }
   /// Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
-  [[nodiscard]] bool fits(const JumpFit& fit) const {
+  [[nodiscard]] bool fits(const StepFit& fit) const {
     const double noise = noise_share(fit);
     return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 3 * noise;
   }
@@ -354,24 +354,24 @@ class Check : Findings {
       warn("dispatch", apart->what, apart->why, apart->remedy);
   }
 
-  void jumps() {
+  void steps() {
     if (found("voltage_unit") || found("angle_unit") || found("angle_frame")) return;
-    const int delay = power_delay(r_, jumps_);
+    const int delay = power_delay(r_, steps_);
     if (delay != 0)
       warn("time_skew",
            fmt::format("P and Q step {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
                        delay > 0 ? "after" : "before"),
            "they were stamped by different clocks or filters", "shift them so that their steps coincide");
-    const JumpFit as_is = fit_jumps(r_, jumps_, delay);
+    const StepFit as_is = fit_steps(r_, steps_, delay);
     const Mistake* best = nullptr;
     double least = 1;
     for (const auto& m : mistakes()) {
       const record::Record alternative = reinterpreted(m.reinterpret);
-      const std::vector<Jump> there = clear_jumps(alternative);
-      const JumpFit fit = fit_jumps(alternative, there, delay), same = fit_jumps(r_, there, delay);
+      const std::vector<VoltageStep> there = find_large_steps(alternative);
+      const StepFit fit = fit_steps(alternative, there, delay), same = fit_steps(r_, there, delay);
       const double noise = noise_share(fit);
       if (!(fit.reactance > 0 && noise < 0.1 && fit.residual < 0.01 + 2 * noise)) continue;
-      if (m.turn > 0 && std::ranges::none_of(there, [&](const Jump& j) { return turned(j) > m.turn; }))
+      if (m.turn > 0 && std::ranges::none_of(there, [&](const VoltageStep& j) { return turned(j) > m.turn; }))
         continue;
       // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
       const bool sound =
@@ -395,23 +395,23 @@ class Check : Findings {
   [[nodiscard]] bool apart() const {
     constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
     return std::ranges::any_of(kWider, [this](const auto& wider) {
-      std::vector<Jump> wide;
-      for (const Jump& j : jumps_)
+      std::vector<VoltageStep> wide;
+      for (const VoltageStep& j : steps_)
         if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
-      const JumpFit fit = fit_jumps(r_, wide, 0);
+      const StepFit fit = fit_steps(r_, wide, 0);
       const double noise = noise_share(fit);
       return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 2 * noise;
     });
   }
   /// Returns the step of the angle as written [rad].
-  [[nodiscard]] double turned(const Jump& j) const {
+  [[nodiscard]] double turned(const VoltageStep& j) const {
     const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
     return std::abs(theta[j.after] - theta[j.before]);
   }
 
   /// Returns the share of noise in the squared steps: a step combines four samples and has five times the
   /// variance of one.
-  [[nodiscard]] double noise_share(const JumpFit& fit) const {
+  [[nodiscard]] double noise_share(const StepFit& fit) const {
     return 10 * square(signals_.V.white) / fit.voltage +
            5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
   }
@@ -449,7 +449,7 @@ class Check : Findings {
   const record::Record& r_;
   PlantFacts plant_;
   Signals signals_;
-  std::vector<Jump> jumps_;
+  std::vector<VoltageStep> steps_;
 };
 
 }  // namespace

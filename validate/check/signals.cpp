@@ -9,7 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/median.hpp"
-#include "validate/check/detail/jumps.hpp"
+#include "validate/check/detail/voltage_steps.hpp"
 #include "validate/playin/switching_times.hpp"
 
 namespace swingbank::validate::check {
@@ -75,26 +75,26 @@ std::size_t turns_faster(const record::Record& r) {
 
 /// Returns the first change of the voltage within half a second before a clear step that exceeds those before
 /// it. The event begins there if the step is filtered, or if an earlier one is too small to count.
-std::size_t step_before(const record::Record& r, std::size_t jump) {
+std::size_t step_before(const record::Record& r, std::size_t first_step) {
   std::vector<double> steps;
   const std::vector<Complex> all = playin::voltage_steps(r);
-  for (std::size_t k = 0; k < jump; ++k) steps.push_back(std::abs(all[k]));
+  for (std::size_t k = 0; k < first_step; ++k) steps.push_back(std::abs(all[k]));
   const double limit = std::max(10 * median_in(steps), 0.002);
   const auto back = static_cast<std::size_t>(0.5 * r.rate());
-  for (std::size_t k = jump > back ? jump - back : 0; k < jump; ++k)
+  for (std::size_t k = first_step > back ? first_step - back : 0; k < first_step; ++k)
     if (steps[k] > limit) return k;
-  return jump;
+  return first_step;
 }
 
 /// Finds the start of the event: the sample before the first step, or before a channel first leaves the noise
 /// about its first samples.
 void find_event(const record::Record& r, Signals& s) {
-  const auto jumps = find_jumps(r);
+  const auto steps = find_steps(r);
   const std::size_t n = r.t.size();
-  if (!jumps.empty()) {
+  if (!steps.empty()) {
     s.event = true;
-    s.onset = step_before(r, jumps.front().before);
-    s.last = jumps.back().before;
+    s.onset = step_before(r, steps.front().before);
+    s.last = steps.back().before;
     return;
   }
   std::size_t first = n;

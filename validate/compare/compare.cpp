@@ -233,9 +233,9 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
                : "the middle of each interval is used.";
 }
 
-void explain(EventComparison& e, event::Jumps jumps, bool tried, const std::string& failed) {
+void explain(EventComparison& e, event::StepShape step_shape, bool tried, const std::string& failed) {
   if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
-      jumps == event::Jumps::spread && smeared > 0)
+      step_shape == event::StepShape::spread && smeared > 0)
     e.notes.push_back(
         fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
                     "nor compared, and {} fitted to P and Q.",
@@ -389,13 +389,13 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
   if (no_angle) options.drive = DriveBy::power;
   e.detected = e.record.switched.empty();
-  const event::Jumps jumps = options.jumps == event::Jumps::either
-                                 ? event::jumps_of({e.record}, options.jump_threshold)
-                                 : options.jumps;
+  const event::StepShape step_shape = options.step_shape == event::StepShape::either
+                                          ? event::step_shape_of({e.record}, options.step_threshold)
+                                          : options.step_shape;
   std::string failed;
   const auto fitted_with = [&](Fitted how) {
     EventComparison other = e;
-    play_fitted(model, options, jumps, how, other);
+    play_fitted(model, options, step_shape, how, other);
     measure_channels(model, DriveBy::voltage, options.play_in, other);
     return other;
   };
@@ -407,12 +407,12 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     }
     return fitted_with(Fitted::start_stands);
   };
-  if (!e.record.breaker() && jumps == event::Jumps::spread && options.drive == DriveBy::voltage) {
+  if (!e.record.breaker() && step_shape == event::StepShape::spread && options.drive == DriveBy::voltage) {
     e = fitted();
   } else {
     if (e.detected)
       e.switchings = playin::detect_switchings(event::seen_by_rotor({e.record}, model.plant.mva).front(),
-                                               options.jump_threshold);
+                                               options.step_threshold);
     else
       for (const double t : e.record.switched) e.switchings.push_back({.time = t});
     if (e.detected && e.record.breaker()) e.switchings = playin::breaker_times(e.record, e.switchings);
@@ -430,7 +430,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("the residual is evaluated", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
-  explain(e, jumps, options.fit_switchings && !no_angle, failed);
+  explain(e, step_shape, options.fit_switchings && !no_angle, failed);
   if (options.drive == DriveBy::power) {  // with the switching times found by the voltage
     if (!no_angle) play(model, DriveBy::power, options.play_in, e);
     e.notes.push_back(

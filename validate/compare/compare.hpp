@@ -58,12 +58,13 @@ struct EventComparison {
 /// Options of a comparison.
 struct CompareOptions {
   DriveBy drive = DriveBy::voltage;                ///< inputs of the playback
-  double jump_threshold = playin::kJumpThreshold;  ///< threshold of playin::detect_switchings [pu]
+  double step_threshold = playin::kStepThreshold;  ///< threshold of playin::detect_switchings [pu]
   /// Fits detected switching times to P and Q within their sample intervals, because the record does not
   /// determine them any better. At 30/s half an interval is 17 ms; in a fault this error alone left eight
   /// times the noise of a correct model. If the fit brings no improvement, the interval's middle is kept.
   bool fit_switchings = true;
-  event::Jumps jumps = event::Jumps::either;  ///< filtering of steps; either: decided from the record
+  event::StepShape step_shape =
+      event::StepShape::either;  ///< filtering of steps; either: decided from the record
   /// Called before each step of the comparison: next step, steps done, total steps.
   event::Progress progress = {};
   playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison

@@ -54,16 +54,16 @@ struct Smear {
 };
 /// Removes intervals at both ends where the voltage only drifts, as in a short fault: consecutive steps are
 /// equal.
-Smear trimmed(const std::vector<Complex>& step, Smear jump, double limit) {
+Smear trimmed(const std::vector<Complex>& step, Smear span, double limit) {
   double largest = 0;
-  for (std::size_t i = jump.first; i <= jump.last; ++i) largest = std::max(largest, std::abs(step[i]));
+  for (std::size_t i = span.first; i <= span.last; ++i) largest = std::max(largest, std::abs(step[i]));
   const auto belongs = [&](std::size_t i) {
     const double beside = std::min(std::abs(step[i] - step[i - 1]), std::abs(step[i] - step[i + 1]));
     return std::abs(step[i]) > 0.3 * largest || beside > limit;
   };
-  while (jump.first < jump.last && !belongs(jump.first)) ++jump.first;
-  while (jump.first < jump.last && !belongs(jump.last)) --jump.last;
-  return jump;
+  while (span.first < span.last && !belongs(span.first)) ++span.first;
+  while (span.first < span.last && !belongs(span.last)) --span.last;
+  return span;
 }
 /// Separates the two steps of a short fault that have merged, by their opposite directions.
 std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, double limit) {
@@ -86,12 +86,12 @@ std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, doub
 /// Largest change per interval of a decay after a step, as a fraction of the step.
 constexpr double kOfPeak = 0.5;
 
-double least_jump(const std::vector<double>& d, double threshold) {
+double min_step_size(const std::vector<double>& d, double threshold) {
   return std::max(threshold, 10 * upper_median(d));
 }
-std::size_t largest_of(const std::vector<Complex>& step, Smear jump) {
+std::size_t largest_of(const std::vector<Complex>& step, Smear span) {
   const auto at = step.begin();
-  const auto from = static_cast<std::ptrdiff_t>(jump.first), to = static_cast<std::ptrdiff_t>(jump.last);
+  const auto from = static_cast<std::ptrdiff_t>(span.first), to = static_cast<std::ptrdiff_t>(span.last);
   return static_cast<std::size_t>(
       std::max_element(at + from, at + to + 1,
                        [](Complex a, Complex b) { return std::abs(a) < std::abs(b); }) -
@@ -117,8 +117,8 @@ bool is_even(const std::vector<Complex>& step, std::size_t m, double limit) {
          std::abs(after - step[m + 2]) > limit && std::real(before * std::conj(step[m])) > 0;
 }
 /// Returns whether one interval contains a sharp step, and the others only the machine's response.
-bool has_peak(const std::vector<Complex>& step, Smear jump, std::size_t m) {
-  for (std::size_t k = jump.first; k <= jump.last; ++k)
+bool has_peak(const std::vector<Complex>& step, Smear span, std::size_t m) {
+  for (std::size_t k = span.first; k <= span.last; ++k)
     if (k != m && std::abs(step[k]) > kOfPeak * std::abs(step[m])) return false;
   return true;
 }
@@ -127,11 +127,12 @@ constexpr double kGoodPart = 0.15;  ///< fraction of a step's largest change
 
 /// Returns whether a filter has spread a step over several intervals: a large part lies in its second one. A
 /// smaller part may also come from a subtransient, whose further decay a fault of two samples hides.
-bool is_shared_out(const record::Record& r, const playin::Switching& jump) {
+bool is_shared_out(const record::Record& r, const playin::Switching& switching) {
   const auto step = playin::voltage_steps(r);
   std::size_t m = 1;
   for (std::size_t k = 1; k + 1 < step.size(); ++k)
-    if (std::abs(r.t[k] - jump.time) < jump.uncertainty && std::abs(step[k]) > std::abs(step[m])) m = k;
+    if (std::abs(r.t[k] - switching.time) < switching.uncertainty && std::abs(step[k]) > std::abs(step[m]))
+      m = k;
   const auto along = [&](std::size_t k) { return std::real(step[k] * std::conj(step[m])); };
   return std::max(along(m - 1), along(m + 1)) > kGoodPart * std::norm(step[m]);
 }
@@ -144,10 +145,10 @@ bool is_sharp(const record::Record& r, const std::vector<playin::Switching>& fou
   const auto k = static_cast<std::size_t>(
       std::ranges::find_if(r.t, [&](double t) { return t > found.front().time; }) - r.t.begin());
   const auto step = playin::voltage_steps(r);
-  if (decays_after(step, k - 1, least_jump(prominence(step), threshold))) return true;
-  const double jump = std::abs(step[k - 1]);
-  const bool alone = k + 1 < step.size() && std::abs(step[k] - step[k + 1]) < kGoodPart * jump;
-  return (jump > kClear * threshold || alone) && std::abs(step[k - 2]) < kBegins * jump;
+  if (decays_after(step, k - 1, min_step_size(prominence(step), threshold))) return true;
+  const double size = std::abs(step[k - 1]);
+  const bool alone = k + 1 < step.size() && std::abs(step[k] - step[k + 1]) < kGoodPart * size;
+  return (size > kClear * threshold || alone) && std::abs(step[k - 2]) < kBegins * size;
 }
 /// Returns whether the voltage moves before the interval of the first switching time given by the user.
 bool moves_before(const record::Record& r, double threshold) {
@@ -173,15 +174,15 @@ double still_until(const record::Record& r) {
 }
 
 /// Takes the switching times given by the user. Of the filtered samples, those around them remain marked.
-void take_told(FitEvent& e, Jumps jumps) {
+void take_told(FitEvent& e, StepShape step_shape) {
   const auto found = std::exchange(e.switchings, {});
   for (const double t : e.record.switched) e.switchings.push_back({.time = t});
   for (std::size_t k = 0; k < e.smeared.size(); ++k)
-    e.smeared[k] = jumps == Jumps::spread && e.smeared[k] &&
-                   std::ranges::any_of(found, [&](const playin::Switching& jump) {
-                     return std::abs(e.record.t[k] - jump.time) < jump.uncertainty &&
+    e.smeared[k] = step_shape == StepShape::spread && e.smeared[k] &&
+                   std::ranges::any_of(found, [&](const playin::Switching& switching) {
+                     return std::abs(e.record.t[k] - switching.time) < switching.uncertainty &&
                             std::ranges::any_of(e.record.switched, [&](double told) {
-                              return std::abs(told - jump.time) < jump.uncertainty;
+                              return std::abs(told - switching.time) < switching.uncertainty;
                             });
                    });
 }
@@ -192,14 +193,14 @@ double before_first_smeared(const FitEvent& e) {
 }
 
 FitEvent prepare(record::Record record, const record::Record& seen, const FitEventOptions& options,
-                 Jumps jumps) {
+                 StepShape step_shape) {
   FitEvent e;
   e.record = std::move(record);
   // The threshold is half of the visible one: a filter spreads a step over two intervals, and an undetected
   // step is played in as a ramp.
-  e.switchings = find_switchings(seen, options.jump_threshold / 2, jumps, e.smeared);
+  e.switchings = find_switchings(seen, options.step_threshold / 2, step_shape, e.smeared);
   if (!e.record.switched.empty())
-    take_told(e, jumps);
+    take_told(e, step_shape);
   else if (e.record.breaker()) {
     e.switchings = playin::breaker_times(e.record, e.switchings);
     e.smeared.assign(e.smeared.size(), 0);
@@ -221,7 +222,7 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
   if (e.record.switched.empty() && !e.record.breaker()) {
     const double until = first.empty() ? e.record.t.front() + options.pre_event : first.front().time;
     const auto n = static_cast<std::size_t>(std::ranges::upper_bound(e.record.t, until) - e.record.t.begin());
-    double still = e.record.t[playin::before_power_jump(e.record, std::max<std::size_t>(1, n))];
+    double still = e.record.t[playin::before_power_step(e.record, std::max<std::size_t>(1, n))];
     if (!first.empty()) still = std::min(still, still_until(e.record));
     if (still < until - e.record.step()) first.insert(first.begin(), {still, 0.0});
   }
@@ -289,40 +290,40 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 
 }  // namespace
 
-Jumps jumps_of(const std::vector<record::Record>& records, double threshold) {
+StepShape step_shape_of(const std::vector<record::Record>& records, double threshold) {
   bool any_spread = false, any_sharp = false, any_open = false;
   std::vector<FitEvent> if_spread;
   for (record::Record r : records) {
     // an integrated angle does not contain the instrument's filtering of the phasor
     if (r.angle == record::AngleSource::integrated) r.theta.assign(r.t.size(), 0.0);
     if (!r.switched.empty()) {
-      if (moves_before(r, threshold)) return Jumps::spread;
+      if (moves_before(r, threshold)) return StepShape::spread;
       any_sharp = true;
       continue;
     }
     std::vector<char> smeared;
-    const auto found = find_switchings(r, threshold, Jumps::either, smeared);
+    const auto found = find_switchings(r, threshold, StepShape::either, smeared);
     if (!found.empty() && found.front().uncertainty > r.step() && is_shared_out(r, found.front()))
-      return Jumps::spread;
+      return StepShape::spread;
     const bool sharp = is_sharp(r, found, threshold);
     any_sharp = any_sharp || sharp;
     any_open = any_open || (!sharp && !found.empty());
     any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
     FitEvent& e = if_spread.emplace_back();
-    e.switchings = find_switchings(r, threshold / 2, Jumps::spread, e.smeared);
+    e.switchings = find_switchings(r, threshold / 2, StepShape::spread, e.smeared);
     if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear();
     e.record = std::move(r);
   }
-  if (any_sharp && any_open && passed_filter(if_spread)) return Jumps::spread;
-  return any_sharp ? Jumps::sharp : any_spread ? Jumps::spread : Jumps::either;
+  if (any_sharp && any_open && passed_filter(if_spread)) return StepShape::spread;
+  return any_sharp ? StepShape::sharp : any_spread ? StepShape::spread : StepShape::either;
 }
 
-std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold, Jumps jumps,
-                                               std::vector<char>& smeared) {
+std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,
+                                               StepShape step_shape, std::vector<char>& smeared) {
   smeared.assign(record.t.size(), 0);
   const auto step = playin::voltage_steps(record);
   const auto d = prominence(step);
-  const double limit = least_jump(d, threshold);
+  const double limit = min_step_size(d, threshold);
   std::vector<playin::Switching> found;
   for (std::size_t k = 0; k < d.size(); ++k) {
     if (d[k] <= limit) continue;
@@ -335,23 +336,24 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     }
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the step
-    for (Smear jump : told_apart(step, {k, last}, limit)) {
-      if (jumps == Jumps::either && jump.first == jump.last && is_even(step, jump.first, limit))
-        jump = {jump.first - 1, jump.first + 1};
-      if (jumps != Jumps::spread && jump.last > jump.first)
-        if (const std::size_t m = largest_of(step, jump);
-            jumps == Jumps::sharp ? has_peak(step, jump, m) : decays_after(step, m, limit))
-          jump = {m, m};
-      const bool wide = jump.last > jump.first, spread = wide || jumps == Jumps::spread;
-      if (wide && jumps == Jumps::sharp) continue;
-      const double from = record.t[jump.first], to = record.t[jump.last + 1];
+    for (Smear span : told_apart(step, {k, last}, limit)) {
+      if (step_shape == StepShape::either && span.first == span.last && is_even(step, span.first, limit))
+        span = {span.first - 1, span.first + 1};
+      if (step_shape != StepShape::spread && span.last > span.first)
+        if (const std::size_t m = largest_of(step, span);
+            step_shape == StepShape::sharp ? has_peak(step, span, m) : decays_after(step, m, limit))
+          span = {m, m};
+      const bool wide = span.last > span.first, spread = wide || step_shape == StepShape::spread;
+      if (wide && step_shape == StepShape::sharp) continue;
+      const double from = record.t[span.first], to = record.t[span.last + 1];
       found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});
       if (spread)
-        for (std::size_t s = jump.first; s <= jump.last + 1; ++s) smeared[s] = 1;
+        for (std::size_t s = span.first; s <= span.last + 1; ++s) smeared[s] = 1;
     }
     k = last;
   }
-  if (found.empty() && jumps != Jumps::spread) return playin::lone_jumps(record, 2 * threshold);
+  if (found.empty() && step_shape != StepShape::spread)
+    return playin::find_isolated_steps(record, 2 * threshold);
   return found;
 }
 
@@ -361,11 +363,12 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
     if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
   const std::vector<record::Record> seen =
       seen_by_rotor(records, options.mva > 0 ? options.mva : model.plant.mva);
-  const Jumps jumps =
-      options.jumps == Jumps::either ? jumps_of(records, options.jump_threshold) : options.jumps;
+  const StepShape step_shape = options.step_shape == StepShape::either
+                                   ? step_shape_of(records, options.step_threshold)
+                                   : options.step_shape;
   std::vector<FitEvent> events;
   for (std::size_t r = 0; r < records.size(); ++r)
-    events.push_back(prepare(std::move(records[r]), seen[r], options, jumps));
+    events.push_back(prepare(std::move(records[r]), seen[r], options, step_shape));
   unsmear(events);
   for (FitEvent& e : events) {
     set_start(e, options);
@@ -379,7 +382,7 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
 
 int samples_before_event(const record::Record& record, const FitEventOptions& options) {
   FitEvent e = prepare(record, seen_by_rotor({record}, options.mva).front(), options,
-                       jumps_of({record}, options.jump_threshold));
+                       step_shape_of({record}, options.step_threshold));
   set_start(e, options);
   return e.start.samples;
 }

@@ -10,16 +10,16 @@
 namespace swingbank::validate::event {
 
 /// Shape of voltage steps as the instrument records them: all filtered (spread), or none.
-enum class Jumps { either, sharp, spread };
+enum class StepShape { either, sharp, spread };
 
 /// Options of the preparation of records for fitting.
 struct FitEventOptions {
   bool measured_states = true;  ///< compare speed, Efd and Ifd too, if recorded
-  double jump_threshold = playin::kJumpThreshold;
+  double step_threshold = playin::kStepThreshold;
   ///< threshold of playin::detect_switchings [pu]
-  double pre_event = 1.0;       ///< length of the steady window of a record without switchings [s]
-  Jumps jumps = Jumps::either;  ///< either: determined from the records (jumps_of)
-  double mva = 0;               ///< rating of all machines whose power the records contain; 0: the model's
+  double pre_event = 1.0;  ///< length of the steady window of a record without switchings [s]
+  StepShape step_shape = StepShape::either;  ///< either: determined from the records (step_shape_of)
+  double mva = 0;  ///< rating of all machines whose power the records contain; 0: the model's
   /// P and Q of the model's operating point if the records contain the power of several units [pu on their
   /// base]. The caller, who has the models of all units, then estimates the turns of an integrated angle.
   std::optional<Complex> start = {};
@@ -35,17 +35,18 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 constexpr double kPeakReach = 2.1;
 
 /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. Marks in
-/// `smeared` each sample inside or next to such a filtered step. With Jumps::spread, the neighbours of sharp
-/// steps are marked too; with Jumps::sharp, a step over several intervals is taken for a swing and ignored.
-std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold, Jumps jumps,
-                                               std::vector<char>& smeared);
+/// `smeared` each sample inside or next to such a filtered step. With StepShape::spread, the neighbours of
+/// sharp steps are marked too; with StepShape::sharp, a step over several intervals is taken for a swing and
+/// ignored.
+std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,
+                                               StepShape step_shape, std::vector<char>& smeared);
 
 /// Returns the shape of steps as one instrument records them, from all of its records. The window of a filter
 /// is even: it spreads a step equally before and after it. A decay on one side only is the machine's
 /// subtransient response. The first step of each record decides, because later ones may belong to swings. If
 /// some are sharp and others are not, the most probable window decides (passed_filter). `either` if no record
 /// decides. If the angle was integrated, only V is used.
-Jumps jumps_of(const std::vector<record::Record>& records, double threshold);
+StepShape step_shape_of(const std::vector<record::Record>& records, double threshold);
 
 /// Prepares the records of one plant and one instrument. The noise covariance is that of the pre-event
 /// residual of `model`, pooled over the events. It thus includes the voltage noise transferred through the

@@ -8,7 +8,7 @@ Innovations::Innovations(const SlowNoise& noise, int samples, const std::vector<
   Eigen::MatrixXd P = noise.P;
   for (int k = 0; k < samples; ++k) {
     Eigen::MatrixXd next = A_ * P * A_.transpose() + noise.Q;
-    if (!noise.doubtful.empty()) next += noise.doubtful[static_cast<std::size_t>(k)] * noise.jump;
+    if (!noise.doubtful.empty()) next += noise.doubtful[static_cast<std::size_t>(k)] * noise.added_covariance;
     Step step{left_out.empty() || !left_out[static_cast<std::size_t>(k)], {}, {}};
     if (step.compared) {
       const Eigen::MatrixXd S = C_ * P * C_.transpose() + noise.S;

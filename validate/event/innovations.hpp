@@ -13,11 +13,11 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 
 /// State-space model of coloured noise: \f$x_{k+1} = A x_k + w\f$, \f$e_k = C x_k + v\f$. Covariances: Q of
 /// w, S of v, M of w with v, P of x[0]. After sample k, the covariance of w is increased by `doubtful[k]`
-/// times `jump` (empty: nowhere).
+/// times `added_covariance` (empty: nowhere).
 struct SlowNoise {
-  Eigen::MatrixXd A, C, Q, S, M, P, jump = {};
+  Eigen::MatrixXd A, C, Q, S, M, P, added_covariance = {};
   ///< system matrices and covariances; jump: added covariance of w
-  std::vector<char> doubtful = {};  ///< [sample]: multiple of `jump`
+  std::vector<char> doubtful = {};  ///< [sample]: multiple of `added_covariance`
 };
 
 /// Kalman filter that whitens coloured noise: its normalised innovations have unit variance.

@@ -324,8 +324,8 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
   s.Q(m - 1, m - 1) = variance[2];
   // Near a switching, the voltage between samples is interpolated.
-  s.jump = Eigen::MatrixXd::Zero(m, m);
-  s.jump.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
+  s.added_covariance = Eigen::MatrixXd::Zero(m, m);
+  s.added_covariance.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
   for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k) {
     const bool switched = std::ranges::any_of(e.switchings, [&](const playin::Switching& w) {

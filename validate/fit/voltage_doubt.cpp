@@ -60,7 +60,8 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
     mean[none.size() - 2 + j] = std::sqrt(variance[j] / e.start.samples);
     doubt.shapes.push_back(answer(noise, samples, [&](int k) { return k < 0 ? mean : none; }));
   }
-  const Eigen::MatrixXd moved = root_of(noise.Q) / std::sqrt(kDraws), guessed = root_of(noise.jump);
+  const Eigen::MatrixXd moved = root_of(noise.Q) / std::sqrt(kDraws),
+                        guessed = root_of(noise.added_covariance);
   for (std::uint32_t d = 0; d < kDraws && variance.maxCoeff() > 0; ++d)
     doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
       if (k < 0) return none;

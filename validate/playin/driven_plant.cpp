@@ -24,7 +24,7 @@ using Kind = SensitivityParameter::Kind;
 constexpr double kRoughFrom = 1e-5;     ///< tolerance from which the 3(2) pair is used
 constexpr double kShortestStep = 1e-9;  ///< [s]
 constexpr double kCornerError = 1e-6;   ///< accepted error of a state in a step across a corner
-constexpr double kJumpWithin = 1e-8;    ///< accuracy of the time at which the equations are discontinuous [s]
+constexpr double kTimeError = 1e-8;     ///< accuracy of the time at which the equations are discontinuous [s]
 constexpr double kRateOver = 1e-6;      ///< interval for the rate of a guard at zero [s]
 
 template <class T>
@@ -173,7 +173,7 @@ class Driven {
       if (error <= 1) {
         look_at_guards(trial_, guards_at_end_);
         if (passed_guard() >= 0) {
-          pass_jump(h);
+          pass_crossing(h);
           continue;
         }
         take(h);
@@ -213,8 +213,8 @@ class Driven {
     return -1;
   }
   /// Moves across the first discontinuity of the equations within a step of h.
-  void pass_jump(double h) {
-    const auto [before, after, guard] = jump_within(h);
+  void pass_crossing(double h) {
+    const auto [before, after, guard] = locate_crossing(h);
     if (before > 0) {
       attempt(before);
       look_at_guards(trial_, guards_at_end_);
@@ -237,39 +237,39 @@ class Driven {
     fresh_ = fresh_ || !parameters_.empty();
     if (++steps_ > run_.step_limit) give_up();
   }
-  struct Jump {
+  struct Crossing {
     double before, after;  ///< bounds of its time within the step [s]
     int guard;             ///< guard that passes zero there
   };
   /// Locates the discontinuity by regula falsi (Illinois) within the step of the last attempt.
-  Jump jump_within(double h) {
+  Crossing locate_crossing(double h) {
     constexpr int kMostRounds = 60;
-    Jump jump = {0.0, h, passed_guard()};
+    Crossing found = {0.0, h, passed_guard()};
     const auto height = [&](const std::vector<T>& guards) {
-      return std::abs(sim::value_of(guards[static_cast<std::size_t>(jump.guard)]));
+      return std::abs(sim::value_of(guards[static_cast<std::size_t>(found.guard)]));
     };
     double low = height(guards_), high = height(guards_at_end_);
     int side = 0;  // side of zero of the last guess
-    for (int round = 0; round < kMostRounds && jump.after - jump.before > kJumpWithin; ++round) {
-      const double wide = jump.after - jump.before, guess = jump.before + wide * low / (low + high);
+    for (int round = 0; round < kMostRounds && found.after - found.before > kTimeError; ++round) {
+      const double wide = found.after - found.before, guess = found.before + wide * low / (low + high);
       // a little further, so that the next guess lies on the other side
-      const double middle = std::clamp(guess - 0.4 * side * kJumpWithin, jump.before + 0.01 * kJumpWithin,
-                                       jump.after - 0.01 * kJumpWithin);
+      const double middle = std::clamp(guess - 0.4 * side * kTimeError, found.before + 0.01 * kTimeError,
+                                       found.after - 0.01 * kTimeError);
       attempt(middle);
       look_at_guards(trial_, guards_at_end_);
       const int passed = passed_guard();
       const int now = passed < 0 ? -1 : 1;
-      if (passed >= 0 && passed != jump.guard) {
-        jump.guard = passed;
+      if (passed >= 0 && passed != found.guard) {
+        found.guard = passed;
         low = height(guards_);
       } else if (now == side) {
         (now < 0 ? high : low) /= 2;
       }
-      (now < 0 ? jump.before : jump.after) = middle;
+      (now < 0 ? found.before : found.after) = middle;
       (now < 0 ? low : high) = height(guards_at_end_);
       side = now;
     }
-    return jump;
+    return found;
   }
   /// Returns the rate of a guard at the present state [1/s].
   T rate_of(int guard) {

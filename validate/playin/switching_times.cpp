@@ -43,7 +43,7 @@ double height_variance(std::span<const double> x, std::size_t k) {
 
 }  // namespace
 
-std::size_t before_power_jump(const record::Record& record, std::size_t n) {
+std::size_t before_power_step(const record::Record& record, std::size_t n) {
   constexpr double kErrorsOfHeight = 6, kOfBefore = 3, kOfPower = 1e-3;
   constexpr std::size_t kSamplesBefore = 4,
                         kReaches =
@@ -51,16 +51,16 @@ std::size_t before_power_jump(const record::Record& record, std::size_t n) {
   if (record.P.size() < n || record.Q.size() < n || n < kSamplesBefore + 2 * kSamplesBeside + 1) return n - 1;
   const std::span P(record.P.data(), n), Q(record.Q.data(), n);
   const double least = kOfPower * std::hypot(mean(P), mean(Q));
-  std::vector<double> jump(n, 0.0);
+  std::vector<double> step_height(n, 0.0);
   for (std::size_t k = kReaches; k + kSamplesBeside < n; ++k)
-    jump[k] = std::hypot(height(P, k), height(Q, k));
+    step_height[k] = std::hypot(height(P, k), height(Q, k));
   for (std::size_t k = kSamplesBefore; k + kSamplesBeside < n; ++k) {
-    const auto beside = std::span(jump).subspan(k - kReaches, 2 * kReaches + 1);
-    const auto before = std::span(jump).first(k - kReaches);
+    const auto beside = std::span(step_height).subspan(k - kReaches, 2 * kReaches + 1);
+    const auto before = std::span(step_height).first(k - kReaches);
     const bool stands_out =
-        jump[k] == std::ranges::max(beside) && jump[k] > kOfBefore * std::ranges::max(before);
-    if (stands_out &&
-        jump[k] > std::max(least, kErrorsOfHeight * std::sqrt(height_variance(P, k) + height_variance(Q, k))))
+        step_height[k] == std::ranges::max(beside) && step_height[k] > kOfBefore * std::ranges::max(before);
+    if (stands_out && step_height[k] > std::max(least, kErrorsOfHeight * std::sqrt(height_variance(P, k) +
+                                                                                   height_variance(Q, k))))
       return k;
   }
   return n - 1;
@@ -78,7 +78,7 @@ Switching within_step(const record::Record& record, std::size_t k) {
   return {.time = record.t[k] + half, .uncertainty = half};
 }
 
-std::vector<Switching> lone_jumps(const record::Record& record, double threshold) {
+std::vector<Switching> find_isolated_steps(const record::Record& record, double threshold) {
   constexpr double kOfThreshold = 0.05, kOfAround = 5;
   constexpr std::size_t kAround = 10, kSamplesBefore = 4;  // the record may begin just before the event
   const auto out = standing_out(voltage_steps(record));

@@ -19,11 +19,11 @@ Switching within_step(const record::Record& record, std::size_t k);
 /// Finds small isolated steps, of at least a twentieth of `threshold`, as from the loss of a distant
 /// generator. Over ten samples on either side, or to the start of the record, no second difference from noise
 /// or a swing exceeds a fifth of the step.
-std::vector<Switching> lone_jumps(const record::Record& record, double threshold);
+std::vector<Switching> find_isolated_steps(const record::Record& record, double threshold);
 
 /// Returns the last of the first n samples before P and Q step together, n - 1 if they do not. A distant load
 /// switching may move V by no more than its noise; the machine's response exceeds it through its admittance.
-std::size_t before_power_jump(const record::Record& record, std::size_t n);
+std::size_t before_power_step(const record::Record& record, std::size_t n);
 
 /// Criterion for a signal that leaves its level.
 struct Leaving {

@@ -60,7 +60,7 @@ std::vector<Switching> detect_switchings(const record::Record& record, double th
   std::vector<Switching> found;
   for (std::size_t k = 1; k + 1 < steps; ++k)
     if (spike[k] > limit) found.push_back(within_step(record, k));
-  return found.empty() ? lone_jumps(record, threshold) : found;
+  return found.empty() ? find_isolated_steps(record, threshold) : found;
 }
 
 VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> switchings)

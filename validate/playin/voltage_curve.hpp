@@ -18,12 +18,12 @@ struct Switching {
 };
 
 /// Step of the voltage in one sample interval above which it counts as a switching [pu].
-constexpr double kJumpThreshold = 0.02;
+constexpr double kStepThreshold = 0.02;
 
 /// Finds the sample intervals with a voltage step: the change differs from both neighbouring ones by more
 /// than `threshold` [pu] and more than ten times the median difference (noise). Each switching time is the
-/// middle of its interval, with half the interval as uncertainty. If there are none: lone_jumps().
-std::vector<Switching> detect_switchings(const record::Record& record, double threshold = kJumpThreshold);
+/// middle of its interval, with half the interval as uncertainty. If there are none: find_isolated_steps().
+std::vector<Switching> detect_switchings(const record::Record& record, double threshold = kStepThreshold);
 
 /// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,
 /// rather than V and theta, remain smooth if V is near zero and theta turns. Segments of 3, 2 or 1 points get

@@ -45,7 +45,7 @@ Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
       knots.t.push_back(t);
       if (t - from >= kCloseKnots) gap = std::min(far_apart, gap * kKnotGrowth);
     }
-    if (ends) knots.jumps.push_back(knots.t.size());
+    if (ends) knots.discontinuities.push_back(knots.t.size());
     knots.t.push_back(to);
   }
   return knots;
@@ -221,9 +221,9 @@ class Inferring {
     Knots knots = knots_[e];
     if (s.switchings.empty()) return knots;
     knots.t.front() = s.switchings.front();
-    for (std::size_t j = 0; j < knots.jumps.size(); ++j) {
-      knots.t[knots.jumps[j]] = s.switchings[j + 1] - sim::plant::kBeforeSwitching;
-      knots.t[knots.jumps[j] + 1] = s.switchings[j + 1];
+    for (std::size_t j = 0; j < knots.discontinuities.size(); ++j) {
+      knots.t[knots.discontinuities[j]] = s.switchings[j + 1] - sim::plant::kBeforeSwitching;
+      knots.t[knots.discontinuities[j] + 1] = s.switchings[j + 1];
     }
     return knots;
   }
@@ -386,7 +386,8 @@ Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {
     weight[k] = 1 / std::sqrt((torque ? kTorqueWalk : kFieldWalk) * gap);
   }
   if (!torque)
-    for (const std::size_t jump : knots.jumps) weight[static_cast<Index>(jump) + 1] = 1 / kFirstField;
+    for (const std::size_t discontinuity : knots.discontinuities)
+      weight[static_cast<Index>(discontinuity) + 1] = 1 / kFirstField;
   return weight;
 }
 

@@ -14,8 +14,8 @@ namespace swingbank::validate::reduced {
 /// Knots of an event's piecewise linear inputs. An input may jump at each switching time after the first,
 /// where two knots lie one nanosecond apart.
 struct Knots {
-  std::vector<double> t;           ///< [s]
-  std::vector<std::size_t> jumps;  ///< index of the first knot of each such pair
+  std::vector<double> t;                     ///< [s]
+  std::vector<std::size_t> discontinuities;  ///< index of the first knot of each such pair
 };
 
 /// Whitened residuals of one event (model - measured) and their Jacobians at the point of an Inference:

@@ -30,7 +30,7 @@ Sparse over_hats(const Knots& knots, const std::vector<playin::OpenLoop::TimePoi
   std::vector<Eigen::Triplet<double>> entries;
   VectorXd whole = VectorXd::Zero(count);
   const auto end_of = [&](std::size_t part) {
-    return part < knots.jumps.size() ? knots.jumps[part] : knots.t.size() - 1;
+    return part < knots.discontinuities.size() ? knots.discontinuities[part] : knots.t.size() - 1;
   };
   const auto begin_of = [&](std::size_t part) { return part == 0 ? 0 : end_of(part - 1) + 1; };
   for (std::size_t k = 0; k < times.size(); ++k) {

@@ -16,9 +16,9 @@ namespace {
 constexpr double kAfterLast = 1.0;  // duration of the fit after the last switching [s]
 
 /// Returns the voltage steps of one record.
-std::vector<playin::Switching> jumps_of(const record::Record& r) {
+std::vector<playin::Switching> find_voltage_steps(const record::Record& r) {
   std::vector<char> smeared;
-  return event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+  return event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, smeared);
 }
 
 /// Returns the case with its records cut off after `end` [s].
@@ -65,11 +65,11 @@ class SwitchingTimeFit {
     std::vector<record::Record> records;
     for (const SystemTerminal& t : s_.terminals)
       if (!declared(t)) records.push_back(t.record);
-    const event::Jumps jumps = event::jumps_of(records, playin::kJumpThreshold);
+    const event::StepShape step_shape = event::step_shape_of(records, playin::kStepThreshold);
     for (const SystemTerminal& t : s_.terminals) {
       smeared_.emplace_back(t.record.t.size(), 0);
-      if (!declared(t) && jumps == event::Jumps::spread)
-        event::find_switchings(t.record, playin::kJumpThreshold / 2, jumps, smeared_.back());
+      if (!declared(t) && step_shape == event::StepShape::spread)
+        event::find_switchings(t.record, playin::kStepThreshold / 2, step_shape, smeared_.back());
     }
   }
   /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
@@ -122,13 +122,13 @@ std::vector<double> estimate_switching_times(const SystemCase& s, double& uncert
   std::string counts;
   uncertainty = 0;
   for (const auto& t : s.terminals) {
-    const auto jumps = jumps_of(t.record);
-    counts += fmt::format("{}{} in {}", counts.empty() ? "" : ", ", jumps.size(), t.name);
-    if (jumps.size() != written.size()) continue;
+    const auto voltage_steps = find_voltage_steps(t.record);
+    counts += fmt::format("{}{} in {}", counts.empty() ? "" : ", ", voltage_steps.size(), t.name);
+    if (voltage_steps.size() != written.size()) continue;
     ++votes;
-    for (std::size_t k = 0; k < jumps.size(); ++k) {
-      sum[k] += jumps[k].time;
-      uncertainty = std::max(uncertainty, jumps[k].uncertainty);
+    for (std::size_t k = 0; k < voltage_steps.size(); ++k) {
+      sum[k] += voltage_steps[k].time;
+      uncertainty = std::max(uncertainty, voltage_steps[k].uncertainty);
     }
   }
   if (votes == 0)
@@ -140,20 +140,20 @@ std::vector<double> estimate_switching_times(const SystemCase& s, double& uncert
 }
 
 std::string clock_doubt(const record::Record& record, const std::vector<double>& switching_times) {
-  const auto jumps = jumps_of(record);
-  if (jumps.size() != switching_times.size()) return {};
+  const auto voltage_steps = find_voltage_steps(record);
+  if (voltage_steps.size() != switching_times.size()) return {};
   constexpr double kSlack = 1e-3;  // tolerance of time stamps [s]
   bool off = false;
   std::string seen;
-  for (std::size_t k = 0; k < jumps.size(); ++k) {
-    off = off || std::abs(jumps[k].time - switching_times[k]) > jumps[k].uncertainty + kSlack;
-    seen += fmt::format("{}{:.4f} s", seen.empty() ? "" : ", ", jumps[k].time);
+  for (std::size_t k = 0; k < voltage_steps.size(); ++k) {
+    off = off || std::abs(voltage_steps[k].time - switching_times[k]) > voltage_steps[k].uncertainty + kSlack;
+    seen += fmt::format("{}{:.4f} s", seen.empty() ? "" : ", ", voltage_steps[k].time);
   }
   if (!off) return {};
   return fmt::format(
       "The voltage of {} has steps at {} (± {:.1f} ms), not at the event's switching times: "
       "check its clock, or estimate the times from the records (event.instants = \"found\").",
-      record.name, seen, 1e3 * jumps.front().uncertainty);
+      record.name, seen, 1e3 * voltage_steps.front().uncertainty);
 }
 
 }  // namespace swingbank::validate::system

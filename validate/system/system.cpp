@@ -40,12 +40,12 @@ double smear_of(const SystemCase& system) {
   std::vector<record::Record> records;
   for (const SystemTerminal& t : system.terminals)
     if (!(sim::plant::memory(t.instruments) > 0)) records.push_back(t.record);
-  if (event::jumps_of(records, playin::kJumpThreshold) != event::Jumps::spread) return 0;
+  if (event::step_shape_of(records, playin::kStepThreshold) != event::StepShape::spread) return 0;
   double farthest = 0;
   for (const record::Record& r : records) {
     std::vector<char> smeared;
     for (const playin::Switching& s :
-         event::find_switchings(r, playin::kJumpThreshold / 2, event::Jumps::spread, smeared))
+         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::spread, smeared))
       farthest = std::max(farthest, s.uncertainty);
   }
   return farthest;

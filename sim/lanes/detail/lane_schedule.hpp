@@ -54,7 +54,7 @@ struct LaneClock {
 struct LaneRun {
   Job job;
   std::vector<network::Segment> segments;
-  std::vector<double> jumps;  ///< sorted times at which the plants' effects are discontinuous [s]
+  std::vector<double> discontinuities;  ///< sorted times at which the plants' effects are discontinuous [s]
   std::size_t segment = 0;
   int recorded = 0;  ///< number of samples in the record
   int pending = 0;   ///< number of buffered samples, not yet evaluated

@@ -310,7 +310,7 @@ template <class T>
 void Lanes<T>::record_steady_start(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (!(run.segments[0].topology == network::Topology{}) || !run.segments[0].setpoints.empty()) return;
-  if (!run.jumps.empty() && run.jumps.front() <= 0.0) return;
+  if (!run.discontinuities.empty() && run.discontinuities.front() <= 0.0) return;
   const bool switches = run.segments.size() > 1 && run.segments[1].start < options_.t_end;
   const double first = switches ? run.segments[1].start : options_.t_end;
   const int count = samples_until(first);
@@ -351,14 +351,14 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
     run.job = {};
     if (!next(run.job)) break;
     const auto changed = changed_plants(grid_, run.job);
-    run.jumps.clear();
+    run.discontinuities.clear();
     for (std::size_t i = 0; i < plants_.size(); ++i) {
       const auto other = changed.find(static_cast<int>(i));
       const auto more = plant::switching_times_of(other == changed.end() ? grid_.plants[i] : other->second);
-      run.jumps.insert(run.jumps.end(), more.begin(), more.end());
+      run.discontinuities.insert(run.discontinuities.end(), more.begin(), more.end());
     }
-    std::ranges::sort(run.jumps);
-    run.segments = network::segments(run.job.event, grid_.network, run.jumps);
+    std::ranges::sort(run.discontinuities);
+    run.segments = network::segments(run.job.event, grid_.network, run.discontinuities);
     begin_record(run);
     load(lane);
     fill_waiting(lane);

@@ -44,7 +44,7 @@ class Simulation {
   }
   [[nodiscard]] Vector start() const { return pack(start_); }
   /// Times of all steps [s], sorted.
-  [[nodiscard]] std::vector<double> jumps() const {
+  [[nodiscard]] std::vector<double> step_times() const {
     std::vector<double> all = s_.unlisted.step_times;
     for (const Stretch& g : stretch_) all.push_back(g.start);
     all.push_back(s_.dip.start);
@@ -140,7 +140,7 @@ Phasor holding_source(const Setup& setup, Phasor impedance) {
 Output simulate(const Setup& setup, double seconds, double rate, double step) {
   Simulation s(setup);
   Vector x = s.start();
-  const std::vector<double> jumps = s.jumps();
+  const std::vector<double> step_times = s.step_times();
   const auto per_sample = static_cast<long>(std::lround(1.0 / (rate * step)));
   const auto steps = static_cast<long>(std::lround(seconds / step));
   Output out;
@@ -148,9 +148,10 @@ Output simulate(const Setup& setup, double seconds, double rate, double step) {
   for (long k = 0; k < steps; ++k) {
     const double end = static_cast<double>(k + 1) * step;
     double t = static_cast<double>(k) * step, last = t;
-    for (auto jump = std::ranges::upper_bound(jumps, t); jump != jumps.end() && *jump < end; ++jump) {
-      advance(s, t, *jump - t, x);
-      t = *jump;
+    for (auto step_time = std::ranges::upper_bound(step_times, t);
+         step_time != step_times.end() && *step_time < end; ++step_time) {
+      advance(s, t, *step_time - t, x);
+      t = *step_time;
     }
     last = t;
     advance(s, t, end - t, x);

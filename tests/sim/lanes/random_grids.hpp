@@ -184,10 +184,10 @@ struct Difference {
 inline Difference difference(const grid::Grid& grid, const network::Event& event, const Trajectory& a,
                              const Trajectory& b, double efd = 1.0) {
   constexpr double near = 2e-3;  // samples this close to a switching time are excluded [s]
-  std::vector<double> switching_times, jumps;
+  std::vector<double> switching_times, discontinuities;
   for (const plant::Plant& p : grid.plants)
-    for (const double t : plant::switching_times_of(p)) jumps.push_back(t);
-  for (const network::Segment& s : network::segments(event, grid.network, jumps))
+    for (const double t : plant::switching_times_of(p)) discontinuities.push_back(t);
+  for (const network::Segment& s : network::segments(event, grid.network, discontinuities))
     switching_times.push_back(s.start);
   Difference worst;
   const auto channels = static_cast<int>(a.channels.size());

@@ -157,7 +157,7 @@ class Between {
   Between(std::vector<double> t, std::vector<double> y) : t_(std::move(t)), y_(std::move(y)) {}
   [[nodiscard]] std::size_t samples() const { return t_.size(); }
   [[nodiscard]] double width(std::size_t k) const { return t_[k + 1] - t_[k]; }
-  [[nodiscard]] bool jumps(std::size_t k) const { return width(k) < 1e-6; }
+  [[nodiscard]] bool is_step(std::size_t k) const { return width(k) < 1e-6; }
   [[nodiscard]] double time(std::size_t k) const { return t_[k]; }
   /// At `x` within the interval that begins with sample k.
   [[nodiscard]] double at(std::size_t k, double x) const {
@@ -177,8 +177,8 @@ class Between {
   }
 
  private:
-  [[nodiscard]] bool can_precede(std::size_t i) const { return i > 0 && !jumps(i - 1); }
-  [[nodiscard]] bool can_follow(std::size_t i) const { return i + 1 < t_.size() && !jumps(i); }
+  [[nodiscard]] bool can_precede(std::size_t i) const { return i > 0 && !is_step(i - 1); }
+  [[nodiscard]] bool can_follow(std::size_t i) const { return i + 1 < t_.size() && !is_step(i); }
   std::vector<double> t_, y_;
 };
 
@@ -243,7 +243,7 @@ TEST(OpenipslRecords, HygovsCurveIsOffItsOwnEquations) {
   constexpr int kParts = 200;  // of 0.1 ms
   double low = 1e9, high = -1e9, off_by_hand = 0.0, off_ours = 0.0, apart = 0.0, at = 0.0;
   for (std::size_t k = 0; k + 1 < speed.samples(); ++k) {
-    if (speed.jumps(k)) continue;
+    if (speed.is_step(k)) continue;
     const double h = speed.width(k) / kParts;
     for (int i = 0; i < kParts; ++i) {
       ours.in.speed = speed.at(k, speed.time(k) + (i + 0.5) * h);

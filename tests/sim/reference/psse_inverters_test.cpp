@@ -51,7 +51,7 @@ ReferenceRun exact(const grid::Grid& grid, const network::Event& event, double u
 /// PSS/E's printed P and Q of a converter approach their values after a switching by half of the difference
 /// at each step if Accel is 0 (immediately if it is 0.7, below); the voltage is correct immediately. `k`
 /// counts the steps.
-double half_way(double jump, long k) { return jump * std::ldexp(1.0, static_cast<int>(-k - 1)); }
+double half_way(double power_step, long k) { return power_step * std::ldexp(1.0, static_cast<int>(-k - 1)); }
 
 struct PowerRecord {
   std::string dyr, csv;
@@ -84,14 +84,14 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
   const network::Event event = trip(grid, 101, 103);
   const ReferenceRun run = exact(grid, event, 5.0);
   const auto switching = std::lround(kSwitching / kRecordStep);
-  const double jump[] = {run.at(0, 0)[switching] - run.at(0, 0)[switching - 1],
-                         run.at(0, 1)[switching] - run.at(0, 1)[switching - 1]};
+  const double power_step[] = {run.at(0, 0)[switching] - run.at(0, 0)[switching - 1],
+                               run.at(0, 1)[switching] - run.at(0, 1)[switching - 1]};
   Columns at_once, stepped;
   for (const auto& row : record.rows) {
     const long k = std::lround(row[0] / kRecordStep);
     if (k == switching || k >= run.samples) continue;
     double ours[] = {run.at(0, 0)[k], run.at(0, 1)[k], run.at(0, 2)[k]};
-    for (int c = 0; c < 2 && k > switching; ++c) ours[c] -= half_way(jump[c], k - switching);
+    for (int c = 0; c < 2 && k > switching; ++c) ours[c] -= half_way(power_step[c], k - switching);
     at_once.see(row, ours);
   }
   std::size_t next = 0;
@@ -102,7 +102,7 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
         if (next >= record.rows.size()) return;
         if (after >= 0 || std::lround(t / kRecordStep) == switching) ++after;
         double ours[] = {s.P, s.Q, s.V};
-        for (int c = 0; c < 2 && after > 0; ++c) ours[c] -= half_way(jump[c], after - 1);
+        for (int c = 0; c < 2 && after > 0; ++c) ours[c] -= half_way(power_step[c], after - 1);
         stepped.see(record.rows[next++], ours);
       },
       1, test::kOfOneConverter);

@@ -158,11 +158,11 @@ TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
 TEST(CompareTest, PlaysInAngleIntegratedFromFrequency) {
   RightModel right;
   const record::Record whole = test::record_of(right.s, 3, 8);
-  const auto jump = [&](double at) {  // step of the voltage's angle over the sample interval
+  const auto angle_step = [&](double at) {  // step of the voltage's angle over the sample interval
     const auto k = static_cast<std::size_t>(std::ranges::upper_bound(whole.t, at) - whole.t.begin());
     return (whole.theta[k] - whole.theta[k - 1]) - (whole.theta[k - 1] - whole.theta[k - 2]);
   };
-  const double on = jump(right.s.t_on), off = jump(right.s.t_off);
+  const double on = angle_step(right.s.t_on), off = angle_step(right.s.t_off);
   ASSERT_GT(std::abs(on), 0.05);
   constexpr double kFrequencyNoise = 1e-3 / 60;  // 1 mHz
   right.record = test::by_frequency(right.record, {right.s.t_on, right.s.t_off}, kFrequencyNoise);

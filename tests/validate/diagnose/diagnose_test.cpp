@@ -47,7 +47,7 @@ TEST(FindSwitchings, FindsAndMarksFilteredSteps) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   record::Record r = example_records(model).front();
   std::vector<char> smeared;
-  const auto sharp = event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+  const auto sharp = event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, smeared);
   ASSERT_EQ(sharp.size(), 2u);
   EXPECT_EQ(std::ranges::count(smeared, 1), 0);
   // A filter: the mean of each sample and the next.
@@ -56,7 +56,7 @@ TEST(FindSwitchings, FindsAndMarksFilteredSteps) {
     r.V[k] = std::abs(v);
     r.theta[k] += std::arg(v * std::polar(1.0, -r.theta[k]));
   }
-  const auto found = event::find_switchings(r, playin::kJumpThreshold, event::Jumps::either, smeared);
+  const auto found = event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, smeared);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_GE(std::ranges::count(smeared, 1), 4);
   for (std::size_t k = 0; k < 2; ++k)

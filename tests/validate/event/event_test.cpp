@@ -33,7 +33,7 @@ record::Record record_of(
 }
 std::vector<playin::Switching> switchings_of(const record::Record& r) {
   std::vector<char> smeared;
-  return find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
+  return find_switchings(r, playin::kStepThreshold / 2, StepShape::either, smeared);
 }
 
 TEST(FindSwitchings, IgnoresFastSwing) {
@@ -89,10 +89,10 @@ record::Record filtered(record::Record r) {
 TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   const record::Record r = near_loss();
   std::vector<char> smeared;
-  const auto either = find_switchings(r, playin::kJumpThreshold / 2, Jumps::either, smeared);
+  const auto either = find_switchings(r, playin::kStepThreshold / 2, StepShape::either, smeared);
   ASSERT_GT(either.size(), 2U) << "the swing was meant to be taken for a smeared jump";
-  ASSERT_EQ(jumps_of({r}, playin::kJumpThreshold), Jumps::sharp);
-  const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::sharp, smeared);
+  ASSERT_EQ(step_shape_of({r}, playin::kStepThreshold), StepShape::sharp);
+  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, smeared);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
@@ -131,23 +131,23 @@ record::Record behind(double half, double on, double length, double V, double fe
 TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
   const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
-  ASSERT_EQ(jumps_of({looks_sharp}, playin::kJumpThreshold), Jumps::sharp);
-  ASSERT_EQ(jumps_of({open}, playin::kJumpThreshold), Jumps::either);
-  EXPECT_EQ(jumps_of({looks_sharp, open}, playin::kJumpThreshold), Jumps::spread);
+  ASSERT_EQ(step_shape_of({looks_sharp}, playin::kStepThreshold), StepShape::sharp);
+  ASSERT_EQ(step_shape_of({open}, playin::kStepThreshold), StepShape::either);
+  EXPECT_EQ(step_shape_of({looks_sharp, open}, playin::kStepThreshold), StepShape::spread);
   for (const double phase : {0.0, 0.2, 0.4, 0.6, 0.8})
-    EXPECT_EQ(jumps_of({near_loss(0.85), behind(0, 3 + phase * kOneCycle, 0.1, 0.97, 0.04, 0.02)},
-                       playin::kJumpThreshold),
-              Jumps::sharp)
+    EXPECT_EQ(step_shape_of({near_loss(0.85), behind(0, 3 + phase * kOneCycle, 0.1, 0.97, 0.04, 0.02)},
+                            playin::kStepThreshold),
+              StepShape::sharp)
         << phase;
 }
 TEST(FindSwitchings, SharpSmallStepExcludesFilter) {
-  EXPECT_EQ(jumps_of({near_loss(0.85)}, playin::kJumpThreshold), Jumps::sharp);
-  EXPECT_EQ(jumps_of({filtered(near_loss(0.85))}, playin::kJumpThreshold), Jumps::spread);
+  EXPECT_EQ(step_shape_of({near_loss(0.85)}, playin::kStepThreshold), StepShape::sharp);
+  EXPECT_EQ(step_shape_of({filtered(near_loss(0.85))}, playin::kStepThreshold), StepShape::spread);
 }
 TEST(FindSwitchings, TreatsAllRecordsAsFilteredOrSharp) {
   const record::Record quiet = record_of([](double) { return 1.0; });
-  EXPECT_EQ(jumps_of({quiet, near_loss()}, playin::kJumpThreshold), Jumps::sharp);
-  EXPECT_EQ(jumps_of({quiet, filtered(near_loss())}, playin::kJumpThreshold), Jumps::spread);
+  EXPECT_EQ(step_shape_of({quiet, near_loss()}, playin::kStepThreshold), StepShape::sharp);
+  EXPECT_EQ(step_shape_of({quiet, filtered(near_loss())}, playin::kStepThreshold), StepShape::spread);
 }
 /// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of time constant `tau` after both
 /// steps and a swinging rotor. `on`: position of the switching in its sample interval, 0 to 1.
@@ -169,9 +169,9 @@ TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
   for (const double tau : {0.02, 0.025, 0.03})
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const record::Record r = subtransient(on, 6, tau);
-      EXPECT_EQ(jumps_of({r}, playin::kJumpThreshold), Jumps::sharp) << on << " " << tau;
+      EXPECT_EQ(step_shape_of({r}, playin::kStepThreshold), StepShape::sharp) << on << " " << tau;
       std::vector<char> smeared;
-      const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::sharp, smeared);
+      const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, smeared);
       ASSERT_EQ(found.size(), 2U) << on << " " << tau;
       EXPECT_NEAR(found[0].time, 3 + on / 30, 0.51 / 30);
       EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
@@ -188,10 +188,10 @@ TEST(FindSwitchings, RecognisesTriangularFilter) {
         for (int i = -50; i <= 50; ++i) sum += (1 - std::abs(i) / 50.0) * at(t + i / 50.0 / 30);
         return sum / 50;
       };
-      EXPECT_EQ(jumps_of({record_of(
-                             V, [](double) { return 0.1; }, rate)},
-                         playin::kJumpThreshold),
-                Jumps::spread)
+      EXPECT_EQ(step_shape_of({record_of(
+                                  V, [](double) { return 0.1; }, rate)},
+                              playin::kStepThreshold),
+                StepShape::spread)
           << on << " at " << rate;
     }
 }
@@ -287,7 +287,7 @@ TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
   std::vector<char> smeared;
-  const auto found = find_switchings(r, playin::kJumpThreshold / 2, Jumps::spread, smeared);
+  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::spread, smeared);
   ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
   ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));

@@ -48,7 +48,7 @@ struct TwoUnits : ::testing::Test {
     beside.P.assign(beside.t.size(), kP / r.base.mva);
     beside.Q.assign(beside.t.size(), kQ / r.base.mva);
     std::vector<char> smeared;
-    auto switchings = find_switchings(beside, playin::kJumpThreshold / 2, Jumps::either, smeared);
+    auto switchings = find_switchings(beside, playin::kStepThreshold / 2, StepShape::either, smeared);
     for (auto& s : switchings) s.time = s.time < 2.05 ? 2.0 : 2.1;  // simulated fault times
     const playin::VoltageCurve curve(beside, switchings);
     const playin::Playback both = playin::play_in(other.under_test(), beside, curve);

@@ -133,8 +133,9 @@ inline record::Record by_frequency(record::Record r, const std::vector<double>& 
   const double nominal = constants::turn * r.base.frequency;
   std::vector<double> derivative;  // [rad/s]
   for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
-    const bool jumps = std::ranges::any_of(switched, [&](double s) { return r.t[k] <= s && s < r.t[k + 1]; });
-    const std::size_t from = jumps ? k - 1 : k;
+    const bool has_step =
+        std::ranges::any_of(switched, [&](double s) { return r.t[k] <= s && s < r.t[k + 1]; });
+    const std::size_t from = has_step ? k - 1 : k;
     derivative.push_back((r.theta[from + 1] - r.theta[from]) / (r.t[from + 1] - r.t[from]));
   }
   derivative.push_back(derivative.back());

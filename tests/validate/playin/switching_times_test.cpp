@@ -24,33 +24,33 @@ TEST(Leaves, ReturnsTheLengthWithoutADeparture) {
   EXPECT_EQ(leaves({}, {.level = 1}), 0U);
 }
 /// 1.5 s at 50/s with noise; P and Q step after sample `at`, or swing.
-record::Record powers(std::size_t at, double jump, double swing = 0) {
+record::Record powers(std::size_t at, double step, double swing = 0) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 1e-3);
   record::Record r;
   for (std::size_t k = 0; k < 75; ++k) {
-    const double moved = (k > at ? jump : 0.0) + swing * std::sin(0.2 * static_cast<double>(k));
+    const double moved = (k > at ? step : 0.0) + swing * std::sin(0.2 * static_cast<double>(k));
     r.t.push_back(static_cast<double>(k) / 50);
     r.P.push_back(0.8 + 0.8 * moved + noise(random));
     r.Q.push_back(0.1 - 0.6 * moved + noise(random));
   }
   return r;
 }
-TEST(PowerJump, IsFoundAboveTheNoise) {
+TEST(PowerStep, IsFoundAboveTheNoise) {
   for (const std::size_t at : {std::size_t{4}, std::size_t{9}, std::size_t{40}})
-    EXPECT_EQ(before_power_jump(powers(at, 0.012), 75), at);
-  EXPECT_EQ(before_power_jump(powers(9, 0.012), 60), 9U);
-  EXPECT_EQ(before_power_jump(powers(40, 0.012), 30), 29U);  // later than the given sample
+    EXPECT_EQ(before_power_step(powers(at, 0.012), 75), at);
+  EXPECT_EQ(before_power_step(powers(9, 0.012), 60), 9U);
+  EXPECT_EQ(before_power_step(powers(40, 0.012), 30), 29U);  // later than the given sample
 }
-TEST(PowerJump, IgnoresNoiseAndSwings) {
-  EXPECT_EQ(before_power_jump(powers(0, 0), 75), 74U);
-  EXPECT_EQ(before_power_jump(powers(0, 0, 0.05), 75), 74U);
-  EXPECT_EQ(before_power_jump({}, 2), 1U);  // a component's record may lack P
+TEST(PowerStep, IgnoresNoiseAndSwings) {
+  EXPECT_EQ(before_power_step(powers(0, 0), 75), 74U);
+  EXPECT_EQ(before_power_step(powers(0, 0, 0.05), 75), 74U);
+  EXPECT_EQ(before_power_step({}, 2), 1U);  // a component's record may lack P
 }
-TEST(PowerJump, IgnoresOneQuantisationStep) {
+TEST(PowerStep, IgnoresOneQuantisationStep) {
   record::Record r = powers(0, 0);
   for (std::size_t k = 0; k < r.P.size(); ++k) r.P[k] = k > 30 ? 0.81 : 0.80, r.Q[k] = 0.1;
-  EXPECT_EQ(before_power_jump(r, 75), 74U);
+  EXPECT_EQ(before_power_step(r, 75), 74U);
 }
 TEST(VoltageSteps, AreDifferencesOfThePhasor) {
   record::Record r;

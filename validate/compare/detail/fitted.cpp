@@ -22,11 +22,12 @@ fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const eve
 
 }  // namespace
 
-void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
+void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::StepShape step_shape,
                  Fitted how, EventComparison& e) {
-  const auto events = event::prepare_events(
-      model, {e.record},
-      {.jump_threshold = options.jump_threshold, .pre_event = options.play_in.pre_event, .jumps = jumps});
+  const auto events = event::prepare_events(model, {e.record},
+                                            {.step_threshold = options.step_threshold,
+                                             .pre_event = options.play_in.pre_event,
+                                             .step_shape = step_shape});
   const event::FitEvent& event = events.front();
   fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = how == Fitted::start_stands});
   if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
@@ -42,7 +43,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.record.theta = event.record.theta;  // angle as played in
   e.record.notes = event.record.notes;
   e.fitted = true;
-  e.left_out = jumps == event::Jumps::spread || event.turns() ? event.left_out : e.record.lost;
+  e.left_out = step_shape == event::StepShape::spread || event.turns() ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {

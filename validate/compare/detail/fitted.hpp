@@ -16,7 +16,7 @@ enum class Fitted {
 /// Fits switching times and start of an event whose record is set, with the model unchanged. Sets switchings,
 /// playback and left_out, and the angle and notes of the record. Samples within a filtered step are not
 /// played in. Throws InputError if the model cannot follow the record.
-void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::Jumps jumps,
+void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::StepShape step_shape,
                  Fitted how, EventComparison& e);
 
 /// Sets EventComparison::doubt of an event whose voltage was played in.

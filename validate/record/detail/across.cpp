@@ -43,7 +43,8 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
   Curve step(x.size()), before(x.size(), 0.0), now(x.size(), 1.0);
   std::ranges::transform(x, step.begin(), [](double t) { return t > 0 ? 1.0 : 0.0; });
   Across told;
-  double smooth = std::numeric_limits<double>::infinity(), jumping = smooth, jump = 0, norm_before = 1;
+  double smooth = std::numeric_limits<double>::infinity(), with_step = smooth, step_height = 0,
+         norm_before = 1;
   for (std::size_t degree = 0; degree <= kHighestDegree; ++degree) {  // by Forsythe's orthogonal polynomials
     const double norm = dot(now, now, n);
     add(rest, -dot(rest, now, n) / norm, now);
@@ -55,8 +56,8 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
     }
     if (of_step > kRounding)
       if (const double c = criterion(std::max(0.0, left - along * along / of_step), n, degree + 3);
-          c < jumping)
-        jumping = c, jump = along / of_step;
+          c < with_step)
+        with_step = c, step_height = along / of_step;
     Curve next(x.size());
     std::ranges::transform(x, now, next.begin(), std::multiplies<>());
     add(next, -dot(next, now, n) / norm, now);
@@ -64,7 +65,7 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
     before = std::move(now), now = std::move(next), norm_before = norm;
   }
   for (double& y : told.inside) y = -y;
-  if (jumping < smooth) told.jump = jump;
+  if (with_step < smooth) told.step = step_height;
   return told;
 }
 

@@ -10,7 +10,7 @@ namespace swingbank::validate::record {
 /// one follows noise.
 struct Across {
   std::vector<double> inside;  ///< values in the gap
-  double jump = 0;             ///< their step within the gap; 0: smooth
+  double step = 0;             ///< their step within the gap; 0: smooth
 };
 /// Interpolates from (`at`, `value`) on both sides to the abscissae `inside`, scaled to about 1 on each side.
 /// Requires kMinAcross values.

@@ -30,7 +30,7 @@ std::vector<Gap> gaps_of(std::size_t n, Lost lost) {
   return gaps;
 }
 
-constexpr double kJump = 0.02;  // [pu], [rad]: as for the detection of switchings
+constexpr double kStepThreshold = 0.02;  // [pu], [rad]: as for the detection of switchings
 
 constexpr std::size_t kReach = 8;  // samples on each side: at 30/s a third of a swing's period
 
@@ -45,7 +45,7 @@ std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
       const auto k = from + static_cast<std::size_t>(out * i);
       if (r.lost[k]) break;
       if (side.size() + 2 < room &&
-          !(std::abs(at(i - 1) - 3.0 * at(i) + 3.0 * at(i + 1) - at(i + 2)) < kJump))
+          !(std::abs(at(i - 1) - 3.0 * at(i) + 3.0 * at(i + 1) - at(i + 2)) < kStepThreshold))
         break;
       side.push_back(k);
     }
@@ -70,17 +70,17 @@ Across told_across(const std::vector<double>& y, const Gap& gap, const std::vect
 }
 /// Returns whether the voltage steps in the gap. With too few samples, its change is compared with the
 /// adjacent ones.
-bool jumps_in(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
+bool steps_within(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
   if (told.size() >= kMinAcross)
-    return std::abs(told_across(r.V, gap, told).jump) > kJump ||
-           (!r.theta.empty() && std::abs(told_across(r.theta, gap, told).jump) > kJump);
+    return std::abs(told_across(r.V, gap, told).step) > kStepThreshold ||
+           (!r.theta.empty() && std::abs(told_across(r.theta, gap, told).step) > kStepThreshold);
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
   const std::size_t p = gap.first - 1, q = gap.last + 1;
   const std::complex<double> before = p > 0 ? v(p) - v(p - 1) : 0.0,
                              after = q + 1 < r.t.size() ? v(q + 1) - v(q) : 0.0;
   const double steps = static_cast<double>(q - p);
   return std::abs(v(q) - v(p) - steps * (before + after) / 2.0) >
-         kJump + steps * std::abs(before - after) / 2;
+         kStepThreshold + steps * std::abs(before - after) / 2;
 }
 void smooth(std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
   std::ranges::copy(told_across(y, gap, told).inside, y.begin() + static_cast<std::ptrdiff_t>(gap.first));
@@ -136,18 +136,18 @@ bool gaps_are_short(EvenRows& rows, Record& about) {
 void bridge(Record& r) {
   for (const Gap& gap : gaps_of(r.lost.size(), [&](std::size_t k) { return r.lost[k] != 0; })) {
     const auto told = r.V.empty() ? std::vector<std::size_t>() : beside(r, gap);
-    const bool jump = !r.V.empty() && jumps_in(r, gap, told);
-    if (jump)
+    const bool stepped = !r.V.empty() && steps_within(r, gap, told);
+    if (stepped)
       r.notes.push_back(fmt::format(
           "The voltage has a step where frames are missing, between t = {:.4f} and {:.4f} s: this "
           "is the uncertainty of the switching time.",
           r.t[gap.first - 1], r.t[gap.last + 1]));
-    const bool bends = !jump && told.size() >= kMinAcross;
+    const bool bends = !stepped && told.size() >= kMinAcross;
     for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {
       if (y->empty()) continue;
       if (bends)
         smooth(*y, gap, told);
-      else if (jump && (y == &r.V || y == &r.theta))
+      else if (stepped && (y == &r.V || y == &r.theta))
         hold(*y, gap);
       else
         straight(*y, gap);

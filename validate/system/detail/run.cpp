@@ -24,13 +24,13 @@ std::vector<double> scaled(const double* values, int n, double factor) {
 /// Corrects the samples beside a step at position `at` [samples]. Sampling would place the step half-way
 /// between them; the nearer sample gets a share of it, so that window averages correspond to its true
 /// position.
-void place_jump(std::vector<Complex>& y, double at) {
+void place_step(std::vector<Complex>& y, double at) {
   const double before = std::floor(at + 1e-6);
   if (before < 0 || before + 2 > static_cast<double>(y.size())) return;
   const auto k = static_cast<std::size_t>(before);
   const double late = std::max(at - before, 0.0) - 0.5;
-  const Complex jump = y[k + 1] - y[k];
-  y[late < 0 ? k : k + 1] -= late * jump;
+  const Complex step = y[k + 1] - y[k];
+  y[late < 0 ? k : k + 1] -= late * step;
 }
 
 void thin(std::vector<double>& values, int samples, int stride) {
@@ -127,7 +127,7 @@ class Player {
       sim::Phasors phasors = phasors_at(t, m, at.rate);
       if (sim::plant::memory(t.instruments) > 0)
         for (const double switching_time : switching_times_of(event_))
-          for (auto* y : {&phasors.V, &phasors.I}) place_jump(*y, (switching_time - at.first) * at.rate);
+          for (auto* y : {&phasors.V, &phasors.I}) place_step(*y, (switching_time - at.first) * at.rate);
       sim::plant::measure(t.instruments, 1, phasors);
       const sim::plant::TerminalRecord seen = sim::plant::terminal_of(phasors, m.theta.front());
       m.V = seen.V;

@@ -10,26 +10,26 @@
 namespace swingbank::validate::check {
 
 /// A sample interval (or two, if a filter spreads the step) with a voltage step.
-struct Jump {
+struct VoltageStep {
   std::size_t before, after;  ///< samples
 };
 /// Finds steps of the voltage phasor, down to the size that exceeds noise and swings.
-std::vector<Jump> find_jumps(const record::Record& record);
+std::vector<VoltageStep> find_steps(const record::Record& record);
 /// Returns the steps large enough for a quotient. Excluded are those of small events, and those where the
 /// fall and rise of a fault shorter than the filter overlap.
-std::vector<Jump> clear_jumps(const record::Record& record);
+std::vector<VoltageStep> find_large_steps(const record::Record& record);
 
 /// Least-squares fit of the steps to dV = -jX dI.
-struct JumpFit {
+struct StepFit {
   double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' in a sound record
   double residual = 1;   ///< residual share of sum |dV|^2: below 0.01 for sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a step [pu^2]
 };
 /// Fits the steps with P and Q taken `delay` samples later than the voltage. NaN if the current does not
 /// change.
-JumpFit fit_jumps(const record::Record& record, const std::vector<Jump>& jumps, int delay);
+StepFit fit_steps(const record::Record& record, const std::vector<VoltageStep>& steps, int delay);
 
 /// Returns the delay of P and Q after the voltage [samples] if it is the same for every step, otherwise 0.
-int power_delay(const record::Record& record, const std::vector<Jump>& jumps);
+int power_delay(const record::Record& record, const std::vector<VoltageStep>& steps);
 
 }  // namespace swingbank::validate::check

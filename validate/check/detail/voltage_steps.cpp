@@ -1,4 +1,4 @@
-#include "validate/check/detail/jumps.hpp"
+#include "validate/check/detail/voltage_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@ double written_theta(const record::Record& r, std::size_t k) {
 
 /// Finds steps that a filter spreads over several intervals: changes over three intervals that exceed their
 /// surroundings.
-std::vector<Jump> smeared(const record::Record& r) {
-  constexpr double kLeastJump = 0.03;  // pu
-  std::vector<Jump> jumps;
+std::vector<VoltageStep> smeared(const record::Record& r) {
+  constexpr double kMinStep = 0.03;  // pu
+  std::vector<VoltageStep> steps;
   const std::size_t n = r.V.size();
   std::vector<double> size(n, 0.0);
   for (std::size_t k = 1; k + 2 < n; ++k)
@@ -24,18 +24,18 @@ std::vector<Jump> smeared(const record::Record& r) {
   std::vector<double> sorted = size;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(n / 2);
   std::ranges::nth_element(sorted, middle);
-  const double limit = std::max(kLeastJump, 5 * *middle);
+  const double limit = std::max(kMinStep, 5 * *middle);
   for (std::size_t k = 5; k + 5 < n; ++k) {
     const auto at = size.begin() + static_cast<std::ptrdiff_t>(k);
     if (*at > limit && *at == *std::max_element(at - 4, at + 5) && *at > 4 * std::max(*(at - 4), *(at + 4)))
-      jumps.push_back({k - 1, k + 2});
+      steps.push_back({k - 1, k + 2});
   }
-  return jumps;
+  return steps;
 }
 
 /// Returns the change of the voltage phasor over sample interval k minus the mean of the adjacent changes
 /// [pu], the denominator of quotients of steps.
-double jump_in(const record::Record& r, std::size_t k) {
+double step_height(const record::Record& r, std::size_t k) {
   if (k < 1 || k + 2 >= r.t.size()) return 0;
   const auto step = [&](std::size_t i) {
     return std::polar(r.V[i + 1], r.theta[i + 1]) - std::polar(r.V[i], r.theta[i]);
@@ -45,35 +45,37 @@ double jump_in(const record::Record& r, std::size_t k) {
 
 }  // namespace
 
-std::vector<Jump> find_jumps(const record::Record& r) {
+std::vector<VoltageStep> find_steps(const record::Record& r) {
   if (r.samples() < 12) return {};
-  std::vector<Jump> jumps;
+  std::vector<VoltageStep> steps;
   const auto add = [&](double t) {
     const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
-    if (k >= 1 && k < r.t.size()) jumps.push_back({k - 1, k});
+    if (k >= 1 && k < r.t.size()) steps.push_back({k - 1, k});
   };
   if (!r.switched.empty()) {
     std::ranges::for_each(r.switched, add);
-    return jumps;
+    return steps;
   }
   for (const auto& s : playin::detect_switchings(r)) add(s.time);
   for (const auto& wide : smeared(r)) {
-    const auto close = [&](const Jump& j) { return j.before + 4 > wide.before && wide.after + 4 > j.after; };
-    if (std::ranges::none_of(jumps, close)) jumps.push_back(wide);
+    const auto close = [&](const VoltageStep& j) {
+      return j.before + 4 > wide.before && wide.after + 4 > j.after;
+    };
+    if (std::ranges::none_of(steps, close)) steps.push_back(wide);
   }
-  std::ranges::sort(jumps, {}, &Jump::before);
-  return jumps;
+  std::ranges::sort(steps, {}, &VoltageStep::before);
+  return steps;
 }
 
-std::vector<Jump> clear_jumps(const record::Record& r) {
-  std::vector<Jump> jumps = find_jumps(r);
-  std::erase_if(jumps, [&](const Jump& j) {
-    return r.switched.empty() && j.after == j.before + 1 && jump_in(r, j.before) < playin::kJumpThreshold;
+std::vector<VoltageStep> find_large_steps(const record::Record& r) {
+  std::vector<VoltageStep> steps = find_steps(r);
+  std::erase_if(steps, [&](const VoltageStep& j) {
+    return r.switched.empty() && j.after == j.before + 1 && step_height(r, j.before) < playin::kStepThreshold;
   });
-  return jumps;
+  return steps;
 }
 
-JumpFit fit_jumps(const record::Record& r, const std::vector<Jump>& jumps, int delay) {
+StepFit fit_steps(const record::Record& r, const std::vector<VoltageStep>& steps, int delay) {
   double cross = 0, current = 0, voltage = 0, count = 0;  // sums of Re(dV conj(-j dI)), |dI|^2, |dV|^2
   struct Phasors {
     Complex v, i;
@@ -83,7 +85,7 @@ JumpFit fit_jumps(const record::Record& r, const std::vector<Jump>& jumps, int d
     const Complex v = std::polar(std::abs(r.V[k]), written_theta(r, k));
     return Phasors{v, std::conj(Complex(r.P[late], r.Q[late]) / v)};
   };
-  for (const auto& j : jumps) {
+  for (const auto& j : steps) {
     if (static_cast<long>(j.before) - 1 + std::min(delay, 0) < 0) continue;
     if (j.after + 1 + static_cast<std::size_t>(std::max(delay, 0)) >= r.t.size()) continue;
     // The mean of the adjacent changes is subtracted to remove the rotor's swing. The same linear operation
@@ -102,12 +104,12 @@ JumpFit fit_jumps(const record::Record& r, const std::vector<Jump>& jumps, int d
   return {cross / current, 1 - cross * cross / (current * voltage), voltage / count, current / count};
 }
 
-int power_delay(const record::Record& r, const std::vector<Jump>& jumps) {
+int power_delay(const record::Record& r, const std::vector<VoltageStep>& steps) {
   constexpr int kFarthest = 6;  // samples
   int delay = 0;
   bool first = true;
   const auto n = static_cast<int>(r.t.size());
-  for (const auto& j : jumps) {
+  for (const auto& j : steps) {
     const int width = static_cast<int>(j.after - j.before), k = static_cast<int>(j.before);
     if (k < kFarthest + 1 || k + width + kFarthest >= n) continue;
     const auto step = [&](int m) {
