@@ -234,12 +234,12 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
 }
 
 void explain(EventComparison& e, event::StepShape step_shape, bool tried, const std::string& failed) {
-  if (const auto smeared = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
-      step_shape == event::StepShape::spread && smeared > 0)
+  if (const auto filtered_count = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
+      step_shape == event::StepShape::spread && filtered_count > 0)
     e.notes.push_back(
         fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
                     "nor compared, and {} fitted to P and Q.",
-                    smeared, e.detected ? "switching times and start were" : "the start was"));
+                    filtered_count, e.detected ? "switching times and start were" : "the start was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "

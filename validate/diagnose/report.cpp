@@ -207,7 +207,7 @@ ReportFigures report_figures(const Diagnosis& d) {
     ReportEvent r;
     r.event = &d.events[e];
     r.windows = compare::event_windows(r.event->record, r.event->switchings,
-                                       event::FitEventOptions{}.pre_event, r.event->smeared);
+                                       event::FitEventOptions{}.pre_event, r.event->filtered_samples);
     Doubts doubts{fit::voltage_doubt({d.base.plant, d.conventions}, d.events.whitened(e)), {}};
     if (figures.after)
       doubts.after = fit::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));

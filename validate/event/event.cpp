@@ -6,7 +6,7 @@
 
 #include "base/median.hpp"
 #include "validate/event/detail/turns.hpp"
-#include "validate/event/detail/unsmear.hpp"
+#include "validate/event/detail/voltage_reconstruction.hpp"
 #include "validate/event/play.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
@@ -49,12 +49,12 @@ bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, st
 }
 
 /// Intervals first .. last over which one step is spread.
-struct Smear {
+struct StepSpan {
   std::size_t first, last;
 };
 /// Removes intervals at both ends where the voltage only drifts, as in a short fault: consecutive steps are
 /// equal.
-Smear trimmed(const std::vector<Complex>& step, Smear span, double limit) {
+StepSpan trimmed(const std::vector<Complex>& step, StepSpan span, double limit) {
   double largest = 0;
   for (std::size_t i = span.first; i <= span.last; ++i) largest = std::max(largest, std::abs(step[i]));
   const auto belongs = [&](std::size_t i) {
@@ -66,7 +66,7 @@ Smear trimmed(const std::vector<Complex>& step, Smear span, double limit) {
   return span;
 }
 /// Separates the two steps of a short fault that have merged, by their opposite directions.
-std::vector<Smear> told_apart(const std::vector<Complex>& step, Smear both, double limit) {
+std::vector<StepSpan> told_apart(const std::vector<Complex>& step, StepSpan both, double limit) {
   constexpr double kBack = -0.15, kOn = 0.05;  // fraction of the largest change in the first step
   Complex onward = step[both.first];
   for (std::size_t i = both.first; i <= std::min(both.first + 2, both.last); ++i)
@@ -89,7 +89,7 @@ constexpr double kOfPeak = 0.5;
 double min_step_size(const std::vector<double>& d, double threshold) {
   return std::max(threshold, 10 * upper_median(d));
 }
-std::size_t largest_of(const std::vector<Complex>& step, Smear span) {
+std::size_t largest_of(const std::vector<Complex>& step, StepSpan span) {
   const auto at = step.begin();
   const auto from = static_cast<std::ptrdiff_t>(span.first), to = static_cast<std::ptrdiff_t>(span.last);
   return static_cast<std::size_t>(
@@ -117,7 +117,7 @@ bool is_even(const std::vector<Complex>& step, std::size_t m, double limit) {
          std::abs(after - step[m + 2]) > limit && std::real(before * std::conj(step[m])) > 0;
 }
 /// Returns whether one interval contains a sharp step, and the others only the machine's response.
-bool has_peak(const std::vector<Complex>& step, Smear span, std::size_t m) {
+bool has_peak(const std::vector<Complex>& step, StepSpan span, std::size_t m) {
   for (std::size_t k = span.first; k <= span.last; ++k)
     if (k != m && std::abs(step[k]) > kOfPeak * std::abs(step[m])) return false;
   return true;
@@ -177,19 +177,21 @@ double still_until(const record::Record& r) {
 void take_told(FitEvent& e, StepShape step_shape) {
   const auto found = std::exchange(e.switchings, {});
   for (const double t : e.record.switched) e.switchings.push_back({.time = t});
-  for (std::size_t k = 0; k < e.smeared.size(); ++k)
-    e.smeared[k] = step_shape == StepShape::spread && e.smeared[k] &&
-                   std::ranges::any_of(found, [&](const playin::Switching& switching) {
-                     return std::abs(e.record.t[k] - switching.time) < switching.uncertainty &&
-                            std::ranges::any_of(e.record.switched, [&](double told) {
-                              return std::abs(told - switching.time) < switching.uncertainty;
+  for (std::size_t k = 0; k < e.filtered_samples.size(); ++k)
+    e.filtered_samples[k] = step_shape == StepShape::spread && e.filtered_samples[k] &&
+                            std::ranges::any_of(found, [&](const playin::Switching& switching) {
+                              return std::abs(e.record.t[k] - switching.time) < switching.uncertainty &&
+                                     std::ranges::any_of(e.record.switched, [&](double told) {
+                                       return std::abs(told - switching.time) < switching.uncertainty;
+                                     });
                             });
-                   });
 }
 /// Returns the time half a sample before the first filtered sample [s]; infinity if there is none.
-double before_first_smeared(const FitEvent& e) {
-  const auto k = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
-  return k < e.smeared.size() ? e.record.t[k] - e.record.step() / 2 : std::numeric_limits<double>::infinity();
+double before_first_filtered(const FitEvent& e) {
+  const auto k =
+      static_cast<std::size_t>(std::ranges::find(e.filtered_samples, 1) - e.filtered_samples.begin());
+  return k < e.filtered_samples.size() ? e.record.t[k] - e.record.step() / 2
+                                       : std::numeric_limits<double>::infinity();
 }
 
 FitEvent prepare(record::Record record, const record::Record& seen, const FitEventOptions& options,
@@ -198,26 +200,26 @@ FitEvent prepare(record::Record record, const record::Record& seen, const FitEve
   e.record = std::move(record);
   // The threshold is half of the visible one: a filter spreads a step over two intervals, and an undetected
   // step is played in as a ramp.
-  e.switchings = find_switchings(seen, options.step_threshold / 2, step_shape, e.smeared);
+  e.switchings = find_switchings(seen, options.step_threshold / 2, step_shape, e.filtered_samples);
   if (!e.record.switched.empty())
     take_told(e, step_shape);
   else if (e.record.breaker()) {
     e.switchings = playin::breaker_times(e.record, e.switchings);
-    e.smeared.assign(e.smeared.size(), 0);
+    e.filtered_samples.assign(e.filtered_samples.size(), 0);
   }
-  if (std::ranges::count(e.smeared, 1) > 0)
-    e.clean = without(e.record, e.smeared);
+  if (std::ranges::count(e.filtered_samples, 1) > 0)
+    e.clean = without(e.record, e.filtered_samples);
   else
-    e.smeared.clear();
+    e.filtered_samples.clear();
   return e;
 }
 
 /// Determines the operating point, after the filtered samples are known.
 void set_start(FitEvent& e, const FitEventOptions& options) {
   auto first = e.switchings;
-  if (!e.smeared.empty() && !first.empty()) {
+  if (!e.filtered_samples.empty() && !first.empty()) {
     first.front().time -= first.front().uncertainty;
-    first.front().time = std::min(first.front().time, before_first_smeared(e));
+    first.front().time = std::min(first.front().time, before_first_filtered(e));
   }
   if (e.record.switched.empty() && !e.record.breaker()) {
     const double until = first.empty() ? e.record.t.front() + options.pre_event : first.front().time;
@@ -233,7 +235,7 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
 
 /// Returns marks of the samples that are not compared.
 std::vector<char> left_out(const FitEvent& e) {
-  std::vector<char> marks = e.smeared;
+  std::vector<char> marks = e.filtered_samples;
   marks.resize(e.record.t.size());
   for (std::size_t k = 0; k < e.record.lost.size(); ++k) marks[k] = marks[k] || e.record.lost[k];
   for (std::size_t k = 0; k < marks.size(); ++k)
@@ -301,17 +303,17 @@ StepShape step_shape_of(const std::vector<record::Record>& records, double thres
       any_sharp = true;
       continue;
     }
-    std::vector<char> smeared;
-    const auto found = find_switchings(r, threshold, StepShape::either, smeared);
+    std::vector<char> filtered_samples;
+    const auto found = find_switchings(r, threshold, StepShape::either, filtered_samples);
     if (!found.empty() && found.front().uncertainty > r.step() && is_shared_out(r, found.front()))
       return StepShape::spread;
     const bool sharp = is_sharp(r, found, threshold);
     any_sharp = any_sharp || sharp;
     any_open = any_open || (!sharp && !found.empty());
-    any_spread = any_spread || std::ranges::count(smeared, 1) > 0;
+    any_spread = any_spread || std::ranges::count(filtered_samples, 1) > 0;
     FitEvent& e = if_spread.emplace_back();
-    e.switchings = find_switchings(r, threshold / 2, StepShape::spread, e.smeared);
-    if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear();
+    e.switchings = find_switchings(r, threshold / 2, StepShape::spread, e.filtered_samples);
+    if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear();
     e.record = std::move(r);
   }
   if (any_sharp && any_open && passed_filter(if_spread)) return StepShape::spread;
@@ -319,8 +321,8 @@ StepShape step_shape_of(const std::vector<record::Record>& records, double thres
 }
 
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,
-                                               StepShape step_shape, std::vector<char>& smeared) {
-  smeared.assign(record.t.size(), 0);
+                                               StepShape step_shape, std::vector<char>& filtered_samples) {
+  filtered_samples.assign(record.t.size(), 0);
   const auto step = playin::voltage_steps(record);
   const auto d = prominence(step);
   const double limit = min_step_size(d, threshold);
@@ -336,7 +338,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     }
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the step
-    for (Smear span : told_apart(step, {k, last}, limit)) {
+    for (StepSpan span : told_apart(step, {k, last}, limit)) {
       if (step_shape == StepShape::either && span.first == span.last && is_even(step, span.first, limit))
         span = {span.first - 1, span.first + 1};
       if (step_shape != StepShape::spread && span.last > span.first)
@@ -348,7 +350,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
       const double from = record.t[span.first], to = record.t[span.last + 1];
       found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});
       if (spread)
-        for (std::size_t s = span.first; s <= span.last + 1; ++s) smeared[s] = 1;
+        for (std::size_t s = span.first; s <= span.last + 1; ++s) filtered_samples[s] = 1;
     }
     k = last;
   }
@@ -369,7 +371,7 @@ WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record
   std::vector<FitEvent> events;
   for (std::size_t r = 0; r < records.size(); ++r)
     events.push_back(prepare(std::move(records[r]), seen[r], options, step_shape));
-  unsmear(events);
+  reconstruct_voltage(events);
   for (FitEvent& e : events) {
     set_start(e, options);
     e.left_out = left_out(e);

@@ -35,11 +35,11 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 constexpr double kPeakReach = 2.1;
 
 /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. Marks in
-/// `smeared` each sample inside or next to such a filtered step. With StepShape::spread, the neighbours of
-/// sharp steps are marked too; with StepShape::sharp, a step over several intervals is taken for a swing and
-/// ignored.
+/// `filtered_samples` each sample inside or next to such a filtered step. With StepShape::spread, the
+/// neighbours of sharp steps are marked too; with StepShape::sharp, a step over several intervals is taken
+/// for a swing and ignored.
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,
-                                               StepShape step_shape, std::vector<char>& smeared);
+                                               StepShape step_shape, std::vector<char>& filtered_samples);
 
 /// Returns the shape of steps as one instrument records them, from all of its records. The window of a filter
 /// is even: it spreads a step equally before and after it. A decay on one side only is the machine's

@@ -46,7 +46,7 @@ struct FitEvent {
   std::vector<playin::Switching> switchings;  ///< as found; those with an uncertainty are fitted
   playin::OperatingPoint start;               ///< operating point before the event
   /// Marks samples within a step filtered by the instrument; these are not played in. Empty: none.
-  std::vector<char> smeared = {};
+  std::vector<char> filtered_samples = {};
   /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
   /// where a delay of a millisecond may put a channel on the other side. Empty: none.
   std::vector<char> left_out = {};
@@ -66,7 +66,7 @@ struct FitEvent {
   /// frequency.
   [[nodiscard]] bool turns() const;
   /// Returns the played-in record.
-  [[nodiscard]] const record::Record& played() const { return smeared.empty() ? record : clean; }
+  [[nodiscard]] const record::Record& played() const { return filtered_samples.empty() ? record : clean; }
   /// Returns whether a sample is compared.
   [[nodiscard]] bool compared(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
   /// Returns the number of compared values.

@@ -68,7 +68,7 @@ double ratio(Channel channel) {
 constexpr double kLow = 3.0, kHigh = 10.0;  ///< band in which the voltage's noise is estimated [Hz]
 constexpr double kGuess = 2e-3;             ///< standard deviation of V near a switching, relative
 /// The square of kGuess is larger by this factor for reconstructed samples of V.
-constexpr char kSmeared = 40;
+constexpr char kFiltered = 40;
 /// Lower limit of the share of a channel's own noise in its variance.
 constexpr double kLeastOwnNoise = 0.01;
 /// Slow noise matters from this variance, relative to that of the white noise.
@@ -331,7 +331,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
     const bool switched = std::ranges::any_of(e.switchings, [&](const playin::Switching& w) {
       return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
     });
-    s.doubtful[k] = !e.smeared.empty() && e.smeared[k] ? kSmeared : switched ? 1 : 0;
+    s.doubtful[k] = !e.filtered_samples.empty() && e.filtered_samples[k] ? kFiltered : switched ? 1 : 0;
   }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
@@ -367,7 +367,7 @@ event::FitEvent at_rest(const event::FitEvent& like, double seconds) {
   if (r.component != record::Component::plant) playin::stand_still(r, like.start);
   for (record::StagedEvent& e : r.staged) e.time = std::numeric_limits<double>::infinity();
   event.switchings.clear();
-  event.smeared.clear();
+  event.filtered_samples.clear();
   event.left_out.clear();
   event.start.drift = 0;
   return event;

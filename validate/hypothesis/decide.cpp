@@ -51,7 +51,7 @@ struct Answer {
 event::FitEvent quiet(const event::FitEvent& like, double dip) {
   event::FitEvent e = like;
   e.switchings.clear();
-  e.smeared.clear();
+  e.filtered_samples.clear();
   e.left_out.clear();
   e.clean = {};
   record::Record& r = e.record;

@@ -17,8 +17,8 @@ constexpr double kAfterLast = 1.0;  // duration of the fit after the last switch
 
 /// Returns the voltage steps of one record.
 std::vector<playin::Switching> find_voltage_steps(const record::Record& r) {
-  std::vector<char> smeared;
-  return event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, smeared);
+  std::vector<char> filtered_samples;
+  return event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, filtered_samples);
 }
 
 /// Returns the case with its records cut off after `end` [s].
@@ -39,7 +39,7 @@ class SwitchingTimeFit {
       : s_(shortened(system, found.back() + kAfterLast)),
         written_(std::move(written)),
         best_(std::move(found)) {
-    mark_smeared();
+    mark_filtered();
   }
 
   /// Golden-section search for each switching time in turn, within `reach` [s] of its detected value.
@@ -60,16 +60,16 @@ class SwitchingTimeFit {
   }
 
  private:
-  void mark_smeared() {
+  void mark_filtered() {
     const auto declared = [](const SystemTerminal& t) { return sim::plant::memory(t.instruments) > 0; };
     std::vector<record::Record> records;
     for (const SystemTerminal& t : s_.terminals)
       if (!declared(t)) records.push_back(t.record);
     const event::StepShape step_shape = event::step_shape_of(records, playin::kStepThreshold);
     for (const SystemTerminal& t : s_.terminals) {
-      smeared_.emplace_back(t.record.t.size(), 0);
+      filtered_samples_.emplace_back(t.record.t.size(), 0);
       if (!declared(t) && step_shape == event::StepShape::spread)
-        event::find_switchings(t.record, playin::kStepThreshold / 2, step_shape, smeared_.back());
+        event::find_switchings(t.record, playin::kStepThreshold / 2, step_shape, filtered_samples_.back());
     }
   }
   /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
@@ -87,14 +87,15 @@ class SwitchingTimeFit {
       const record::Record& r = s_.terminals[i].record;
       const Modelled& m = run.answers[i];
       const auto of = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
-        return squares(r.t, measured, modelled, smeared_[i]);
+        return squares(r.t, measured, modelled, filtered_samples_[i]);
       };
       sum += of(r.V, m.V) + of(r.P, m.P) + of(r.Q, m.Q);
     }
     return sum;
   }
   [[nodiscard]] double squares(const std::vector<double>& t, const std::vector<double>& measured,
-                               const std::vector<double>& modelled, const std::vector<char>& smeared) const {
+                               const std::vector<double>& modelled,
+                               const std::vector<char>& filtered_samples) const {
     if (measured.empty()) return 0;
     const auto quiet = static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(std::ranges::lower_bound(t, best_.front() - 0.05) - t.begin(), 2));
@@ -103,14 +104,14 @@ class SwitchingTimeFit {
     for (std::size_t k = 0; k < quiet; ++k)
       spread += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
     for (std::size_t k = 0; k < t.size(); ++k)
-      if (!smeared[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
+      if (!filtered_samples[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
     return sum / (spread + event::kLeastNoise * event::kLeastNoise);
   }
 
   SystemCase s_;
   std::vector<double> written_, best_;
   /// Per terminal: samples within steps filtered by an undeclared filter, which no switching time can fit.
-  std::vector<std::vector<char>> smeared_;
+  std::vector<std::vector<char>> filtered_samples_;
 };
 
 }  // namespace

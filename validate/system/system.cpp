@@ -36,16 +36,16 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
 }
 
 /// Returns the half width of filtered steps in records without a declared filter [s]; 0: no filtering.
-double smear_of(const SystemCase& system) {
+double filter_reach_of(const SystemCase& system) {
   std::vector<record::Record> records;
   for (const SystemTerminal& t : system.terminals)
     if (!(sim::plant::memory(t.instruments) > 0)) records.push_back(t.record);
   if (event::step_shape_of(records, playin::kStepThreshold) != event::StepShape::spread) return 0;
   double farthest = 0;
   for (const record::Record& r : records) {
-    std::vector<char> smeared;
+    std::vector<char> filtered_samples;
     for (const playin::Switching& s :
-         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::spread, smeared))
+         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::spread, filtered_samples))
       farthest = std::max(farthest, s.uncertainty);
   }
   return farthest;
@@ -55,11 +55,11 @@ double smear_of(const SystemCase& system) {
 class Comparer {
  public:
   Comparer(const SystemCase& system, const SystemRun& run, SystemComparison& out)
-      : s_(system), run_(run), out_(out), undeclared_(smear_of(system)) {}
+      : s_(system), run_(run), out_(out), undeclared_(filter_reach_of(system)) {}
 
   void terminal(std::size_t i) {
     const SystemTerminal& t = s_.terminals[i];
-    const double smear = smear_at(t);
+    const double filter_reach = filter_reach_at(t);
     compare::EventComparison e;
     e.record = t.record;
     e.record.name = t.name;
@@ -70,8 +70,8 @@ class Comparer {
     e.detected = s_.switching_times_from_records;
     if (const auto doubt = clock_doubt(t.record, out_.switching_times); !doubt.empty())
       e.notes.push_back(doubt);
-    leave_out_smeared(e, smear);
-    const double begins = out_.switching_times.front() - smear + 1e-4 * t.record.step();
+    leave_out_filtered(e, filter_reach);
+    const double begins = out_.switching_times.front() - filter_reach + 1e-4 * t.record.step();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kMinQuiet)
@@ -87,7 +87,7 @@ class Comparer {
   /// Returns the distance from a switching within which samples are not compared [s]: the filter's window
   /// plus the range in which the cubic through the simulation's samples is wrong beside a step. Within it an
   /// error of the switching time of a fraction of a millisecond is visible.
-  [[nodiscard]] double smear_at(const SystemTerminal& t) const {
+  [[nodiscard]] double filter_reach_at(const SystemTerminal& t) const {
     const double memory = sim::plant::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
   }
@@ -99,13 +99,13 @@ class Comparer {
                               [&](double at) { return std::abs(e.record.t[k] - at) <= reach; }))
         e.left_out[k] = 1;
   }
-  void leave_out_smeared(compare::EventComparison& e, double smear) const {
-    if (!(smear > 0)) return;
-    leave_out(e, smear);
+  void leave_out_filtered(compare::EventComparison& e, double filter_reach) const {
+    if (!(filter_reach > 0)) return;
+    leave_out(e, filter_reach);
     e.notes.push_back(
         fmt::format("The instruments' filters smooth switchings by up to {:.0f} ms on either side; these "
                     "samples are not compared.",
-                    1e3 * smear));
+                    1e3 * filter_reach));
   }
   void channels(std::size_t i, compare::EventComparison& e) {
     const Modelled& m = run_.answers[i];

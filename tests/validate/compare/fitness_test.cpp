@@ -134,10 +134,10 @@ TEST(Fitness, IgnoresChannelsWithoutLimits) {
   const Fitness f = judge_fitness({e}, 50, by);
   EXPECT_TRUE(f.fit) << f.sentence;
   EXPECT_EQ(row_of(f, Phase::fault).samples, 48);
-  auto smeared = event_off_by([](double t) { return t > 3 && t < 3.1 ? 1.0 : 0.0; });
-  smeared.left_out.assign(smeared.record.t.size(), 0);
-  for (std::size_t k = 300; k < 310; ++k) smeared.left_out[k] = 1;
-  EXPECT_TRUE(judge_fitness({smeared}, 50, by).fit);
+  auto filtered = event_off_by([](double t) { return t > 3 && t < 3.1 ? 1.0 : 0.0; });
+  filtered.left_out.assign(filtered.record.t.size(), 0);
+  for (std::size_t k = 300; k < 310; ++k) filtered.left_out[k] = 1;
+  EXPECT_TRUE(judge_fitness({filtered}, 50, by).fit);
 }
 
 TEST(Fitness, HasNoFaultWindow_WithoutSwitching) {

@@ -32,8 +32,8 @@ record::Record record_of(
   return r;
 }
 std::vector<playin::Switching> switchings_of(const record::Record& r) {
-  std::vector<char> smeared;
-  return find_switchings(r, playin::kStepThreshold / 2, StepShape::either, smeared);
+  std::vector<char> filtered_samples;
+  return find_switchings(r, playin::kStepThreshold / 2, StepShape::either, filtered_samples);
 }
 
 TEST(FindSwitchings, IgnoresFastSwing) {
@@ -88,15 +88,15 @@ record::Record filtered(record::Record r) {
 
 TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   const record::Record r = near_loss();
-  std::vector<char> smeared;
-  const auto either = find_switchings(r, playin::kStepThreshold / 2, StepShape::either, smeared);
+  std::vector<char> filtered_samples;
+  const auto either = find_switchings(r, playin::kStepThreshold / 2, StepShape::either, filtered_samples);
   ASSERT_GT(either.size(), 2U) << "the swing was meant to be taken for a smeared jump";
   ASSERT_EQ(step_shape_of({r}, playin::kStepThreshold), StepShape::sharp);
-  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, smeared);
+  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, filtered_samples);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NEAR(found[0].time, 3.0, 1.0 / 60);
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
-  EXPECT_EQ(std::ranges::count(smeared, 1), 0);
+  EXPECT_EQ(std::ranges::count(filtered_samples, 1), 0);
 }
 /// A fault at `on` for `length` [s] behind a triangular window of half-width `half` [s] (0: none). The fault
 /// voltage is `V`; a subtransient of `fell` pu follows both steps. The angle steps by `turn` [rad], then
@@ -170,8 +170,8 @@ TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
     for (const double on : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       const record::Record r = subtransient(on, 6, tau);
       EXPECT_EQ(step_shape_of({r}, playin::kStepThreshold), StepShape::sharp) << on << " " << tau;
-      std::vector<char> smeared;
-      const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, smeared);
+      std::vector<char> filtered_samples;
+      const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, filtered_samples);
       ASSERT_EQ(found.size(), 2U) << on << " " << tau;
       EXPECT_NEAR(found[0].time, 3 + on / 30, 0.51 / 30);
       EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
@@ -205,7 +205,7 @@ TEST(PrepareEvents, FindsEndOfFaultWithDecay) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const FitEvent e = prepare_events(model, {r}).front();
   ASSERT_EQ(e.switchings.size(), 2U);
-  EXPECT_TRUE(e.smeared.empty());
+  EXPECT_TRUE(e.filtered_samples.empty());
   EXPECT_NEAR(e.switchings[1].time, 3.1 + 0.5 / 30, 0.51 / 30);
 }
 TEST(PrepareEvents, PreEventWindowEndsAtTheStepOfPAndQ) {
@@ -234,7 +234,7 @@ TEST(PrepareEvents, UsesGivenSwitchingTimes) {
     EXPECT_DOUBLE_EQ(e.switchings[k].time, r.switched[k]);
     EXPECT_EQ(e.switchings[k].uncertainty, 0) << "it would be fitted";
   }
-  EXPECT_TRUE(e.smeared.empty());
+  EXPECT_TRUE(e.filtered_samples.empty());
   EXPECT_EQ(e.start.samples, 91);
 }
 TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
@@ -245,7 +245,7 @@ TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   const FitEvent found = prepare_events(model, {r}).front();
   r.switched = {3.0, 3.1};
   const FitEvent told = prepare_events(model, {r}).front();
-  EXPECT_EQ(told.smeared, found.smeared);
+  EXPECT_EQ(told.filtered_samples, found.filtered_samples);
   EXPECT_EQ(told.start.samples, found.start.samples);
   EXPECT_EQ(told.switchings[1].time, 3.1);
 }
@@ -286,8 +286,8 @@ TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
-  std::vector<char> smeared;
-  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::spread, smeared);
+  std::vector<char> filtered_samples;
+  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::spread, filtered_samples);
   ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
   ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
@@ -297,7 +297,7 @@ TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   EXPECT_NEAR(e.switchings[1].time, 3.1, 1.0 / 60);
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     const bool beside = std::min(std::abs(r.t[k] - 3.0), std::abs(r.t[k] - 3.1)) < 1.5 * r.step();
-    EXPECT_EQ(e.smeared[k] != 0, beside) << "at " << r.t[k] << " s";
+    EXPECT_EQ(e.filtered_samples[k] != 0, beside) << "at " << r.t[k] << " s";
   }
   for (std::size_t k = 0; k < r.t.size(); ++k)  // the swing's samples are played in
     EXPECT_TRUE(std::abs(r.t[k] - 3.05) < 0.1 || std::ranges::binary_search(e.clean.t, r.t[k]))

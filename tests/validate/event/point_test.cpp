@@ -47,8 +47,9 @@ struct TwoUnits : ::testing::Test {
     record::Record beside = alone;
     beside.P.assign(beside.t.size(), kP / r.base.mva);
     beside.Q.assign(beside.t.size(), kQ / r.base.mva);
-    std::vector<char> smeared;
-    auto switchings = find_switchings(beside, playin::kStepThreshold / 2, StepShape::either, smeared);
+    std::vector<char> filtered_samples;
+    auto switchings =
+        find_switchings(beside, playin::kStepThreshold / 2, StepShape::either, filtered_samples);
     for (auto& s : switchings) s.time = s.time < 2.05 ? 2.0 : 2.1;  // simulated fault times
     const playin::VoltageCurve curve(beside, switchings);
     const playin::Playback both = playin::play_in(other.under_test(), beside, curve);

@@ -68,10 +68,11 @@ TEST_F(Turns, FindsSwitchingInPowerAlone) {
   }
   r.theta.assign(r.t.size(), 0.0);
   r.angle = record::AngleSource::integrated;
-  std::vector<char> smeared;
-  EXPECT_TRUE(find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, smeared).empty());
+  std::vector<char> filtered_samples;
+  EXPECT_TRUE(find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, filtered_samples).empty());
   const auto seen = seen_by_rotor({r}, r.base.mva);
-  EXPECT_EQ(find_switchings(seen[0], playin::kStepThreshold / 2, StepShape::sharp, smeared).size(), 1U);
+  EXPECT_EQ(find_switchings(seen[0], playin::kStepThreshold / 2, StepShape::sharp, filtered_samples).size(),
+            1U);
   r.angle = record::AngleSource::measured;
   EXPECT_EQ(seen_by_rotor({r}, r.base.mva)[0].theta, r.theta);
 }

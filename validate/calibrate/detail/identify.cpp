@@ -29,7 +29,7 @@ class Trial {
       event_.switchings.push_back(
           {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
     event_.start.drift = 0;
-    event_.smeared.clear();
+    event_.filtered_samples.clear();
     event_.left_out.clear();
   }
   /// `voltage(t)`: V as a multiple of the operating point's; `frequency(t)`: frequency deviation [Hz].

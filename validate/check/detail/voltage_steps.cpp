@@ -14,7 +14,7 @@ double written_theta(const record::Record& r, std::size_t k) {
 
 /// Finds steps that a filter spreads over several intervals: changes over three intervals that exceed their
 /// surroundings.
-std::vector<VoltageStep> smeared(const record::Record& r) {
+std::vector<VoltageStep> find_filtered_steps(const record::Record& r) {
   constexpr double kMinStep = 0.03;  // pu
   std::vector<VoltageStep> steps;
   const std::size_t n = r.V.size();
@@ -57,7 +57,7 @@ std::vector<VoltageStep> find_steps(const record::Record& r) {
     return steps;
   }
   for (const auto& s : playin::detect_switchings(r)) add(s.time);
-  for (const auto& wide : smeared(r)) {
+  for (const auto& wide : find_filtered_steps(r)) {
     const auto close = [&](const VoltageStep& j) {
       return j.before + 4 > wide.before && wide.after + 4 > j.after;
     };

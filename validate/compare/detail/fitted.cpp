@@ -50,9 +50,10 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event::FitEvent event;
   event.record = e.record;
   event.start = e.playback.start;
-  event.smeared = e.left_out;  // includes samples beside a step
+  event.filtered_samples = e.left_out;  // includes samples beside a step
   for (std::size_t k = 0; k < e.record.lost.size(); ++k)
-    if (e.record.lost[k]) event.smeared[k] = 0;  // lost samples away from steps are interpolated accurately
+    if (e.record.lost[k])
+      event.filtered_samples[k] = 0;  // lost samples away from steps are interpolated accurately
   for (const playin::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
   event.channels = playin::compared_outputs(e.record, true);

@@ -124,7 +124,7 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 
 void drop_peaks(FitEvent& event) {
   record::Record& r = event.record;
-  if (!event.turns() || !event.smeared.empty()) return;
+  if (!event.turns() || !event.filtered_samples.empty()) return;
   const double least = std::max(kStandsOut * std::sqrt(white_variance(std::span(r.f).first(
                                                  static_cast<std::size_t>(event.start.samples)))),
                                 kLeastPeak / r.base.frequency),

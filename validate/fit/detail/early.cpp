@@ -36,7 +36,7 @@ event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until
   event::FitEvent e = whole.event;
   e.record = record::stretch(std::move(e.record), kBeginning, until);
   if (!e.clean.t.empty()) e.clean = record::stretch(std::move(e.clean), kBeginning, until);
-  for (auto* marks : {&e.smeared, &e.left_out})
+  for (auto* marks : {&e.filtered_samples, &e.left_out})
     if (!marks->empty()) marks->resize(e.record.t.size());
   event::EventNoise noise = whole.noise;
   noise.memory = nullptr;

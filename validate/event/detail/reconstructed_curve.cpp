@@ -1,4 +1,4 @@
-#include "validate/event/detail/smeared_curve.hpp"
+#include "validate/event/detail/reconstructed_curve.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,8 +32,8 @@ const Eigen::Matrix4d& bends() {
 
 }  // namespace
 
-SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
-                           const std::vector<double>& switching_times, double roughness) {
+ReconstructedCurve::ReconstructedCurve(const FilteredSamples& stretch, const FilterWindow& window,
+                                       const std::vector<double>& switching_times, double roughness) {
   set_segments(stretch, window, switching_times);
   const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
   // weights of real part, imaginary part and their product: the noise has components along and across the
@@ -75,8 +75,8 @@ SmearedCurve::SmearedCurve(const SmearedStretch& stretch, const FilterWindow& wi
   evidence_ = -0.5 * (missed + unlikely) + 2 * log_root(before.llt()) - log_root(known);
 }
 
-void SmearedCurve::set_segments(const SmearedStretch& stretch, const FilterWindow& window,
-                                const std::vector<double>& switching_times) {
+void ReconstructedCurve::set_segments(const FilteredSamples& stretch, const FilterWindow& window,
+                                      const std::vector<double>& switching_times) {
   const double aim = std::max(stretch.step / 2, window.half() / 8);
   double from = stretch.t.front() - window.half();
   const auto add = [&](double to) {
@@ -89,7 +89,8 @@ void SmearedCurve::set_segments(const SmearedStretch& stretch, const FilterWindo
   add(stretch.t.back() + window.half());
 }
 
-Eigen::MatrixXd SmearedCurve::averages(const SmearedStretch& stretch, const FilterWindow& window) const {
+Eigen::MatrixXd ReconstructedCurve::averages(const FilteredSamples& stretch,
+                                             const FilterWindow& window) const {
   constexpr std::array<std::pair<double, double>, 4> kGauss = {{{0.0694318442029737, 0.1739274225687269},
                                                                 {0.3300094782075719, 0.3260725774312731},
                                                                 {0.6699905217924281, 0.3260725774312731},
@@ -124,7 +125,7 @@ Eigen::MatrixXd SmearedCurve::averages(const SmearedStretch& stretch, const Filt
   return A;
 }
 
-Eigen::MatrixXd SmearedCurve::prior(double roughness) const {
+Eigen::MatrixXd ReconstructedCurve::prior(double roughness) const {
   Eigen::MatrixXd P = Eigen::MatrixXd::Identity(count_, count_) / (kAnyVoltage * kAnyVoltage);
   for (const Segment& s : segments_)
     for (int span = 0; span < s.spans; ++span)
@@ -132,7 +133,7 @@ Eigen::MatrixXd SmearedCurve::prior(double roughness) const {
   return P;
 }
 
-Complex SmearedCurve::operator()(int segment, double t) const {
+Complex ReconstructedCurve::operator()(int segment, double t) const {
   const Segment& s = segments_[static_cast<std::size_t>(segment)];
   const int span = std::clamp(static_cast<int>((t - s.from) / s.span), 0, s.spans - 1);
   const auto shape = cubics((t - s.from) / s.span - span);

@@ -1,5 +1,5 @@
 // A fault of three samples behind a filter of two cycles is restored.
-#include "validate/event/detail/unsmear.hpp"
+#include "validate/event/detail/voltage_reconstruction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -57,8 +57,8 @@ FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTr
     e.record.V.push_back(std::abs(v) + normal(random));
     e.record.theta.push_back(std::arg(v) + normal(random));
   }
-  e.switchings = find_switchings(e.record, playin::kStepThreshold, StepShape::spread, e.smeared);
-  e.clean = without(e.record, e.smeared);
+  e.switchings = find_switchings(e.record, playin::kStepThreshold, StepShape::spread, e.filtered_samples);
+  e.clean = without(e.record, e.filtered_samples);
   return e;
 }
 double worst_within(const FitEvent& e, const Fault& fault = {}) {
@@ -69,10 +69,10 @@ double worst_within(const FitEvent& e, const Fault& fault = {}) {
   return worst;
 }
 
-TEST(Unsmear, RestoresShortFault) {
+TEST(VoltageReconstruction, RestoresShortFault) {
   std::vector<FitEvent> events = {event(0.0)};
   const double before = worst_within(events.front());
-  const FilterWindow window = unsmear(events);
+  const FilterWindow window = reconstruct_voltage(events);
   EXPECT_EQ(window.shape(), FilterWindow::Shape::triangle);
   EXPECT_NEAR(window.half(), kCycle, 1e-9);
   ASSERT_EQ(events.front().switchings.size(), 2u);
@@ -83,9 +83,9 @@ TEST(Unsmear, RestoresShortFault) {
   EXPECT_LT(worst_within(events.front()), 2e-3);
   EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
 }
-TEST(Unsmear, IsInsensitiveToNoise) {
+TEST(VoltageReconstruction, IsInsensitiveToNoise) {
   std::vector<FitEvent> events = {event(2e-4)};
-  unsmear(events);
+  reconstruct_voltage(events);
   // One filtered sample determines a switching time to 2e-4 pu / (0.25 pu / 17 ms); with the fault's slopes
   // free, to a few times as much.
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 3e-4);
@@ -94,21 +94,21 @@ TEST(Unsmear, IsInsensitiveToNoise) {
 }
 /// Both steps of a fault of three samples share the samples between them; the probability of the switching
 /// times has many local maxima.
-TEST(Unsmear, FindsTimesOfShortFaultAtAnyOffset) {
+TEST(VoltageReconstruction, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {
       const Fault fault = {.off = kOn + length, .V = 0.85};
       std::vector<FitEvent> events = {event(1e-4, fault, kTriangle, kRate, phase / kRate)};
-      unsmear(events);
+      reconstruct_voltage(events);
       ASSERT_EQ(events.front().switchings.size(), 2u);
       EXPECT_NEAR(events.front().switchings[0].time, kOn, 2e-3) << phase << ' ' << length;
       EXPECT_NEAR(events.front().switchings[1].time, fault.off, 2e-3) << phase << ' ' << length;
     }
 }
 /// The knots of the restored samples lie closer to a switching than its uncertainty.
-TEST(Unsmear, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
+TEST(VoltageReconstruction, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
   std::vector<FitEvent> events = {event(1e-4, {.off = kOn + 0.055})};
-  unsmear(events);
+  reconstruct_voltage(events);
   const FitEvent& e = events.front();
   const playin::VoltageCurve curve(e.clean, e.switchings);
   for (const double by : {-0.9, 0.9})
@@ -123,12 +123,12 @@ TEST(Unsmear, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
 }
 /// A class M window is long: at 30 reports a second 0.16 s to either side of a fault of 0.1 s. No sample of
 /// the fault is unfiltered.
-TEST(Unsmear, RestoresFaultShorterThanClassMWindow) {
+TEST(VoltageReconstruction, RestoresFaultShorterThanClassMWindow) {
   for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
     const Fault deep = {.off = kOn + 0.1, .V = 0.3};
     std::vector<FitEvent> events = {event(1e-4, deep, kClassM30, 30, phase / 30)};
     FitEvent& e = events.front();
-    const FilterWindow window = unsmear(events);
+    const FilterWindow window = reconstruct_voltage(events);
     EXPECT_EQ(window.shape(), FilterWindow::Shape::class_m);
     EXPECT_NEAR(window.half(), kClassM30.half, 1e-9);
     ASSERT_EQ(e.switchings.size(), 2u);
@@ -137,11 +137,11 @@ TEST(Unsmear, RestoresFaultShorterThanClassMWindow) {
     EXPECT_LT(worst_within(e, deep), 4e-3);  // measured: 1.5e-3, switching times to 9e-5 s
   }
 }
-TEST(Unsmear, KeepsFaultVoltageBehindALag) {
+TEST(VoltageReconstruction, KeepsFaultVoltageBehindALag) {
   const Fault deep = {.off = 1.92, .V = 0.3};
   std::vector<FitEvent> events = {event(1e-4, deep, kLag)};
   FitEvent& e = events.front();
-  unsmear(events);
+  reconstruct_voltage(events);
   ASSERT_EQ(e.switchings.size(), 2u);
   EXPECT_NEAR(e.switchings[0].time, kOn, 0.012) << "later by more than the lag";
   EXPECT_NEAR(e.switchings[1].time, deep.off, 0.012);

@@ -9,7 +9,7 @@
 namespace swingbank::validate::event {
 
 /// Filtered samples around some switchings, each a weighted average over a window.
-struct SmearedStretch {
+struct FilteredSamples {
   std::vector<double> t;            ///< [s]
   std::vector<Complex> v;           ///< [pu]
   double magnitude = 0, angle = 0;  ///< noise of V [pu], noise of theta [rad]
@@ -21,11 +21,11 @@ struct SmearedStretch {
 /// guarding against model errors in regression", J. R. Stat. Soc. B 40, 1978). Its basis is cubic B-splines
 /// with knots every half sample interval, or every eighth of the window's half-width if that is longer. It
 /// extends half a window beyond the stretch.
-class SmearedCurve {
+class ReconstructedCurve {
  public:
   /// `switching_times`: switching times, ascending, within the stretch [s].
-  SmearedCurve(const SmearedStretch& stretch, const FilterWindow& window,
-               const std::vector<double>& switching_times, double roughness);
+  ReconstructedCurve(const FilteredSamples& stretch, const FilterWindow& window,
+                     const std::vector<double>& switching_times, double roughness);
   /// Returns the log evidence of window, switching times and roughness, up to a constant.
   [[nodiscard]] double evidence() const { return evidence_; }
   /// Returns the voltage phasor [pu] at t [s] in segment 0 (before the first switching time), 1, ...
@@ -37,9 +37,9 @@ class SmearedCurve {
     double from, span;
     int spans, first;
   };
-  void set_segments(const SmearedStretch& stretch, const FilterWindow& window,
+  void set_segments(const FilteredSamples& stretch, const FilterWindow& window,
                     const std::vector<double>& switching_times);
-  [[nodiscard]] Eigen::MatrixXd averages(const SmearedStretch& stretch, const FilterWindow& window) const;
+  [[nodiscard]] Eigen::MatrixXd averages(const FilteredSamples& stretch, const FilterWindow& window) const;
   [[nodiscard]] Eigen::MatrixXd prior(double roughness) const;
   std::vector<Segment> segments_;
   int count_ = 0;

@@ -1,4 +1,4 @@
-#include "validate/event/detail/unsmear.hpp"
+#include "validate/event/detail/voltage_reconstruction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "base/constants.hpp"
 #include "base/white_noise.hpp"
-#include "validate/event/detail/smeared_curve.hpp"
+#include "validate/event/detail/reconstructed_curve.hpp"
 
 namespace swingbank::validate::event {
 namespace {
@@ -33,18 +33,19 @@ constexpr double kScanStep = 0.25, kScanRoughness[] = {10, 100};
 /// Switchings first ... first + count - 1 of an event, whose windows overlap, and the samples around them.
 struct Cluster {
   std::size_t event, first, count;
-  SmearedStretch stretch;
+  FilteredSamples stretch;
 };
 /// Reconstruction of a cluster with one window.
 struct BroughtBack {
   std::vector<double> switching_times;
   double roughness = kFirstRoughness;
-  std::optional<SmearedCurve> curve = {};
+  std::optional<ReconstructedCurve> curve = {};
 };
 
 /// Returns the noise from second differences before the first filtered sample.
 double noise_of(const std::vector<double>& x, const FitEvent& e) {
-  const auto quiet = static_cast<std::size_t>(std::ranges::find(e.smeared, 1) - e.smeared.begin());
+  const auto quiet =
+      static_cast<std::size_t>(std::ranges::find(e.filtered_samples, 1) - e.filtered_samples.begin());
   return std::sqrt(white_variance(std::span(x).first(std::min(quiet, x.size()))));
 }
 
@@ -70,7 +71,7 @@ std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double wi
 }
 
 /// Returns whether the switching times are ascending within the stretch.
-bool in_order(const std::vector<double>& switching_times, const SmearedStretch& stretch) {
+bool in_order(const std::vector<double>& switching_times, const FilteredSamples& stretch) {
   const double edge = 1e-2 * stretch.step;
   double last = stretch.t.front();
   for (const double t : switching_times) {
@@ -124,7 +125,7 @@ class SwitchingTimeSearch {
       }
   }
   void keep(BroughtBack& best, std::vector<double> at) const {
-    SmearedCurve curve(cluster_.stretch, window_, at, best.roughness);
+    ReconstructedCurve curve(cluster_.stretch, window_, at, best.roughness);
     if (curve.evidence() > best.curve->evidence()) best = {std::move(at), best.roughness, std::move(curve)};
   }
   const Cluster& cluster_;
@@ -159,7 +160,7 @@ std::vector<double> approximate_switching_times(const FitEvent& e, const Cluster
 void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& best) {
   best.curve.emplace(c.stretch, window, best.switching_times, best.roughness);
   for (const double other : kRoughness)
-    if (SmearedCurve curve(c.stretch, window, best.switching_times, other);
+    if (ReconstructedCurve curve(c.stretch, window, best.switching_times, other);
         curve.evidence() > best.curve->evidence())
       best = {std::move(best.switching_times), other, std::move(curve)};
 }
@@ -205,7 +206,7 @@ double told_share(const Cluster& c, const FilterWindow& window, const BroughtBac
     std::vector<double> at = b.switching_times;
     at[time_index] += by;
     if (!in_order(at, c.stretch)) continue;
-    falls += b.curve->evidence() - SmearedCurve(c.stretch, window, at, b.roughness).evidence();
+    falls += b.curve->evidence() - ReconstructedCurve(c.stretch, window, at, b.roughness).evidence();
     ++sides;
   }
   if (sides == 0) return std::log(aside / open);
@@ -246,11 +247,12 @@ void keep(FitEvent& e, const std::vector<char>& stays) {
     if (stays[s]) kept.push_back(e.switchings[s]);
   if (kept.size() == e.switchings.size()) return;
   e.switchings = std::move(kept);
-  for (std::size_t k = 0; k < e.smeared.size(); ++k)
-    e.smeared[k] = e.smeared[k] && std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
-                     return std::abs(e.record.t[k] - s.time) < s.uncertainty - 0.5 * e.record.step();
-                   });
-  if (std::ranges::count(e.smeared, 1) == 0) e.smeared.clear(), e.clean = {};
+  for (std::size_t k = 0; k < e.filtered_samples.size(); ++k)
+    e.filtered_samples[k] =
+        e.filtered_samples[k] && std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+          return std::abs(e.record.t[k] - s.time) < s.uncertainty - 0.5 * e.record.step();
+        });
+  if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear(), e.clean = {};
 }
 /// Drops such switching times of all events, and clusters without remaining ones.
 void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, Attempt& a) {
@@ -278,13 +280,14 @@ void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, 
 void mark_again(FitEvent& e, const FilterWindow& window) {
   const double reach = window.half() - 1e-3 * e.record.step();
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
-    e.smeared[k] = e.smeared[k] || std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
-                     return std::abs(e.record.t[k] - s.time) < reach;
-                   });
+    e.filtered_samples[k] =
+        e.filtered_samples[k] || std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+          return std::abs(e.record.t[k] - s.time) < reach;
+        });
 }
 
 /// Replaces the clean record between two times by knots of the curve.
-void replace(FitEvent& e, int segment, double from, double to, const SmearedCurve& curve) {
+void replace(FitEvent& e, int segment, double from, double to, const ReconstructedCurve& curve) {
   record::Record& r = e.clean;
   const auto first = std::ranges::lower_bound(r.t, from) - r.t.begin(),
              last = std::ranges::upper_bound(r.t, to) - r.t.begin();
@@ -324,12 +327,12 @@ void fill(FitEvent& e, const Cluster& c, const BroughtBack& b, double half) {
 
 }  // namespace
 
-record::Record without(const record::Record& record, const std::vector<char>& smeared) {
+record::Record without(const record::Record& record, const std::vector<char>& filtered_samples) {
   record::Record clean;
   clean.name = record.name;
   clean.base = record.base;
   for (std::size_t k = 0; k < record.t.size(); ++k) {
-    if (smeared[k]) continue;
+    if (filtered_samples[k]) continue;
     clean.t.push_back(record.t[k]);
     clean.V.push_back(record.V[k]);
     clean.theta.push_back(record.theta[k]);
@@ -340,27 +343,28 @@ record::Record without(const record::Record& record, const std::vector<char>& sm
 namespace {
 
 /// Filtered samples of all events, with approximate switching times.
-struct Smeared {
+struct FilteredSteps {
   std::vector<FilterWindow> windows;  ///< candidates; none if nothing is filtered
   std::vector<Cluster> clusters = {};
   std::vector<std::vector<double>> switching_times = {};
 };
-Smeared smeared_of(const std::vector<FitEvent>& events) {
-  const auto first = std::ranges::find_if(events, [](const FitEvent& e) { return !e.smeared.empty(); });
+FilteredSteps filtered_steps_of(const std::vector<FitEvent>& events) {
+  const auto first =
+      std::ranges::find_if(events, [](const FitEvent& e) { return !e.filtered_samples.empty(); });
   if (first == events.end()) return {};
   const double frequency = first->record.base.frequency;
-  Smeared all{known_windows(frequency, 1 / first->record.step())};
+  FilteredSteps all{known_windows(frequency, 1 / first->record.step())};
   double widest = 0;
   for (const FilterWindow& w : all.windows) widest = std::max(widest, w.half());
   for (std::size_t e = 0; e < events.size(); ++e)
-    if (!events[e].smeared.empty())
+    if (!events[e].filtered_samples.empty())
       std::ranges::move(clusters_of(events[e], e, widest), std::back_inserter(all.clusters));
   const FilterWindow one_cycle(FilterWindow::Shape::triangle, 1 / frequency);
   for (const Cluster& c : all.clusters)
     all.switching_times.push_back(approximate_switching_times(events[c.event], c, one_cycle));
   return all;
 }
-Attempt most_probable(const std::vector<FitEvent>& events, const Smeared& all) {
+Attempt most_probable(const std::vector<FitEvent>& events, const FilteredSteps& all) {
   Attempt best;
   for (const FilterWindow& w : all.windows)
     if (Attempt a = attempt(events, all.clusters, all.switching_times, w); a.evidence > best.evidence)
@@ -371,7 +375,7 @@ Attempt most_probable(const std::vector<FitEvent>& events, const Smeared& all) {
 }  // namespace
 
 bool passed_filter(const std::vector<FitEvent>& events) {
-  const Smeared all = smeared_of(events);
+  const FilteredSteps all = filtered_steps_of(events);
   if (all.clusters.empty()) return false;
   const FilterWindow none(FilterWindow::Shape::box, 1e-3 * all.clusters.front().stretch.step);
   const Attempt best = most_probable(events, all);
@@ -379,8 +383,8 @@ bool passed_filter(const std::vector<FitEvent>& events) {
          best.evidence > attempt(events, all.clusters, all.switching_times, none).evidence;
 }
 
-FilterWindow unsmear(std::vector<FitEvent>& events) {
-  Smeared all = smeared_of(events);
+FilterWindow reconstruct_voltage(std::vector<FitEvent>& events) {
+  FilteredSteps all = filtered_steps_of(events);
   if (all.windows.empty()) return {};
   Attempt best = most_probable(events, all);
   std::vector<Cluster>& clusters = all.clusters;
@@ -392,9 +396,9 @@ FilterWindow unsmear(std::vector<FitEvent>& events) {
   for (std::size_t i = 0; i < clusters.size(); ++i)
     place(events[clusters[i].event], clusters[i], best.clusters[i]);
   for (FitEvent& e : events) {
-    if (e.smeared.empty()) continue;
+    if (e.filtered_samples.empty()) continue;
     mark_again(e, best.window);
-    e.clean = without(e.record, e.smeared);
+    e.clean = without(e.record, e.filtered_samples);
   }
   for (std::size_t i = 0; i < clusters.size(); ++i)
     fill(events[clusters[i].event], clusters[i], best.clusters[i], best.window.half());
