@@ -1,6 +1,6 @@
 #pragma once
 // Time functions of disturbances: step, pulse and ramp. Each effect must declare their start and end in
-// instants(). Before the first of these switching times the functions return exactly 0, because an effect is
+// switching_times(). Before the first of these switching times the functions return exactly 0, because an effect is
 // never evaluated at a later time (`kBeforeSwitching`).
 #include "sim/core/scalar.hpp"
 

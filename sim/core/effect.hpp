@@ -17,7 +17,7 @@
 //   guards, guard<T>()            of a control, optional: functions with zeros where its derivatives jump
 //   remark()                      optional: warning about values that ask for unmodelled behaviour
 //   elsewhere                     of a plant control, optional: parameters that name its measuring point
-//   instants()                    optional: switching times of its equations
+//   switching_times()             optional: switching times of its equations
 //   closed_form()                 of a machine, optional: parameters from a record, without a search
 //   measure(), memory()           of a measurement: its operation on phasors, and its reach in time
 // CMake finds the header and generates the registry. T runs over `Scalars`.
@@ -166,7 +166,7 @@ struct Signals {
   T dVref{}, dPref{};  ///< changes of the exciter's and the governor's reference [pu]
   /// Change of the governor's reference in its own unit [pu]: speed where a droop follows it, else power.
   T dGref{};
-  T t{};  ///< time [s]; at a switching time (instants()) its value on the side being integrated
+  T t{};  ///< time [s]; at a switching time (switching_times()) its value on the side being integrated
   /// Voltage at the grid's side of the step-up transformer [pu]. Of a load, Vpr and Vpi are the voltage of
   /// the bus that it regulates (Consumer::regulated), else of its own bus.
   T Vpr{}, Vpi{}, Vp{};  ///< in the network frame, and its magnitude [pu]

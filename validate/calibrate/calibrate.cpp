@@ -236,21 +236,20 @@ class Calibrating {
     for (const std::size_t e : fitted_) o.start.push_back(whole.events[e].state);
     c_.fit = fit::fit(model_.under_test(), seen_, free_, o);
     if (!c_.fit.failed.empty())
-      throw InputError(
-          {"the fitted model cannot be run again", model_.origin, c_.fit.failed, "fix parameters"});
+      throw InputError({"the fitted model cannot run", model_.origin, c_.fit.failed, "fix parameters"});
     before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
   }
   /// Returns the sensitivities of the fitted events.
   std::vector<fit::EventSensitivities> fitted_sensitivities(const sim::plant::Plant& plant) const {
-    std::vector<fit::EventSensitivities> jacobians(seen_.size());
+    std::vector<fit::EventSensitivities> all(seen_.size());
     in_parallel(
-        jacobians.size(),
+        all.size(),
         [&](std::size_t e) {
-          jacobians[e] =
+          all[e] =
               fit::event_sensitivities({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
         },
-        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(jacobians.size())); });
-    return jacobians;
+        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(all.size())); });
+    return all;
   }
   /// Removes the bias due to noise of the played-in voltage. Newton steps solve for the parameters at which
   /// the scores equal their expectation under that noise.

@@ -16,7 +16,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// times `added_covariance` (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, added_covariance = {};
-  ///< system matrices and covariances; jump: added covariance of w
+  ///< system matrices and covariances; the last: of w, added after doubtful samples
   std::vector<char> doubtful = {};  ///< [sample]: multiple of `added_covariance`
 };
 

@@ -50,7 +50,7 @@ struct FitEvent {
   /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
   /// where a delay of a millisecond may put a channel on the other side. Empty: none.
   std::vector<char> left_out = {};
-  /// Time, V and theta of the samples that are not filtered, and of those that unsmear() restored. Empty if
+  /// Time, V and theta of the samples that are not filtered, and of those that reconstruct_voltage() restored. Empty if
   /// no sample is filtered.
   record::Record clean = {};
   std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
