@@ -4,9 +4,9 @@
 
 #include "base/problem.hpp"
 #include "validate/playin/allowance.hpp"
-#include "validate/playin/driven_together.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
+#include "validate/playin/playback_batch.hpp"
 
 namespace swingbank::validate::event {
 
@@ -33,19 +33,20 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
 namespace {
 
 /// Returns the run of an event; `curve` and `given` must outlive it.
-playin::Drive run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& event, const EventState& state,
-                     const Playing& how, const playin::VoltageCurve& curve, const playin::Given* given) {
-  playin::Drive run{.plant = &tested.plant,
-                    .conventions = tested.conventions,
-                    .record = &event.record,
-                    .curve = &curve,
-                    .start = start_at(event, state),
-                    .given = given,
-                    .angle = state.angle,
-                    .speed = state.speed,
-                    .tolerance = how.tolerance,
-                    .until = how.until,
-                    .fixed_guard_times = how.fixed_guard_times};
+playin::PlaybackRun run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
+                           const EventState& state, const Playing& how, const playin::VoltageCurve& curve,
+                           const playin::Given* given) {
+  playin::PlaybackRun run{.plant = &tested.plant,
+                          .conventions = tested.conventions,
+                          .record = &event.record,
+                          .curve = &curve,
+                          .start = start_at(event, state),
+                          .given = given,
+                          .angle = state.angle,
+                          .speed = state.speed,
+                          .tolerance = how.tolerance,
+                          .until = how.until,
+                          .fixed_guard_times = how.fixed_guard_times};
   if (how.hasty) {
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();
@@ -100,10 +101,10 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
   const playin::VoltageCurve curve = event.curve(switchings_at(event, state));
   const auto given = playin::given_of(event.record, curve.switchings(), event.start);
   std::vector<std::optional<playin::Response>> all(plants.size());
-  std::vector<playin::Drive> runs;
+  std::vector<playin::PlaybackRun> runs;
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < plants.size(); ++k) try {
-      const playin::Drive run =
+      const playin::PlaybackRun run =
           run_of({plants[k], conventions}, event, state, how, curve, given ? &*given : nullptr);
       if (!plants[k].measurements.empty()) {
         all[k] = playin::observe(run);
@@ -113,7 +114,7 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
       which.push_back(k);
     } catch (const InputError&) {  // no steady state at the start
     }
-  auto answers = playin::drive_together(runs);
+  auto answers = playin::simulate_playback_batch(runs);
   for (std::size_t k = 0; k < runs.size(); ++k) all[which[k]] = std::move(answers[k]);
   return all;
 }

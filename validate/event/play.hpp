@@ -60,7 +60,7 @@ playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& 
                       const EventState& state, std::span<const playin::SensitivityParameter> along = {},
                       const Playing& how = {});
 /// Returns the responses of several plants that differ in values only, computed in SIMD batches of eight
-/// (playin::drive_together); an entry is empty where play() would throw.
+/// (playin::simulate_playback_batch); an entry is empty where play() would throw.
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
                                                            const sim::Conventions& conventions,
                                                            const FitEvent& event, const EventState& state,

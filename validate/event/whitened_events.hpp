@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "validate/event/noise_model.hpp"
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::event {
 
@@ -50,8 +50,8 @@ struct FitEvent {
   /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
   /// where a delay of a millisecond may put a channel on the other side. Empty: none.
   std::vector<char> left_out = {};
-  /// Time, V and theta of the samples that are not filtered, and of those that reconstruct_voltage() restored. Empty if
-  /// no sample is filtered.
+  /// Time, V and theta of the samples that are not filtered, and of those that reconstruct_voltage()
+  /// restored. Empty if no sample is filtered.
   record::Record clean = {};
   std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
   KeptCurve kept = {};                   ///< of played() with `switchings`, in WhitenedEvents

@@ -393,11 +393,11 @@ std::shared_ptr<const event::Innovations> memory_of(const sim::plant::PlantUnder
                                                     const VoltageNoise& voltage) {
   const event::FitEvent& e = whitened.event;
   const playin::VoltageCurve curve(e.played(), e.switchings);
-  const playin::Drive at{.plant = &tested.plant,
-                         .conventions = tested.conventions,
-                         .record = &e.record,
-                         .curve = &curve,
-                         .start = e.start};
+  const playin::PlaybackRun at{.plant = &tested.plant,
+                               .conventions = tested.conventions,
+                               .record = &e.record,
+                               .curve = &curve,
+                               .start = e.start};
   const event::SlowNoise noise = slow_noise(playin::linearise(at), whitened, voltage);
   if (!matters(noise, whitened)) return nullptr;
   return std::make_shared<event::Innovations>(noise, e.record.samples(), e.left_out);

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 

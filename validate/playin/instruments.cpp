@@ -62,7 +62,7 @@ void thin(std::vector<T>& values, std::size_t stride) {
 class Observed {
  public:
   /// `parameters` must not belong to the instruments.
-  Observed(const Drive& run, std::span<const SensitivityParameter> parameters)
+  Observed(const PlaybackRun& run, std::span<const SensitivityParameter> parameters)
       : run_(run), chain_(run.plant->measurements), inner_(run), parameters_(parameters) {
     const record::Record& r = *run.record;
     const double rate = 1 / r.step(), frequency = run.conventions.frequency;
@@ -76,7 +76,7 @@ class Observed {
     if (sim::plant::memory(chain_) > 0) refine(r);
   }
   Response run() {
-    Response r = drive(inner_, parameters_);
+    Response r = simulate_playback(inner_, parameters_);
     turn_starts(r);
     const double rate = fine_rate(), frequency = run_.conventions.frequency;
     auto& P = r.value[static_cast<int>(Output::P)];
@@ -139,7 +139,7 @@ class Observed {
                                                  const sim::plant::Plant& above,
                                                  const sim::plant::Plant& below, double move) const {
     const auto of = [&](const sim::plant::Plant& plant) {
-      Drive moved = run_;
+      PlaybackRun moved = run_;
       moved.plant = &plant;
       moved.cache = nullptr;
       return Observed(moved, {}).run();
@@ -178,9 +178,9 @@ class Observed {
       }
   }
 
-  const Drive& run_;
+  const PlaybackRun& run_;
   const std::vector<sim::plant::Block>& chain_;
-  Drive inner_;
+  PlaybackRun inner_;
   std::span<const SensitivityParameter> parameters_;
   record::Record fine_;
   Standing gain_;
@@ -191,8 +191,8 @@ class Observed {
 
 }  // namespace
 
-Response observe(const Drive& run, std::span<const SensitivityParameter> parameters) {
-  if (run.plant->measurements.empty()) return drive(run, parameters);
+Response observe(const PlaybackRun& run, std::span<const SensitivityParameter> parameters) {
+  if (run.plant->measurements.empty()) return simulate_playback(run, parameters);
   const int first = sim::plant::first_measurement(*run.plant);
   const auto instrument = [&](const SensitivityParameter& d) {
     return d.kind == Kind::parameter && d.parameter.block >= first;

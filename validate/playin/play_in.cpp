@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/playin/detail/driven_pq.hpp"
+#include "validate/playin/detail/playback_pq.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/playin/instruments.hpp"
 
@@ -172,14 +172,14 @@ Playback play_in_power(const sim::plant::PlantUnderTest& tested, const record::R
   const VoltageCurve voltage(record, switchings), power = power_curve(record, switchings);
   Playback back;
   back.start = pre_event_point(record, switchings, options.pre_event);
-  PowerResponse response = drive_by_power({.plant = &tested.plant,
-                                           .conventions = tested.conventions,
-                                           .record = &record,
-                                           .power = &power,
-                                           .voltage = &voltage,
-                                           .start = back.start,
-                                           .tolerance = options.tolerance,
-                                           .step_limit = options.step_limit});
+  PowerResponse response = simulate_power_playback({.plant = &tested.plant,
+                                                    .conventions = tested.conventions,
+                                                    .record = &record,
+                                                    .power = &power,
+                                                    .voltage = &voltage,
+                                                    .start = back.start,
+                                                    .tolerance = options.tolerance,
+                                                    .step_limit = options.step_limit});
   back.V = std::move(response.V);
   back.theta = std::move(response.theta);
   back.speed = std::move(response.speed);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/plant/under_test.hpp"
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 

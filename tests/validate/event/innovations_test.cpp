@@ -96,14 +96,14 @@ struct Quiet {
     for (std::size_t i = 0; i < events.size(); ++i) {
       const FitEvent& e = events[i];
       const playin::VoltageCurve curve(e.record, {});
-      playin::Drive run{.plant = &model.plant,
-                        .conventions = model.conventions,
-                        .record = &e.record,
-                        .curve = &curve,
-                        .start = e.start};
+      playin::PlaybackRun run{.plant = &model.plant,
+                              .conventions = model.conventions,
+                              .record = &e.record,
+                              .curve = &curve,
+                              .start = e.start};
       run.tolerance = 1e-7;
       fit::EventFit f;
-      fit::compare(events, i, playin::drive(run), f);
+      fit::compare(events, i, playin::simulate_playback(run), f);
       fit.events.push_back(std::move(f));
     }
   }

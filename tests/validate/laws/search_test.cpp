@@ -170,12 +170,12 @@ struct Case {
           test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), model.record_base);
       const auto switchings = playin::detect_switchings(r);
       const playin::VoltageCurve curve(r, switchings);
-      playin::Drive run{
+      playin::PlaybackRun run{
           .plant = &truth.plant, .conventions = truth.conventions, .record = &r, .curve = &curve};
       run.start = playin::pre_event_point(r, switchings, 1.0);
       run.tolerance = 1e-8;
       change(i, run);
-      const playin::Response answer = playin::drive(run);
+      const playin::Response answer = playin::simulate_playback(run);
       r.P = answer.of(playin::Output::P);
       r.Q = answer.of(playin::Output::Q);
       for (auto* channel : {&r.P, &r.Q})
@@ -205,7 +205,7 @@ sim::Effect torque_law(const std::string& value) {
 
 TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
   const sim::Effect law = torque_law("-0.02 * clamp(speed / 0.001, -1, 1)");
-  Case c({1, 3}, &law, [](int, playin::Drive&) {});
+  Case c({1, 3}, &law, [](int, playin::PlaybackRun&) {});
   ASSERT_GT(c.base.reduced_chi2(), 5);
   ASSERT_LT(c.torque.reduced_chi2(), 1.2);
   const LawSearch s = c.search();
@@ -240,7 +240,7 @@ TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
 
 TEST(LawSearchFull, FindsPulseAtARecordTime) {
   const sim::Effect law = torque_law("0.02 * (clamp((t - 3) / 0.05, 0, 1) - clamp((t - 4.5) / 0.05, 0, 1))");
-  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
+  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::PlaybackRun&) {}).search();
   ASSERT_NE(s.found(), nullptr);
   EXPECT_THAT(s.found()->law.family, testing::StartsWith("pulse"));
   for (const auto& h : s.found()->judgement.held_out)
@@ -248,7 +248,7 @@ TEST(LawSearchFull, FindsPulseAtARecordTime) {
 }
 TEST(LawSearchFull, FindsOscillation) {
   const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
-  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::Drive&) {}).search();
+  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::PlaybackRun&) {}).search();
   ASSERT_NE(s.found(), nullptr);
   EXPECT_EQ(s.found()->law.family, "periodic");
   for (const auto& p : s.found()->judgement.fit.parameters)
@@ -258,7 +258,7 @@ TEST(LawSearchFull, FindsOscillation) {
 }
 /// A torque that differs between events follows no law.
 TEST(LawSearchFull, RejectsRandomTorque) {
-  Case c({1, 2, 3}, nullptr, [](int event, playin::Drive& run) {
+  Case c({1, 2, 3}, nullptr, [](int event, playin::PlaybackRun& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
     std::normal_distribution<double> normal;
     double value = 0;

@@ -100,18 +100,18 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   const OperatingPoint start = pre_event_point(r, curve.switchings(), 1.0);
   const Given given(r, curve.switchings(), start);
   const sim::plant::Plant part = component_of(c.plant(), Component::exciter);
-  const auto drive_from = [&](const sim::plant::Plant& plant, double level,
-                              std::span<const SensitivityParameter> along) {
+  const auto response_from = [&](const sim::plant::Plant& plant, double level,
+                                 std::span<const SensitivityParameter> along) {
     OperatingPoint from = start;
     from.Efd += level;
-    return drive({.plant = &plant,
-                  .conventions = c.grid.conventions,
-                  .record = &r,
-                  .curve = &curve,
-                  .start = from,
-                  .given = &given,
-                  .least_step = 1e-7},
-                 along);
+    return simulate_playback({.plant = &plant,
+                              .conventions = c.grid.conventions,
+                              .record = &r,
+                              .curve = &curve,
+                              .start = from,
+                              .given = &given,
+                              .least_step = 1e-7},
+                             along);
   };
   const auto gain = sim::plant::ParameterId{2, part.controls[1].effect->parameter_index("KA")};
   const double h = 1e-4 * sim::plant::parameter_value(part, gain);
@@ -120,7 +120,7 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
   sim::plant::parameter_value(less, gain) -= h;
   const SensitivityParameter along[] = {{.kind = SensitivityParameter::Kind::parameter, .parameter = gain},
                                         {.kind = SensitivityParameter::Kind::P}};
-  const Response base = drive_from(part, 0, along);
+  const Response base = response_from(part, 0, along);
   const auto compare = [&](std::size_t parameter, const Response& up, const Response& down, double step) {
     double error = 0, largest = 0;
     for (std::size_t k = 0; k < r.t.size(); ++k) {
@@ -132,8 +132,8 @@ TEST(ComponentTest, SensitivitiesAgreeWithCentralDifferences) {
     EXPECT_GT(largest, 1e-5) << parameter;
     EXPECT_LT(error, 2e-3 * largest) << parameter;
   };
-  compare(0, drive_from(more, 0, {}), drive_from(less, 0, {}), h);
-  compare(1, drive_from(part, 1e-5, {}), drive_from(part, -1e-5, {}), 1e-5);
+  compare(0, response_from(more, 0, {}), response_from(less, 0, {}), h);
+  compare(1, response_from(part, 1e-5, {}), response_from(part, -1e-5, {}), 1e-5);
 }
 
 Words needed(const std::vector<std::string>& controls, Component component) {

@@ -29,9 +29,9 @@ class InstrumentsTest : public ::testing::Test {
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
     switchings_ = detect_switchings(record_);
   }
-  Drive run_with(const sim::plant::Plant& plant, const record::Record& record,
-                 const VoltageCurve& curve) const {
-    Drive run{.plant = &plant, .conventions = model_.conventions, .record = &record, .curve = &curve};
+  PlaybackRun run_with(const sim::plant::Plant& plant, const record::Record& record,
+                       const VoltageCurve& curve) const {
+    PlaybackRun run{.plant = &plant, .conventions = model_.conventions, .record = &record, .curve = &curve};
     run.start = pre_event_point(record, switchings_, 1.0);
     run.tolerance = 1e-9;
     return run;
@@ -39,7 +39,7 @@ class InstrumentsTest : public ::testing::Test {
   /// Returns the record's voltage and the plant's response to it, as seen through `chain`.
   record::Record seen_through(const std::vector<sim::plant::Block>& chain) const {
     const VoltageCurve curve(record_, switchings_);
-    const Response plain = drive(run_with(model_.plant, record_, curve));
+    const Response plain = simulate_playback(run_with(model_.plant, record_, curve));
     record::Record seen = record_;
     sim::plant::TerminalRecord terminal{
         record_.V, record_.theta, plain.of(Output::P), plain.of(Output::Q), {}};
@@ -64,9 +64,9 @@ TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) 
   sim::plant::Plant plant = model_.plant;
   plant.measurements = chain;
   const VoltageCurve own(record_, switchings_), shown(seen, switchings_);
-  Drive run = run_with(plant, seen, shown);
+  PlaybackRun run = run_with(plant, seen, shown);
   // The operating point as shown by the instruments.
-  const Drive plain = run_with(model_.plant, record_, own);
+  const PlaybackRun plain = run_with(model_.plant, record_, own);
   const Complex factor = std::polar(1.02, 0.03) * std::conj(std::polar(0.99, -0.02));
   const Complex power = Complex(plain.start.P, plain.start.Q) * factor;
   run.start = plain.start;
@@ -84,7 +84,7 @@ TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) 
 TEST_F(InstrumentsTest, SkewShowsOnlyAtTheStep) {
   sim::plant::Plant plant = model_.plant;
   const VoltageCurve curve(record_, switchings_);
-  const Response plain = drive(run_with(plant, record_, curve));
+  const Response plain = simulate_playback(run_with(plant, record_, curve));
   plant.measurements = {instrument("SKEW:skew=0.0166")};
   const Response late = observe(run_with(plant, record_, curve));
   // The first sample of the fault is closer to the switching than the skew: it still shows the pre-fault
@@ -112,11 +112,11 @@ TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
       {.kind = Kind::parameter, .parameter = {first, 1}, .scale = 1e-4},
       {.kind = Kind::parameter, .parameter = {first + 1, 0}, .scale = 1e-4}};
   const VoltageCurve curve(record_, switchings_);
-  const Drive run = run_with(plant, record_, curve);
+  const PlaybackRun run = run_with(plant, record_, curve);
   const Response at = observe(run, along);
   for (std::size_t d = 0; d < along.size(); ++d) {
     const auto moved = [&](double by) {
-      Drive other = run;
+      PlaybackRun other = run;
       sim::plant::Plant changed = plant;
       other.plant = &changed;
       const double move = by * along[d].scale;

@@ -5,7 +5,7 @@
 
 #include "sim/library/library.hpp"
 #include "validate/plant/plant_model.hpp"
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::playin {
@@ -36,16 +36,16 @@ class LinearSensitivitiesTest : public ::testing::Test {
   }
   Response answer(const std::vector<SensitivityParameter>& along, bool linear) const {
     const VoltageCurve curve(record_, switchings_);
-    const Drive run{.plant = &model_.plant,
-                    .conventions = model_.conventions,
-                    .record = &record_,
-                    .curve = &curve,
-                    .start = pre_event_point(record_, switchings_, 1.0),
-                    .torque = {knots_, {0.0, 0.01, 0.0, 0.0}},
-                    .field = {knots_, {0.0, 0.0, 0.02, 0.0}},
-                    .tolerance = linear ? 1e-5 : 1e-9,
-                    .linear_sensitivities = linear ? kShown : std::vector<Output>()};
-    return drive(run, along);
+    const PlaybackRun run{.plant = &model_.plant,
+                          .conventions = model_.conventions,
+                          .record = &record_,
+                          .curve = &curve,
+                          .start = pre_event_point(record_, switchings_, 1.0),
+                          .torque = {knots_, {0.0, 0.01, 0.0, 0.0}},
+                          .field = {knots_, {0.0, 0.0, 0.02, 0.0}},
+                          .tolerance = linear ? 1e-5 : 1e-9,
+                          .linear_sensitivities = linear ? kShown : std::vector<Output>()};
+    return simulate_playback(run, along);
   }
   /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
   /// an event.

@@ -20,8 +20,8 @@ double trigger_of(const event::FitEvent& e, double level) {
 }
 
 /// Plays the event into the plant with the inferred input, with lenient steps if exact ones fail.
-playin::Response driven(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
-                        const fit::EventState& state) {
+playin::Response play_event(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
+                            const fit::EventState& state) {
   try {
     return event::play(tested, e, state);
   } catch (const InputError&) {
@@ -40,7 +40,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     const auto switchings = event::switchings_at(e, state);
     const playin::VoltageCurve curve(e.played(), switchings);
     // The signals are those of the instruments, as in the fit.
-    const playin::Response r = driven({input.fit.plant, model.conventions}, e, state);
+    const playin::Response r = play_event({input.fit.plant, model.conventions}, e, state);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
     LawTrace t;
     t.t = e.record.t;

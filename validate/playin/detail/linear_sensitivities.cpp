@@ -104,8 +104,8 @@ struct Linear {
 
 class LinearSensitivities {
  public:
-  LinearSensitivities(const Drive& run, std::span<const SensitivityParameter> parameters, const Trace& trace,
-                      Response& answer)
+  LinearSensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
+                      const Trace& trace, Response& answer)
       : run_(run),
         parameters_(parameters),
         trace_(trace),
@@ -178,7 +178,7 @@ class LinearSensitivities {
  private:
   /// Eight copies of the plant in a SIMD batch, each perturbed along another sensitivity parameter.
   struct Copies {
-    DrivenEquations<P8> equations;
+    PlaybackEquations<P8> equations;
     bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
     std::size_t pack;  ///< columns that receive their sensitivities
   };
@@ -202,7 +202,7 @@ class LinearSensitivities {
     for (std::size_t first = 0; first < m_; first += kLanes) {
       const auto some = parameters_.subspan(first, std::min(kLanes, m_ - first));
       if (first > 0 && std::ranges::all_of(some, is_input)) continue;
-      const DrivenEquations<sim::D8> seeded(run_, some);
+      const PlaybackEquations<sim::D8> seeded(run_, some);
       if (first == 0) {
         for (const auto& value : seeded.c) at.c.emplace_back(value.a);
         at.Efd = P8(seeded.Efd.a);
@@ -217,7 +217,8 @@ class LinearSensitivities {
         for (std::size_t i = 0; i < n_; ++i) S_(i, first + d) = seeded.x0[i].d[d];
       if (!std::ranges::any_of(some, moves_coefficients)) continue;
       has_coefficients_[first / kLanes] = 1;
-      Copies& copies = copies_.emplace_back(Copies{DrivenEquations<P8>{run_, {}, at}, false, first / kLanes});
+      Copies& copies =
+          copies_.emplace_back(Copies{PlaybackEquations<P8>{run_, {}, at}, false, first / kLanes});
       for (std::size_t d = 0; d < some.size(); ++d) {
         if (!moves_coefficients(some[d])) continue;
         const auto move = [lane = int(d)](P8& value, const sim::D8& along) {
@@ -255,7 +256,7 @@ class LinearSensitivities {
     }
   }
   /// Sets the states of a node; clamped states take the limit of each lane.
-  void place(const DrivenEquations<P8>& equations, const double* x) {
+  void place(const PlaybackEquations<P8>& equations, const double* x) {
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
     if (!any_held_) return;
     for (std::size_t i = 0; i < n_; ++i)
@@ -401,7 +402,7 @@ class LinearSensitivities {
     }
   }
 
-  const Drive& run_;
+  const PlaybackRun& run_;
   std::span<const SensitivityParameter> parameters_;
   const Trace& trace_;
   Response& answer_;
@@ -426,11 +427,11 @@ class LinearSensitivities {
 
 }  // namespace
 
-bool can_be_linear(const Drive& run) {
+bool can_be_linear(const PlaybackRun& run) {
   return !is_recorded(*run.plant) && !run.given && !run.record->breaker() && !run.record->open_circuit();
 }
 
-bool add_linear_sensitivities(const Drive& run, std::span<const SensitivityParameter> parameters,
+bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
                               const Trace& trace, Response& answer) {
   return LinearSensitivities(run, parameters, trace, answer).run();
 }

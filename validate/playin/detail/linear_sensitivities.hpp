@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "validate/playin/detail/driven_equations.hpp"
+#include "validate/playin/detail/playback_equations.hpp"
 
 namespace swingbank::validate::playin {
 
@@ -30,14 +30,14 @@ struct Trace {
 };
 
 /// Returns whether sensitivities of this run can be computed from its trajectory.
-bool can_be_linear(const Drive& run);
+bool can_be_linear(const PlaybackRun& run);
 
 /// Computes the sensitivities of a response from the run's trajectory. Between two nodes the state
 /// sensitivities obey \f$S' = A S + B\f$, with A and B from differences over 1e-6 at both nodes. They are
 /// integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
 /// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671), which damps modes faster than a step at
 /// once. Returns false if the result is not finite.
-bool add_linear_sensitivities(const Drive& run, std::span<const SensitivityParameter> parameters,
+bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
                               const Trace& trace, Response& answer);
 
 }  // namespace swingbank::validate::playin

@@ -1,5 +1,5 @@
 // Simulated P and Q, played back, reproduce terminal voltage, angle and speed.
-#include "validate/playin/detail/driven_pq.hpp"
+#include "validate/playin/detail/playback_pq.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@ using ::testing::HasSubstr;
 PowerResponse play_back(const sim::plant::PlantUnderTest& tested, const record::Record& r,
                         const std::vector<Switching>& switchings) {
   const VoltageCurve voltage(r, switchings), power = power_curve(r, switchings);
-  return drive_by_power({.plant = &tested.plant,
-                         .conventions = tested.conventions,
-                         .record = &r,
-                         .power = &power,
-                         .voltage = &voltage,
-                         .start = pre_event_point(r, switchings, 1.0)});
+  return simulate_power_playback({.plant = &tested.plant,
+                                  .conventions = tested.conventions,
+                                  .record = &r,
+                                  .power = &power,
+                                  .voltage = &voltage,
+                                  .start = pre_event_point(r, switchings, 1.0)});
 }
 double worst_of(const std::vector<double>& a, const std::vector<double>& b) {
   double w = 0;
@@ -49,7 +49,7 @@ Errors errors(const test::Simulated& s, int stride) {
   return e;
 }
 
-TEST(DrivenByPowerTest, ReproducesVoltageAndAngleOfEveryGenrou) {
+TEST(PowerPlaybackTest, ReproducesVoltageAndAngleOfEveryGenrou) {
   // Bolted fault in the middle of the grid; close to it the lower of two solutions is the true one.
   // Extrapolating P and Q to the steps costs as much as that of V (1.5e-9 pu at 480/s,
   // validate/playin/README.md), times 1/X''. An undamped speed error e turns the angle by 377 e T: two more
@@ -60,7 +60,7 @@ TEST(DrivenByPowerTest, ReproducesVoltageAndAngleOfEveryGenrou) {
   EXPECT_LT(e.theta, 1e-5);
 }
 
-TEST(DrivenByPowerTest, ReproducesVoltageAndAngleBehindTransformers) {
+TEST(PowerPlaybackTest, ReproducesVoltageAndAngleBehindTransformers) {
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
                                          test::put_behind_transformers),
                           1);
@@ -70,7 +70,7 @@ TEST(DrivenByPowerTest, ReproducesVoltageAndAngleBehindTransformers) {
   EXPECT_LT(e.theta, 1e-5);
 }
 
-TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
+TEST(PowerPlaybackTest, RefusesPowerThatNoVoltageDelivers) {
   const test::Simulated s = test::simulate("ieee39_gencls", sim::Conventions::psse(), 16, 2.0, 2.1, 60);
   record::Record r = test::record_of(s, 2, 1);
   for (std::size_t k = 300; k < 400; ++k) r.P[k] *= 30;
@@ -80,7 +80,7 @@ TEST(DrivenByPowerTest, RefusesPowerThatNoVoltageDelivers) {
               ElementsAre(HasSubstr("no terminal voltage for P = ")));
 }
 
-TEST(DrivenByPowerTest, DetectsWrongReactance) {
+TEST(PowerPlaybackTest, DetectsWrongReactance) {
   const test::Simulated s = test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 120);
   const record::Record r = test::record_of(s, 2, 1);
   sim::plant::Plant wrong = s.grid.plants[2];

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 
@@ -13,6 +13,6 @@ namespace swingbank::validate::playin {
 /// throw. The runs share one record and one curve, and their plants have the same effects. Eight of them take
 /// common steps, as short as the most demanding needs, so responses differ from those of drive() within the
 /// tolerance.
-std::vector<std::optional<Response>> drive_together(std::span<const Drive> runs);
+std::vector<std::optional<Response>> simulate_playback_batch(std::span<const PlaybackRun> runs);
 
 }  // namespace swingbank::validate::playin

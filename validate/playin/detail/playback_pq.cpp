@@ -1,4 +1,4 @@
-#include "validate/playin/detail/driven_pq.hpp"
+#include "validate/playin/detail/playback_pq.hpp"
 
 #include <fmt/format.h>
 
@@ -15,9 +15,9 @@
 namespace swingbank::validate::playin {
 namespace {
 
-class DrivenByPower {
+class PowerPlayback {
  public:
-  explicit DrivenByPower(const PowerDrive& run)
+  explicit PowerPlayback(const PowerPlaybackRun& run)
       : run_(run),
         equations_(*run.plant),
         scratch_(static_cast<std::size_t>(equations_.scratch())),
@@ -197,7 +197,7 @@ class DrivenByPower {
          "voltage instead (--drive voltage)"});
   }
 
-  const PowerDrive& run_;
+  const PowerPlaybackRun& run_;
   sim::plant::PlantEquations<double> equations_;
   std::vector<double> c_, x_, trial_, scratch_;
   std::array<std::vector<double>, sim::plant::dp54::kStages> k_;
@@ -226,6 +226,6 @@ VoltageCurve power_curve(const record::Record& record, std::vector<Switching> sw
   return {power, std::move(switchings)};
 }
 
-PowerResponse drive_by_power(const PowerDrive& run) { return DrivenByPower(run).run(); }
+PowerResponse simulate_power_playback(const PowerPlaybackRun& run) { return PowerPlayback(run).run(); }
 
 }  // namespace swingbank::validate::playin

@@ -1,13 +1,13 @@
 #pragma once
-// Simulation of one plant with its P and Q as inputs, the inverse of driven_plant. The terminal voltage and
+// Simulation of one plant with its P and Q as inputs, the inverse of plant_playback. The terminal voltage and
 // its angle are the response: the voltage at which the machine's internal voltage delivers P + jQ.
 #include <vector>
 
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 
-struct PowerDrive {
+struct PowerPlaybackRun {
   const sim::plant::Plant* plant = nullptr;
   sim::Conventions conventions = {};
   const record::Record* record = nullptr;
@@ -33,6 +33,6 @@ VoltageCurve power_curve(const record::Record& record, std::vector<Switching> sw
 
 /// Returns the plant's response. Throws InputError if the operating point has no steady state, the
 /// integration fails, or no terminal voltage delivers P + jQ at some time.
-PowerResponse drive_by_power(const PowerDrive& run);
+PowerResponse simulate_power_playback(const PowerPlaybackRun& run);
 
 }  // namespace swingbank::validate::playin

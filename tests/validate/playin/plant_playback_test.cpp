@@ -1,5 +1,5 @@
 // Sensitivities of a playback response against central differences, for every kind of sensitivity parameter.
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ using Kind = SensitivityParameter::Kind;
 
 /// The example's fault and a GENROU with exciter and governor, so that every sensitivity parameter has an
 /// effect.
-class DrivenPlantTest : public ::testing::Test {
+class PlantPlaybackTest : public ::testing::Test {
  protected:
-  DrivenPlantTest() {
+  PlantPlaybackTest() {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
     model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     for (const char* name : {"TGOV1", "SEXS"}) {
@@ -37,13 +37,14 @@ class DrivenPlantTest : public ::testing::Test {
       std::ranges::fill(quiet.V, std::abs(start.voltage));
       std::ranges::fill(quiet.theta, std::arg(start.voltage));
       const VoltageCurve curve(quiet, {});
-      Drive run{.plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
+      PlaybackRun run{
+          .plant = &model_.plant, .conventions = model_.conventions, .record = &quiet, .curve = &curve};
       run.start = start;
       run.until = 3.0;
       const LinearPlant plant = linearise(run);
-      const Response still = drive(run);
+      const Response still = simulate_playback(run);
       run.voltage_factor = factor;
-      const Response moved = drive(run);
+      const Response moved = simulate_playback(run);
       const Eigen::Vector2d u(std::abs(factor) - 1, std::arg(factor));
       Eigen::VectorXd x = Eigen::VectorXd::Zero(plant.A.rows());
       double t = quiet.t.front();
@@ -70,7 +71,7 @@ class DrivenPlantTest : public ::testing::Test {
                   bool with_sensitivities = false) {
     plant::PlantModel model = model_;
     auto switchings = switchings_;
-    Drive run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
+    PlaybackRun run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
     run.start = pre_event_point(record_, switchings, 1.0);
     run.torque = {knots_, zeros_};
     run.field = {knots_, zeros_};
@@ -110,7 +111,8 @@ class DrivenPlantTest : public ::testing::Test {
     }
     const VoltageCurve curve(record_, switchings);
     run.curve = &curve;
-    return drive(run, with_sensitivities ? std::span(along) : std::span<const SensitivityParameter>());
+    return simulate_playback(run,
+                             with_sensitivities ? std::span(along) : std::span<const SensitivityParameter>());
   }
   void expect_sensitivities(const std::vector<SensitivityParameter>& parameters) {
     const Response at = answer(parameters, 0.0, true);
@@ -135,7 +137,7 @@ class DrivenPlantTest : public ::testing::Test {
   std::vector<double> knots_, zeros_;
 };
 
-TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
+TEST_F(PlantPlaybackTest, SensitivitiesToEveryParameter) {
   std::vector<SensitivityParameter> parameters;
   const auto blocks = sim::plant::block_parameters(model_.plant);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -153,7 +155,7 @@ TEST_F(DrivenPlantTest, SensitivitiesToEveryParameter) {
   EXPECT_GT(parameters.size(), 15u);
   expect_sensitivities(parameters);
 }
-TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
+TEST_F(PlantPlaybackTest, SensitivitiesToNuisanceParameters) {
   expect_sensitivities({{.kind = Kind::switching, .index = 0, .scale = 1e-5},
                         {.kind = Kind::switching, .index = 1, .scale = 1e-5},
                         {.kind = Kind::turn, .index = 0, .scale = 1e-5},
@@ -164,7 +166,7 @@ TEST_F(DrivenPlantTest, SensitivitiesToNuisanceParameters) {
                         {.kind = Kind::speed, .scale = 1e-6}});
 }
 /// A frequency without the steps of the angle, and the same voltage with them.
-TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
+TEST_F(PlantPlaybackTest, TurnRestoresTheMissingAngleStep) {
   const double lacks[] = {0.3, -0.5};  // [rad]
   record::Record turned = record_;
   auto turning = switchings_;
@@ -176,11 +178,11 @@ TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
   }
   const auto answer = [&](const record::Record& r, const std::vector<Switching>& at) {
     const VoltageCurve curve(r, at);
-    return drive({.plant = &model_.plant,
-                  .conventions = model_.conventions,
-                  .record = &r,
-                  .curve = &curve,
-                  .start = pre_event_point(r, at, 1.0)});
+    return simulate_playback({.plant = &model_.plant,
+                              .conventions = model_.conventions,
+                              .record = &r,
+                              .curve = &curve,
+                              .start = pre_event_point(r, at, 1.0)});
   };
   const Response with = answer(turned, switchings_), by_turns = answer(record_, turning),
                  without = answer(record_, switchings_);
@@ -194,7 +196,7 @@ TEST_F(DrivenPlantTest, TurnRestoresTheMissingAngleStep) {
 }
 /// Newton's method solves for the current of a GENTPJ, and a second one for its terminal behind the
 /// transformer.
-TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
+TEST_F(PlantPlaybackTest, SensitivitiesWithTransformerAndSaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");
   model_.plant.machine = {gentpj, gentpj->default_parameters()};
   model_.plant.transformer = {sim::library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
@@ -210,16 +212,16 @@ TEST_F(DrivenPlantTest, SensitivitiesWithTransformerAndSaturatedStator) {
   }
   expect_sensitivities(parameters);
 }
-TEST_F(DrivenPlantTest, SensitivitiesToAddedInputs) {
+TEST_F(PlantPlaybackTest, SensitivitiesToAddedInputs) {
   expect_sensitivities({{.kind = Kind::torque, .index = 1, .scale = 1e-4},
                         {.kind = Kind::torque, .index = 2, .scale = 1e-4},
                         {.kind = Kind::field, .index = 1, .scale = 1e-4},
                         {.kind = Kind::field, .index = 3, .scale = 1e-4}});
 }
-TEST_F(DrivenPlantTest, LinearPlantMatchesSmallStepResponse) { expect_linear(); }
+TEST_F(PlantPlaybackTest, LinearPlantMatchesSmallStepResponse) { expect_linear(); }
 /// At rest the errors of a converter's regulators are zero, and the limits of their integrators have a corner
 /// there.
-TEST_F(DrivenPlantTest, LinearConverterMatchesSmallStepResponse) {
+TEST_F(PlantPlaybackTest, LinearConverterMatchesSmallStepResponse) {
   model_.plant.controls.clear();
   model_.plant.machine = test::block("REGCA1", "");
   model_.plant.controls = {
@@ -227,7 +229,7 @@ TEST_F(DrivenPlantTest, LinearConverterMatchesSmallStepResponse) {
       test::block("REECA1", "QFLAG=1,Kqi=0.1,Kvp=1,Kvi=40,VMIN=0.8,VMAX=1.2,Imax=2,QMax=2,QMin=-2,PMAX=2")};
   expect_linear();
 }
-TEST_F(DrivenPlantTest, AddedInputIsPiecewiseLinear) {
+TEST_F(PlantPlaybackTest, AddedInputIsPiecewiseLinear) {
   const PiecewiseLinear f{{1.0, 2.0, 4.0}, {0.0, 1.0, -1.0}};
   EXPECT_EQ(f(0.9), 0.0);
   EXPECT_EQ(f(1.5), 0.5);

@@ -1,4 +1,4 @@
-#include "validate/playin/driven_together.hpp"
+#include "validate/playin/playback_batch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include "base/constants.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
-#include "validate/playin/detail/driven_equations.hpp"
 #include "validate/playin/detail/pairs.hpp"
+#include "validate/playin/detail/playback_equations.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -23,7 +23,8 @@ P8 size_of(P8 a) { return sim::positive_part(a) + sim::positive_part(-a); }
 
 class Together {
  public:
-  explicit Together(std::span<const Drive> runs) : runs_(runs), equations_(packed(runs)), x_(equations_.x0) {
+  explicit Together(std::span<const PlaybackRun> runs)
+      : runs_(runs), equations_(packed(runs)), x_(equations_.x0) {
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
     trial_.resize(n);
@@ -64,12 +65,12 @@ class Together {
  private:
   /// Returns the equations of all runs; a lane whose operating point has no steady state is a copy of
   /// another.
-  DrivenEquations<P8> packed(std::span<const Drive> runs) {
+  PlaybackEquations<P8> packed(std::span<const PlaybackRun> runs) {
     sim::plant::OperatingOf<P8> at;
     bool first = true;
     for (std::size_t lane = 0; lane < runs.size(); ++lane) {
       try {
-        const DrivenEquations<double> one(runs[lane], {});
+        const PlaybackEquations<double> one(runs[lane], {});
         if (first) {
           at.c.assign(one.c.begin(), one.c.end());
           at.x.assign(one.x0.begin(), one.x0.end());
@@ -180,9 +181,9 @@ class Together {
   }
 
   static constexpr double kNotFinite = 1e30;  ///< as an error
-  std::span<const Drive> runs_;
+  std::span<const PlaybackRun> runs_;
   std::array<char, kTogether> alive_{};
-  DrivenEquations<P8> equations_;
+  PlaybackEquations<P8> equations_;
   std::vector<P8> x_, trial_, allowed_;
   std::array<std::vector<P8>, std::size_t(kRoughSteps.stages)> k_;
   P8 errors_{0.0};
@@ -194,16 +195,16 @@ class Together {
 };
 
 /// Returns whether eight such runs can take common steps.
-bool can_go_together(const Drive& run) {
+bool can_go_together(const PlaybackRun& run) {
   constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&
          run.field.t.empty() && run.record->staged.empty() && !run.record->breaker() &&
          !run.record->open_circuit() && sim::plant::switching_times_of(*run.plant).empty();
 }
 
-std::optional<Response> alone(const Drive& run) {
+std::optional<Response> alone(const PlaybackRun& run) {
   try {
-    return drive(run);
+    return simulate_playback(run);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -211,7 +212,7 @@ std::optional<Response> alone(const Drive& run) {
 
 }  // namespace
 
-std::vector<std::optional<Response>> drive_together(std::span<const Drive> runs) {
+std::vector<std::optional<Response>> simulate_playback_batch(std::span<const PlaybackRun> runs) {
   std::vector<std::optional<Response>> all;
   for (std::size_t first = 0; first < runs.size(); first += kTogether) {
     const auto some = runs.subspan(first, std::min(kTogether, runs.size() - first));
@@ -219,7 +220,7 @@ std::vector<std::optional<Response>> drive_together(std::span<const Drive> runs)
       std::ranges::move(Together(some).run(), std::back_inserter(all));
       continue;
     }
-    for (const Drive& run : some) all.push_back(alone(run));
+    for (const PlaybackRun& run : some) all.push_back(alone(run));
   }
   return all;
 }

@@ -11,8 +11,8 @@
 #include "sim/plant/equations.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/detail/recorded.hpp"
-#include "validate/playin/driven_plant.hpp"
 #include "validate/playin/given.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 namespace swingbank::validate::playin {
 
@@ -52,18 +52,18 @@ struct Side {
 };
 
 template <class T>
-class DrivenEquations {
+class PlaybackEquations {
  public:
   using Kind = SensitivityParameter::Kind;
 
   /// Constructs the equations at the operating point, with sensitivities if T carries them.
-  DrivenEquations(const Drive& run, std::span<const SensitivityParameter> parameters)
-      : DrivenEquations(run, parameters, sim::plant::OperatingOf<T>{}) {
+  PlaybackEquations(const PlaybackRun& run, std::span<const SensitivityParameter> parameters)
+      : PlaybackEquations(run, parameters, sim::plant::OperatingOf<T>{}) {
     start();
   }
   /// Constructs the equations from a known operating point.
-  DrivenEquations(const Drive& run, std::span<const SensitivityParameter> parameters,
-                  sim::plant::OperatingOf<T> at)
+  PlaybackEquations(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
+                    sim::plant::OperatingOf<T> at)
       : c(std::move(at.c)),
         x0(std::move(at.x)),
         Efd(at.Efd),
@@ -256,7 +256,7 @@ class DrivenEquations {
     return value;
   }
 
-  const Drive& run_;
+  const PlaybackRun& run_;
   std::span<const SensitivityParameter> parameters_;
   sim::plant::PlantEquations<T> equations_;
   std::vector<T> scratch_;

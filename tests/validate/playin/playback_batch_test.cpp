@@ -1,5 +1,5 @@
 // Plants played back in a SIMD batch, compared with each alone.
-#include "validate/playin/driven_together.hpp"
+#include "validate/playin/playback_batch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-class DrivenTogether : public ::testing::Test {
+class PlaybackBatchTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
@@ -32,7 +32,7 @@ class DrivenTogether : public ::testing::Test {
       all[static_cast<std::size_t>(k)].controls.front().p[static_cast<std::size_t>(K)] *= std::pow(1.3, k);
     return all;
   }
-  [[nodiscard]] Drive run(const sim::plant::Plant& plant) const {
+  [[nodiscard]] PlaybackRun run(const sim::plant::Plant& plant) const {
     return {.plant = &plant,
             .conventions = model_.conventions,
             .record = &record_,
@@ -48,15 +48,15 @@ class DrivenTogether : public ::testing::Test {
 };
 
 /// At a tolerance of 1e-5 per step the two differed by at most 1.9e-4.
-TEST_F(DrivenTogether, AgreesWithSinglePlants) {
+TEST_F(PlaybackBatchTest, AgreesWithSinglePlants) {
   const auto all = plants(11);  // more than the size of a SIMD batch
-  std::vector<Drive> runs;
+  std::vector<PlaybackRun> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
-  const auto answers = drive_together(runs);
+  const auto answers = simulate_playback_batch(runs);
   ASSERT_EQ(answers.size(), all.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     ASSERT_TRUE(answers[k].has_value()) << k;
-    const Response own = drive(runs[k]);
+    const Response own = simulate_playback(runs[k]);
     for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd, Output::V}) {
       ASSERT_EQ(answers[k]->of(o).size(), own.of(o).size());
       for (std::size_t s = 0; s < own.of(o).size(); ++s)
@@ -67,27 +67,27 @@ TEST_F(DrivenTogether, AgreesWithSinglePlants) {
     }
   }
 }
-TEST_F(DrivenTogether, ReturnsNothingForInfeasibleOperatingPoints) {
+TEST_F(PlaybackBatchTest, ReturnsNothingForInfeasibleOperatingPoints) {
   auto all = plants(3);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
-  std::vector<Drive> runs;
+  std::vector<PlaybackRun> runs;
   for (auto& plant : all) {
     plant.controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below the initial Efd
     runs.push_back(run(plant));
     runs.back().allowance.assign(16, 1.0);  // as in a search, from its first plant
   }
-  for (const auto& answer : drive_together(runs)) EXPECT_FALSE(answer.has_value());
+  for (const auto& answer : simulate_playback_batch(runs)) EXPECT_FALSE(answer.has_value());
 }
-TEST_F(DrivenTogether, InfeasiblePlantDoesNotAffectTheOthers) {
+TEST_F(PlaybackBatchTest, InfeasiblePlantDoesNotAffectTheOthers) {
   auto all = plants(4);
   const int EMAX = model_.plant.controls.front().effect->parameter_index("EMAX");
   for (const std::size_t k : {std::size_t{0}, std::size_t{2}})
     all[k].controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below the initial Efd
-  std::vector<Drive> runs;
+  std::vector<PlaybackRun> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
-  const auto answers = drive_together(runs);
+  const auto answers = simulate_playback_batch(runs);
   for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(answers[k].has_value(), k % 2 == 1) << k;
-  EXPECT_TRUE(drive_together({}).empty());
+  EXPECT_TRUE(simulate_playback_batch({}).empty());
 }
 
 }  // namespace

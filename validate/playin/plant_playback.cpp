@@ -1,4 +1,4 @@
-#include "validate/playin/driven_plant.hpp"
+#include "validate/playin/plant_playback.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 
 #include "base/constants.hpp"
 #include "base/stop_signal.hpp"
-#include "validate/playin/detail/driven_equations.hpp"
 #include "validate/playin/detail/hermite.hpp"
 #include "validate/playin/detail/linear_sensitivities.hpp"
 #include "validate/playin/detail/pairs.hpp"
+#include "validate/playin/detail/playback_equations.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -28,9 +28,9 @@ constexpr double kTimeError = 1e-8;     ///< accuracy of the time at which the e
 constexpr double kRateOver = 1e-6;      ///< interval for the rate of a guard at zero [s]
 
 template <class T>
-class Driven {
+class Solver {
  public:
-  Driven(const Drive& run, std::span<const SensitivityParameter> parameters)
+  Solver(const PlaybackRun& run, std::span<const SensitivityParameter> parameters)
       : run_(run), parameters_(parameters), equations_(run, parameters), x_(equations_.x0) {
     const std::size_t n = x_.size();
     for (auto& k : k_) k.resize(n);
@@ -373,11 +373,11 @@ class Driven {
                       "check the parameters (time constants, limits) and the record at that time"});
   }
 
-  const Drive& run_;
+  const PlaybackRun& run_;
   const Pair& pair_ = run_.tolerance < kRoughFrom ? kFineSteps : kRoughSteps;
   bool fresh_ = true;  ///< k_[0] must be evaluated again
   std::span<const SensitivityParameter> parameters_;
-  DrivenEquations<T> equations_;
+  PlaybackEquations<T> equations_;
   std::vector<T> x_, trial_, missed_;
   std::array<std::vector<T>, 7> k_;
   std::vector<T> guards_, guards_at_end_;
@@ -410,18 +410,18 @@ std::string_view output_name(Output output) {
 /// A run and its trajectory.
 class TrajectoryCache {
  public:
-  explicit TrajectoryCache(const Drive& run) : answer(Driven<double>(run, {}).run(&trace)) {}
+  explicit TrajectoryCache(const PlaybackRun& run) : answer(Solver<double>(run, {}).run(&trace)) {}
   Trace trace;
   Response answer;
 };
 
-SeenAlong seen_along(const Drive& run, std::span<const double> times) {
+SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times) {
   Trace trace;
-  Driven<double>(run, {}).run(&trace);
-  Drive still = run;
+  Solver<double>(run, {}).run(&trace);
+  PlaybackRun still = run;
   still.angle = still.speed = 0;
   still.torque = still.field = {};
-  DrivenEquations<double> standing(still, {}), equations(run, {});
+  PlaybackEquations<double> standing(still, {}), equations(run, {});
   const std::size_t n = equations.x0.size();
   std::vector<double> x(n), dx(n);
   const auto seen = [](double t, const Side& side, const sim::Signals<double>& s) -> Seen {
@@ -454,11 +454,11 @@ SeenAlong seen_along(const Drive& run, std::span<const double> times) {
   return all;
 }
 
-LinearPlant linearise(const Drive& run) { return Driven<D8>(run, {}).linear(); }
+LinearPlant linearise(const PlaybackRun& run) { return Solver<D8>(run, {}).linear(); }
 
-Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind input) {
+Eigen::VectorXd rates_by_input(const PlaybackRun& run, SensitivityParameter::Kind input) {
   constexpr double kInputStep = 1e-3;  // [pu]
-  DrivenEquations<double> equations(run, {});
+  PlaybackEquations<double> equations(run, {});
   const auto n = equations.x0.size();
   std::vector<double> still(n), moved(n);
   equations.evaluate(run.record->t.front(), equations.x0.data(), still.data());
@@ -470,10 +470,10 @@ Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind inpu
          kInputStep;
 }
 
-Response drive(const Drive& run, std::span<const SensitivityParameter> parameters) {
+Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityParameter> parameters) {
   const bool linear = !run.linear_sensitivities.empty() && can_be_linear(run);
   if (parameters.empty()) {
-    if (!run.cache || !linear) return Driven<double>(run, {}).run();
+    if (!run.cache || !linear) return Solver<double>(run, {}).run();
     *run.cache = std::make_shared<const TrajectoryCache>(run);
     return (*run.cache)->answer;
   }
@@ -486,7 +486,7 @@ Response drive(const Drive& run, std::span<const SensitivityParameter> parameter
   constexpr std::size_t kSeedsAtOnce = sim::kSensitivities;
   for (std::size_t first = 0; first < parameters.size(); first += kSeedsAtOnce) {
     Response some =
-        Driven<D8>(run, parameters.subspan(first, std::min(kSeedsAtOnce, parameters.size() - first))).run();
+        Solver<D8>(run, parameters.subspan(first, std::min(kSeedsAtOnce, parameters.size() - first))).run();
     if (first == 0) {
       all = std::move(some);
       continue;

@@ -48,7 +48,7 @@ class TrajectoryCache;
 /// constant until the first switching. From then on, or from the start of an open circuit, the current is
 /// zero and V is the plant's own. P, Q and Pm of the response are per unit on the record's base, the other
 /// outputs on the machine's.
-struct Drive {
+struct PlaybackRun {
   const sim::plant::Plant* plant = nullptr;  ///< plant that is simulated
   sim::Conventions conventions = {};         ///< conventions of the simulator
   const record::Record* record = nullptr;    ///< record whose voltage is played in
@@ -84,8 +84,8 @@ struct SensitivityParameter {
     Q,          ///< likewise
     angle,      ///< initial angle [rad]
     speed,      ///< initial speed [pu]
-    torque,     ///< hat function `index` of Drive::torque [pu]
-    field,      ///< hat function `index` of Drive::field [pu]
+    torque,     ///< hat function `index` of PlaybackRun::torque [pu]
+    field,      ///< hat function `index` of PlaybackRun::field [pu]
   };
   Kind kind;                               ///< kind of the parameter
   sim::plant::ParameterId parameter = {};  ///< of Kind::parameter
@@ -115,7 +115,7 @@ struct Response {
 /// effect. At a switching time that is a sensitivity parameter, the sensitivities step by the difference of
 /// the derivatives before and after it. Throws InputError if the operating point has no steady state or the
 /// integration fails.
-Response drive(const Drive& run, std::span<const SensitivityParameter> parameters = {});
+Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
 struct Seen {
@@ -132,7 +132,7 @@ struct SeenAlong {
 };
 /// Returns these inputs at every sample and integration step, on both sides of every switching time, and at
 /// `times` [s] (ascending). Throws as drive().
-SeenAlong seen_along(const Drive& run, std::span<const double> times = {});
+SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times = {});
 
 /// Linearised plant about a run's start: \f$x' = A x + B u\f$, \f$y = C x + D u\f$ with u = (relative change
 /// of V, change of theta [rad]) and y = all outputs in the units of Response.
@@ -140,9 +140,9 @@ struct LinearPlant {
   Eigen::MatrixXd A, B, C, D;  ///< system, input, output and feedthrough matrix
 };
 /// Linearises the plant about the run's start. Throws InputError if the operating point has no steady state.
-LinearPlant linearise(const Drive& run);
+LinearPlant linearise(const PlaybackRun& run);
 /// Returns the derivative of each state's rate with respect to the run's torque or field at the start [1/s
 /// per pu]. Throws as linearise().
-Eigen::VectorXd rates_by_input(const Drive& run, SensitivityParameter::Kind input);
+Eigen::VectorXd rates_by_input(const PlaybackRun& run, SensitivityParameter::Kind input);
 
 }  // namespace swingbank::validate::playin
