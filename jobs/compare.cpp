@@ -22,7 +22,7 @@ constexpr const char *kPage = "report.html", *kResult = "compare.json",
 
 struct Arguments {
   jobs::AnalysisOptions of{"compare-report"};
-  std::string system, drive = "voltage", command;
+  std::string system, input = "voltage", command;
   bool fit_switchings = true;
 };
 
@@ -91,7 +91,7 @@ int run(Arguments& a) {
       if (std::ranges::count(names, name) == 0) names.push_back(name);
   a.of.open_results("compare", names);
   compare::CompareOptions options = a.of.comparing();
-  options.drive = a.drive == "pq" ? compare::DriveBy::power : compare::DriveBy::voltage;
+  options.input = a.input == "pq" ? compare::PlaybackInput::power : compare::PlaybackInput::voltage;
   options.fit_switchings = a.fit_switchings;
   options.step_shape = event::step_shape_of(records, options.step_threshold);
   options.progress = jobs::progress_line();
@@ -137,7 +137,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
                "several terminals (validate/record/README.md)");
   line.group("Expert");
   line.add(
-          "--drive", a.drive,
+          "--drive", a.input,
           "signals of the playback: voltage (V and angle are played in, P and Q compared) or pq (the reverse)")
       .one_of({"voltage", "pq"})
       .shows_default()

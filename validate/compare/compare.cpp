@@ -126,9 +126,9 @@ void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptio
 }
 
 /// Compares every channel of an event with a playback.
-void measure_channels(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
-                      EventComparison& e) {
-  const bool power = drive == DriveBy::power;
+void measure_channels(const plant::PlantModel& model, PlaybackInput input,
+                      const playin::PlayInOptions& options, EventComparison& e) {
+  const bool power = input == PlaybackInput::power;
   e.doubt.clear();
   if (!power && !e.record.breaker()) {
     add_doubt(model, e);
@@ -181,21 +181,21 @@ void measure_channels(const plant::PlantModel& model, DriveBy drive, const playi
 }
 
 /// Plays the record in with the event's switching times and compares every channel.
-void play(const plant::PlantModel& model, DriveBy drive, const playin::PlayInOptions& options,
+void play(const plant::PlantModel& model, PlaybackInput input, const playin::PlayInOptions& options,
           EventComparison& e) {
   const playin::VoltageCurve curve(e.record, e.switchings);
   e.switchings = curve.switchings();
-  e.playback = drive == DriveBy::power
+  e.playback = input == PlaybackInput::power
                    ? playin::play_in_power(model.under_test(), e.record, e.switchings, options)
                    : playin::play_in(model.under_test(), e.record, curve, options);
-  measure_channels(model, drive, options, e);
+  measure_channels(model, input, options, e);
 }
 
 /// Plays P and Q in, because the record has neither angle nor frequency.
 void play_without_angle(const plant::PlantModel& model, const playin::PlayInOptions& options,
                         EventComparison& e) {
   try {
-    play(model, DriveBy::power, options, e);
+    play(model, PlaybackInput::power, options, e);
   } catch (const InputError& error) {
     const Problem& p = error.problems().front();
     throw InputError({p.what, p.where, p.why,
@@ -387,7 +387,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   };
   const bool no_angle =
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
-  if (no_angle) options.drive = DriveBy::power;
+  if (no_angle) options.input = PlaybackInput::power;
   e.detected = e.record.switched.empty();
   const event::StepShape step_shape = options.step_shape == event::StepShape::either
                                           ? event::step_shape_of({e.record}, options.step_threshold)
@@ -396,7 +396,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   const auto fitted_with = [&](Fitted how) {
     EventComparison other = e;
     play_fitted(model, options, step_shape, how, other);
-    measure_channels(model, DriveBy::voltage, options.play_in, other);
+    measure_channels(model, PlaybackInput::voltage, options.play_in, other);
     return other;
   };
   // the start is fitted only if residuals are then within noise; an incomplete model would bias it
@@ -407,7 +407,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     }
     return fitted_with(Fitted::start_stands);
   };
-  if (!e.record.breaker() && step_shape == event::StepShape::spread && options.drive == DriveBy::voltage) {
+  if (!e.record.breaker() && step_shape == event::StepShape::spread &&
+      options.input == PlaybackInput::voltage) {
     e = fitted();
   } else {
     if (e.detected)
@@ -417,7 +418,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       for (const double t : e.record.switched) e.switchings.push_back({.time = t});
     if (e.detected && e.record.breaker()) e.switchings = playin::breaker_times(e.record, e.switchings);
     step("the voltage is played in", 0);
-    if (!no_angle) play(model, DriveBy::voltage, options.play_in, e);
+    if (!no_angle) play(model, PlaybackInput::voltage, options.play_in, e);
     const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;
     if (!no_angle && movable && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
       step("switching times and start are fitted", 1);
@@ -431,8 +432,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   step("the residual is evaluated", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
   explain(e, step_shape, options.fit_switchings && !no_angle, failed);
-  if (options.drive == DriveBy::power) {  // with the switching times found by the voltage
-    if (!no_angle) play(model, DriveBy::power, options.play_in, e);
+  if (options.input == PlaybackInput::power) {  // with the switching times found by the voltage
+    if (!no_angle) play(model, PlaybackInput::power, options.play_in, e);
     e.notes.push_back(
         "P and Q are played in, and no network holds the angle. A small lasting error of P "
         "therefore grows into one of frequency and speed; both are shown, but the verdict uses "

@@ -34,7 +34,7 @@ struct ChannelComparison {
   double size = 1;                   ///< nominal value: the machine's MVA for a power, else 1 [pu]
 };
 /// Quantities that are played in.
-enum class DriveBy {
+enum class PlaybackInput {
   voltage,  ///< V and theta are played in; P and Q are compared
   power,    ///< P and Q are played in; V and the frequency of theta are compared
 };
@@ -57,7 +57,7 @@ struct EventComparison {
 
 /// Options of a comparison.
 struct CompareOptions {
-  DriveBy drive = DriveBy::voltage;                ///< inputs of the playback
+  PlaybackInput input = PlaybackInput::voltage;    ///< inputs of the playback
   double step_threshold = playin::kStepThreshold;  ///< threshold of playin::detect_switchings [pu]
   /// Fits detected switching times to P and Q within their sample intervals, because the record does not
   /// determine them any better. At 30/s half an interval is 17 ms; in a fault this error alone left eight

@@ -65,8 +65,8 @@ void channel_panel(report::Page& page, const std::vector<Played>& played, const 
 }
 
 /// Chart of a recorded quantity that is played in.
-void driving_panel(report::Page& page, const EventComparison& e, const std::string& name,
-                   const std::string& unit, std::vector<double> values) {
+void input_panel(report::Page& page, const EventComparison& e, const std::string& name,
+                 const std::string& unit, std::vector<double> values) {
   if (values.size() != e.record.t.size()) return;  // not recorded
   report::Curves c = chart_of(e, name + ", played in", unit);
   c.series.push_back({"measured", kInk, true, std::move(values)});
@@ -78,13 +78,13 @@ void voltage_panels(report::Page& page, const std::vector<Played>& played, const
   if (find_channel(e, "V"))
     channel_panel(page, played, shown, "V");
   else
-    driving_panel(page, e, "V", "pu", e.record.V);
+    input_panel(page, e, "V", "pu", e.record.V);
   const double nominal = e.record.base.frequency;
   if (!e.record.f.empty())
-    driving_panel(page, e, "f", "Hz", times(e.record.f, nominal, nominal));
+    input_panel(page, e, "f", "Hz", times(e.record.f, nominal, nominal));
   else if (e.record.angle != record::AngleSource::none && e.record.theta.size() == e.record.t.size())
-    driving_panel(page, e, "f from the angle", "Hz",
-                  times(frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+    input_panel(page, e, "f from the angle", "Hz",
+                times(frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
   else
     page.note("f: neither frequency nor angle was recorded.");
 }
@@ -96,7 +96,7 @@ void power_panels(report::Page& page, const std::vector<Played>& played, const S
     if (find_channel(shown.first(), name))
       channel_panel(page, played, shown, name);
     else if (!recorded.empty())
-      driving_panel(page, shown.first(), name, name[0] == 'P' ? "MW" : "Mvar", times(recorded, r.base.mva));
+      input_panel(page, shown.first(), name, name[0] == 'P' ? "MW" : "Mvar", times(recorded, r.base.mva));
   }
 }
 

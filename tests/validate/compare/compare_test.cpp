@@ -325,7 +325,7 @@ TEST(CompareTest, ComparesRecordedChannels) {
 TEST(CompareTest, PlaysInPower_OnRequest) {
   const RightModel right;
   CompareOptions options;
-  options.drive = DriveBy::power;
+  options.input = PlaybackInput::power;
   std::vector<EventComparison> events = {compare_event(right.model, right.record, options)};
   const Adequacy a = judge(events);
   const EventComparison& e = events[0];

@@ -285,10 +285,10 @@ TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   EXPECT_EQ(std::ranges::count(ends.lost, 1), 2);
   EXPECT_THAT(field_faults(with("", 400, 8)), ElementsAre(AllOf(HasSubstr("Q_pu"), HasSubstr("8 samples"))));
   // Without an angle the angle is integrated from f, whose missing values are lost frames too.
-  const auto driven = table("t_s,V_pu,f_Hz,P_pu,Q_pu\n", 900, [](int k) {
+  const auto without_angle = table("t_s,V_pu,f_Hz,P_pu,Q_pu\n", 900, [](int k) {
     return fmt::format("{:.7f},1.02,{},0.4,0.1", k / 30.0, k == 300 ? "" : "60.0");
   });
-  EXPECT_THAT(parse_record(driven, "r.csv", kTestBase).notes,
+  EXPECT_THAT(parse_record(without_angle, "r.csv", kTestBase).notes,
               ::testing::Contains(HasSubstr("frames are missing")));
 }
 TEST(LostFramesTest, LongerGapsAreReported) {

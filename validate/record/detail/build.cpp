@@ -129,7 +129,7 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
 
 /// Returns whether a frame without this quantity is lost, because the model's inputs are required. Of a
 /// component, and of one file of several, this applies to every column.
-bool drives(const RawRecord& raw, const ReadOptions& options, Quantity q) {
+bool is_required(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (options.part || options.component != Component::plant) return true;
   const auto has = [&](Quantity wanted) {
     return std::ranges::any_of(raw.columns, [&](const RawColumn& c) { return c.meaning.quantity == wanted; });
@@ -142,7 +142,7 @@ bool drives(const RawRecord& raw, const ReadOptions& options, Quantity q) {
 bool is_lost(const RawRecord& raw, const ReadOptions& options, std::size_t row) {
   return std::ranges::any_of(raw.columns, [&](const RawColumn& c) {
     return c.meaning.quantity != Quantity::time && !std::isfinite(c.values[row]) &&
-           drives(raw, options, c.meaning.quantity);
+           is_required(raw, options, c.meaning.quantity);
   });
 }
 /// Returns whether a column has no value on the grid for longer than kLongestGap.
