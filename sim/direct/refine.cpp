@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "sim/core/noise.hpp"
-#include "sim/direct/detail/driven_machine.hpp"
+#include "sim/direct/detail/playback_machine.hpp"
 #include "sim/direct/detail/search.hpp"
 #include "sim/direct/detail/turning.hpp"
 #include "sim/direct/integral.hpp"
@@ -22,9 +22,9 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 constexpr std::size_t kAngleAndSpeed = 2;  ///< number of measured states: the first two of every machine
 
 /// A machine with voltage, angle and speed played in from the record.
-class Driven {
+class MachinePlayback {
  public:
-  Driven(const Effect& machine, const Recording& record, double longest)
+  MachinePlayback(const Effect& machine, const Recording& record, double longest)
       : machine_(machine), record_(record), first_(behind_last_leap(record)) {
     std::vector<double> p = machine.default_parameters();
     const auto count = std::min(static_cast<std::size_t>(longest / record.step), record.V.size() - first_);
@@ -61,7 +61,7 @@ class Driven {
 
  private:
   template <class T>
-  using Machine = DrivenMachine<T>;
+  using Machine = PlaybackMachine<T>;
   template <class T>
   [[nodiscard]] Machine<T> machine(const std::vector<T>& p) const {
     return {machine_,       record_.conventions,       p,
@@ -115,9 +115,9 @@ class Driven {
 /// scale.
 class Residuals : public ceres::CostFunction {
  public:
-  Residuals(const Driven& driven, std::vector<double> p, std::span<const int> free, VectorXd scale)
-      : driven_(driven), p_(std::move(p)), free_(free), scale_(std::move(scale)) {
-    set_num_residuals(static_cast<int>(driven_.outputs()));
+  Residuals(const MachinePlayback& playback, std::vector<double> p, std::span<const int> free, VectorXd scale)
+      : playback_(playback), p_(std::move(p)), free_(free), scale_(std::move(scale)) {
+    set_num_residuals(static_cast<int>(playback_.outputs()));
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(scale_.size()));
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
@@ -157,10 +157,10 @@ class Residuals : public ceres::CostFunction {
     const auto n = static_cast<Index>(free_.size());
     for (Index k = 0; k < n; ++k) p[static_cast<std::size_t>(free_[static_cast<std::size_t>(k)])] = at(k);
     for (Index k = n + 1; k < scale_.size(); ++k) flux.push_back(at(k));
-    return driven_.residuals<T>(p, at(n), flux);
+    return playback_.residuals<T>(p, at(n), flux);
   }
 
-  const Driven& driven_;
+  const MachinePlayback& playback_;
   std::vector<double> p_;
   std::span<const int> free_;
   VectorXd scale_;
@@ -215,8 +215,8 @@ Refined refine_best(const Effect& machine, const Recording& record,
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
                std::span<const int> free, std::span<const double> low, std::span<const double> high,
                const RefineOptions& options) {
-  const Driven driven(machine, record, options.longest);
-  const auto n = static_cast<Index>(free.size()), all = n + 1 + static_cast<Index>(driven.fluxes());
+  const MachinePlayback playback(machine, record, options.longest);
+  const auto n = static_cast<Index>(free.size()), all = n + 1 + static_cast<Index>(playback.fluxes());
   VectorXd scale = VectorXd::Ones(all), z = VectorXd::Zero(all);
   for (Index k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(free[static_cast<std::size_t>(k)]);
@@ -225,12 +225,12 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
     scale[k] = high[b] - low[b];
     z[k] = start[i] / scale[k];
   }
-  const auto flux = driven.fluxes_at_start(start);
+  const auto flux = playback.fluxes_at_start(start);
   for (std::size_t k = 0; k < flux.size(); ++k) z[n + 1 + static_cast<Index>(k)] = flux[k];
-  Residuals residuals(driven, start, free, scale);
+  Residuals residuals(playback, start, free, scale);
   const double* blocks[] = {z.data()};
-  VectorXd values(driven.outputs());
-  RowMatrix jacobian(driven.outputs(), all);
+  VectorXd values(playback.outputs());
+  RowMatrix jacobian(playback.outputs(), all);
   double* jacobians[] = {jacobian.data()};
   if (!residuals.Evaluate(blocks, values.data(), jacobians))
     return {start, std::numeric_limits<double>::infinity()};
@@ -251,7 +251,8 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
   ceres::Solver::Summary summary;
   constexpr double kSettled = 1e-9;
   ceres::Solve(search_options(options.iterations, kSettled), &problem, &summary);
-  return {residuals.parameters(z), std::sqrt(2 * summary.final_cost / static_cast<double>(driven.outputs())),
+  return {residuals.parameters(z),
+          std::sqrt(2 * summary.final_cost / static_cast<double>(playback.outputs())),
           static_cast<int>(summary.iterations.size()) - 1, idle};
 }
 

@@ -39,8 +39,8 @@ Solved solve(const MatrixXd& columns, const VectorXd& target, double samples) {
 class DirectAxis {
  public:
   explicit DirectAxis(const Turning& t) : samples_(static_cast<double>(t.V.size())) {
-    const VectorXd drive = VectorXd::Constant(t.Ifd.size(), t.Ifd0) - t.Ifd;
-    J = integral(drive, t.step);
+    const VectorXd forcing = VectorXd::Constant(t.Ifd.size(), t.Ifd0) - t.Ifd;
+    J = integral(forcing, t.step);
     MatrixXd base(t.V.size(), kColumns);
     base.col(0) = integral(t.flux.real(), t.step);
     base.col(1) = integral(t.flux.imag(), t.step);

@@ -87,7 +87,7 @@ class Played {
   }
 
   bool noise_;
-  DrivenMachine<T> m_;
+  PlaybackMachine<T> m_;
   States<T> start_{};
   T Ifd0_;
 };

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/core/scalar.hpp"
-#include "sim/direct/detail/driven_machine.hpp"
 #include "sim/direct/detail/noisy_record.hpp"
+#include "sim/direct/detail/playback_machine.hpp"
 
 namespace swingbank::sim::direct {
 

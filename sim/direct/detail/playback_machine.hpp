@@ -10,15 +10,15 @@ namespace swingbank::sim::direct {
 
 /// Machine behind a constant impedance. Angles are relative to the terminal voltage.
 template <class T>
-struct DrivenMachine {
+struct PlaybackMachine {
   const Ops<T>& ops;
   std::vector<T> c, x, scratch, dx;  ///< x: set before evaluate(); initially the steady state
   Signals<T> s;
   T r, xm;  ///< impedance between terminal and internal voltage [pu]
 
   /// Initialises the steady state with terminal voltage V0 and current Ir0 + j Ii0 out of the machine [pu].
-  DrivenMachine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const T& V0,
-                const T& Ir0, const T& Ii0)
+  PlaybackMachine(const Effect& effect, const Conventions& conventions, const std::vector<T>& p, const T& V0,
+                  const T& Ir0, const T& Ii0)
       : ops(effect.get<T>()),
         c(static_cast<std::size_t>(effect.coefficients)),
         x(effect.states.size()),
