@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
-#include "sim/core/drive.hpp"
+#include "sim/core/disturbance.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
 

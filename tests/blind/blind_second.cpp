@@ -7,7 +7,7 @@
 
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
-#include "tests/blind/second/drives.hpp"
+#include "tests/blind/second/disturbances.hpp"
 #include "validate/blind/cases/detail/effects.hpp"
 #include "validate/blind/cases/detail/world.hpp"
 #include "validate/blind/cases/plan.hpp"

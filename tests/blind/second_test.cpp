@@ -7,7 +7,7 @@
 
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
-#include "tests/blind/second/drives.hpp"
+#include "tests/blind/second/disturbances.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank {

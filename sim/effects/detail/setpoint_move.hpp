@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sim/core/drive.hpp"
+#include "sim/core/disturbance.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
 

@@ -14,7 +14,7 @@ struct State {
   Sexs::State exciter;
   Tgov1::State governor;
   Ieeest::State stabiliser;
-  UnlistedDrive::Memory unlisted{};
+  UnlistedDisturbance::Memory unlisted{};
 };
 Vector pack(const State& s) {
   const auto& r = s.rotor;

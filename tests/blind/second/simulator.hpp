@@ -23,7 +23,7 @@ struct FrequencyDip {
 
 /// An unlisted disturbance. `memory`: two states, 0 before the event. `within`: a time in the same segment as
 /// the integration step, on the same side of every step of an input.
-struct UnlistedDrive {
+struct UnlistedDisturbance {
   using Memory = std::array<double, 2>;
   /// Addition to the mechanical power [pu].
   std::function<double(double t, double within, double w, const Memory&)> torque;
@@ -43,7 +43,7 @@ struct Setup {
   std::optional<Ieeest> stabiliser;
   Phasor transformer{};   ///< impedance of a step-up transformer of ratio 1 [pu on the machine's base]
   Phasor ct_error{1, 0};  ///< output of the current transformers at an input of 1
-  UnlistedDrive unlisted;
+  UnlistedDisturbance unlisted;
   std::vector<Stretch> grid;  ///< the first starts at 0; its source is set to give P, Q, V
   FrequencyDip dip;
 };

@@ -24,7 +24,7 @@ Signals<double> at(const char* name, const Values& p, double t) {
   return s;
 }
 
-TEST(Drives, StepsLastBetweenTheirSwitchingTimes) {
+TEST(Disturbances, StepsLastBetweenTheirSwitchingTimes) {
   for (const auto& [t, value] :
        {std::pair{1.9999, 0.0}, {2.0, 0.03}, {2.9999, 0.03}, {3.0, 0.0}, {-1.0, 0.0}}) {
     EXPECT_EQ(at("VREFSTEP", {0.03, 2.0, 3.0}, t).dVref, value) << t;
@@ -32,7 +32,7 @@ TEST(Drives, StepsLastBetweenTheirSwitchingTimes) {
   }
 }
 
-TEST(Drives, RampsAreLinearAndKeepTheirFinalValue) {
+TEST(Disturbances, RampsAreLinearAndKeepTheirFinalValue) {
   for (const auto& [t, value] : {std::pair{1.9, 0.0}, {2.0, 0.0}, {3.0, 0.01}, {4.0, 0.02}, {9.0, 0.02}}) {
     EXPECT_DOUBLE_EQ(at("VREFRAMP", {0.02, 2.0, 2.0}, t).dVref, value) << t;
     EXPECT_DOUBLE_EQ(at("PREFRAMP", {0.02, 2.0, 2.0}, t).dPref, value) << t;
@@ -41,7 +41,7 @@ TEST(Drives, RampsAreLinearAndKeepTheirFinalValue) {
   EXPECT_EQ(at("PREFRAMP", {0.02, 2.0, 0.0}, 2.0).dPref, 0.02);  // duration 0: a step
 }
 
-TEST(Drives, AgcMovesAddUp) {
+TEST(Disturbances, AgcMovesAddUp) {
   const Values p = {1.0, 4.0, 2.0, 0.1, -0.05, 0.0, 0.0, 0.0, 0.2};
   for (const auto& [t, value] : {std::pair{0.999, 0.0},
                                  {2.0, 0.05},
@@ -55,21 +55,21 @@ TEST(Drives, AgcMovesAddUp) {
     EXPECT_NEAR(at("AGCMOVES", p, t).dPref, value, 1e-15) << t;  // sums of six numbers
 }
 
-TEST(Drives, FastValvingClosesWaitsAndReopens) {
+TEST(Disturbances, FastValvingClosesWaitsAndReopens) {
   const Values p = {0.5, 1.0, 0.2, 0.3, 2.0};
   for (const auto& [t, value] :
        {std::pair{0.99, 0.8}, {1.1, 0.6}, {1.2, 0.4}, {1.5, 0.4}, {2.5, 0.6}, {3.5, 0.8}, {9.0, 0.8}})
     EXPECT_NEAR(at("FASTVALVE", p, t).Tm, value, 1e-14) << t;
 }
 
-TEST(Drives, ForcedOscillationIsASine) {
+TEST(Disturbances, ForcedOscillationIsASine) {
   const Values p = {0.1, 0.5, std::numbers::pi / 6, 1.0, 5.0};
   // sin(30 deg) = 1/2 at the start, a third of a period later sin(150 deg) = 1/2 again
   for (const auto& [t, value] : {std::pair{0.999, 0.8}, {1.0, 0.85}, {1.0 + 2.0 / 3.0, 0.85}, {5.0, 0.8}})
     EXPECT_NEAR(at("FORCEDOSC", p, t).Tm, value, 1e-14) << t;
 }
 
-TEST(Drives, EveryStepAndKinkIsListed) {
+TEST(Disturbances, EveryStepAndKinkIsListed) {
   const auto switching_times = [](const char* name, const Values& p) {
     return library::compiled().find(name)->switching_times(nullptr, p.data());
   };
@@ -81,7 +81,7 @@ TEST(Drives, EveryStepAndKinkIsListed) {
             (Values{1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 17.0, 19.0, 21.0, 23.0}));
 }
 
-TEST(Drives, RefuseImpossibleParameters) {
+TEST(Disturbances, RefuseImpossibleParameters) {
   const auto count = [](const char* name, const Values& p) {
     Problems problems;
     library::compiled().find(name)->check(nullptr, p.data(), "here", problems);
@@ -141,7 +141,7 @@ double lagged_ramp(double tau, double T) { return tau <= 0.0 ? 0.0 : tau - T * l
 // bus's impedance of 1e-6 pu amplifies the rounding of its voltage, which limits the tolerance.
 constexpr double kReference = 1e-6, kLanes = 1e-5;
 
-TEST(Drives, VrefStepIsLaggedByTheExciter) {
+TEST(Disturbances, VrefStepIsLaggedByTheExciter) {
   grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "VREFSTEP", {0.01, 2.0, 5.0});
   const auto expected = [](double t) { return 20.0 * 0.01 * (lagged(t - 2.0, 0.5) - lagged(t - 5.0, 0.5)); };
@@ -149,7 +149,7 @@ TEST(Drives, VrefStepIsLaggedByTheExciter) {
   EXPECT_LE(worst(lanes(grid), Channel::Efd, expected), kLanes);
 }
 
-TEST(Drives, PrefRampIsLaggedByTheGovernor) {
+TEST(Disturbances, PrefRampIsLaggedByTheGovernor) {
   grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "PREFRAMP", {0.1, 1.0, 3.0});
   const auto expected = [](double t) {
@@ -159,7 +159,7 @@ TEST(Drives, PrefRampIsLaggedByTheGovernor) {
   EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), kLanes);
 }
 
-TEST(Drives, AgcMovesAreLaggedByTheGovernor) {
+TEST(Disturbances, AgcMovesAreLaggedByTheGovernor) {
   grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "AGCMOVES", {1.0, 2.0, 1.0, 0.1, -0.05, 0.02, 0.0, 0.0, 0.0});
   const auto expected = [](double t) {
@@ -172,7 +172,7 @@ TEST(Drives, AgcMovesAreLaggedByTheGovernor) {
   EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), kLanes);
 }
 
-TEST(Drives, FastValvingActsAfterTheGovernor) {
+TEST(Disturbances, FastValvingActsAfterTheGovernor) {
   grid::Grid grid = two_infinite_buses();
   const double before = reference(grid, 1.0).at(0, static_cast<int>(Channel::Tm))[0];
   add(grid.plants[1], "FASTVALVE", {0.4, 2.0, 0.1, 0.5, 2.0});
@@ -186,7 +186,7 @@ TEST(Drives, FastValvingActsAfterTheGovernor) {
 }
 
 /// A classical machine swings linearly for a small torque: speed = A s / (2 H s^2 + D s + w0 Ks).
-TEST(Drives, ForcedOscillationMatchesTheLinearModel) {
+TEST(Disturbances, ForcedOscillationMatchesTheLinearModel) {
   grid::Grid grid = test::two_machine_grid(Conventions::andes());
   plant::Plant& plant = grid.plants[1];
   constexpr double H = 3.0, D = 20.0, A = 1e-4, f = 0.7, start = 1.0, x = 0.25;
@@ -221,8 +221,8 @@ TEST(Drives, ForcedOscillationMatchesTheLinearModel) {
   EXPECT_GT(operating.Tm, 0.0);
 }
 
-TEST(Drives, HaveNoEffectBeforeTheirFirstSwitchingTime) {
-  const std::vector<std::pair<const char*, std::pair<Values, Values>>> drives = {
+TEST(Disturbances, HaveNoEffectBeforeTheirFirstSwitchingTime) {
+  const std::vector<std::pair<const char*, std::pair<Values, Values>>> disturbances = {
       {"VREFSTEP", {{0.05, 2.0, 3.0}, {0.0, 2.0, 3.0}}},
       {"VREFRAMP", {{0.05, 2.0, 1.0}, {0.0, 2.0, 1.0}}},
       {"PREFSTEP", {{0.05, 2.0, 3.0}, {0.0, 2.0, 3.0}}},
@@ -230,7 +230,7 @@ TEST(Drives, HaveNoEffectBeforeTheirFirstSwitchingTime) {
       {"AGCMOVES", {{2.0, 4.0, 2.0, .1, 0, 0, 0, 0, 0}, {2.0, 4.0, 2.0, 0, 0, 0, 0, 0, 0}}},
       {"FASTVALVE", {{0.5, 2.0, 0.1, 0.2, 1.0}, {0.0, 2.0, 0.1, 0.2, 1.0}}},
       {"FORCEDOSC", {{0.1, 0.5, 1.0, 2.0, 1e5}, {0.0, 0.5, 1.0, 2.0, 1e5}}}};
-  for (const auto& [name, values] : drives) {
+  for (const auto& [name, values] : disturbances) {
     grid::Grid grid = test::two_machine_grid(Conventions::psse());
     grid.plants[1].controls = {
         {library::compiled().find("SEXS"), library::compiled().find("SEXS")->default_parameters()},
