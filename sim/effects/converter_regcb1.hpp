@@ -87,7 +87,7 @@ struct Model : shared::BehindImpedance<Model> {
     inner_voltage(c, x, V, d, q);
     const auto lags = c[iTe] > T(0.0);
     T p, reactive;
-    driven(c, select(lags, x[Ed], d) - V, select(lags, x[Eq], q), p, reactive);
+    impedance_currents(c, select(lags, x[Ed], d) - V, select(lags, x[Eq], q), p, reactive);
     within(c, p, reactive);
     const T per = T(1.0) / renewable::at_least_small(V);
     s.Ir = (p * s.Vr + reactive * s.Vi) * per;

@@ -163,7 +163,7 @@ struct Model : shared::BehindImpedance<Model> {
   static void current(const T* c, const T* x, T*, Signals<T>& s) {
     const Frame<T> frame(x[phi]);
     T p, reactive;
-    driven(c, x[Ed] - frame.along(s.Vr, s.Vi), x[Eq] - frame.across(s.Vr, s.Vi), p, reactive);
+    impedance_currents(c, x[Ed] - frame.along(s.Vr, s.Vi), x[Eq] - frame.across(s.Vr, s.Vi), p, reactive);
     const auto lags = c[iTe] > T(0.0);
     p = select(lags, p, (c[kip] * lagged_active(c, x, magnitude(s)) + x[Sp]) * c[closed]);
     reactive = select(lags, reactive, (c[kip] * x[Iq] + x[Sq]) * c[closed]);

@@ -61,7 +61,7 @@ struct Model : shared::SimplifiedExciter<Model> {
   }
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    const T zero(0.0), fed = supply(c, s) * driven(c, x, s, dx);
+    const T zero(0.0), fed = supply(c, s) * limited_output(c, x, s, dx);
     const T crowbar = select(c[ratio] > zero, zero - c[ratio] * s.Ifd, fed);
     s.Efd = select(s.Ifd < zero, crowbar, fed);
   }

@@ -30,7 +30,7 @@ struct Model : shared::SimplifiedExciter<Model> {
 
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
-    s.Efd = driven(c, x, s, dx);
+    s.Efd = limited_output(c, x, s, dx);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

@@ -245,8 +245,8 @@ struct Model {
     const T texm = exhaust_temperature(c, x, fuel, turning, dx);
     const T stroke = requested(c, x, position, texm, s, dx);
     dx[valve] = clamp((stroke - position) * c[iTact], c[rclose], c[ropen]);
-    const T driven = lead_lag(c[tc], c[iTb], x[turbine], c[kturb] * (fuel - c[wfnl]), dx[turbine]);
-    s.Tm = (driven - c[loss] * turning) / c[base];
+    const T gross_power = lead_lag(c[tc], c[iTb], x[turbine], c[kturb] * (fuel - c[wfnl]), dx[turbine]);
+    s.Tm = (gross_power - c[loss] * turning) / c[base];
   }
   template <class T>
   static T exhaust_temperature(const T* c, const T* x, const T& fuel, const T& turning, T* dx) {

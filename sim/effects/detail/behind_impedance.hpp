@@ -95,7 +95,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
   }
   /// Computes the currents that the voltage d + jq drives through the impedance, before the limit Imax [pu].
   template <class T>
-  static void driven(const T* c, const T& d, const T& q, T& active, T& reactive) {
+  static void impedance_currents(const T* c, const T& d, const T& q, T& active, T& reactive) {
     active = (c[Model::r] * d + c[Model::x_e] * q) * c[Model::admittance];
     reactive = (c[Model::x_e] * d - c[Model::r] * q) * c[Model::admittance];
   }

@@ -52,7 +52,7 @@ struct SimplifiedExciter {
 
  protected:
   template <class T>
-  static T driven(const T* c, const T* x, const Signals<T>& s, T* dx) {
+  static T limited_output(const T* c, const T* x, const Signals<T>& s, T* dx) {
     const T error = c[Vref] + s.dVref - s.Vc + s.Vs + s.Vlimiter;
     const T y = lead_lag(c[TA], c[iTB], x[leadlag], error, dx[leadlag]);
     return clamp(lag(c[iTE], x[output], c[gain] * y, dx[output]), c[low], c[high]);

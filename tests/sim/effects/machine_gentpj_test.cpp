@@ -36,7 +36,7 @@ struct TypeJMachine {
   double& at(const char* parameter) { return p[static_cast<std::size_t>(effect.parameter_index(parameter))]; }
   [[nodiscard]] const Ops<double>& ops() const { return effect.get<double>(); }
   /// Derivatives and current at terminal voltage v, Efd and Tm as they are.
-  std::vector<double> driven(Complex v) {
+  std::vector<double> derivatives(Complex v) {
     std::vector<double> dx(x.size());
     double er, ei;
     ops().machine.emf(c.data(), x.data(), m.data(), er, ei);
@@ -104,7 +104,7 @@ TEST(MachineGentpj, EqualsGenrouWithSubtransientLeakage_WithoutSaturation) {
     a.x[1] = b.x[1] = 0.01;
     a.x[2] = b.x[2] += 0.1;
     a.x[4] = b.x[4] -= 0.1;
-    const auto da = a.driven(dip), db = b.driven(dip);
+    const auto da = a.derivatives(dip), db = b.derivatives(dip);
     for (std::size_t k = 0; k < da.size(); ++k)  // rounding of about 1 over T'' = 0.04 s
       EXPECT_NEAR(da[k], db[k], 1e-11) << k;
     EXPECT_NEAR(a.s.Ir, b.s.Ir, 1e-12);
@@ -135,7 +135,7 @@ TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
         double low = 0.0, high = 50.0;
         for (int halving = 0; halving < 60; ++halving)
           (excess((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
-        m.driven(v);
+        m.derivatives(v);
         const Complex expected = dq_current(low) * std::conj(turn);
         EXPECT_NEAR(m.s.Ir, expected.real(), 1e-10) << kis << " " << depth << " " << s12;
         EXPECT_NEAR(m.s.Ii, expected.imag(), 1e-10) << kis << " " << depth << " " << s12;
@@ -236,7 +236,7 @@ TEST(MachineGentpj, AcceptsAMissingQAxisTransientCircuit) {
   m.effect.check(nullptr, m.p.data(), "test", problems);
   EXPECT_TRUE(problems.empty());
   EXPECT_NEAR(m.x[3], 0.0, 1e-15);
-  for (const double d : m.driven(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
+  for (const double d : m.derivatives(1.0)) EXPECT_NEAR(d, 0.0, 1e-12);
 }
 
 }  // namespace
