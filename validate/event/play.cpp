@@ -114,8 +114,8 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
       which.push_back(k);
     } catch (const InputError&) {  // no steady state at the start
     }
-  auto answers = playin::simulate_playback_batch(runs);
-  for (std::size_t k = 0; k < runs.size(); ++k) all[which[k]] = std::move(answers[k]);
+  auto responses = playin::simulate_playback_batch(runs);
+  for (std::size_t k = 0; k < runs.size(); ++k) all[which[k]] = std::move(responses[k]);
   return all;
 }
 

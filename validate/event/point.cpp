@@ -188,7 +188,7 @@ struct Standing {
   sim::plant::PlantUnderTest tested;
   Complex start;  ///< P and Q before the event [pu on the record's base]
   WhitenedEvents events;
-  [[nodiscard]] playin::Response answer(const EventState& state, const Playing& how) const {
+  [[nodiscard]] playin::Response response(const EventState& state, const Playing& how) const {
     return play(tested, events[0], state, {}, how);
   }
 };
@@ -220,13 +220,13 @@ Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Reco
   constexpr double kAfter = 0.5;  // [s]; later the models matter more than the switching times
   const FitEvent& event = units[0].events[0];
   const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
-  std::vector<playin::Response> answers;
-  for (const Standing& unit : units) answers.push_back(unit.answer(state, how));
+  std::vector<playin::Response> responses;
+  for (const Standing& unit : units) responses.push_back(unit.response(state, how));
   Eigen::VectorXd left = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(whole.t.size()));
   for (std::size_t k = 0; k < whole.t.size() && whole.t[k] <= how.until; ++k) {
     if (!event.compared(k)) continue;
     double P = whole.P[k], Q = whole.Q[k];
-    for (const playin::Response& r : answers)
+    for (const playin::Response& r : responses)
       P -= r.of(playin::Output::P)[k], Q -= r.of(playin::Output::Q)[k];
     left.segment<2>(2 * static_cast<Eigen::Index>(k)) = Eigen::Vector2d(P, Q);
   }
@@ -339,7 +339,7 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   EventState state;
   if (!units[0].events[0].switchings.empty()) state = fit_switching_times(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {
-    const playin::Response r = units[u].answer(state, {.tolerance = 1e-8, .hasty = false});
+    const playin::Response r = units[u].response(state, {.tolerance = 1e-8, .hasty = false});
     for (std::size_t k = 0; k < record.t.size(); ++k) {
       record.P[k] -= r.of(playin::Output::P)[k];
       record.Q[k] -= r.of(playin::Output::Q)[k];

@@ -222,7 +222,7 @@ class Search {
     const sim::plant::Plant plant = moved(setting_, z_.data());
     try {
       for (std::size_t e = 0; e < states_.size(); ++e) {
-        static_cast<void>(costs_[e]->answer(plant, costs_[e]->at(states_[e].data()), setting_.lenient));
+        static_cast<void>(costs_[e]->response(plant, costs_[e]->at(states_[e].data()), setting_.lenient));
       }
     } catch (const InputError& error) {
       return error.problems().front().sentence();
@@ -231,12 +231,12 @@ class Search {
   }
 
   /// Returns the final response, with lenient steps if exact ones fail.
-  playin::Response answer_at_end(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
-    if (!setting_.lenient || options_.brief) return costs_[e]->answer(plant, at, setting_.lenient);
+  playin::Response final_response(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
+    if (!setting_.lenient || options_.brief) return costs_[e]->response(plant, at, setting_.lenient);
     try {
-      return costs_[e]->answer(plant, at, false);
+      return costs_[e]->response(plant, at, false);
     } catch (const InputError&) {
-      return costs_[e]->answer(plant, at, true);
+      return costs_[e]->response(plant, at, true);
     }
   }
   void collect_events(Fit& fit) const {
@@ -244,7 +244,7 @@ class Search {
       const event::FitEvent& event = (*setting_.events)[e];
       EventFit f;
       f.state = costs_[e]->at(states_[e].data());
-      const playin::Response r = answer_at_end(e, fit.plant, f.state);
+      const playin::Response r = final_response(e, fit.plant, f.state);
       compare(*setting_.events, e, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
@@ -354,11 +354,11 @@ double gain(const EventFit& from, const EventFit& to) {
 void require_same_noise(const EventFit& a, const EventFit& b) { require_same(a.noise, b.noise); }
 bool better(const Fit& a, const Fit& b) { return gain(b, a) > 0; }
 
-void compare(const event::WhitenedEvents& events, std::size_t which, const playin::Response& answer,
+void compare(const event::WhitenedEvents& events, std::size_t which, const playin::Response& response,
              EventFit& f) {
   const event::FitEvent& event = events[which];
-  for (const playin::Output o : event.channels) f.model.push_back(answer.of(o));
-  event::RowMatrix e = event.collected(answer.value, true);
+  for (const playin::Output o : event.channels) f.model.push_back(response.of(o));
+  event::RowMatrix e = event.collected(response.value, true);
   events.noise(which).whiten(e);
   f.noise = events.noise_model();
   f.values = event.values();

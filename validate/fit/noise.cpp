@@ -209,11 +209,11 @@ std::array<Sums, playin::kOutputs> sums_of(const Fit& fit, const event::Whitened
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
       const auto row = static_cast<Eigen::Index>(c);
       const double noise = events.noise(i).deviation[row];
-      const Eigen::ArrayXd answer = detrended(fit.events[i].model[c], n) / noise,
+      const Eigen::ArrayXd response = detrended(fit.events[i].model[c], n) / noise,
                            measured = detrended(e.measured(e.channels[c]), n) / noise;
       Eigen::ArrayX2d by(n, 2);
-      by << answer, -(into(row, 0) * V + into(row, 1) * theta) / noise;
-      const Eigen::VectorXd residual = answer - measured;
+      by << response, -(into(row, 0) * V + into(row, 1) * theta) / noise;
+      const Eigen::VectorXd residual = response - measured;
       sums[static_cast<std::size_t>(e.channels[c])].add({by.matrix().transpose() * by.matrix(),
                                                          by.matrix().transpose() * residual,
                                                          residual.squaredNorm(), n - kOfLine});

@@ -23,7 +23,7 @@ double astray(const record::Record& r, std::size_t n) {
 
 /// Returns the plant's response to impulses on its states: [channel][sample].
 template <class Kick>
-VoltageDoubt::Shape answer(const event::SlowNoise& noise, std::size_t samples, Kick kick) {
+VoltageDoubt::Shape impulse_response(const event::SlowNoise& noise, std::size_t samples, Kick kick) {
   VoltageDoubt::Shape shape(static_cast<std::size_t>(noise.C.rows()), std::vector<double>(samples, 0.0));
   Eigen::VectorXd x = kick(-1);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -58,12 +58,12 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
   for (const Eigen::Index j : {0, 1}) {
     Eigen::VectorXd mean = none;
     mean[none.size() - 2 + j] = std::sqrt(variance[j] / e.start.samples);
-    doubt.shapes.push_back(answer(noise, samples, [&](int k) { return k < 0 ? mean : none; }));
+    doubt.shapes.push_back(impulse_response(noise, samples, [&](int k) { return k < 0 ? mean : none; }));
   }
   const Eigen::MatrixXd moved = root_of(noise.Q) / std::sqrt(kDraws),
                         guessed = root_of(noise.added_covariance);
   for (std::uint32_t d = 0; d < kDraws && variance.maxCoeff() > 0; ++d)
-    doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
+    doubt.shapes.push_back(impulse_response(noise, samples, [&](int k) -> Eigen::VectorXd {
       if (k < 0) return none;
       const auto normal = sim::normal_pair(1, d, static_cast<std::uint64_t>(k));
       const double third = integrated ? sim::normal_pair(2, d, static_cast<std::uint64_t>(k))[0] : 0.0;
@@ -71,7 +71,7 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
     }));
   for (std::size_t at = 0; at < samples; ++at)
     for (Eigen::Index j = 1; noise.doubtful[at] > 0 && j < 3; ++j)  // two: V and theta
-      doubt.shapes.push_back(answer(noise, samples, [&](int k) -> Eigen::VectorXd {
+      doubt.shapes.push_back(impulse_response(noise, samples, [&](int k) -> Eigen::VectorXd {
         return k == static_cast<int>(at) ? (std::sqrt(noise.doubtful[at]) * guessed.col(j)).eval() : none;
       }));
   return doubt;

@@ -42,7 +42,7 @@ struct Scene {
   std::string name;
 };
 /// Response of one hypothesis in a scene and its sensitivities, in units of noise.
-struct Answer {
+struct ScaledResponse {
   std::array<Eigen::VectorXd, playin::kOutputs> value;
   std::array<Eigen::MatrixXd, playin::kOutputs> sensitivities;
 };
@@ -83,16 +83,16 @@ class Separations {
   }
 
   void play(int threads) {
-    answers_.resize(scenes_.size() * competitors_.size());
+    responses_.resize(scenes_.size() * competitors_.size());
     in_parallel(
-        answers_.size(),
-        [&](std::size_t k) { answers_[k] = play_one(k / competitors_.size(), k % competitors_.size()); },
+        responses_.size(),
+        [&](std::size_t k) { responses_[k] = play_one(k / competitors_.size(), k % competitors_.size()); },
         [](int) {}, threads);
     for (std::size_t j = 0; j < competitors_.size(); ++j) {
       const auto n = static_cast<Eigen::Index>(free_[j].size());
       known_[j] = Eigen::MatrixXd::Identity(n, n);
       for (std::size_t s = 0; s < events_.size(); ++s)
-        if (const auto& a = answer(s, j))
+        if (const auto& a = response(s, j))
           for (const Output o : channels())
             known_[j] += a->sensitivities[at(o)].transpose() * a->sensitivities[at(o)];
     }
@@ -104,7 +104,7 @@ class Separations {
   /// if one cannot be simulated.
   [[nodiscard]] std::optional<double> between(std::size_t scene, const std::vector<Output>& outputs,
                                               std::size_t i, std::size_t j) const {
-    const auto &truth = answer(scene, i), &other = answer(scene, j);
+    const auto &truth = response(scene, i), &other = response(scene, j);
     if (!truth || !other) return std::nullopt;
     double squares = 0;
     Eigen::MatrixXd information = known_[j];
@@ -121,8 +121,9 @@ class Separations {
 
  private:
   static std::size_t at(Output o) { return static_cast<std::size_t>(o); }
-  [[nodiscard]] const std::optional<Answer>& answer(std::size_t scene, std::size_t competitor) const {
-    return answers_[scene * competitors_.size() + competitor];
+  [[nodiscard]] const std::optional<ScaledResponse>& response(std::size_t scene,
+                                                              std::size_t competitor) const {
+    return responses_[scene * competitors_.size() + competitor];
   }
   /// Sets the noise of the recorded channels to the RMS residual of the first hypothesis.
   void measure_noise() {
@@ -140,7 +141,7 @@ class Separations {
       noise_[at(channels()[c])] = std::sqrt(squares / static_cast<double>(count));
     }
   }
-  [[nodiscard]] std::optional<Answer> play_one(std::size_t scene, std::size_t competitor) const {
+  [[nodiscard]] std::optional<ScaledResponse> play_one(std::size_t scene, std::size_t competitor) const {
     const Judgement& j = *competitors_[competitor];
     const Scene& s = scenes_[scene];
     std::vector<playin::SensitivityParameter> along;
@@ -153,7 +154,7 @@ class Separations {
           {j.fit.plant, j.hypothesis.conventions}, s.event,
           s.recorded < 0 ? event::EventState{} : j.fit.events[static_cast<std::size_t>(s.recorded)].state,
           along);
-      Answer a;
+      ScaledResponse a;
       for (std::size_t o = 0; o < playin::kOutputs; ++o) {
         const auto column = [&](const std::vector<double>& v) -> Eigen::VectorXd {
           Eigen::VectorXd c(static_cast<Eigen::Index>(v.size()));
@@ -176,7 +177,7 @@ class Separations {
   const event::WhitenedEvents& events_;
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
-  std::vector<std::optional<Answer>> answers_;  ///< [scene * rivals + rival]
+  std::vector<std::optional<ScaledResponse>> responses_;  ///< [scene * rivals + rival]
   std::vector<Eigen::MatrixXd> known_;  ///< information of the records on each hypothesis's parameters
   std::array<double, playin::kOutputs> noise_;
 };

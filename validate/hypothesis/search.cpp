@@ -198,11 +198,11 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
                                  const std::vector<fit::EventState>& states) {
   std::vector<double> chi2(plants.size(), 0.0);
   for (std::size_t e = 0; e < events.size(); ++e) {
-    const auto answers = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
+    const auto responses = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
     for (std::size_t k = 0; k < plants.size(); ++k) {
       fit::EventFit f;
-      if (answers[k]) fit::compare(events, e, *answers[k], f);
-      chi2[k] += answers[k] ? f.chi2 : std::numeric_limits<double>::infinity();
+      if (responses[k]) fit::compare(events, e, *responses[k], f);
+      chi2[k] += responses[k] ? f.chi2 : std::numeric_limits<double>::infinity();
     }
   }
   return chi2;

@@ -82,12 +82,12 @@ constexpr Probe kProbes[] = {
 
 /// Returns the signals that the component's blocks depend on, tested at one operating point. Throws
 /// InputError if it has no steady state.
-std::vector<std::string> answered(const sim::plant::PlantUnderTest& part, double Efd, double Tm) {
+std::vector<std::string> used_signals(const sim::plant::PlantUnderTest& part, double Efd, double Tm) {
   auto p = sim::plant::block_parameters(part.plant);
   p.front() = recorded::standing<double>(Efd, Efd, Tm);
   const auto at = sim::plant::operating_point_of<double>(part.plant, p, 1.0, 0.6, 0.2, part.conventions);
   const sim::plant::PlantEquations<double> equations(part.plant);
-  const auto answer = [&](const Probe* probe, double by) {
+  const auto derivatives = [&](const Probe* probe, double by) {
     sim::Signals<double> s = at.s;
     s.Efd = at.Efd;
     s.Tm = at.Tm;
@@ -102,20 +102,20 @@ std::vector<std::string> answered(const sim::plant::PlantUnderTest& part, double
     dx.push_back(s.Vlimiter);
     return dx;
   };
-  const auto still = answer(nullptr, 0);
+  const auto still = derivatives(nullptr, 0);
   std::vector<std::string> words;
   for (const Probe& probe : kProbes)
     if (std::ranges::any_of(std::array{-1.0, -0.1, 0.1, 1.0},
-                            [&](double share) { return answer(&probe, share * probe.reach) != still; }))
+                            [&](double share) { return derivatives(&probe, share * probe.reach) != still; }))
       words.emplace_back(probe.word);
   return words;
 }
 
-std::vector<std::string> answered(const sim::plant::PlantUnderTest& part) {
+std::vector<std::string> used_signals(const sim::plant::PlantUnderTest& part) {
   for (const double Efd : {2.0, 1.5, 1.0, 2.5, 3.0, 0.6})
     for (const double Tm : {0.6, 0.8, 0.4, 0.2}) {
       try {
-        return answered(part, Efd, Tm);
+        return used_signals(part, Efd, Tm);
       } catch (const InputError&) {  // try the next point
       }
     }
@@ -193,7 +193,7 @@ std::vector<std::vector<std::string>> needed_columns(const sim::plant::PlantUnde
   std::vector<std::vector<std::string>> all;
   if (of == Component::exciter) all = {{"V"}, {"Efd"}};
   if (of == Component::governor) all = {{"speed", "f"}, {"Pm", "gate"}, {"Pm", "P"}};
-  for (const auto& word : answered(part)) {
+  for (const auto& word : used_signals(part)) {
     if (of == Component::governor && word == "speed") continue;
     all.push_back(word == "speed" ? std::vector<std::string>{"speed", "f"} : std::vector{word});
   }

@@ -410,9 +410,9 @@ std::string_view output_name(Output output) {
 /// A run and its trajectory.
 class TrajectoryCache {
  public:
-  explicit TrajectoryCache(const PlaybackRun& run) : answer(Solver<double>(run, {}).run(&trace)) {}
+  explicit TrajectoryCache(const PlaybackRun& run) : response(Solver<double>(run, {}).run(&trace)) {}
   Trace trace;
-  Response answer;
+  Response response;
 };
 
 SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times) {
@@ -475,12 +475,12 @@ Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityPa
   if (parameters.empty()) {
     if (!run.cache || !linear) return Solver<double>(run, {}).run();
     *run.cache = std::make_shared<const TrajectoryCache>(run);
-    return (*run.cache)->answer;
+    return (*run.cache)->response;
   }
   if (linear) {
     const auto cache = run.cache && *run.cache ? *run.cache : std::make_shared<const TrajectoryCache>(run);
-    Response answer = cache->answer;
-    if (add_linear_sensitivities(run, parameters, cache->trace, answer)) return answer;
+    Response response = cache->response;
+    if (add_linear_sensitivities(run, parameters, cache->trace, response)) return response;
   }
   Response all;
   constexpr std::size_t kSeedsAtOnce = sim::kSensitivities;

@@ -40,8 +40,8 @@ class Together {
       return std::vector<std::optional<Response>>(runs_.size());  // no operating point has a steady state
     const record::Record& r = *runs_.front().record;
     const auto& switchings = runs_.front().curve->switchings();
-    for (auto& answer : answers_)
-      for (auto& values : answer.value) values.reserve(r.t.size());
+    for (auto& response : responses_)
+      for (auto& values : response.value) values.reserve(r.t.size());
     const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
     t_ = r.t.front();
     for (const double sample : r.t) {
@@ -58,7 +58,7 @@ class Together {
     }
     std::vector<std::optional<Response>> back(runs_.size());
     for (std::size_t lane = 0; lane < runs_.size(); ++lane)
-      if (alive_[lane]) back[lane] = std::move(answers_[lane]);
+      if (alive_[lane]) back[lane] = std::move(responses_[lane]);
     return back;
   }
 
@@ -174,9 +174,9 @@ class Together {
     const Complex v = equations_.voltage(t_);
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
       if (!alive_[lane]) continue;
-      answers_[lane].voltage.push_back(v);
+      responses_[lane].voltage.push_back(v);
       for (std::size_t o = 0; o < kOutputs; ++o)
-        answers_[lane].value[o].push_back(out[o][static_cast<int>(lane)]);
+        responses_[lane].value[o].push_back(out[o][static_cast<int>(lane)]);
     }
   }
 
@@ -187,7 +187,7 @@ class Together {
   std::vector<P8> x_, trial_, allowed_;
   std::array<std::vector<P8>, std::size_t(kRoughSteps.stages)> k_;
   P8 errors_{0.0};
-  std::array<Response, kTogether> answers_;
+  std::array<Response, kTogether> responses_;
   bool fresh_ = true;  ///< k_[0] must be evaluated anew
   std::size_t next_ = 0;
   long steps_ = 0;

@@ -85,7 +85,7 @@ class SwitchingTimeFit {
     double sum = 0;
     for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
       const record::Record& r = s_.terminals[i].record;
-      const Modelled& m = run.answers[i];
+      const Modelled& m = run.responses[i];
       const auto of = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
         return squares(r.t, measured, modelled, filtered_samples_[i]);
       };

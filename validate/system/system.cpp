@@ -108,7 +108,7 @@ class Comparer {
                     1e3 * filter_reach));
   }
   void channels(std::size_t i, compare::EventComparison& e) {
-    const Modelled& m = run_.answers[i];
+    const Modelled& m = run_.responses[i];
     const record::Record& r = s_.terminals[i].record;
     // The angle is undefined while a bolted fault reduces V to nearly zero.
     const bool gone = std::ranges::any_of(r.V, [](double v) { return v < 0.05; });
@@ -142,7 +142,7 @@ class Comparer {
       if (by_meter) leave_out(e, event::kPeakReach * r.step());  // meters delay or smooth an angle step
       add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
-          compare::frequency_of(r.t, run_.answers[i].theta, nominal));
+          compare::frequency_of(r.t, run_.responses[i].theta, nominal));
       e.left_out = compared;
       return kNaN;
     }
@@ -153,7 +153,7 @@ class Comparer {
                         "the angle between them cannot be taken sample by sample",
                         "export both at the same rate, or leave compare.reference out"});
     const auto measured = difference(r.theta, other.theta);
-    auto modelled = difference(run_.answers[i].theta, run_.answers[reference].theta);
+    auto modelled = difference(run_.responses[i].theta, run_.responses[reference].theta);
     const double turns =
         constants::turn * std::round((modelled.front() - measured.front()) / constants::turn);
     for (double& v : modelled) v -= turns;

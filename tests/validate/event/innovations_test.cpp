@@ -91,7 +91,7 @@ struct Quiet {
     events = prepare_events(model, std::move(records));
   }
   /// Computes the residuals of the present model.
-  void answer() {
+  void compute_residuals() {
     fit.events.clear();
     for (std::size_t i = 0; i < events.size(); ++i) {
       const FitEvent& e = events[i];
@@ -124,11 +124,11 @@ struct Quiet {
 
 TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
   Quiet quiet("SEXS");
-  quiet.answer();
+  quiet.compute_residuals();
   EXPECT_GT(quiet.slow_power(), 3.0);  // the residual is coloured
   quiet.events = quiet.events.with(fit::remember_noise(quiet.fit, quiet.model.conventions, quiet.events));
   ASSERT_TRUE(quiet.events.noise(0).memory);
-  quiet.answer();
+  quiet.compute_residuals();
   // 75 squares scatter by 16 %, and the measured noise of V by another 20 %.
   EXPECT_NEAR(quiet.slow_power(), 1.0, 0.6);
 }

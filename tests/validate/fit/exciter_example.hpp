@@ -7,8 +7,8 @@
 namespace swingbank::validate::fit {
 
 /// Response of the plant to the event from the state `at`.
-inline playin::Response answer(const event::FitEvent& e, const EventState& at,
-                               const sim::plant::PlantUnderTest& tested) {
+inline playin::Response response_to(const event::FitEvent& e, const EventState& at,
+                                    const sim::plant::PlantUnderTest& tested) {
   return event::play(tested, e, at);
 }
 

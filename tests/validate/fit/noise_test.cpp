@@ -116,15 +116,15 @@ Case moving(double carried, bool real, Samples samples = {}) {
     f.model.resize(2);
     for (int k = 0; k < samples.all; ++k) {
       const double v = kVoltage * normal(random), theta = 2 * kVoltage * normal(random);
-      const double answer[2] = {0.3 * v - 3 * theta, -4 * v + 0.2 * theta};
+      const double response[2] = {0.3 * v - 3 * theta, -4 * v + 0.2 * theta};
       const double by_phasors[2] = {kP * v - kQ * theta, kQ * v + kP * theta};
       e.record.t.push_back(k / 30.0);
       e.record.V.push_back(1 + v + (k > kSamples / 2 ? 0.05 * std::sin(0.2 * k) : 0.0));  // 1 Hz, later
       e.record.theta.push_back(theta);
       for (std::size_t ch = 0; ch < 2; ++ch) {
-        const double measured = (real ? answer[ch] : carried * by_phasors[ch]) + kOwn * normal(random);
+        const double measured = (real ? response[ch] : carried * by_phasors[ch]) + kOwn * normal(random);
         (ch == 0 ? e.record.P : e.record.Q).push_back((ch == 0 ? kP : kQ) + measured);
-        f.model[ch].push_back((ch == 0 ? kP : kQ) + answer[ch]);
+        f.model[ch].push_back((ch == 0 ? kP : kQ) + response[ch]);
       }
     }
     e.start = {.samples = samples.before, .voltage = 1.0, .P = kP, .Q = kQ};

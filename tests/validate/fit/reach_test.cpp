@@ -16,9 +16,9 @@ double& parameter(sim::plant::Block& block, std::string_view name) {
 }
 
 /// Returns the example's first event as `truth` would respond to it, without noise.
-event::WhitenedEvents answered(const ExciterExample& example, const sim::plant::Plant& truth) {
+event::WhitenedEvents with_response_of(const ExciterExample& example, const sim::plant::Plant& truth) {
   event::FitEvent e = example.events.front();
-  const playin::Response r = answer(e, {}, {truth, example.model.conventions});
+  const playin::Response r = response_to(e, {}, {truth, example.model.conventions});
   e.record.P = r.of(playin::Output::P);
   e.record.Q = r.of(playin::Output::Q);
   return {{e}, example.events.noise_model()};
@@ -43,7 +43,7 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").default_parameters()};
   sim::plant::Plant truth = example.model.plant;
   parameter(truth.controls.back(), "KE") = -0.1;
-  const event::WhitenedEvents events = answered(example, truth);
+  const event::WhitenedEvents events = with_response_of(example, truth);
   std::vector<FreeParameter> free = free_parameters(example.model.plant, 0.2);
   for (auto& f : free)
     if (f.id.block > sim::plant::kMachineBlock) f.spread = 1;
@@ -66,7 +66,7 @@ TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   sim::plant::Block& machine = example.model.plant.machine;
   parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
   ASSERT_FALSE(sim::plant::violated(machine).empty());
-  const event::WhitenedEvents events = answered(example, example.model.plant);
+  const event::WhitenedEvents events = with_response_of(example, example.model.plant);
   const Fit f = fit(example.model.under_test(), events, free_parameters(example.model.plant, example.spread));
   ASSERT_EQ(f.failed, "");
   EXPECT_LT(f.reduced_chi2(), 1e-3);
@@ -79,7 +79,7 @@ struct BelowLeakage {
   sim::plant::Block& machine = example.model.plant.machine;
   event::WhitenedEvents events = [this] {
     parameter(machine, "Xdpp") = 0.8 * parameter(machine, "Xl");
-    return answered(example, example.model.plant);
+    return with_response_of(example, example.model.plant);
   }();
   [[nodiscard]] Fit fitted(const FitOptions& options = {}) const {
     return fit(example.model.under_test(), events, example.free({"Xdpp"}), options);
@@ -129,7 +129,7 @@ TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
                                     {"SE2", 0.0087104884393198745}})
     parameter(exciter, name) = value;
   example.model.plant.controls.back() = exciter;
-  EXPECT_THROW((void)answer(example.events.front(), {}, example.model.under_test()), InputError);
+  EXPECT_THROW((void)response_to(example.events.front(), {}, example.model.under_test()), InputError);
   const Fit f = fit(example.model.under_test(), example.events, {}, {.iterations = 0});
   EXPECT_EQ(f.failed, "");
 }

@@ -13,9 +13,9 @@ namespace swingbank::validate::hypothesis {
 class HiddenExciter : public ::testing::Test {
  protected:
   /// Sets P and Q of the event to the response of this plant.
-  void record_answer_of(const sim::plant::PlantUnderTest& truth) {
+  void record_response_of(const sim::plant::PlantUnderTest& truth) {
     event::FitEvent e = events_.front();
-    const playin::Response r = fit::answer(e, base_.events.front().state, truth);
+    const playin::Response r = fit::response_to(e, base_.events.front().state, truth);
     e.record.P = r.of(playin::Output::P);
     e.record.Q = r.of(playin::Output::Q);
     events_ = {{e}, events_.noise_model()};

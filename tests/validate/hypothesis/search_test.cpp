@@ -21,7 +21,7 @@ TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   Hypothesis truth = named("GENROU:Ra");
   constexpr double kRa = 0.03;
   sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
-  record_answer_of(truth.under_test());
+  record_response_of(truth.under_test());
   base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, base_model_.spread));
   const auto tried = try_hypotheses(base_model_, {named("PTERROR"), truth, named("IEEEVC")});
   ASSERT_EQ(tried.size(), 2U);
@@ -39,7 +39,7 @@ TEST_F(WholeFit, FindsRateFeedbackInactiveByDefault) {
   Hypothesis truth = exst1;
   parameter(truth.plant, "KF") = kKF;
   parameter(truth.plant, "TF") = kTF;
-  record_answer_of(truth.under_test());
+  record_response_of(truth.under_test());
   const auto alone = try_hypotheses(base_model_, {exst1});
   ASSERT_EQ(alone.size(), 1U);
   const auto tried = try_hypotheses(base_model_, with_left_off(exst1, alone.front().fit.plant));

@@ -175,9 +175,9 @@ struct Case {
       run.start = playin::pre_event_point(r, switchings, 1.0);
       run.tolerance = 1e-8;
       change(i, run);
-      const playin::Response answer = playin::simulate_playback(run);
-      r.P = answer.of(playin::Output::P);
-      r.Q = answer.of(playin::Output::Q);
+      const playin::Response response = playin::simulate_playback(run);
+      r.P = response.of(playin::Output::P);
+      r.Q = response.of(playin::Output::Q);
       for (auto* channel : {&r.P, &r.Q})
         for (double& v : *channel) v += 1e-3 * normal(generator);
       r.speed.clear();

@@ -29,15 +29,15 @@ double worst(const Case& c, record::Record r, Output output) {
   const auto part = component_of(c.plant(), r.component);
   const VoltageCurve curve(r, {{.time = kOn}, {.time = kOff}});
   const Playback back = play_in({part, c.grid.conventions}, r, curve);
-  const auto& answer = output == Output::Efd  ? back.Efd
-                       : output == Output::Pm ? back.Pm
-                       : output == Output::P  ? back.P
-                       : output == Output::Q  ? back.Q
-                                              : back.Ifd;
+  const auto& response = output == Output::Efd  ? back.Efd
+                         : output == Output::Pm ? back.Pm
+                         : output == Output::P  ? back.P
+                         : output == Output::Q  ? back.Q
+                                                : back.Ifd;
   const auto& measured = measured_values(r, output);
   double error = 0, moved = 0;
-  for (std::size_t k = 0; k < answer.size(); ++k) {
-    error = std::max(error, std::abs(answer[k] - measured[k]));
+  for (std::size_t k = 0; k < response.size(); ++k) {
+    error = std::max(error, std::abs(response[k] - measured[k]));
     moved = std::max(moved, std::abs(measured[k] - measured.front()));
   }
   EXPECT_GT(moved, 0.003) << "the event does not move " << output_name(output);

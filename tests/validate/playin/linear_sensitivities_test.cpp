@@ -34,7 +34,7 @@ class LinearSensitivitiesTest : public ::testing::Test {
         return sim::plant::parameter_value(model_.plant, {b, effect.parameter_index(name)});
     throw std::logic_error(block);
   }
-  Response answer(const std::vector<SensitivityParameter>& along, bool linear) const {
+  Response response(const std::vector<SensitivityParameter>& along, bool linear) const {
     const VoltageCurve curve(record_, switchings_);
     const PlaybackRun run{.plant = &model_.plant,
                           .conventions = model_.conventions,
@@ -72,7 +72,7 @@ class LinearSensitivitiesTest : public ::testing::Test {
   }
   /// Largest RMS error of any sensitivity of P, Q, speed and Ifd, relative to the RMS of the sensitivity.
   [[nodiscard]] double worst(const std::vector<SensitivityParameter>& along) const {
-    const Response exact = answer(along, false), linear = answer(along, true);
+    const Response exact = response(along, false), linear = response(along, true);
     double most = 0;
     for (std::size_t d = 0; d < along.size(); ++d)
       for (const Output output : kShown) {
@@ -93,7 +93,7 @@ class LinearSensitivitiesTest : public ::testing::Test {
 };
 
 TEST_F(LinearSensitivitiesTest, OfRequestedOutputs) {
-  const Response r = answer({{.kind = Kind::P}}, true);
+  const Response r = response({{.kind = Kind::P}}, true);
   EXPECT_EQ(r.sensitivities.front().value[static_cast<int>(Output::Q)].size(), record_.t.size());
   EXPECT_TRUE(r.sensitivities.front().value[static_cast<int>(Output::V)].empty());
 }
@@ -118,7 +118,7 @@ TEST_F(LinearSensitivitiesTest, AgreesForTimeConstantsFarBelowASample) {
 TEST_F(LinearSensitivitiesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
-  const Response r = answer({}, false);
+  const Response r = response({}, false);
   const auto& Efd = r.of(Output::Efd);
   EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
   EXPECT_LT(worst(all()), 0.05);
@@ -144,7 +144,7 @@ class Limited : public LinearSensitivitiesTest {
 };
 TEST_F(Limited, LimiterTimeHasSensitivities) {
   const std::vector<SensitivityParameter> along = all();
-  const Response exact = answer(along, false), linear = answer(along, true);
+  const Response exact = response(along, false), linear = response(along, true);
   constexpr double kAside = 1e-4;
   int limiter_moved = 0;
   for (std::size_t d = 0; d < along.size(); ++d) {
@@ -153,9 +153,9 @@ TEST_F(Limited, LimiterTimeHasSensitivities) {
     double& value = sim::plant::parameter_value(model_.plant, a.parameter);
     const double at = value;
     value = at * (1 + kAside);
-    const Response up = answer({}, false);
+    const Response up = response({}, false);
     value = at * (1 - kAside);
-    const Response down = answer({}, false);
+    const Response down = response({}, false);
     value = at;
     double own = 0, off = 0, off_linear = 0;
     for (const Output output : kShown) {

@@ -67,8 +67,8 @@ class PlantPlaybackTest : public ::testing::Test {
     }
   }
   /// Response with every sensitivity parameter moved by `by` units.
-  Response answer(const std::vector<SensitivityParameter>& along, double by,
-                  bool with_sensitivities = false) {
+  Response response(const std::vector<SensitivityParameter>& along, double by,
+                    bool with_sensitivities = false) {
     plant::PlantModel model = model_;
     auto switchings = switchings_;
     PlaybackRun run{.plant = &model.plant, .conventions = model.conventions, .record = &record_};
@@ -115,9 +115,9 @@ class PlantPlaybackTest : public ::testing::Test {
                              with_sensitivities ? std::span(along) : std::span<const SensitivityParameter>());
   }
   void expect_sensitivities(const std::vector<SensitivityParameter>& parameters) {
-    const Response at = answer(parameters, 0.0, true);
+    const Response at = response(parameters, 0.0, true);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const Response up = answer({parameters[i]}, 1.0), down = answer({parameters[i]}, -1.0);
+      const Response up = response({parameters[i]}, 1.0), down = response({parameters[i]}, -1.0);
       for (int o = 0; o < kOutputs; ++o) {
         double worst = 0, largest = 0;
         for (std::size_t k = 0; k < at.value[o].size(); ++k) {
@@ -176,7 +176,7 @@ TEST_F(PlantPlaybackTest, TurnRestoresTheMissingAngleStep) {
     for (std::size_t k = 0; k < turned.t.size(); ++k)
       if (turned.t[k] > turning[s].time) turned.theta[k] += lacks[s];
   }
-  const auto answer = [&](const record::Record& r, const std::vector<Switching>& at) {
+  const auto response = [&](const record::Record& r, const std::vector<Switching>& at) {
     const VoltageCurve curve(r, at);
     return simulate_playback({.plant = &model_.plant,
                               .conventions = model_.conventions,
@@ -184,8 +184,8 @@ TEST_F(PlantPlaybackTest, TurnRestoresTheMissingAngleStep) {
                               .curve = &curve,
                               .start = pre_event_point(r, at, 1.0)});
   };
-  const Response with = answer(turned, switchings_), by_turns = answer(record_, turning),
-                 without = answer(record_, switchings_);
+  const Response with = response(turned, switchings_), by_turns = response(record_, turning),
+                 without = response(record_, switchings_);
   double least = 0;
   for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd})
     for (std::size_t k = 0; k < record_.t.size(); ++k) {

@@ -52,18 +52,18 @@ TEST_F(PlaybackBatchTest, AgreesWithSinglePlants) {
   const auto all = plants(11);  // more than the size of a SIMD batch
   std::vector<PlaybackRun> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
-  const auto answers = simulate_playback_batch(runs);
-  ASSERT_EQ(answers.size(), all.size());
+  const auto responses = simulate_playback_batch(runs);
+  ASSERT_EQ(responses.size(), all.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    ASSERT_TRUE(answers[k].has_value()) << k;
+    ASSERT_TRUE(responses[k].has_value()) << k;
     const Response own = simulate_playback(runs[k]);
     for (const Output o : {Output::P, Output::Q, Output::speed, Output::Efd, Output::V}) {
-      ASSERT_EQ(answers[k]->of(o).size(), own.of(o).size());
+      ASSERT_EQ(responses[k]->of(o).size(), own.of(o).size());
       for (std::size_t s = 0; s < own.of(o).size(); ++s)
-        EXPECT_NEAR(answers[k]->of(o)[s], own.of(o)[s], 3e-4) << output_name(o) << " of run " << k;
+        EXPECT_NEAR(responses[k]->of(o)[s], own.of(o)[s], 3e-4) << output_name(o) << " of run " << k;
     }
     if (k > 0) {
-      EXPECT_GT(std::abs(answers[k]->of(Output::Q)[300] - answers[0]->of(Output::Q)[300]), 2e-3) << k;
+      EXPECT_GT(std::abs(responses[k]->of(Output::Q)[300] - responses[0]->of(Output::Q)[300]), 2e-3) << k;
     }
   }
 }
@@ -76,7 +76,7 @@ TEST_F(PlaybackBatchTest, ReturnsNothingForInfeasibleOperatingPoints) {
     runs.push_back(run(plant));
     runs.back().allowance.assign(16, 1.0);  // as in a search, from its first plant
   }
-  for (const auto& answer : simulate_playback_batch(runs)) EXPECT_FALSE(answer.has_value());
+  for (const auto& response : simulate_playback_batch(runs)) EXPECT_FALSE(response.has_value());
 }
 TEST_F(PlaybackBatchTest, InfeasiblePlantDoesNotAffectTheOthers) {
   auto all = plants(4);
@@ -85,8 +85,8 @@ TEST_F(PlaybackBatchTest, InfeasiblePlantDoesNotAffectTheOthers) {
     all[k].controls.front().p[static_cast<std::size_t>(EMAX)] = 0.5;  // below the initial Efd
   std::vector<PlaybackRun> runs;
   for (const auto& plant : all) runs.push_back(run(plant));
-  const auto answers = simulate_playback_batch(runs);
-  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(answers[k].has_value(), k % 2 == 1) << k;
+  const auto responses = simulate_playback_batch(runs);
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(responses[k].has_value(), k % 2 == 1) << k;
   EXPECT_TRUE(simulate_playback_batch({}).empty());
 }
 

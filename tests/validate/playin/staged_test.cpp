@@ -25,13 +25,13 @@ StagedError staged_error(const sim::plant::PlantUnderTest& tested, const record:
   const VoltageCurve curve(
       r, r.breaker() && !r.open_circuit() ? std::vector<Switching>{{.time = r.breaker()->time}} : none);
   const Playback back = play_in(tested, r, curve);
-  const std::vector<double>* answers[kOutputs] = {&back.P,   &back.Q,  &back.speed, &back.Efd,
-                                                  &back.Ifd, &back.Pm, &back.gate,  &back.V};
-  const auto& answer = *answers[static_cast<int>(output)];
+  const std::vector<double>* responses[kOutputs] = {&back.P,   &back.Q,  &back.speed, &back.Efd,
+                                                    &back.Ifd, &back.Pm, &back.gate,  &back.V};
+  const auto& response = *responses[static_cast<int>(output)];
   const auto& measured = measured_values(r, output);
   StagedError e;
-  for (std::size_t k = 0; k < answer.size(); ++k) {
-    e.error = std::max(e.error, std::abs(answer[k] - measured[k]));
+  for (std::size_t k = 0; k < response.size(); ++k) {
+    e.error = std::max(e.error, std::abs(response[k] - measured[k]));
     e.moved = std::max(e.moved, std::abs(measured[k] - measured.front()));
   }
   return e;

@@ -96,8 +96,8 @@ Eigen::Index BlindSize::first_row(std::size_t event) const {
   return row;
 }
 
-playin::Response BlindSize::answer(std::size_t event, const record::Record& record,
-                                   const std::vector<playin::SensitivityParameter>& along) const {
+playin::Response BlindSize::response(std::size_t event, const record::Record& record,
+                                     const std::vector<playin::SensitivityParameter>& along) const {
   event::FitEvent played = prepared_[event];
   played.record = record;
   played.start = playin::pre_event_point(record, played.switchings, 1.0);
@@ -106,7 +106,7 @@ playin::Response BlindSize::answer(std::size_t event, const record::Record& reco
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const record::Record& record) const {
   // less the residual of interpolation and filter without the effect
-  const playin::Response r = answer(event, record, {});
+  const playin::Response r = response(event, record, {});
   return interleaved(prepared_[event], record.P, record.Q) -
          interleaved(prepared_[event], r.of(playin::Output::P), r.of(playin::Output::Q)) -
          plain_residual_[event];
@@ -122,7 +122,7 @@ void BlindSize::add_columns(std::size_t event) {
   for (std::size_t s = 0; s < events_[event].switchings.size(); ++s)
     along.push_back({.kind = Kind::switching, .index = static_cast<int>(s), .scale = kSwitchingUnit});
   for (const Kind kind : {Kind::P, Kind::Q, Kind::angle, Kind::speed}) along.push_back({.kind = kind});
-  const playin::Response r = answer(event, plain_[event], along);
+  const playin::Response r = response(event, plain_[event], along);
 
   auto first = static_cast<Eigen::Index>(shared);  // first column of this event
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);

@@ -11,12 +11,12 @@ constexpr double kKick = 1e-3;             ///< impulse in one sample of V (rela
 constexpr double kSettle = 3, kFade = 12;  ///< duration before and after that sample [s]
 
 /// Whitened residual of the playback, and its sensitivities.
-struct Answer {
+struct WhitenedResidual {
   Eigen::VectorXd residual;
   Eigen::MatrixXd sensitivities;
 };
-Answer answer(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
-              const std::vector<playin::SensitivityParameter>& along) {
+WhitenedResidual whitened_residual(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+                                   const std::vector<playin::SensitivityParameter>& along) {
   const playin::Response r = event::play(tested, e.event, {}, along, {.tolerance = 1e-8, .hasty = false});
   const auto n = static_cast<Eigen::Index>(along.size());
   event::RowMatrix all(e.event.values(), n + 1);
@@ -43,7 +43,7 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
   const auto at = static_cast<std::size_t>(kSettle / quiet.record.step());
   event::EventNoise noise = events.noise(0);
   noise.memory = fit::memory_of(whitening, {quiet, noise}, voltage);
-  const Answer still = answer(tested, {quiet, noise}, along);
+  const WhitenedResidual still = whitened_residual(tested, {quiet, noise}, along);
   const Eigen::MatrixXd carried = voltage.into(quiet);
   const auto n = static_cast<Eigen::Index>(free.size());
   VoltagePull pull{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n)};
@@ -60,7 +60,7 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
       if (kicked.channels[c] == playin::Output::P) r.P[at] += more;
       if (kicked.channels[c] == playin::Output::Q) r.Q[at] += more;
     }
-    const Answer moved = answer(tested, {kicked, noise}, along);
+    const WhitenedResidual moved = whitened_residual(tested, {kicked, noise}, along);
     const Eigen::MatrixXd sensitivities = (moved.sensitivities - still.sensitivities) / kKick;
     const Eigen::VectorXd residual = (moved.residual - still.residual) / kKick;
     const double times = samples * variance[of];

@@ -44,7 +44,7 @@ event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until
 }
 
 /// Returns the reduced chi-square of a response in white noise, up to `until` and after it.
-std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::Response& answer,
+std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::Response& response,
                                double until) {
   const event::FitEvent& e = whole.event;
   double early = 0, late = 0;
@@ -52,7 +52,7 @@ std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::
   for (std::size_t k = 0; k < e.record.t.size(); ++k) {
     if (!e.compared(k)) continue;
     for (std::size_t c = 0; c < e.channels.size(); ++c) {
-      const double off = (answer.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
+      const double off = (response.of(e.channels[c])[k] - e.measured(e.channels[c])[k]) /
                          whole.noise.deviation[static_cast<Eigen::Index>(c)];
       const bool begins = e.record.t[k] <= until;
       (begins ? early : late) += off * off;

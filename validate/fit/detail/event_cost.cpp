@@ -172,8 +172,8 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool wi
 
 EventState EventCost::at(const double* state) const { return event_state(event_, state); }
 
-playin::Response EventCost::answer(const sim::plant::Plant& plant, const EventState& state,
-                                   bool lenient) const {
+playin::Response EventCost::response(const sim::plant::Plant& plant, const EventState& state,
+                                     bool lenient) const {
   return event::play({plant, *setting_.conventions}, event_, state, {},
                      {.tolerance = setting_.tolerance, .lenient = lenient, .allowance = &allowance_});
 }

@@ -21,8 +21,8 @@ class EventCost : public ceres::CostFunction {
   /// Returns the event's state from the search's variables.
   [[nodiscard]] EventState at(const double* state) const;
   /// Returns the response of the plant to the event.
-  [[nodiscard]] playin::Response answer(const sim::plant::Plant& plant, const EventState& state,
-                                        bool lenient) const;
+  [[nodiscard]] playin::Response response(const sim::plant::Plant& plant, const EventState& state,
+                                          bool lenient) const;
   /// Limits the number of points at which sensitivities are computed from now on. After the last step of a
   /// search none are needed, and zeros are returned.
   void look_at(int points) { points_ = points; }

@@ -105,11 +105,11 @@ struct Linear {
 class LinearSensitivities {
  public:
   LinearSensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
-                      const Trace& trace, Response& answer)
+                      const Trace& trace, Response& response)
       : run_(run),
         parameters_(parameters),
         trace_(trace),
-        answer_(answer),
+        response_(response),
         n_(trace.x.size() / trace.nodes.size()),
         m_(parameters.size()),
         inputs_(n_ + (std::ranges::any_of(parameters, is_input) ? 2 : 0)),
@@ -150,8 +150,8 @@ class LinearSensitivities {
   }
 
   bool run() {
-    answer_.sensitivities.resize(m_);
-    for (auto& sensitivity : answer_.sensitivities)
+    response_.sensitivities.resize(m_);
+    for (auto& sensitivity : response_.sensitivities)
       for (const Output o : run_.linear_sensitivities) {
         auto& values = sensitivity.value[static_cast<int>(o)];
         values.resize(trace_.y.size());
@@ -405,7 +405,7 @@ class LinearSensitivities {
   const PlaybackRun& run_;
   std::span<const SensitivityParameter> parameters_;
   const Trace& trace_;
-  Response& answer_;
+  Response& response_;
   const std::size_t n_, m_, inputs_;  ///< states; sensitivity parameters; states, torque and field voltage
   std::size_t active_ = 0;            ///< sensitivity parameters whose input has begun
   std::size_t begun_ = 0;             ///< entries of `begins_` that have begun
@@ -432,8 +432,8 @@ bool can_be_linear(const PlaybackRun& run) {
 }
 
 bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
-                              const Trace& trace, Response& answer) {
-  return LinearSensitivities(run, parameters, trace, answer).run();
+                              const Trace& trace, Response& response) {
+  return LinearSensitivities(run, parameters, trace, response).run();
 }
 
 }  // namespace swingbank::validate::playin

@@ -38,6 +38,6 @@ bool can_be_linear(const PlaybackRun& run);
 /// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671), which damps modes faster than a step at
 /// once. Returns false if the result is not finite.
 bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
-                              const Trace& trace, Response& answer);
+                              const Trace& trace, Response& response);
 
 }  // namespace swingbank::validate::playin

@@ -49,8 +49,8 @@ class PowerPlayback {
       advance(sample);
       record(sample);
     }
-    answer_.steps = steps_;
-    return std::move(answer_);
+    response_.steps = steps_;
+    return std::move(response_);
   }
 
  private:
@@ -176,12 +176,12 @@ class PowerPlayback {
     if (!evaluate(t, x_.data(), k_[0].data())) give_up();
     const double turn = constants::turn;
     const double theta = std::arg(voltage_) + run_.start.drift * t;
-    const double last = answer_.theta.empty() ? run_.record->theta.front() : answer_.theta.back();
-    answer_.V.push_back(std::abs(voltage_));
-    answer_.theta.push_back(theta - turn * std::round((theta - last) / turn));
-    answer_.speed.push_back(signals_.speed + run_.start.drift / (turn * run_.conventions.frequency));
-    answer_.Efd.push_back(signals_.Efd);
-    answer_.Ifd.push_back(signals_.Ifd);
+    const double last = response_.theta.empty() ? run_.record->theta.front() : response_.theta.back();
+    response_.V.push_back(std::abs(voltage_));
+    response_.theta.push_back(theta - turn * std::round((theta - last) / turn));
+    response_.speed.push_back(signals_.speed + run_.start.drift / (turn * run_.conventions.frequency));
+    response_.Efd.push_back(signals_.Efd);
+    response_.Ifd.push_back(signals_.Ifd);
   }
 
   [[noreturn]] void give_up() const {
@@ -209,7 +209,7 @@ class PowerPlayback {
   int segment_ = 0, steps_ = 0;
   bool unsolved_ = false;  ///< at the last evaluation
   double t_ = 0, h_ = 1e-3;
-  PowerResponse answer_;
+  PowerResponse response_;
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ void thin(std::vector<double>& values, int samples, int stride) {
 class Player {
  public:
   Player(const SystemCase& system, const sim::network::Event& event) : s_(system), event_(event) {
-    out.answers.resize(s_.terminals.size());
+    out.responses.resize(s_.terminals.size());
     // Terminals with equal sampling times share a simulation without interpolation.
     std::map<std::tuple<double, double, int>, std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
@@ -96,7 +96,7 @@ class Player {
     }
     for (std::size_t k = 0; k < plants.size(); ++k) take_plant(run, static_cast<int>(k), plants[k]);
     for (std::size_t k = 0; k < buses.size(); ++k) {
-      Modelled& m = out.answers[buses[k]];
+      Modelled& m = out.responses[buses[k]];
       const auto from = static_cast<std::ptrdiff_t>(k) * run.samples;
       m.V = scaled(run.bus_v.data() + from, run.samples, 1);
       m.theta = scaled(run.bus_theta.data() + from, run.samples, 1);
@@ -105,7 +105,7 @@ class Player {
     for (const std::size_t i : members) measure(i, {first, o.rate, stride, samples});
   }
   void take_plant(const sim::reference::ReferenceRun& run, int row, std::size_t terminal) {
-    Modelled& m = out.answers[terminal];
+    Modelled& m = out.responses[terminal];
     const sim::plant::Plant& plant = s_.grid.plants[static_cast<std::size_t>(s_.terminals[terminal].plant)];
     const double base = plant.mva / s_.base.mva;
     const auto channel = [&](int c, double factor) { return scaled(run.at(row, c), run.samples, factor); };
@@ -121,7 +121,7 @@ class Player {
 
   /// Applies the terminal's instruments and reduces the response to the record's samples.
   void measure(std::size_t terminal, const Sampling& at) {
-    Modelled& m = out.answers[terminal];
+    Modelled& m = out.responses[terminal];
     const SystemTerminal& t = s_.terminals[terminal];
     if (!t.instruments.empty()) {
       sim::Phasors phasors = phasors_at(t, m, at.rate);

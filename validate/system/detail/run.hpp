@@ -15,7 +15,7 @@ struct Modelled {
 /// Responses of all terminals. Terminals with equal sampling times share a simulation, so that no response is
 /// interpolated.
 struct SystemRun {
-  std::vector<Modelled> answers;  ///< one per terminal
+  std::vector<Modelled> responses;  ///< one per terminal
   sim::Outcome outcome = sim::Outcome::stable;
   double stopped_at = std::numeric_limits<double>::infinity();  ///< on the records' clock [s]
 };

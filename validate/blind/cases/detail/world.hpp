@@ -99,8 +99,8 @@ class BlindSize {
                             std::span<const BlindPath> but = {}) const;
 
  private:
-  [[nodiscard]] playin::Response answer(std::size_t event, const record::Record& record,
-                                        const std::vector<playin::SensitivityParameter>& along) const;
+  [[nodiscard]] playin::Response response(std::size_t event, const record::Record& record,
+                                          const std::vector<playin::SensitivityParameter>& along) const;
   [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const record::Record& record) const;
   void add_columns(std::size_t event);
   /// Number of sensitivity parameters of one event: its switching times and its start.
