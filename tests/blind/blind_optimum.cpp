@@ -30,9 +30,10 @@ struct Ended {
 std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Diagnosis& d,
                               const nlohmann::json& hidden, double spread) {
   if (hidden.empty()) return Ended{model.under_test(), fit::free_parameters(model.plant, spread), &d.base};
-  const auto answers = hidden.front().at("answers").get<std::vector<std::string>>();
+  const auto accepted_names = hidden.front().at("answers").get<std::vector<std::string>>();
   for (const hypothesis::Judgement& j : d.ranked)
-    if (j.fitted && j.fit.failed.empty() && std::ranges::count(answers, hypothesis::full_name(j.hypothesis)))
+    if (j.fitted && j.fit.failed.empty() &&
+        std::ranges::count(accepted_names, hypothesis::full_name(j.hypothesis)))
       return Ended{j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, spread), &j.fit};
   return std::nullopt;
 }

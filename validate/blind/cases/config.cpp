@@ -108,9 +108,9 @@ BlindKind read_kind(Config& config, const std::string& name) {
       config.problem(at + "path", "'" + text + "'", "a logarithmic path cannot pass through 0",
                      "give both ends the same sign, or spacing = \"linear\"");
   }
-  kind.answers = {name};
-  if (kind.value) kind.answers = values_of(kind);
-  kind.answers = config.optional<std::vector<std::string>>(at + "answers", kind.answers);
+  kind.accepted_names = {name};
+  if (kind.value) kind.accepted_names = values_of(kind);
+  kind.accepted_names = config.optional<std::vector<std::string>>(at + "answers", kind.accepted_names);
   if (kind.value && !kind.hidden.empty())
     config.problem(at + "value", "value = true beside hidden effects",
                    "where a value is wrong nothing is missing", "leave out hidden, or value");

@@ -19,13 +19,13 @@ struct BlindPath {
 /// Kind of hidden effect with the one-dimensional path of its size.
 struct BlindKind {
   std::string name;
-  std::string side;                  ///< mechanical, excitation, machine, measurement, none
-  bool listed = true;                ///< false: unlisted effect, which no hypothesis covers
-  bool drawn = true;                 ///< false: used only where requested by name
-  bool value = false;                ///< true: nothing is missing, but values of the model are wrong
-  std::vector<std::string> base;     ///< controls in the model: "EFFECT[:PARAM=VALUE,...]"
-  std::vector<std::string> hidden;   ///< effects that the model lacks, in the same form
-  std::vector<std::string> answers;  ///< accepted names; for wrong values all of them, as EFFECT.PARAM
+  std::string side;                         ///< mechanical, excitation, machine, measurement, none
+  bool listed = true;                       ///< false: unlisted effect, which no hypothesis covers
+  bool drawn = true;                        ///< false: used only where requested by name
+  bool value = false;                       ///< true: nothing is missing, but values of the model are wrong
+  std::vector<std::string> base;            ///< controls in the model: "EFFECT[:PARAM=VALUE,...]"
+  std::vector<std::string> hidden;          ///< effects that the model lacks, in the same form
+  std::vector<std::string> accepted_names;  ///< accepted names; for wrong values all of them, as EFFECT.PARAM
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< the scale is linear in the parameters' logarithms
   /// Returns whether the effect is an instrument error.

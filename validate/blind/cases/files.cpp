@@ -36,7 +36,7 @@ json truth_json(const BlindCase& made, const BlindConfig& config, const std::str
                       {"listed", h.kind->listed},
                       {"side", h.kind->side},
                       {"value", h.kind->value},
-                      {"answers", h.kind->answers},
+                      {"answers", h.kind->accepted_names},
                       {"scale", h.scale},
                       {"limit_noise", h.kind->limit},
                       {"wanted_noise", h.wanted},

@@ -51,7 +51,7 @@ ScoredCase read_truth(const fs::path& file) {
     for (const auto& h : j.at("hidden")) {
       c.kinds.push_back(h.at("kind"));
       c.sides.push_back(h.at("side"));
-      c.answers.push_back(h.at("answers"));
+      c.accepted_names.push_back(h.at("answers"));
       c.listed = c.listed && h.at("listed").get<bool>();
       c.value = h.value("value", false);
       c.size = std::min(c.size, h.at("left_noise").get<double>() / h.at("limit_noise").get<double>());
@@ -99,7 +99,7 @@ void count(const ScoredCase& c, BlindScore& score) {
     score.rates["wrong value: nothing missing"].count(v.verdict == "adequate");
     score.rates["wrong value: named"].count(c.values_named());
     score.rates["wrong value: named and no other"].count(c.values_named() &&
-                                                         v.wrong.size() == c.answers.front().size());
+                                                         v.wrong.size() == c.accepted_names.front().size());
     return;
   }
   if (c.size >= kFrom) score.rates["side"].count(c.side_right());
@@ -144,28 +144,29 @@ std::map<std::string, double> read_targets(const fs::path& file) {
 
 bool ScoredCase::first_right() const {
   return (verdict.verdict == "missing" || verdict.verdict == "confusable") && !verdict.effects.empty() &&
-         std::ranges::any_of(answers, [&](const auto& a) { return among(a, verdict.effects.front()); });
+         std::ranges::any_of(accepted_names,
+                             [&](const auto& a) { return among(a, verdict.effects.front()); });
 }
 bool ScoredCase::right_or_in_set() const {
   return first_right() ||
          (verdict.verdict == "confusable" &&
-          std::ranges::any_of(answers, [&](const auto& a) { return share(a, verdict.set); }));
+          std::ranges::any_of(accepted_names, [&](const auto& a) { return share(a, verdict.set); }));
 }
 bool ScoredCase::all_named() const {
-  return !answers.empty() &&
-         std::ranges::all_of(answers, [&](const auto& a) { return share(a, verdict.effects); });
+  return !accepted_names.empty() &&
+         std::ranges::all_of(accepted_names, [&](const auto& a) { return share(a, verdict.effects); });
 }
 bool ScoredCase::all_in_set() const {
   const auto names_all = [&](const std::string& entry) {
-    return std::ranges::all_of(answers, [&](const auto& a) { return share(a, together(entry)); });
+    return std::ranges::all_of(accepted_names, [&](const auto& a) { return share(a, together(entry)); });
   };
-  return all_named() ||
-         (verdict.verdict == "confusable" && !answers.empty() && std::ranges::any_of(verdict.set, names_all));
+  return all_named() || (verdict.verdict == "confusable" && !accepted_names.empty() &&
+                         std::ranges::any_of(verdict.set, names_all));
 }
 bool ScoredCase::values_named() const {
-  return verdict.verdict == "adequate" && std::ranges::all_of(answers.front(), [&](const std::string& one) {
-           return among(verdict.wrong, one);
-         });
+  return verdict.verdict == "adequate" &&
+         std::ranges::all_of(accepted_names.front(),
+                             [&](const std::string& one) { return among(verdict.wrong, one); });
 }
 bool ScoredCase::side_right() const { return among(sides, verdict.side); }
 
@@ -177,8 +178,8 @@ Forecast ScoredCase::forecast() const {
     if (nothing_missing()) return false;
     if (!listed) return explanation == hypothesis::kNoneOfThese;
     const auto said = together(explanation);
-    return said.size() == answers.size() &&
-           std::ranges::all_of(answers, [&](const auto& a) { return share(a, said); });
+    return said.size() == accepted_names.size() &&
+           std::ranges::all_of(accepted_names, [&](const auto& a) { return share(a, said); });
   };
   std::vector<std::pair<double, char>> said;
   double nothing = 0;  // includes wrong parameters, which are no missing effect

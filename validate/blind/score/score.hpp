@@ -15,13 +15,13 @@ namespace swingbank::validate::blind::score {
 /// Truth and verdict of one case.
 struct ScoredCase {
   std::string name;
-  std::vector<std::string> kinds, sides;          ///< of the hidden effects
-  std::vector<std::vector<std::string>> answers;  ///< accepted names per hidden effect
-  bool listed = true;                             ///< every hidden effect is in the list of hypotheses
-  bool value = false;                             ///< nothing is missing, but a value of the model is wrong
-  double size = 0;                                ///< smallest size of the hidden effects [detection limits]
-  bool channels = false;                          ///< speed and Ifd are recorded
-  std::vector<std::string> conditions;            ///< names of the recording conditions
+  std::vector<std::string> kinds, sides;                 ///< of the hidden effects
+  std::vector<std::vector<std::string>> accepted_names;  ///< accepted names per hidden effect
+  bool listed = true;                                    ///< every hidden effect is in the list of hypotheses
+  bool value = false;                   ///< nothing is missing, but a value of the model is wrong
+  double size = 0;                      ///< smallest size of the hidden effects [detection limits]
+  bool channels = false;                ///< speed and Ifd are recorded
+  std::vector<std::string> conditions;  ///< names of the recording conditions
   BlindVerdict verdict;
 
   [[nodiscard]] bool first_right() const;      ///< the first effect named is a hidden one

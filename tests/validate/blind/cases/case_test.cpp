@@ -208,7 +208,7 @@ TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
   EXPECT_EQ(turned.hidden[0].scale, 1.0);
   EXPECT_EQ(value(wrong.model, "REPCA1", "Ki"), 1.0);
   EXPECT_NEAR(value(wrong.truth, "REPCA1", "Ki"), std::pow(10.0, wrong.hidden[0].scale), 1e-12);
-  EXPECT_THAT(wrong.hidden[0].kind->answers, testing::ElementsAre("REPCA1.Ki"));
+  EXPECT_THAT(wrong.hidden[0].kind->accepted_names, testing::ElementsAre("REPCA1.Ki"));
 }
 /// A plant that injects a current has no voltage of its own next to a bolted fault.
 TEST(BlindConverter, FaultVoltageKeepsAnAngle) {

@@ -23,7 +23,7 @@ class BlindScoring : public testing::Test {
   ~BlindScoring() override { fs::remove_all(run_); }
 
   struct Hidden {
-    const char *kind, *side, *answer;
+    const char *kind, *side, *accepted_name;
     double size;
     bool listed = true, value = false;
   };
@@ -34,7 +34,7 @@ class BlindScoring : public testing::Test {
     for (const Hidden& h : effects)
       hidden.push_back({{"kind", h.kind},
                         {"side", h.side},
-                        {"answers", {h.answer}},
+                        {"answers", {h.accepted_name}},
                         {"listed", h.listed},
                         {"value", h.value},
                         {"left_noise", 10 * h.size},
