@@ -229,7 +229,7 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
   const LawRegression regression(traces);
   struct Best {
     Form form;
-    LawRegression::Answer answer;
+    LawRegression::Result result;
   };
   std::map<std::tuple<std::size_t, Filter, Shape>, Best> best;
   for (std::size_t s = 0; s < kLawSignals.size(); ++s)
@@ -237,9 +237,9 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
       const TimeSeries base = filtered(traces, form);
       const double most = largest(base);
       if (!(most > 1e-9)) continue;
-      const auto keep = [&](LawRegression::Answer answer) {
+      const auto keep = [&](LawRegression::Result result) {
         Best& b = best[{s, form.filter, form.shape}];
-        if (b.answer.time_series.size() == 0 || answer.score < b.answer.score) b = {form, std::move(answer)};
+        if (b.result.time_series.size() == 0 || result.score < b.result.score) b = {form, std::move(result)};
       };
       const int filter = form.filter == Filter::none ? 0 : 1;
       const auto consider = [&](Shape shape, double part) {
@@ -265,11 +265,11 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
     }
   std::vector<LawCandidate> all;
   for (const auto& [key, b] : best) {
-    if (b.answer.factors.size() == 0 || b.answer.factors.isZero(0)) continue;
-    LawCandidate law = candidate_of(kind, b.form, b.answer.factors);
-    law.explained = b.answer.explained;
-    law.score = b.answer.score;
-    law.time_series = regression.by_event(b.answer.time_series);
+    if (b.result.factors.size() == 0 || b.result.factors.isZero(0)) continue;
+    LawCandidate law = candidate_of(kind, b.form, b.result.factors);
+    law.explained = b.result.explained;
+    law.score = b.result.score;
+    law.time_series = regression.by_event(b.result.time_series);
     all.push_back(std::move(law));
   }
   const auto coarse = thinned(traces);

@@ -51,7 +51,7 @@ Eigen::VectorXd LawRegression::at_knots(const TimeSeries& time_series) const {
   return column;
 }
 
-LawRegression::Answer LawRegression::fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const {
+LawRegression::Result LawRegression::fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const {
   const auto n = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd normal(n, n);
   Eigen::VectorXd right(n);
@@ -60,7 +60,7 @@ LawRegression::Answer LawRegression::fit(const std::vector<Eigen::VectorXd>& col
     for (Eigen::Index j = 0; j < n; ++j) normal(i, j) = w.dot(columns[static_cast<std::size_t>(j)]);
     right[i] = w.dot(target_);
   }
-  Answer a;
+  Result a;
   a.time_series = Eigen::VectorXd::Zero(target_.size());
   a.factors = Eigen::VectorXd::Zero(n);
   if (normal.diagonal().minCoeff() > 1e-18 * static_cast<double>(target_.size()))

@@ -17,7 +17,7 @@ class LawRegression {
   explicit LawRegression(const std::vector<LawTrace>& traces);
 
   /// Result of a regression.
-  struct Answer {
+  struct Result {
     Eigen::VectorXd factors;  ///< factor of each column
     double explained = 0, score = 0;
     ///< coefficient of determination; Bayesian information criterion, lower is better
@@ -25,7 +25,7 @@ class LawRegression {
   };
   /// Regresses the input on `columns`. `numbers`: number of parameters selected for the columns, besides
   /// their factors.
-  [[nodiscard]] Answer fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
+  [[nodiscard]] Result fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
   /// Returns a time series at the knots: its mean over each knot's hat function.
   [[nodiscard]] Eigen::VectorXd at_knots(const TimeSeries& time_series) const;
   /// The same for a function of trace and time.

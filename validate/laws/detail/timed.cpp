@@ -48,9 +48,9 @@ class Timed {
  private:
   struct At {
     double begin, b;
-    LawRegression::Answer answer = {};
+    LawRegression::Result result = {};
   };
-  [[nodiscard]] LawRegression::Answer answer_of(const LawShape& shape, const Clock& clock, double begin,
+  [[nodiscard]] LawRegression::Result result_of(const LawShape& shape, const Clock& clock, double begin,
                                                 double b) const {
     const auto column = [&](const auto& time_series) {
       return regression_.at_knots_of([&](const LawTrace& e, double t) {
@@ -93,13 +93,13 @@ class Timed {
             consider(shape, clock, centre.begin + d, centre.b + c, best);
         }
     }
-    if (best.answer.factors.size() == 0 || best.answer.factors.isZero()) return {};
+    if (best.result.factors.size() == 0 || best.result.factors.isZero()) return {};
     return candidate(shape, clock, best, best.begin <= from && shape.kind == Kind::sine);
   }
   void consider(const LawShape& shape, const Clock& clock, double begin, double b, At& best) const {
-    auto answer = answer_of(shape, clock, begin, b);
-    if (best.answer.factors.size() > 0 && answer.score >= best.answer.score) return;
-    best = {begin, b, std::move(answer)};
+    auto result = result_of(shape, clock, begin, b);
+    if (best.result.factors.size() > 0 && result.score >= best.result.score) return;
+    best = {begin, b, std::move(result)};
   }
 
   /// Returns the candidate. `always`: it is active from the start of the inferred input, so the start time is
@@ -111,7 +111,7 @@ class Timed {
     law.family = shape.family + (clock.scaled ? ", in proportion" : "");
     law.signal = clock.triggered ? "time since the voltage moved" : "time";
     law.parameters.push_back({"A", clock.scaled ? "-" : "pu",
-                              shape.kind == Kind::sine ? at.answer.factors.norm() : at.answer.factors[0], -20,
+                              shape.kind == Kind::sine ? at.result.factors.norm() : at.result.factors[0], -20,
                               20, true,
                               clock.scaled ? "amplitude relative to the steady-state value" : "amplitude"});
     const std::string now = clock.triggered ? "since" : "t";
@@ -129,9 +129,9 @@ class Timed {
     if (clock.scaled)
       replace(law.words, "{A}",
               fmt::format("{{A}} × the {} before the event", torque ? "active power" : "field voltage"));
-    law.explained = at.answer.explained;
-    law.score = at.answer.score;
-    law.time_series = regression_.by_event(at.answer.time_series);
+    law.explained = at.result.explained;
+    law.score = at.result.score;
+    law.time_series = regression_.by_event(at.result.time_series);
     return law;
   }
   /// Adds the start time as a parameter, or as a constant if it is not determined.
@@ -155,7 +155,7 @@ class Timed {
     const double middle =
         std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;
     double phase =
-        std::atan2(at.answer.factors[1], at.answer.factors[0]) + constants::turn * at.b * (middle - at.begin);
+        std::atan2(at.result.factors[1], at.result.factors[0]) + constants::turn * at.b * (middle - at.begin);
     phase -= constants::turn * std::floor(phase / constants::turn);
     if (phase < 0.3) phase += constants::turn;  // leaves room below on a logarithmic scale
     law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
