@@ -67,7 +67,7 @@ std::string read_apart(const std::string& kind, const std::filesystem::path& fil
   throw InputError({kWhat, file.string(), way_to_end(ended, patience) + "; the file is damaged", kRemedy});
 }
 
-int answer_apart(const std::filesystem::path& file, const std::function<std::string()>& work) {
+int reply_apart(const std::filesystem::path& file, const std::function<std::string()>& work) {
   const char* asked = std::getenv("SWINGBANK_READER_SECONDS");
   std::error_code none;
   const auto size = std::filesystem::file_size(file, none);

@@ -18,6 +18,6 @@ std::string read_apart(const std::string& kind, const std::filesystem::path& fil
 /// Reader's side: prints the result of `work` for the file, or the problems of its InputError, to standard
 /// output. Returns the exit code. Limits the process to 30 s of processor time (environment variable
 /// SWINGBANK_READER_SECONDS: another limit) and 1 s more for each 5 MB.
-int answer_apart(const std::filesystem::path& file, const std::function<std::string()>& work);
+int reply_apart(const std::filesystem::path& file, const std::function<std::string()>& work);
 
 }  // namespace swingbank

@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
                  kind.c_str());
     return 1;
   }
-  return answer_apart(file, [&] {
+  return reply_apart(file, [&] {
     return kind == "hdf5" ? mpi::store::h5::read_asked(file, names)
                           : validate::record::mat_text(file, names.empty() ? "" : names[0]);
   });

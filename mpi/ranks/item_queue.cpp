@@ -100,7 +100,7 @@ class Giver {
     int others = ranks_.size() - 1;
     while (others > 0 || !hand_.idle() || (!left_.empty() && !stop_)) {
       stop_ = stop_ || stop_asked();
-      if (ranks_.size() > 1) answer(others);
+      if (ranks_.size() > 1) reply(others);
       end_if_overdue();
       if (auto own = hand_.finished()) finish(own->first, own->second);
       if (hand_.idle())
@@ -133,7 +133,7 @@ class Giver {
     ++done_;
     shared_.done(item, result);
   }
-  void answer(int& others) {
+  void reply(int& others) {
     for (int there = 1; there != 0;) {
       MPI_Status status;
       MPI_Iprobe(MPI_ANY_SOURCE, kFinishedTag, ranks_.world, &there, &status);

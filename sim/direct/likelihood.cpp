@@ -129,7 +129,7 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const ParameterPrior
 
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
-  constexpr double kSameAnswer = 0.02;  // change of the cost between two linearisations
+  constexpr double kSameCost = 0.02;  // change of the cost between two linearisations
   // Reduced chi-square and relative change of the cost of a search caught in a corner of the box.
   constexpr double kLost = 1.15, kCreeps = 0.005;
   Posterior posterior(machine, record, start, free);
@@ -146,7 +146,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
       found.chi_square = cost / freedom;
     }
     const bool lost = found.chi_square > kLost && before - cost < kCreeps * cost;
-    if (!std::isfinite(cost) || before - cost < kSameAnswer || lost) break;
+    if (!std::isfinite(cost) || before - cost < kSameCost || lost) break;
   }
   return found;
 }
@@ -183,7 +183,7 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
   // The reduced chi-square cannot reveal a wrong local optimum. For thousands of samples the sum scatters by
   // a hundred, and a wrong optimum may cost only ten more than the right one. Therefore two starts must
   // agree.
-  constexpr double kSameAnswer = 1;
+  constexpr double kSameCost = 1;
   constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);
   MostProbable best{candidates.front(), 0, std::numeric_limits<double>::infinity(), 0};
@@ -191,8 +191,8 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
   int agree = 0;
   const auto take = [&](const std::vector<double>& start) {
     const MostProbable m = search(machine, noisy, start, free, options);
-    if (m.cost < best.cost - kSameAnswer) agree = 0;
-    if (m.cost < best.cost + kSameAnswer) ++agree;
+    if (m.cost < best.cost - kSameCost) agree = 0;
+    if (m.cost < best.cost + kSameCost) ++agree;
     if (m.cost < best.cost) best = m;
   };
   std::vector<double> middle = candidates.front();

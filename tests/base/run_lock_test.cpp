@@ -17,16 +17,16 @@
 #include "tests/mpi/store/sample_shard.hpp"
 
 namespace {
-int answer = 0;        // error number that the next locks return; 0: none
-int answers_left = 0;  // number of locks that return it
+int lock_error = 0;        // error number that the next locks return; 0: none
+int lock_errors_left = 0;  // number of locks that return it
 std::function<void()> before_next;
 }  // namespace
 
 /// Replaces libc's function, because a file system without locks is not available on every machine.
 extern "C" int flock(int fd, int operation) noexcept {
-  if (answers_left > 0) {
-    --answers_left;
-    errno = answer;
+  if (lock_errors_left > 0) {
+    --lock_errors_left;
+    errno = lock_error;
     return -1;
   }
   if (before_next) std::exchange(before_next, nullptr)();
@@ -41,7 +41,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 struct RunLockFile : ::testing::Test {
-  void TearDown() override { answers_left = 0; }
+  void TearDown() override { lock_errors_left = 0; }
   [[nodiscard]] std::unique_ptr<RunLock> lock() const {
     return std::make_unique<RunLock>(file, LockWords{"dataset in use", "/data", "wait for it"},
                                      std::chrono::milliseconds(0));
@@ -75,8 +75,8 @@ TEST_F(RunLockFile, IsReleasedWithItsHolderAndTheFileRemains) {
 
 TEST_F(RunLockFile, ReportsFileSystemsWithoutLocks) {
   for (const int error : {ENOSYS, ENOLCK, EOPNOTSUPP}) {
-    answer = error;
-    answers_left = 1;
+    lock_error = error;
+    lock_errors_left = 1;
     EXPECT_THAT(refusal(), AllOf(HasSubstr("this file system does not lock files"),
                                  HasSubstr(std::strerror(error)), Not(HasSubstr("in use"))));
     EXPECT_FALSE(std::filesystem::exists(file));
@@ -84,10 +84,10 @@ TEST_F(RunLockFile, ReportsFileSystemsWithoutLocks) {
 }
 
 TEST_F(RunLockFile, RepeatsInterruptedCalls) {
-  answer = EINTR;
-  answers_left = 3;
+  lock_error = EINTR;
+  lock_errors_left = 3;
   EXPECT_EQ(refusal(), "taken");
-  EXPECT_EQ(answers_left, 0);
+  EXPECT_EQ(lock_errors_left, 0);
 }
 
 TEST_F(RunLockFile, ReopensAFileRemovedBeforeLocking) {

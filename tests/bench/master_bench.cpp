@@ -50,14 +50,14 @@ double message_cost(std::size_t shards) {
 }
 
 /// One answer: the shards of the next lease, and the master's time for it [s].
-using Answer = std::function<std::pair<ranks::Shards, double>(ranks::Report&, int rank)>;
+using Reply = std::function<std::pair<ranks::Shards, double>(ranks::Report&, int rank)>;
 
 struct Outcome {
-  double busy = 0.0;        ///< busy fraction of the workers' time
-  double per_answer = 0.0;  ///< master's time [s]
+  double busy = 0.0;       ///< busy fraction of the workers' time
+  double per_reply = 0.0;  ///< master's time [s]
 };
 
-Outcome simulate(int workers, double shard_seconds, const Answer& answer) {
+Outcome simulate(int workers, double shard_seconds, const Reply& reply) {
   struct Asking {
     double at;  ///< when its report reaches the master [s]
     int rank;
@@ -70,15 +70,15 @@ Outcome simulate(int workers, double shard_seconds, const Answer& answer) {
   std::vector<ranks::Report> reports(static_cast<std::size_t>(workers) + 1);
   for (int r = 1; r <= workers; ++r) queue.push({0.0, r});
   double free_at = 0.0, worked = 0.0, served = 0.0, last = 0.0;
-  std::uint64_t answers = 0;
+  std::uint64_t replies = 0;
   while (!queue.empty()) {
     const auto [at, rank] = queue.top();
     queue.pop();
     ranks::Report& report = reports[static_cast<std::size_t>(rank)];
-    const auto [lease, seconds] = answer(report, rank);
+    const auto [lease, seconds] = reply(report, rank);
     free_at = std::max(free_at, at) + seconds;
     served += seconds;
-    ++answers;
+    ++replies;
     last = std::max(last, at);
     report = {};
     if (lease.empty()) continue;
@@ -89,7 +89,7 @@ Outcome simulate(int workers, double shard_seconds, const Answer& answer) {
     worked += report.seconds;
     queue.push({free_at + report.seconds, rank});
   }
-  return {worked / (last * workers), served / static_cast<double>(answers)};
+  return {worked / (last * workers), served / static_cast<double>(replies)};
 }
 
 std::deque<std::uint64_t> shards_for(int workers, double shard_seconds) {
@@ -114,7 +114,7 @@ Outcome of_the_master(int workers, double shard_seconds, double flush, double me
   });
 }
 
-Outcome with_a_flush_in_each_answer(int workers, double shard_seconds, double flush, double message) {
+Outcome with_a_flush_in_each_reply(int workers, double shard_seconds, double flush, double message) {
   auto missing = shards_for(workers, shard_seconds);
   return simulate(workers, shard_seconds, [&](ranks::Report& report, int) {
     ranks::Shards lease;
@@ -139,8 +139,8 @@ int main(int argc, char** argv) {
              "busy, a flush in each answer");
   for (const int workers : {16, 64, 256, 1000, 10000}) {
     const Outcome now = of_the_master(workers, shard_seconds, flush, message, per_shard);
-    const Outcome before = with_a_flush_in_each_answer(workers, shard_seconds, flush, one);
-    fmt::print("{:>8} {:>13.1f}% {:>16.1f} {:>33.1f}%\n", workers, 100 * now.busy, now.per_answer * 1e6,
+    const Outcome before = with_a_flush_in_each_reply(workers, shard_seconds, flush, one);
+    fmt::print("{:>8} {:>13.1f}% {:>16.1f} {:>33.1f}%\n", workers, 100 * now.busy, now.per_reply * 1e6,
                100 * before.busy);
   }
 }

@@ -14,7 +14,7 @@ namespace {
 
 bool allow_cpuid(bool allowed) { return syscall(SYS_arch_prctl, ARCH_SET_CPUID, allowed ? 1UL : 0UL) == 0; }
 
-void answer(int signal_number, siginfo_t*, void* context) {
+void emulate_cpuid(int signal_number, siginfo_t*, void* context) {
   greg_t* registers = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
   const auto* code = reinterpret_cast<const unsigned char*>(registers[REG_RIP]);
   if (code[0] != 0x0f || code[1] != 0xa2) {  // not CPUID: a fault of the program's own
@@ -41,7 +41,7 @@ void answer(int signal_number, siginfo_t*, void* context) {
 
 __attribute__((constructor)) void disguise() {
   struct sigaction action {};
-  action.sa_sigaction = answer;
+  action.sa_sigaction = emulate_cpuid;
   action.sa_flags = SA_SIGINFO | SA_NODEFER;
   if (sigaction(SIGSEGV, &action, nullptr) != 0 || !allow_cpuid(false)) _exit(77);
 }
