@@ -51,7 +51,7 @@ void require_one_variant(MPI_Comm world, const std::string& hash, const std::str
   });
 }
 
-void make_room(std::vector<double>& values, std::size_t count, int rank) {
+void allocate_values(std::vector<double>& values, std::size_t count, int rank) {
   try {
     values.resize(count);
   } catch (const std::bad_alloc&) {
@@ -71,7 +71,7 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
   bank.dimensions = study.config.box.size();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
   agree(world, "databank", [&] {  // allocated before the drawing, which may take long
-    if (rank != 0) make_room(bank.values, study.config.points() * bank.dimensions, rank);
+    if (rank != 0) allocate_values(bank.values, study.config.points() * bank.dimensions, rank);
   });
   agree(world, "databank", [&] {
     if (rank != 0) return;

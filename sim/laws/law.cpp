@@ -15,9 +15,9 @@ const Definition& of(const void* data) { return *static_cast<const Definition*>(
 template <class T>
 void evaluate(const void* data, const T* c, const T* x, Signals<T>& s, T* dx) {
   const Definition& law = of(data);
-  Registers<T> room;
+  Registers<T> registers;
   T value(0.0);
-  run<T, false>(law.code.loop, c, x, s, room.data(), dx, value);
+  run<T, false>(law.code.loop, c, x, s, registers.data(), dx, value);
   T& out = s.*kMembers<T>[static_cast<std::size_t>(law.output)];
   out = law.replaces ? value : out + value;
 }

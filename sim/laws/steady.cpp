@@ -48,9 +48,9 @@ class Search {
   template <class T>
   static std::vector<T> residual_of(const Definition& law, const T* c, const T* x, const Signals<T>& s) {
     std::vector<T> f(law.states.size(), T(0.0));
-    Registers<T> room;
+    Registers<T> registers;
     T output(0.0);
-    laws::run<T, true>(law.code.loop, c, x, s, room.data(), f.data(), output);
+    laws::run<T, true>(law.code.loop, c, x, s, registers.data(), f.data(), output);
     if (law.must_meet())
       f.push_back(law.replaces ? output - s.*kMembers<T>[static_cast<std::size_t>(law.output)] : output);
     return f;
@@ -145,9 +145,9 @@ class Search {
         return {};
     }
     std::vector<double> dx(law_.states.size(), 0.0);
-    Registers<double> room;
+    Registers<double> registers;
     double output = 0.0;
-    laws::run<double, false>(law_.code.loop, c_, x_, s_, room.data(), dx.data(), output);
+    laws::run<double, false>(law_.code.loop, c_, x_, s_, registers.data(), dx.data(), output);
     for (std::size_t i = 0; i < dx.size(); ++i)
       if (!(std::abs(dx[i]) < kTolerance) && !held(i, dx[i]))
         return fmt::format("state {} does not come to rest: it moves at {:.4g} per second at {:.4g} {}",
@@ -181,9 +181,9 @@ void put_out(const Definition& law, const T* c, const T* x, Signals<T>& s) {
   Signals<T> now = s;
   now.t = T(-1.0);
   std::vector<T> dx(law.states.size(), T(0.0));
-  Registers<T> room;
+  Registers<T> registers;
   T output(0.0);
-  run<T, false>(law.code.loop, c, x, now, room.data(), dx.data(), output);
+  run<T, false>(law.code.loop, c, x, now, registers.data(), dx.data(), output);
   T& to = s.*kMembers<T>[static_cast<std::size_t>(law.output)];
   to = law.replaces ? output : to + output;
 }

@@ -406,7 +406,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
   };
   std::vector<std::size_t> open = units;
   while (true) {  // excess goes to units with reserve; at most as many rounds as units
-    double rest = power.imag(), room = 0.0;
+    double rest = power.imag(), free_mva = 0.0;
     std::vector<std::size_t> free;
     for (const std::size_t k : units) {
       const bool was_open = std::ranges::count(open, k) > 0;
@@ -416,7 +416,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
         generation[k] = {generation[k].real(), q};
       } else {
         free.push_back(k);
-        room += n.generators[k].mva;
+        free_mva += n.generators[k].mva;
       }
     }
     if (free.size() == open.size() || free.empty()) {
@@ -424,7 +424,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
         for (const std::size_t k : units) generation[k] += Complex(0.0, rest * n.generators[k].mva / mva);
       return;
     }
-    for (const std::size_t k : free) generation[k] += Complex(0.0, rest * n.generators[k].mva / room);
+    for (const std::size_t k : free) generation[k] += Complex(0.0, rest * n.generators[k].mva / free_mva);
     open = free;
   }
 }

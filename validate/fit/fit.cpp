@@ -192,13 +192,13 @@ class Search {
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
     for (std::size_t k = 0; k < event.switchings.size(); ++k) {
-      const double room = (event.switchings[k].uncertainty - edge) / kSwitchScale;
-      if (room <= 0) {
+      const double bound = (event.switchings[k].uncertainty - edge) / kSwitchScale;
+      if (bound <= 0) {
         fixed.push_back(static_cast<int>(k));
         continue;
       }
-      problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -room);
-      problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), room);
+      problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -bound);
+      problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), bound);
     }
     for (int k = 0; options_.start_stands && k < kStates; ++k)
       fixed.push_back(static_cast<int>(switching_numbers(event)) + k);

@@ -235,9 +235,9 @@ std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, in
       sim::plant::Block moved = block;
       for (std::size_t k = 0; k < group.size(); ++k) {
         const auto& p = effect.parameters[static_cast<std::size_t>(group[k])];
-        const double room = share > 0 ? p.high - p.null_value : p.null_value - p.low;
+        const double range = share > 0 ? p.high - p.null_value : p.null_value - p.low;
         // later points of a curve lie above earlier ones
-        const double curve = share * room * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
+        const double curve = share * range * static_cast<double>(k + 1) * (k > 0 ? 2.0 : 1.0);
         const double v = p.null_value + (band ? share * (p.high > p.null_value ? p.high : p.low) : curve);
         values.push_back(v);
         moved.p[static_cast<std::size_t>(group[k])] = v;
@@ -354,12 +354,12 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
   for (std::size_t c = 0; c < tested.plant.controls.size(); ++c) {
     const sim::Effect& there = *tested.plant.controls[c].effect;
     if (sim::is_shared(there.slot)) continue;
-    sim::plant::Plant room = tested.plant;
-    room.controls.erase(room.controls.begin() + static_cast<std::ptrdiff_t>(c));
+    sim::plant::Plant without = tested.plant;
+    without.controls.erase(without.controls.begin() + static_cast<std::ptrdiff_t>(c));
     for (const sim::Effect* effect : library.all()) {
       if (effect->slot != there.slot || effect == &there || effect->switching_times) continue;
       if (sim::library::variant_of(*effect)) continue;
-      Hypothesis h = added_to({room, tested.conventions}, *effect);
+      Hypothesis h = added_to({without, tested.conventions}, *effect);
       h.name += fmt::format(" in place of {}", there.name);
       h.what += fmt::format(" in place of {}", there.name);
       h.replaces = true;

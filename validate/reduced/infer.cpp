@@ -369,9 +369,9 @@ std::vector<double> own_priors(const event::FitEvent& event) {
 
 void keep_in_range(const event::FitEvent& event, VectorXd& state) {
   for (std::size_t k = 0; k < event.switchings.size(); ++k) {
-    const double room = event.switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
+    const double bound = event.switchings[k].uncertainty * (1 - 2e-3) / fit::kSwitchScale;
     double& switching = state[static_cast<Index>(k)];
-    switching = std::clamp(switching, -room, room);
+    switching = std::clamp(switching, -bound, bound);
   }
 }
 

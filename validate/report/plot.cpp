@@ -55,11 +55,11 @@ class Scale {
     high_ = level(given ? axis.range.second : high);
     if (!(high_ >= low_)) low_ = 0, high_ = 1;
     if (given) return;
-    const double room = high_ > low_ ? 0.06 * (high_ - low_)
-                        : log_       ? 0.3
-                                     : std::max(0.1 * std::abs(high_), 1e-9);
-    low_ -= room;
-    high_ += room;
+    const double margin = high_ > low_ ? 0.06 * (high_ - low_)
+                          : log_       ? 0.3
+                                       : std::max(0.1 * std::abs(high_), 1e-9);
+    low_ -= margin;
+    high_ += margin;
   }
   void lay(double from, double to) { from_ = from, to_ = to; }
   [[nodiscard]] double at(double v) const {

@@ -20,9 +20,9 @@ struct Range {
   /// Adds a margin, so that the range is never empty.
   void widen() {
     if (!(high >= low)) low = -1, high = 1;
-    const double room = high > low ? 0.05 * (high - low) : std::max(1e-6, 0.1 * std::abs(high));
-    low -= room;
-    high += room;
+    const double margin = high > low ? 0.05 * (high - low) : std::max(1e-6, 0.1 * std::abs(high));
+    low -= margin;
+    high += margin;
   }
   [[nodiscard]] double share(double v) const { return (v - low) / (high - low); }
 };

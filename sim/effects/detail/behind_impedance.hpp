@@ -144,9 +144,9 @@ struct BehindImpedance : ControlledCurrent<Model> {
   template <class T>
   static void limits(const T* c, const T& p, const T& q, T& most_p, T& most_q) {
     const auto p_leads = c[Model::p_first] > T(0.5);
-    const T room = left(c, clamp(select(p_leads, p, q), T(0.0) - c[Model::most], c[Model::most]));
-    most_p = select(p_leads, c[Model::most], room);
-    most_q = select(p_leads, room, c[Model::most]);
+    const T second_limit = left(c, clamp(select(p_leads, p, q), T(0.0) - c[Model::most], c[Model::most]));
+    most_p = select(p_leads, c[Model::most], second_limit);
+    most_q = select(p_leads, second_limit, c[Model::most]);
   }
   /// Limits both currents to Imax; the flag pqFlag selects the current with priority.
   template <class T>

@@ -26,7 +26,7 @@ class Lanes {
   static constexpr int kLanes = LaneTraits<T>::lanes;
   static constexpr int kWaiting =
       8 * kLanes;  ///< samples evaluated together, to broadcast the constants only once
-  static constexpr int kRoom = kWaiting + 4 * kLanes;  ///< buffer size in samples, in whole packs
+  static constexpr int kBufferSamples = kWaiting + 4 * kLanes;  ///< buffer size in samples, in whole packs
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
@@ -121,7 +121,7 @@ class Lanes {
   /// Returns the states of the buffered samples, [pack][state][sample of the pack].
   static Real* waiting(LaneRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
   static const Real* waiting(const LaneRun& run) { return reinterpret_cast<const Real*>(run.waiting.data()); }
-  const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* room) const;
+  const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* buffer) const;
   void evaluate_pending(int lane, int count);
   void drop_waiting(LaneRun& run, int count);
   void spread_constants(int lane);

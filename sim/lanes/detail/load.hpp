@@ -329,7 +329,7 @@ template <class T>
 void Lanes<T>::fill_waiting(int lane) {
   Real* to = waiting(lanes_[static_cast<std::size_t>(lane)]);
   const Real* from = reinterpret_cast<const Real*>(y_.data()) + lane;
-  for (int pack = 0; pack < kRoom / kLanes; ++pack)
+  for (int pack = 0; pack < kBufferSamples / kLanes; ++pack)
     for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kLanes)
       std::fill(to, to + kLanes, from[i * kLanes]);
 }
@@ -391,7 +391,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;
-  run.waiting.resize(y_.size() * kFlats * kRoom * sizeof(Real) / sizeof(double));
+  run.waiting.resize(y_.size() * kFlats * kBufferSamples * sizeof(Real) / sizeof(double));
   run.theta.assign(recorded_.size(), 0.0);
 }
 

@@ -37,8 +37,9 @@ void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, c
       if (!((accepted >> l) & 1U)) continue;
       const auto& run = lanes_[static_cast<std::size_t>(l)];
       const int left = samples_until(run.clock.t) - run.recorded - run.pending;
-      const int room = (kRoom - run.pending) / kLanes * kLanes - kLanes;  // whole packs are moved
-      if (left > 0) due_.push_back({l, std::min(left, room)});
+      const int capacity =
+          (kBufferSamples - run.pending) / kLanes * kLanes - kLanes;  // whole packs are moved
+      if (left > 0) due_.push_back({l, std::min(left, capacity)});
     }
     if (due_.empty()) return;
     interpolate(h, start, tried);
@@ -64,7 +65,7 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
   };
   const double spacing = 1.0 / options_.rate;
   const std::size_t flats = y_.size() * kFlats * kLanes;  // of one pack
-  std::array<Pass, kRoom> passes;
+  std::array<Pass, kBufferSamples> passes;
   std::size_t count = 0;
   for (const Due& due : due_) {
     auto& run = lanes_[static_cast<std::size_t>(due.lane)];
@@ -144,15 +145,15 @@ void Lanes<T>::spread_constants(int lane) {
 }
 
 /// Returns the states of the pack of buffered samples that starts at `first`, in the buffer or copied to
-/// `room`.
+/// `buffer`.
 template <class T>
 const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector<int>& states,
-                                T* room) const {
+                                T* buffer) const {
   const std::size_t flats = y_.size() * kFlats * kLanes;
   const int offset = first % kLanes;
   const Real* from = waiting(run) + static_cast<std::size_t>(first / kLanes) * flats;
   if (offset == 0) return reinterpret_cast<const T*>(from);
-  Real* to = reinterpret_cast<Real*>(room);
+  Real* to = reinterpret_cast<Real*>(buffer);
   for (const int state : states) {
     const std::size_t place = static_cast<std::size_t>(state) * kFlats * kLanes;
     for (std::size_t i = place; i < place + kFlats * kLanes; i += kLanes)
@@ -161,7 +162,7 @@ const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector
         to[i + l] = at < kLanes ? from[i + at] : from[i + flats + at - kLanes];
       }
   }
-  return room;
+  return buffer;
 }
 
 /// Evaluates the first `count` buffered samples of a lane into its record and removes them from the buffer.

@@ -62,9 +62,9 @@ void fill(const Definition& law, const T* p, const Signals<T>* s, T* c) {
   for (const auto& [index, signal] : law.operating)
     c[index] =
         s ? s->*kMembers<T>[static_cast<std::size_t>(signal)] : T(std::numeric_limits<double>::quiet_NaN());
-  Registers<T> room;
+  Registers<T> registers;
   T unused(0.0);
-  run<T, false>(law.code.fixed, c, nullptr, Signals<T>{}, room.data(), c, unused);
+  run<T, false>(law.code.fixed, c, nullptr, Signals<T>{}, registers.data(), c, unused);
 }
 
 /// Computes the steady state: fills c, x and the law's output at the operating point. Returns the reason why

@@ -104,10 +104,10 @@ void run(const Code& code, const T* c, const T* x, const Signals<T>& s, T* r, T*
 template <class T>
 class Registers {
  public:
-  T* data() { return reinterpret_cast<T*>(room_); }
+  T* data() { return reinterpret_cast<T*>(storage_); }
 
  private:
-  alignas(64) std::byte room_[sizeof(T) * kRegisters];
+  alignas(64) std::byte storage_[sizeof(T) * kRegisters];
 };
 
 /// Compiled graph.

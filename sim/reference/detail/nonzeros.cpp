@@ -4,7 +4,7 @@ namespace swingbank::sim::reference {
 
 Nonzeros::Nonzeros(const ReferenceSystem& system, SeenEntries& seen)
     : system_(system),
-      room_(system.pattern()),
+      full_pattern_(system.pattern()),
       seen_(seen),
       taken_(static_cast<std::size_t>(system.pattern().nonZeros()), 0) {}
 
@@ -31,8 +31,8 @@ bool Nonzeros::take(const std::vector<double>& values) {
   }
   kept_.clear();
   outer_.assign(1, 0);
-  for (int column = 0; column < room_.cols(); ++column) {
-    for (int i = room_.outerIndexPtr()[column]; i < room_.outerIndexPtr()[column + 1]; ++i)
+  for (int column = 0; column < full_pattern_.cols(); ++column) {
+    for (int i = full_pattern_.outerIndexPtr()[column]; i < full_pattern_.outerIndexPtr()[column + 1]; ++i)
       if (taken_[static_cast<std::size_t>(i)] != 0) kept_.push_back(i);
     outer_.push_back(count());
   }

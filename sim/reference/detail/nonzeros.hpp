@@ -22,7 +22,7 @@ class Nonzeros {
   template <class Index>
   void pattern(Index* outer, Index* inner) const {
     std::copy(outer_.begin(), outer_.end(), outer);
-    for (std::size_t k = 0; k < kept_.size(); ++k) inner[k] = room_.innerIndexPtr()[kept_[k]];
+    for (std::size_t k = 0; k < kept_.size(); ++k) inner[k] = full_pattern_.innerIndexPtr()[kept_[k]];
   }
   /// Writes the values of the pattern's entries.
   void gather(const std::vector<double>& values, double* to) const {
@@ -31,7 +31,7 @@ class Nonzeros {
 
  private:
   const ReferenceSystem& system_;
-  const Eigen::SparseMatrix<double>& room_;
+  const Eigen::SparseMatrix<double>& full_pattern_;
   SeenEntries& seen_;
   std::vector<char> taken_;  ///< per entry of the full pattern
   std::vector<int> kept_;    ///< positions in the full pattern, ascending

@@ -102,8 +102,8 @@ TEST(ConverterRegcc1, IntegralsAreLimitedByImax) {
   b.x[Sp] = 0.6;
   auto dx = b.derivatives(1.0);
   EXPECT_NEAR(dx[Sq], 30.0 * 0.7, 1e-11);
-  const double room = std::sqrt(1.0 - 0.81);
-  EXPECT_NEAR(dx[Eq], 0.25 * (room - 0.6) / 0.02, 1e-10);
+  const double second_limit = std::sqrt(1.0 - 0.81);
+  EXPECT_NEAR(dx[Eq], 0.25 * (second_limit - 0.6) / 0.02, 1e-10);
   b.x[Ip] = 0.65;  // beyond its limit the active integral does not rise
   dx = b.derivatives(1.0);
   EXPECT_EQ(dx[Sp], 0.0);

@@ -38,13 +38,13 @@ constexpr std::size_t kReach = 8;  // samples on each side: at 30/s a third of a
 /// difference suppresses a swing but not a step.
 std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
-  const auto walk = [&](std::size_t from, std::ptrdiff_t out, std::size_t room) {
+  const auto walk = [&](std::size_t from, std::ptrdiff_t out, std::size_t available) {
     const auto at = [&](std::ptrdiff_t i) { return v(from + static_cast<std::size_t>(out * i)); };
     std::vector<std::size_t> side = {from};
-    for (std::ptrdiff_t i = 1; side.size() < kReach && side.size() < room; ++i) {
+    for (std::ptrdiff_t i = 1; side.size() < kReach && side.size() < available; ++i) {
       const auto k = from + static_cast<std::size_t>(out * i);
       if (r.lost[k]) break;
-      if (side.size() + 2 < room &&
+      if (side.size() + 2 < available &&
           !(std::abs(at(i - 1) - 3.0 * at(i) + 3.0 * at(i + 1) - at(i + 2)) < kStepThreshold))
         break;
       side.push_back(k);
