@@ -13,7 +13,7 @@
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/commands.hpp"
-#include "jobs/night_work.hpp"
+#include "jobs/nightly_work.hpp"
 
 namespace {
 

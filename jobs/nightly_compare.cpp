@@ -35,7 +35,7 @@ using swingbank::InputError;
 using swingbank::Problem;
 using swingbank::Problems;
 
-constexpr std::size_t kNightsNeeded = 3;
+constexpr std::size_t kRunsNeeded = 3;
 constexpr double kLeastRelativeNoise = 0.01;  // a change of less than 3 % is irrelevant even without noise
 
 struct Cell {
@@ -48,19 +48,19 @@ struct Score {
   std::set<std::string> makers = {};  // software and kernels
   [[nodiscard]] double mean() const { return sum / static_cast<double>(seeds); }
 };
-using Night = std::map<Cell, Score>;
-using Nights = std::map<std::string, Night>;  // by date
+using NightlyRun = std::map<Cell, Score>;
+using NightlyRuns = std::map<std::string, NightlyRun>;  // by date
 
 struct Change {
   Cell cell;
-  double tonight = 0, before = 0, noise = 0;
-  std::size_t nights = 0;
+  double latest = 0, before = 0, noise = 0;
+  std::size_t runs = 0;
   bool other_maker = false;  // other software or kernels than in the last night
   [[nodiscard]] double limit() const {
-    return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(nights));
+    return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(runs));
   }
-  [[nodiscard]] bool judged() const { return nights >= kNightsNeeded; }
-  [[nodiscard]] bool moved() const { return judged() && std::abs(tonight - before) > limit(); }
+  [[nodiscard]] bool judged() const { return runs >= kRunsNeeded; }
+  [[nodiscard]] bool moved() const { return judged() && std::abs(latest - before) > limit(); }
 };
 
 bool is_date(const std::string& name) {
@@ -72,7 +72,7 @@ bool is_date(const std::string& name) {
   return true;
 }
 
-void read_result(const fs::path& file, Night& night, Problems& problems) {
+void read_result(const fs::path& file, NightlyRun& run, Problems& problems) {
   try {
     const auto json = nlohmann::json::parse(std::ifstream(file));
     if (json.value("shuffled_labels", false) || json.value("train_share", 1.0) < 1) return;
@@ -84,9 +84,9 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
                    "delete the file and run the nightly benchmark again");
       return;
     }
-    Score& score = night[{json.at("table"), json.at("network"), fmt::format("{}", json.value("noise", 0.0)),
-                          generator.is_null() ? "-" : generator.dump(), json.at("preset"),
-                          json.at("dataset").at("config_hash")}];
+    Score& score = run[{json.at("table"), json.at("network"), fmt::format("{}", json.value("noise", 0.0)),
+                        generator.is_null() ? "-" : generator.dump(), json.at("preset"),
+                        json.at("dataset").at("config_hash")}];
     score.sum += std::log(ratio);
     ++score.seeds;
     score.makers.insert(json.at("software").get<std::string>() + ", " + json.at("blas").get<std::string>());
@@ -96,34 +96,34 @@ void read_result(const fs::path& file, Night& night, Problems& problems) {
   }
 }
 
-Nights read_nights(const fs::path& folder) {
+NightlyRuns read_runs(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError(Problem{"no nightly benchmarks", folder.string(), "there is no such folder",
                              "give the --out of jobs/nightly.sh"});
   }
-  Nights nights;
+  NightlyRuns runs;
   Problems problems;
-  for (const auto& night : fs::directory_iterator(folder)) {
-    const std::string date = night.path().filename().string();
-    if (!is_date(date) || !night.is_directory()) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(night.path())) {
+  for (const auto& run : fs::directory_iterator(folder)) {
+    const std::string date = run.path().filename().string();
+    if (!is_date(date) || !run.is_directory()) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(run.path())) {
       const auto& file = entry.path();
       if (file.extension() == ".json" && file.parent_path().filename() == "results") {
-        read_result(file, nights[date], problems);
+        read_result(file, runs[date], problems);
       }
     }
   }
   problems.raise();
-  return nights;
+  return runs;
 }
 
 /// Returns the changes of one night against all earlier nights, in the order of the cells.
-std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
+std::vector<Change> changes_of(const std::string& date, const NightlyRuns& runs) {
   std::map<Cell, std::vector<double>> before;
   std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last night
-  for (const auto& [when, night] : nights) {
+  for (const auto& [when, run] : runs) {
     if (when >= date) break;
-    for (const auto& [cell, score] : night) {
+    for (const auto& [cell, score] : run) {
       before[cell].push_back(score.mean());
       makers[cell] = score.makers;
     }
@@ -131,18 +131,18 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<double>> residuals;
   for (const auto& [cell, scores] : before) {
     const double n = static_cast<double>(scores.size());
-    if (scores.size() < kNightsNeeded) continue;
+    if (scores.size() < kRunsNeeded) continue;
     for (const double score : scores) {
       residuals[{cell.table, cell.network, cell.noise}].push_back(
           std::abs(score - swingbank::median(scores)) * std::sqrt(n / (n - 1.0)));
     }
   }
   std::vector<Change> changes;
-  for (const auto& [cell, score] : nights.at(date)) {
+  for (const auto& [cell, score] : runs.at(date)) {
     Change change{cell, score.mean()};
     if (const auto found = before.find(cell); found != before.end()) {
       change.before = swingbank::median(found->second);
-      change.nights = found->second.size();
+      change.runs = found->second.size();
       change.other_maker = score.makers != makers.at(cell);
       const auto& pool = residuals[{cell.table, cell.network, cell.noise}];
       if (!pool.empty()) change.noise = std::max(kLeastRelativeNoise, 1.4826 * swingbank::median(pool));
@@ -155,11 +155,11 @@ std::vector<Change> changes_of(const std::string& date, const Nights& nights) {
 std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * std::expm1(log_ratio)); }
 
 std::string verdict(const Change& c) {
-  if (c.nights == 0) return "new";
+  if (c.runs == 0) return "new";
   const char* word = c.other_maker ? ", with other software or kernels than the night before" : "";
-  if (!c.judged()) return fmt::format("no verdict before {} nights{}", kNightsNeeded, word);
+  if (!c.judged()) return fmt::format("no verdict before {} nights{}", kRunsNeeded, word);
   if (!c.moved()) return fmt::format("within noise{}", word);
-  return fmt::format("**{}**{}", c.tonight > c.before ? "worse" : "better", word);
+  return fmt::format("**{}**{}", c.latest > c.before ? "worse" : "better", word);
 }
 
 void print_report(const std::string& date, std::vector<Change> changes) {
@@ -179,12 +179,12 @@ void print_report(const std::string& date, std::vector<Change> changes) {
       "verdict |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& c : changes) {
-    const bool known = c.nights > 0;
+    const bool known = c.runs > 0;
     fmt::print("| {} | {} | {} | {} | {} | {:.4f} | {} | {} | {} | {} | {} |\n", c.cell.table, c.cell.network,
-               c.cell.noise, c.cell.generator, c.cell.preset, std::exp(c.tonight),
+               c.cell.noise, c.cell.generator, c.cell.preset, std::exp(c.latest),
                known ? fmt::format("{:.4f}", std::exp(c.before)) : "-",
-               known ? percent(c.tonight - c.before) : "-",
-               c.judged() ? fmt::format("{:.1f} %", 100.0 * c.noise) : "-", c.nights, verdict(c));
+               known ? percent(c.latest - c.before) : "-",
+               c.judged() ? fmt::format("{:.1f} %", 100.0 * c.noise) : "-", c.runs, verdict(c));
   }
 }
 
@@ -197,13 +197,13 @@ int swingbank::jobs::nightly_compare_command(CommandLine& line, int argc, char**
   line.example("swingbank nightly-compare nights");
   if (!line.parse(argc, argv)) return line.end();
   try {
-    const Nights nights = read_nights(folder);
-    if (nights.empty() || (!date.empty() && !nights.contains(date))) {
+    const NightlyRuns runs = read_runs(folder);
+    if (runs.empty() || (!date.empty() && !runs.contains(date))) {
       throw InputError(Problem{"no results of the nightly benchmark '" + date + "'", folder,
                                "no <date>/<experiment>/results/*.json there", "run jobs/nightly.sh first"});
     }
-    if (date.empty()) date = nights.rbegin()->first;
-    print_report(date, changes_of(date, nights));
+    if (date.empty()) date = runs.rbegin()->first;
+    print_report(date, changes_of(date, runs));
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -1,4 +1,4 @@
-#include "jobs/night_work.hpp"
+#include "jobs/nightly_work.hpp"
 
 #include <fmt/format.h>
 
