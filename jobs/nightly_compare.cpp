@@ -1,14 +1,15 @@
-// swingbank nightly-compare FOLDER: reports scores that differ from earlier nights by more than their noise.
+// swingbank nightly-compare FOLDER: reports scores that differ from earlier nightly runs by more than their
+// noise.
 //
-// FOLDER contains one folder per night, YYYY-MM-DD/<experiment>/results/*.json (docs/reference/formats.md). A
-// cell is one (table, network, noise level, generator) at one preset and dataset config. Its score is s =
-// ln(MSE / baseline), the mean over the night's seeds. Every night trains with other seeds, so the earlier
-// nights show the random variation of a score:
-//   residual of a night = s - median of the cell's earlier nights
+// FOLDER contains one folder per nightly run, YYYY-MM-DD/<experiment>/results/*.json
+// (docs/reference/formats.md). A cell is one (table, network, noise level, generator) at one preset and
+// dataset config. Its score is s = ln(MSE / baseline), the mean over the run's seeds. Every run trains with
+// other seeds, so the earlier runs show the random variation of a score:
+//   residual of a run = s - median of the cell's earlier runs
 //   noise of a table, network and level = 1.4826 * median(|residual| * sqrt(n / (n - 1)))
-//     pooled over its cells, because one cell has too few nights; at least 1 %
+//     pooled over its cells, because one cell has too few runs; at least 1 %
 //   moved: |s - median| > 3 noise sqrt(1 + 1.57 / n)      (1.57 / n: the variance of a median of n)
-// With fewer than three earlier nights, the change is printed without a verdict.
+// With fewer than three earlier runs, the change is printed without a verdict.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +56,7 @@ struct Change {
   Cell cell;
   double latest = 0, before = 0, noise = 0;
   std::size_t runs = 0;
-  bool other_maker = false;  // other software or kernels than in the last night
+  bool other_maker = false;  // other software or kernels than in the last run
   [[nodiscard]] double limit() const {
     return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(runs));
   }
@@ -117,10 +118,10 @@ NightlyRuns read_runs(const fs::path& folder) {
   return runs;
 }
 
-/// Returns the changes of one night against all earlier nights, in the order of the cells.
+/// Returns the changes of one run against all earlier runs, in the order of the cells.
 std::vector<Change> changes_of(const std::string& date, const NightlyRuns& runs) {
   std::map<Cell, std::vector<double>> before;
-  std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last night
+  std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last run
   for (const auto& [when, run] : runs) {
     if (when >= date) break;
     for (const auto& [cell, score] : run) {

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of ranks from which on rank 0 only schedules, because it cannot answer while it writes a shard.
+/// Number of ranks from which on rank 0 only schedules, because it cannot reply while it writes a shard.
 constexpr int kLedFrom = 32;
 
 /// Throws InputError if a rank has another config or another kernel variant than rank 0.

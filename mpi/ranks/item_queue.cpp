@@ -38,7 +38,7 @@ Told unpacked(const std::string& text) {
   return {std::stoll(text.substr(0, first)), text[first + 1] == '1', text.substr(second + 1)};
 }
 
-/// Thread of rank 0 that processes one item at a time while rank 0 answers the other ranks.
+/// Thread of rank 0 that processes one item at a time while rank 0 replies to the other ranks.
 class OwnHand {
  public:
   explicit OwnHand(const SharedItems& shared) : thread_([this, &shared] { run(shared); }) {}

@@ -1,6 +1,6 @@
-// Utilisation of the workers by a master. The workers are simulated with a separate clock; each answer is
+// Utilisation of the workers by a master. The workers are simulated with a separate clock; each reply is
 // that of the real master with its measured time, plus the cost to pack, send and unpack a report. For
-// comparison: a master that leases one shard at a time and flushes the disk in each answer.
+// comparison: a master that leases one shard at a time and flushes the disk in each reply.
 //   bench_master [seconds of a shard, default 0.33] [milliseconds of a flush, default 20]
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ double message_cost(std::size_t shards) {
   return since(start) / kRounds;
 }
 
-/// One answer: the shards of the next lease, and the master's time for it [s].
+/// One reply: the shards of the next lease, and the master's time for it [s].
 using Reply = std::function<std::pair<ranks::Shards, double>(ranks::Report&, int rank)>;
 
 struct Outcome {

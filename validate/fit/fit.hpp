@@ -145,7 +145,7 @@ struct FitOptions {
 /// Returns options that continue from the end of `f`. The priors stay centred on the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// Fills `fit`, except its state, with the comparison of the response `response` and one event.
+/// Fills `fit`, except its state, with the comparison of `response` with one event.
 void compare(const event::WhitenedEvents& events, std::size_t event, const playin::Response& response,
              EventFit& fit);
 

@@ -177,7 +177,7 @@ class Separations {
   const event::WhitenedEvents& events_;
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
-  std::vector<std::optional<ScaledResponse>> responses_;  ///< [scene * rivals + rival]
+  std::vector<std::optional<ScaledResponse>> responses_;  ///< [scene * competitors + competitor]
   std::vector<Eigen::MatrixXd> known_;  ///< information of the records on each hypothesis's parameters
   std::array<double, playin::kOutputs> noise_;
 };

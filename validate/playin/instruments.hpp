@@ -5,13 +5,13 @@
 
 namespace swingbank::validate::playin {
 
-/// Runs drive() with instruments. Their effect on a constant phasor is removed from the played-in voltage and
-/// from the operating point. Their filtering of a moving phasor is not; samples within their window around a
-/// step are left out of a fit instead (FitEvent::filtered_samples). The response's current is filtered as in
-/// the instruments. The chain must be linear. Sensitivity parameters may include parameters of the
-/// instruments, whose blocks follow those of sim::plant::block_parameters(). Their sensitivities are central
-/// differences: of the instruments' outputs for one run of the plant if constant phasors pass as before, else
-/// of whole runs. Throws InputError as drive().
+/// Runs simulate_playback() with instruments. Their effect on a constant phasor is removed from the played-in
+/// voltage and from the operating point. Their filtering of a moving phasor is not; samples within their
+/// window around a step are left out of a fit instead (FitEvent::filtered_samples). The response's current is
+/// filtered as in the instruments. The chain must be linear. Sensitivity parameters may include parameters of
+/// the instruments, whose blocks follow those of sim::plant::block_parameters(). Their sensitivities are
+/// central differences: of the instruments' outputs for one run of the plant if constant phasors pass as
+/// before, else of whole runs. Throws InputError as simulate_playback().
 Response observe(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Returns whether the effect of instruments of this kind, away from null values, can be removed. It can if

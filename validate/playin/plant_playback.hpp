@@ -98,7 +98,7 @@ struct SensitivityParameter {
 /// Response [output][sample] and sensitivities [parameter][output][sample]; outputs without requested
 /// sensitivities have none.
 struct Response {
-  std::vector<double> value[kOutputs];  ///< [output][sample]; units as for Drive
+  std::vector<double> value[kOutputs];  ///< [output][sample]; units as for PlaybackRun
   /// Sensitivities to one parameter.
   struct Sensitivity {
     std::vector<double> value[kOutputs];
@@ -131,7 +131,7 @@ struct SeenAlong {
   std::vector<Seen> seen;  ///< along the run
 };
 /// Returns these inputs at every sample and integration step, on both sides of every switching time, and at
-/// `times` [s] (ascending). Throws as drive().
+/// `times` [s] (ascending). Throws as simulate_playback().
 SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times = {});
 
 /// Linearised plant about a run's start: \f$x' = A x + B u\f$, \f$y = C x + D u\f$ with u = (relative change

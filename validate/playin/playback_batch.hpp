@@ -9,10 +9,10 @@
 
 namespace swingbank::validate::playin {
 
-/// Returns the responses of drive() to each run without sensitivities; an entry is empty where drive() would
-/// throw. The runs share one record and one curve, and their plants have the same effects. Eight of them take
-/// common steps, as short as the most demanding needs, so responses differ from those of drive() within the
-/// tolerance.
+/// Returns the responses of simulate_playback() to each run without sensitivities; an entry is empty where
+/// simulate_playback() would throw. The runs share one record and one curve, and their plants have the same
+/// effects. Eight of them take common steps, as short as the most demanding needs, so responses differ from
+/// those of simulate_playback() within the tolerance.
 std::vector<std::optional<Response>> simulate_playback_batch(std::span<const PlaybackRun> runs);
 
 }  // namespace swingbank::validate::playin

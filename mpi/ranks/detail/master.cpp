@@ -97,7 +97,7 @@ void Master::poll() try {
     if (lease.empty()) --waiting_leaders_;
   }
 } catch (const std::exception& e) {
-  end_all_ranks(e.what());  // the group would wait for its answer forever
+  end_all_ranks(e.what());  // the group would wait for its reply forever
 }
 
 void Master::serve_to_the_end() {

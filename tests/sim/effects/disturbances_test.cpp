@@ -1,4 +1,4 @@
-// Playback drives: their time series against hand calculations, and plant responses against closed forms.
+// Disturbances: their time series against hand calculations, and plant responses against closed forms.
 #include <complex>
 #include <numbers>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Signals after a drive's evaluation at time t; Tm is 0.8 before it.
+/// Signals after the evaluation of a disturbance at time t; Tm is 0.8 before it.
 Signals<double> at(const char* name, const Values& p, double t) {
   const Effect& e = *library::compiled().find(name);
   Values c(static_cast<std::size_t>(e.coefficients));
@@ -238,7 +238,7 @@ TEST(Disturbances, HaveNoEffectBeforeTheirFirstSwitchingTime) {
     grid::Grid silent = grid;
     add(grid.plants[1], name, values.first);
     add(silent.plants[1], name, values.second);
-    const network::Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // a disturbance for the drives to act on
+    const network::Event event{{{1, 1.0, 1.05, {0.0, 0.1}}}, {}};  // a fault, so that the plant moves
     reference::ReferenceOptions options;
     options.t_end = 4.0;
     const reference::ReferenceRun a = reference::run_reference(grid, event, options),

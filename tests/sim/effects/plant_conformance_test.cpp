@@ -119,7 +119,7 @@ std::vector<double> shifts(const plant::Plant& plant, std::mt19937_64& random) {
   return list;
 }
 
-/// Time at which every drive acts: half a second after its first step.
+/// Time at which every disturbance acts: half a second after its first step.
 double busy_time(const plant::Plant& plant) {
   const auto switching_times = plant::switching_times_of(plant);
   return switching_times.empty() ? 1.0 : switching_times.front() + 0.5;

@@ -1,6 +1,6 @@
 #pragma once
-// Random grids and events over every registered effect: random machine models, controls, drives and loads,
-// with faults, trips and steps. New effects are included automatically.
+// Random grids and events over every registered effect: random machine models, controls, disturbances and
+// loads, with faults, trips and steps. New effects are included automatically.
 #include <algorithm>
 #include <random>
 #include <set>

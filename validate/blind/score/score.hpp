@@ -50,7 +50,7 @@ struct BlindScore {
   std::vector<std::string> unjudged;  ///< cases without a verdict
   std::map<std::string, Rate> rates;  ///< by name, see score_blind()
   std::map<std::string, double> targets;
-  std::map<std::string, std::map<std::string, int>> confusion;  ///< counts [kind][first answer]
+  std::map<std::string, std::map<std::string, int>> confusion;  ///< counts [kind][first effect named]
   std::map<std::string, std::vector<Rate>> by_size;             ///< by channels: first_right() per size class
   std::map<std::string, ByCondition> by_condition;
   Reliability reliability;
