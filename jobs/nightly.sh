@@ -13,7 +13,7 @@
 #                  nights then show the random variation of a result
 #     --seeds      trains with that many seeds, from --seed on; default 3 if the night has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
-#     --tests      1 runs the nightly tier of the tests (tests/run.sh --night), 0 skips it; default 1 if 70 % of the
+#     --tests      1 runs the nightly tier of the tests (tests/run.sh --nightly), 0 skips it; default 1 if 70 % of the
 #                  remaining time suffices by the last night's measurement (without one: an hour and a half)
 #     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
 #     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time permits;
@@ -175,7 +175,7 @@ blind_test() {
 }
 night_tests() {
   local status=0
-  run_saving bash "$source_folder/tests/run.sh" --night >"$night/tests.txt" 2>&1 || status=$?
+  run_saving bash "$source_folder/tests/run.sh" --nightly >"$night/tests.txt" 2>&1 || status=$?
   tail -n 40 "$night/tests.txt"
   return "$status"
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs missing packages, builds and runs the tests.
-#   bash tests/run.sh [--fast | --night] [--without-psse] [--sanitize] [--ci]
+#   bash tests/run.sh [--fast | --nightly] [--without-psse] [--sanitize] [--ci]
 #     --fast          the fast tier only (under 2 minutes once built)
-#     --night         only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
+#     --nightly       only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
 #                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
 #                     per night: more than an hour (jobs/nightly.sh runs it)
 #     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
@@ -16,11 +16,11 @@ set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # tests that read external files
-fast_only=0 night=0 with_psse=1 sanitize=0 ci=0
+fast_only=0 nightly=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in
     --fast) fast_only=1 ;;
-    --night) night=1 ;;
+    --nightly) nightly=1 ;;
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
@@ -61,7 +61,7 @@ check_reference() {
 
 # The tests of the modules that read a user's files, in the build of the fuzz targets.
 run_readers() {
-  local folder=$source_folder/build/fuzz left_out='*Full.*:*Night.*'
+  local folder=$source_folder/build/fuzz left_out='*Full.*:*Nightly.*'
   ((with_psse)) || left_out+=":*${of_others//|/*:*}*"
   mkdir -p "$folder"
   cmake --preset fuzz -S "$source_folder" >"$folder.log" 2>&1 && cmake --build "$folder" --target tests_of_readers >>"$folder.log" 2>&1 ||
@@ -166,7 +166,7 @@ tier() {
   phase "tier $1"
   run_tests "$1" "$build" -L "^$1\$" -j "$jobs"
 }
-if ((night)); then
+if ((nightly)); then
   phase "one definition of each name"
   one_definition || failed+=(one_definition)
   phase "each source alone"
@@ -176,12 +176,12 @@ if ((night)); then
     run_readers || failed+=(readers)
   phase "threads"
   threads || failed+=(threads)
-  # One instruction set per night: without ccache its build takes some ten minutes of two cores.
+  # One instruction set per nightly run: without ccache its build takes some ten minutes of two cores.
   levels=(x86-64-v2 x86-64-v3 x86-64-v4)
   level=${levels[10#$(date +%j) % ${#levels[@]}]}
   phase "lanes under the sanitizers, $level"
   bash "$source_folder/tests/sim/sanitized.bash" "$level" || failed+=(sanitized)
-  tier night
+  tier nightly
 else
   tier fast
   ((fast_only)) || tier full

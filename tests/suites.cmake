@@ -1,5 +1,5 @@
 # Registers the tests of one program when ctest starts. The fast tier has one process per suite, because starting a
-# process costs more than most tests. Suites that end in Full or Night (labels full and night) contain long tests:
+# process costs more than most tests. Suites that end in Full or Nightly (labels full and nightly) contain long tests:
 # they have one process per test and so are spread over the cores. Input: room, program, list (written here if it is
 # older than the program), whole (the fast tier is registered already).
 function(write_suites)
@@ -16,7 +16,7 @@ function(write_suites)
     if(line MATCHES "^([^ ]+)\\.$")
       set(suite ${CMAKE_MATCH_1})
       set(label fast)
-      if(suite MATCHES "(Full|Night)$")
+      if(suite MATCHES "(Full|Nightly)$")
         string(TOLOWER ${CMAKE_MATCH_1} label)
       elseif(NOT whole)
         set(name ${suite})
@@ -36,7 +36,7 @@ endfunction()
 
 if(NOT EXISTS ${program})
   add_test(${room}.not_built ${program})
-  set_tests_properties(${room}.not_built PROPERTIES LABELS "fast;full;night")
+  set_tests_properties(${room}.not_built PROPERTIES LABELS "fast;full;nightly")
   return()
 endif()
 if(${program} IS_NEWER_THAN ${list} OR ${CMAKE_CURRENT_LIST_FILE} IS_NEWER_THAN ${list})

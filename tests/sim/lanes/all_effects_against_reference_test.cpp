@@ -212,14 +212,14 @@ Tally run_in_float(int wanted, std::uint64_t seed) {
 }
 
 TEST(AllEffectsAgainstReferenceFull, FiftyRandomEventsInFloat) { run_in_float(50, 20214); }
-TEST(AllEffectsAgainstReferenceNight, FiveHundredRandomEventsInFloat) { run_in_float(500, 20214); }
+TEST(AllEffectsAgainstReferenceNightly, FiveHundredRandomEventsInFloat) { run_in_float(500, 20214); }
 
 TEST(AllEffectsAgainstReference, TwentyRandomEvents) { run_events(20, 20211); }
 
 TEST(AllEffectsAgainstReferenceFull, FortyRandomEvents) { run_events(40, 20212); }
 
 /// SWINGBANK_SEED in the environment draws other events.
-TEST(AllEffectsAgainstReferenceNight, ThousandRandomEvents) {
+TEST(AllEffectsAgainstReferenceNightly, ThousandRandomEvents) {
   const char* seed = std::getenv("SWINGBANK_SEED");
   const Tally tally = run_events(1000, seed ? std::strtoull(seed, nullptr, 10) : 20212);
   EXPECT_EQ(tally.seen, all_names());
@@ -279,7 +279,7 @@ Tally run_references(int wanted, std::uint64_t seed) {
 }
 
 TEST(AllEffectsAgainstReferenceFull, ReferenceAgainstItself) { run_references(20, 20213); }
-TEST(AllEffectsAgainstReferenceNight, ReferenceAgainstItself) { run_references(200, 20213); }
+TEST(AllEffectsAgainstReferenceNightly, ReferenceAgainstItself) { run_references(200, 20213); }
 
 }  // namespace
 }  // namespace swingbank::sim::lanes

@@ -247,7 +247,7 @@ void compare_with_cvodes(const Effect& e, Worst& worst) {
     }
 }
 
-TEST(AllSensitivitiesNight, EqualThoseOfCvodes) {
+TEST(AllSensitivitiesNightly, EqualThoseOfCvodes) {
   Worst worst;
   for (const Effect* e : effects_of_a_plant()) {
     Worst own;

@@ -135,9 +135,9 @@ TEST(CoverageFull, AcceptsRightModelWithNoiseOfTheAngle) {
   EXPECT_GT(c.voltage_noise, 0.9);
 }
 
-class CoverageNight : public ::testing::TestWithParam<Cell> {};
+class CoverageNightly : public ::testing::TestWithParam<Cell> {};
 
-TEST_P(CoverageNight, IntervalsContainTheTruth) {
+TEST_P(CoverageNightly, IntervalsContainTheTruth) {
   static const Filtered events;
   const CalibrateOptions options = from_one_start();
   std::vector<Calibration> all(kCopies);
@@ -177,7 +177,7 @@ TEST_P(CoverageNight, IntervalsContainTheTruth) {
   EXPECT_GE(adequate, kCopies - 8);  // one start, no draws: some fits end beside the optimum
 }
 
-INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNight,
+INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNightly,
                          ::testing::Values(Cell{0.02, 0.02, 30}, Cell{0.02, 0.1, 30}, Cell{0.1, 0.02, 30},
                                            Cell{0.1, 0.1, 30}, Cell{0.1, 0.1, 60}, Cell{0.02, 0.02, 120},
                                            Cell{0.1, 0.1, 120}),

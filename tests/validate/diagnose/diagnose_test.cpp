@@ -122,7 +122,7 @@ std::vector<record::Record> records_with_exst1(
   }
   return records;
 }
-TEST(DiagnoseNight, FindsExciterWithRateFeedback) {
+TEST(DiagnoseNightly, FindsExciterWithRateFeedback) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;

@@ -37,7 +37,7 @@ std::vector<record::Record> records_with_valves(const plant::PlantModel& model) 
   return records;
 }
 
-TEST(DiagnoseNight, NamesFastValvingAfterEachFault) {
+TEST(DiagnoseNightly, NamesFastValvingAfterEachFault) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   DiagnoseOptions options;
   options.events.measured_states = false;

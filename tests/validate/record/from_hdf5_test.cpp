@@ -122,8 +122,8 @@ TEST_F(RecordHdf5Test, RefusesDamagedBytes) {
   EXPECT_GE(told, 6);
   EXPECT_GE(crashed, 3);
 }
-class RecordHdf5Night : public RecordHdf5Test {};
-TEST_F(RecordHdf5Night, EveryFlippedByteOfTheDescriptions) {
+class RecordHdf5Nightly : public RecordHdf5Test {};
+TEST_F(RecordHdf5Nightly, EveryFlippedByteOfTheDescriptions) {
   write("swingbank-run-1");
   const std::string whole = read_bytes(file_);
   ::setenv("SWINGBANK_READER_SECONDS", "2", 1);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Kills at times spread evenly over a fleet's diagnosis: of the process or mpirun, of one child or rank, of all at
 # once, of all with one stopped before. One more run of each must end in the same tables.
-#   SWINGBANK_KILLS=100 bash tests/jobs/chaos_fleets_night.sh      (16 by default; tests/mpi/campaign.bash)
+#   SWINGBANK_KILLS=100 bash tests/jobs/chaos_fleets_nightly.sh      (16 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154 # set by lib.bash and two_plants.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/kill.bash"

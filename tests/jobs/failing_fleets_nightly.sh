@@ -2,7 +2,7 @@
 # One call fails in a fleet's diagnosis, on one rank or in the program of one plant: on its folder, on its records and
 # models, or in a memory allocation. The run ends in time, complete or with the injected error; one more run completes
 # it.
-#   SWINGBANK_INJECTIONS=100 bash tests/jobs/failing_fleets_night.sh      (24 by default; tests/mpi/campaign.bash)
+#   SWINGBANK_INJECTIONS=100 bash tests/jobs/failing_fleets_nightly.sh      (24 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash, two_plants.bash and failing_calls.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/fleet.bash"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Kills spread evenly over a run, from its first millisecond to its end: of one process, mpirun, one rank, a stopped rank,
 # or one part of three. After each, one more run completes with the same hash and bytes.
-#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_night.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
+#   SWINGBANK_KILLS=500 bash tests/mpi/chaos_nightly.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"
 kills=${SWINGBANK_KILLS:-60}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One call fails on one rank of generate, anywhere from the first to the last: input/output, space, quota, names,
-# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_night.sh      (200 by default; campaign.bash)
+# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_nightly.sh      (200 by default; campaign.bash)
 # shellcheck disable=SC2154 # failing_calls.bash sets it
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"

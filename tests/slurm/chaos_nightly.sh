@@ -3,7 +3,7 @@
 # end, with an emulated scheduler: SIGUSR1 before the time limit, SIGTERM to the script, SIGTERM to all and SIGKILL after a
 # grace (preemption), SIGKILL of the script and then of what it left, SIGKILL of all at once (a node that fails). The job is
 # started again until it ends, and ends in the same bytes.
-#   SWINGBANK_KILLS=100 bash tests/slurm/chaos_night.sh      (20 by default; tests/mpi/campaign.bash)
+#   SWINGBANK_KILLS=100 bash tests/slurm/chaos_nightly.sh      (20 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"

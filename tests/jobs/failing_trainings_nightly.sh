@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # One call fails in a training, at any position: on its checkpoint, network and result files, on its dataset, or in a
 # memory allocation. The run ends in time, complete with the same result or with the injected error; one more run
-# gives the same result. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_night.sh (90 by default)
+# gives the same result. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_nightly.sh (90 by default)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash and failing_calls.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Concurrent starts in one folder, with two seeds and --repair, on disk and in memory: one writer, and every other start
 # reports the true reason.
-#   SWINGBANK_ROUNDS=25 SWINGBANK_DISKS="/mnt/a /mnt/b" bash tests/mpi/starts_night.sh      (5 rounds of eight starts on each
+#   SWINGBANK_ROUNDS=25 SWINGBANK_DISKS="/mnt/a /mnt/b" bash tests/mpi/starts_nightly.sh      (5 rounds of eight starts on each
 # disk by default; other file systems as they are mounted)
 source "$(dirname "$0")/common.bash"
 rounds=${SWINGBANK_ROUNDS:-5}
