@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Draws docs/architecture.svg from the swingbank_room lines of the CMakeLists.txt files.
+"""Draws docs/architecture.svg from the swingbank_module lines of the CMakeLists.txt files.
 
   python3 docs/architecture.py [--check]    --check changes nothing and exits with 1 if the drawing is out of date
 
-A room stands above all that it uses, one layer above the highest of them. An arrow that follows from others is left out.
+A module stands above all that it uses, one layer above the highest of them. An arrow that follows from others is left out.
 The layers are ordered by the barycentre method of Sugiyama, Tagawa and Toda, IEEE Trans. SMC 11 (1981) 109.
 """
 import functools
@@ -17,53 +17,53 @@ COLOURS = {"base": "#e8e8e8", "sim": "#dbe9f6", "mpi": "#fdebd0", "train": "#e3f
 WIDTH, BOX, STEP, GAP, MARGIN = 900, 26, 66, 14, 16  # px; a layer is STEP high
 
 
-def read_rooms():
-    """Room -> the rooms it uses, those that only its sources use included."""
-    rooms = {}
+def read_modules():
+    """Module -> the modules it uses, those that only its sources use included."""
+    modules = {}
     for folder in ("base", "sim", "mpi", "train", "validate"):
         text = re.sub(r"#.*", "", (ROOT / folder / "CMakeLists.txt").read_text())
-        for words in re.findall(r"^swingbank_room\(([^)]*)\)", text, re.M):
-            room, *rest = words.split()
-            key, rooms[room] = "", []
+        for words in re.findall(r"^swingbank_module\(([^)]*)\)", text, re.M):
+            module, *rest = words.split()
+            key, modules[module] = "", []
             for word in rest:
                 if word in ("USES", "INSIDE", "LINK", "SOURCES", "KIND"):
                     key = word
                 elif key in ("USES", "INSIDE"):
-                    rooms[room].append(word)
-    for room, used in rooms.items():
+                    modules[module].append(word)
+    for module, used in modules.items():
         for other in used:
-            if other not in rooms:
-                sys.exit(f"no room {other} at the swingbank_room line of {room} (no CMakeLists.txt makes it): name another")
+            if other not in modules:
+                sys.exit(f"no module {other} at the swingbank_module line of {module} (no CMakeLists.txt makes it): name another")
     try:
-        graphlib.TopologicalSorter(rooms).prepare()
+        graphlib.TopologicalSorter(modules).prepare()
     except graphlib.CycleError as circle:
-        sys.exit(f"a circle at the swingbank_room lines of {', '.join(circle.args[1][1:])} (a room stands above all that "
-                 "it uses): move what they share into a room below")
-    return rooms
+        sys.exit(f"a circle at the swingbank_module lines of {', '.join(circle.args[1][1:])} (a module stands above all that "
+                 "it uses): move what they share into a module below")
+    return modules
 
 
-def layers_of(rooms):
+def layers_of(modules):
     """The layers from the bottom, with a mark where an arrow passes one; the arrows as lists of such nodes."""
     @functools.cache
-    def rank(room):
-        return 1 + max(map(rank, rooms[room]), default=-1)
+    def rank(module):
+        return 1 + max(map(rank, modules[module]), default=-1)
 
     @functools.cache
-    def reached(room):
-        return frozenset(rooms[room]).union(*map(reached, rooms[room]))
+    def reached(module):
+        return frozenset(modules[module]).union(*map(reached, modules[module]))
 
-    layers = [[] for _ in range(1 + max(map(rank, rooms)))]
-    for room in rooms:
-        layers[rank(room)].append(room)
+    layers = [[] for _ in range(1 + max(map(rank, modules)))]
+    for module in modules:
+        layers[rank(module)].append(module)
     arrows = []
-    for room, used in rooms.items():
+    for module, used in modules.items():
         for other in used:
             if any(other in reached(third) for third in used if third != other):
                 continue
-            marks = [(room, other, k) for k in range(rank(room) - 1, rank(other), -1)]
+            marks = [(module, other, k) for k in range(rank(module) - 1, rank(other), -1)]
             for mark in marks:
                 layers[mark[2]].append(mark)
-            arrows.append([room, *marks, other])
+            arrows.append([module, *marks, other])
     return layers, arrows
 
 
@@ -131,8 +131,8 @@ def positions(layers, neighbours):
     return x
 
 
-def drawing(rooms):
-    layers, arrows = layers_of(rooms)
+def drawing(modules):
+    layers, arrows = layers_of(modules)
     layers, neighbours = order(layers, arrows)
     x = positions(layers, neighbours)
     top = 112
@@ -140,15 +140,15 @@ def drawing(rooms):
     height = top + STEP * (len(layers) - 1) + BOX + MARGIN
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" '
            'font-size="12" fill="#222">',
-           "<title>The rooms of Swingbank: an arrow leads from a room to one that it uses</title>",
+           "<title>The modules of Swingbank: an arrow leads from a module to one that it uses</title>",
            f'<rect width="{WIDTH}" height="{height}" fill="#fff"/>',
            '<defs><marker id="a" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
            '<path d="M0 0L8 4L0 8z" fill="#666"/></marker></defs>']
-    out.append(f'<text x="{MARGIN}" y="24">An arrow leads from a room to one that it uses. One that follows from others is '
+    out.append(f'<text x="{MARGIN}" y="24">An arrow leads from a module to one that it uses. One that follows from others is '
                "left out.</text>")
     out.append(f'<rect x="{MARGIN}" y="44" width="{WIDTH - 2 * MARGIN}" height="{BOX}" rx="4" fill="{COLOURS["jobs"]}" '
                'stroke="#888"/>')
-    out.append(f'<text x="{WIDTH / 2:g}" y="61" text-anchor="middle">jobs: one command a file; each names the rooms it '
+    out.append(f'<text x="{WIDTH / 2:g}" y="61" text-anchor="middle">jobs: one command a file; each names the modules it '
                "uses</text>")
     for arrow in arrows:
         path = f"M{x[arrow[0]]:.1f} {y[arrow[0]] + BOX}"
@@ -159,12 +159,12 @@ def drawing(rooms):
             if lower != arrow[-1]:
                 path += f"V{end + BOX}"
         out.append(f'<path d="{path}" fill="none" stroke="#999" marker-end="url(#a)"/>')
-    for room in rooms:
-        w = width(room)
-        colour = COLOURS[room.split("/")[0]]
-        out.append(f'<rect x="{x[room] - w / 2:.1f}" y="{y[room]}" width="{w}" height="{BOX}" rx="4" fill="{colour}" '
+    for module in modules:
+        w = width(module)
+        colour = COLOURS[module.split("/")[0]]
+        out.append(f'<rect x="{x[module] - w / 2:.1f}" y="{y[module]}" width="{w}" height="{BOX}" rx="4" fill="{colour}" '
                    'stroke="#888"/>')
-        out.append(f'<text x="{x[room]:.1f}" y="{y[room] + 17}" text-anchor="middle">{room}</text>')
+        out.append(f'<text x="{x[module]:.1f}" y="{y[module] + 17}" text-anchor="middle">{module}</text>')
     return "\n".join(out) + "\n</svg>\n"
 
 
@@ -172,11 +172,11 @@ def main():
     if sys.argv[1:] not in ([], ["--check"]):
         sys.exit(f"unknown option at '{sys.argv[1]}' (docs/architecture.py knows --check only): leave it out")
     file = ROOT / "docs" / "architecture.svg"
-    text = drawing(read_rooms())
+    text = drawing(read_modules())
     if not sys.argv[1:]:
         file.write_text(text)
     elif not file.exists() or file.read_text() != text:
-        sys.exit("out of date at docs/architecture.svg (the CMakeLists.txt files name other rooms): "
+        sys.exit("out of date at docs/architecture.svg (the CMakeLists.txt files name other modules): "
                  "run python3 docs/architecture.py")
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Writes into each room's README.md what the sources say of themselves.
+# Writes into each module's README.md what the sources say of themselves.
 #   bash docs/readme_tables.sh [--check]
 #     --check  changes nothing; exits with 1 and names each README that is out of date
-# Between `<!-- uses -->` and `<!-- end of uses -->` stand the rooms that the room names in its CMakeLists.txt. Between
+# Between `<!-- uses -->` and `<!-- end of uses -->` stand the modules that the module names in its CMakeLists.txt. Between
 # `<!-- files -->` and `<!-- end of files -->` stands one row per file: each header, and each source without a header of
 # its name. A row holds the first sentence of the file's head comment, or an effect's name and title. The order of rows
 # is kept, because it is the order in which data meets the files; a new file comes last, a vanished one is dropped.
@@ -19,30 +19,30 @@ esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Each line of a CMakeLists.txt that makes a room: its words, in one line.
+# Each line of a CMakeLists.txt that makes a module: its words, in one line.
 awk 'FNR == 1 { text = "" }
-  /^swingbank_room\(/ { text = " " }
+  /^swingbank_module\(/ { text = " " }
   text != "" { sub(/#.*/, ""); text = text " " $0 }
-  text ~ /\)/ { gsub(/swingbank_room\(|\)/, "", text); $0 = text; $1 = $1; print; text = "" }' \
-  base/CMakeLists.txt {sim,mpi,train,validate}/CMakeLists.txt >"$work/rooms"
+  text ~ /\)/ { gsub(/swingbank_module\(|\)/, "", text); $0 = text; $1 = $1; print; text = "" }' \
+  base/CMakeLists.txt {sim,mpi,train,validate}/CMakeLists.txt >"$work/modules"
 
-# uses ROOM: the rooms it names, as links.
+# uses MODULE: the modules it names, as links.
 uses() {
-  awk -v room="$1" '
+  awk -v module="$1" '
     function link(other) { return "[" other "](" up other "/README.md)" }
-    $1 == room {
-      up = room
+    $1 == module {
+      up = module
       gsub(/[^\/]+/, "..", up)
       up = up "/"
       for (i = 2; i <= NF; ++i)
         if ($i ~ /^(USES|INSIDE|LINK|SOURCES|KIND)$/) key = $i
         else if (key == "USES") public = public (public ? ", " : "") link($i)
         else if (key == "INSIDE") inside = inside (inside ? ", " : "") link($i)
-      print "May use: " (public ? public : "no other room") "." (inside ? " Its sources alone also use: " inside "." : "")
-    }' "$work/rooms"
+      print "May use: " (public ? public : "no other module") "." (inside ? " Its sources alone also use: " inside "." : "")
+    }' "$work/modules"
 }
 
-# files ROOM: without extension, those of detail/ last
+# files MODULE: without extension, those of detail/ last
 files() {
   local path
   for path in "$1"/*.hpp "$1"/*.cpp "$1"/detail/*.hpp "$1"/detail/*.cpp; do
@@ -105,7 +105,7 @@ says() {
     { print $0 "\t" as_cell(said($0, $0 ~ /^sim\/effects\// && $0 !~ /\/detail\//)) }'
 }
 
-# table ROOM
+# table MODULE
 table() {
   local name file said
   files "$1" >"$work/there"
@@ -119,7 +119,7 @@ table() {
     done | says |
     while IFS=$'\t' read -r file said; do
       if [[ -z $said ]]; then
-        echo "no head comment at $file (the table of its room takes its first sentence): say there what the file is" >&2
+        echo "no head comment at $file (the table of its module takes its first sentence): say there what the file is" >&2
         return 1
       fi
       name=${file#"$1"/}
@@ -127,7 +127,7 @@ table() {
     done
 }
 
-# written ROOM: its README with both parts as they should be
+# written MODULE: its README with both parts as they should be
 written() {
   uses "$1" >"$work/uses"
   table "$1" >"$work/files"
@@ -143,15 +143,15 @@ written() {
 }
 
 failed=0
-while read -r room _; do
-  readme=$room/README.md
+while read -r module _; do
+  readme=$module/README.md
   for mark in uses files; do
     if ! grep -qx -e "<!-- $mark -->" "$readme" || ! grep -qx -e "<!-- end of $mark -->" "$readme"; then
-      echo "no '<!-- $mark -->' ... '<!-- end of $mark -->' at $readme (each room has one): write both lines" >&2
+      echo "no '<!-- $mark -->' ... '<!-- end of $mark -->' at $readme (each module has one): write both lines" >&2
       exit 1
     fi
   done
-  written "$room" >"$work/README.md"
+  written "$module" >"$work/README.md"
   if cmp -s "$work/README.md" "$readme"; then continue; fi
   if ((check)); then
     echo "out of date at $readme (the sources say something else of themselves): run bash docs/readme_tables.sh" >&2
@@ -160,5 +160,5 @@ while read -r room _; do
     cp "$work/README.md" "$readme"
     echo "written: $readme"
   fi
-done <"$work/rooms"
+done <"$work/modules"
 exit "$failed"

@@ -1,6 +1,6 @@
 # Registers the tests of one program when ctest starts. The fast tier has one process per suite, because starting a
 # process costs more than most tests. Suites that end in Full or Nightly (labels full and nightly) contain long tests:
-# they have one process per test and so are spread over the cores. Input: room, program, list (written here if it is
+# they have one process per test and so are spread over the cores. Input: module, program, list (written here if it is
 # older than the program), whole (the fast tier is registered already).
 function(write_suites)
   execute_process(COMMAND ${program} --gtest_list_tests TIMEOUT 120 OUTPUT_VARIABLE said RESULT_VARIABLE failed)
@@ -27,16 +27,16 @@ function(write_suites)
       set(filter ${name})
     endif()
     if(name)
-      string(APPEND text "add_test(${room}.${name} \"${program}\" --gtest_brief=1 \"--gtest_filter=${filter}\")\n"
-        "set_tests_properties(${room}.${name} PROPERTIES LABELS ${label})\n")
+      string(APPEND text "add_test(${module}.${name} \"${program}\" --gtest_brief=1 \"--gtest_filter=${filter}\")\n"
+        "set_tests_properties(${module}.${name} PROPERTIES LABELS ${label})\n")
     endif()
   endforeach()
   file(WRITE ${list} "${text}")
 endfunction()
 
 if(NOT EXISTS ${program})
-  add_test(${room}.not_built ${program})
-  set_tests_properties(${room}.not_built PROPERTIES LABELS "fast;full;nightly")
+  add_test(${module}.not_built ${program})
+  set_tests_properties(${module}.not_built PROPERTIES LABELS "fast;full;nightly")
   return()
 endif()
 if(${program} IS_NEWER_THAN ${list} OR ${CMAKE_CURRENT_LIST_FILE} IS_NEWER_THAN ${list})

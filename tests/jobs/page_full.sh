@@ -33,8 +33,8 @@ page, width, media = open(sys.argv[1]).read(), sys.argv[3], sys.argv[4]
 page = re.sub(r"(<td class=.cell[^>]*>)[^<]* of [^<]*", r"\1-11.06 of ±5 % *", page)  # the widest possible value
 page = page.replace(media, "@media all", 1).replace("</main>", """</main><script>addEventListener('load', () => {
   document.body.style.width = '%spx';
-  const room = document.querySelector('main').clientWidth - 2 * parseFloat(getComputedStyle(document.querySelector('main')).paddingLeft);
-  document.body.innerText = 'over:' + [...document.querySelectorAll('table')].map((t, i) => t.scrollWidth > room + 1 ? i : '').join(' ') + ';';
+  const width = document.querySelector('main').clientWidth - 2 * parseFloat(getComputedStyle(document.querySelector('main')).paddingLeft);
+  document.body.innerText = 'over:' + [...document.querySelectorAll('table')].map((t, i) => t.scrollWidth > width + 1 ? i : '').join(' ') + ';';
 })</script>""" % width, 1)
 open(sys.argv[2], "w").write(page)
 PYTHON

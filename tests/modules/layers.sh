@@ -22,8 +22,8 @@ for entry in json.load(open(commands)):  # by itself, or as one of several (CMAK
             if line.startswith("#include"):
                 entry_of.setdefault(line.split('"')[1], entry)
 for line in open(wanted):
-    room_source, header = line.split()
-    entry = entry_of[f"{source}/{room_source}"]
+    module_source, header = line.split()
+    entry = entry_of[f"{source}/{module_source}"]
     words = shlex.split(entry["command"])
     at = next(i for i, w in enumerate(words) if w.startswith("-D") or w.startswith("-I"))
     kept, skip = [words[at - 1]], False
@@ -37,7 +37,7 @@ for line in open(wanted):
     with open(attempt, "w") as file:
         file.write(f'#include "{header}"\n')
     done = subprocess.run(kept + ["-E", "-o", "/dev/null", attempt], cwd=entry["directory"], capture_output=True, text=True)
-    print(room_source, header, "found" if done.returncode == 0 else " ".join(done.stderr.split()))
+    print(module_source, header, "found" if done.returncode == 0 else " ".join(done.stderr.split()))
 PYTHON
 }
 
@@ -60,7 +60,7 @@ failed=0
 try_all "$work/forbidden" >"$work/tried"
 while read -r from header said; do
   if [[ $said == found ]]; then
-    echo "$from can include $header: a room must not see that" >&2
+    echo "$from can include $header: a module must not see that" >&2
     failed=1
   elif [[ $said != *"$header: No such file"* ]]; then
     echo "$from with $header fails for another reason than a header out of sight: $said" >&2

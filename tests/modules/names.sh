@@ -7,26 +7,26 @@ cd "${SWINGBANK_SOURCE:?}"
 sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
 failed=0
 
-# room_of FILE: sets `room`, the module of the file
-room_of() {
-  room=${1%/*}
-  room=${room%/detail}
+# module_of FILE: sets `module`, the module of the file
+module_of() {
+  module=${1%/*}
+  module=${module%/detail}
 }
 
 while read -r file; do
-  room_of "$file"
-  case $room in
+  module_of "$file"
+  case $module in
     sim | mpi | train | validate | validate/blind)
-      echo "$file stands in $room, which holds rooms: put it into one of them" >&2
+      echo "$file stands in $module, which holds modules: put it into one of them" >&2
       failed=1 ;;
   esac
 done < <(git ls-files --cached --others --exclude-standard -- "${sources[@]}")
 while IFS=: read -r file opened; do
-  room_of "$file"
-  case $room in
+  module_of "$file"
+  case $module in
     base) name=swingbank ;;
     sim/core) name=swingbank::sim ;;
-    *) name=swingbank::${room//\//::} ;;
+    *) name=swingbank::${module//\//::} ;;
   esac
   if [[ $opened != "namespace $name "* && $opened != "namespace $name::"* ]]; then
     echo "$file opens $opened in place of $name" >&2

@@ -1,6 +1,6 @@
 # A module is a folder with one purpose. It becomes a target `swingbank_<path with _ for />`; its namespace is its
 # path, and its tests are in tests/<path>.
-#   swingbank_room(validate/fit [INTERNAL] [KIND hot|cold|train] [USES room...] [INSIDE room...] [LINK target...] [SOURCES file...])
+#   swingbank_module(validate/fit [INTERNAL] [KIND hot|cold|train] [USES module...] [INSIDE module...] [LINK target...] [SOURCES file...])
 # USES: modules whose headers this module's public headers include. INSIDE: modules that only its sources include.
 # KIND: `hot` (default) is fully optimised; `cold` is not (readers, reports, commands); `train` includes LibTorch's
 # headers. INTERNAL: not part of the installed library (find_package(swingbank)), which has every other module with
@@ -8,12 +8,12 @@
 # Files in <module>/detail/ are private: no other module can include them. Each module has two include roots in the
 # build folder, made of links: `public` has its public headers, `own` the whole module. A target sees its own module
 # and the public headers of the modules that it names; any other include does not compile.
-function(swingbank_room path)
+function(swingbank_module path)
   cmake_parse_arguments(A "INTERNAL" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
   string(REPLACE / _ name ${path})
-  set(room swingbank_${name})
+  set(module swingbank_${name})
   set(folder ${PROJECT_SOURCE_DIR}/${path})
-  set(roots ${PROJECT_BINARY_DIR}/rooms/${name})
+  set(roots ${PROJECT_BINARY_DIR}/modules/${name})
   file(REMOVE_RECURSE ${roots})
   cmake_path(GET path PARENT_PATH parent)
   file(MAKE_DIRECTORY ${roots}/own/${parent} ${roots}/public/${path})
@@ -33,19 +33,19 @@ function(swingbank_room path)
     set(A_KIND hot)
   endif()
   if(sources)
-    add_library(${room} STATIC ${sources})
-    target_include_directories(${room} BEFORE PRIVATE ${roots}/own)
-    target_include_directories(${room} PUBLIC $<BUILD_INTERFACE:${roots}/public>)
-    target_link_libraries(${room} PUBLIC swingbank_options ${A_USES} ${A_LINK} PRIVATE swingbank_${A_KIND} ${A_INSIDE})
-    swingbank_precompile(${room} ${A_KIND})
+    add_library(${module} STATIC ${sources})
+    target_include_directories(${module} BEFORE PRIVATE ${roots}/own)
+    target_include_directories(${module} PUBLIC $<BUILD_INTERFACE:${roots}/public>)
+    target_link_libraries(${module} PUBLIC swingbank_options ${A_USES} ${A_LINK} PRIVATE swingbank_${A_KIND} ${A_INSIDE})
+    swingbank_precompile(${module} ${A_KIND})
   else()
-    add_library(${room} INTERFACE)
-    target_include_directories(${room} INTERFACE $<BUILD_INTERFACE:${roots}/public>)
-    target_link_libraries(${room} INTERFACE swingbank_options ${A_USES} ${A_LINK})
+    add_library(${module} INTERFACE)
+    target_include_directories(${module} INTERFACE $<BUILD_INTERFACE:${roots}/public>)
+    target_link_libraries(${module} INTERFACE swingbank_options ${A_USES} ${A_LINK})
   endif()
-  set_property(GLOBAL APPEND PROPERTY SWINGBANK_ROOMS ${room})
+  set_property(GLOBAL APPEND PROPERTY SWINGBANK_MODULES ${module})
   if(NOT A_INTERNAL)
-    swingbank_export(${room} ${path} ${headers})
+    swingbank_export(${module} ${path} ${headers})
   endif()
-  set_property(TARGET ${room} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
+  set_property(TARGET ${module} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
 endfunction()

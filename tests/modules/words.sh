@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Words that have a standard term (docs/glossary.md, CONTRIBUTING.md) appear in no heading of a document and in no new identifier.
-# tests/rooms/words_known.txt lists the identifiers that still contain one; it may only become shorter.
+# tests/modules/words_known.txt lists the identifiers that still contain one; it may only become shorter.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 /usr/bin/python3 - "$@" <<'PYTHON'
@@ -42,7 +42,7 @@ for name in files:
             identifier = match["id"]
             if identifier and identifier not in identifiers and listed(parts(identifier)):
                 identifiers[identifier] = f"{name}:{text.count(chr(10), 0, match.start()) + 1}"
-known_file = pathlib.Path("tests/rooms/words_known.txt")
+known_file = pathlib.Path("tests/modules/words_known.txt")
 if sys.argv[1:] == ["--write"]:
     known_file.write_text("".join(f"{i}\n" for i in sorted(identifiers)))
 known = set(known_file.read_text().split())
@@ -53,7 +53,7 @@ for identifier in sorted(set(identifiers) - known):
     print(f"home-made word in {identifier} at {identifiers[identifier]} ({terms}): use the standard term", file=sys.stderr)
     failed = True
 for identifier in sorted(known - set(identifiers)):
-    print(f"unused entry {identifier} at {known_file} (no file has it): run bash tests/rooms/words.sh --write", file=sys.stderr)
+    print(f"unused entry {identifier} at {known_file} (no file has it): run bash tests/modules/words.sh --write", file=sys.stderr)
     failed = True
 for name in files:
     if name.endswith(".md") and not name.startswith(("docs/log/", "docs/tables/")):

@@ -11,7 +11,7 @@ trap 'rm -rf "$copy"' EXIT
 tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate | tar -xf - -C "$copy"
 # Two modules are sufficient for the test.
 for folder in mpi sim train validate; do mv "$copy/$folder/CMakeLists.txt" "$copy/$folder.all"; done
-grep '^swingbank_room(sim/formats ' "$copy/sim.all" >"$copy/sim/CMakeLists.txt"
+grep '^swingbank_module(sim/formats ' "$copy/sim.all" >"$copy/sim/CMakeLists.txt"
 touch "$copy"/{mpi,train,validate}/CMakeLists.txt
 # Without the sources, as in this copy, the tables are out of date.
 if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
@@ -32,9 +32,9 @@ if [[ $last != '| `clock` | A clock (see J. Harrison, 1759) |' ]]; then
   exit 1
 fi
 for folder in mpi sim train validate; do mv "$copy/$folder.all" "$copy/$folder/CMakeLists.txt"; done
-sed -i 's/^swingbank_room(sim\/core USES base)/swingbank_room(sim\/core USES base validate\/fleet)/' "$copy/sim/CMakeLists.txt"
+sed -i 's/^swingbank_module(sim\/core USES base)/swingbank_module(sim\/core USES base validate\/fleet)/' "$copy/sim/CMakeLists.txt"
 if python3 "$copy/docs/architecture.py" --check 2>"$copy/said"; then
-  echo "a circle of rooms went unnoticed" >&2
+  echo "a circle of modules went unnoticed" >&2
   exit 1
 fi
-grep -q 'a circle at the swingbank_room lines' "$copy/said"
+grep -q 'a circle at the swingbank_module lines' "$copy/said"
