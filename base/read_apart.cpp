@@ -23,7 +23,7 @@ namespace {
 constexpr double kPatience = 300.0;          ///< wall-clock limit [s], for a slow disk or a stopped process
 constexpr rlim_t kProcessorTime = 30;        ///< limit of processor time [s]: endless loop on damaged files
 constexpr std::uintmax_t kSlow = 5'000'000;  ///< lowest reading rate of any reader [bytes/s]
-constexpr int kProblemsTold = 3;             ///< exit code: the output is a list of problems
+constexpr int kProblemsReported = 3;         ///< exit code: the output is a list of problems
 constexpr const char* kWhat = "a file that cannot be read";
 constexpr const char* kRemedy = "get the file again from where it came from, or make it again";
 
@@ -61,7 +61,7 @@ std::string read_apart(const std::string& kind, const std::filesystem::path& fil
   ProgramEnd ended = run_program(program, all, {ProgramRun::Output::taken, true, patience});
   if (!ended.late && WIFEXITED(ended.status)) {
     if (WEXITSTATUS(ended.status) == 0) return std::move(ended.output);
-    if (WEXITSTATUS(ended.status) == kProblemsTold)
+    if (WEXITSTATUS(ended.status) == kProblemsReported)
       if (auto problems = problems_in(ended.output); !problems.empty()) throw InputError(std::move(problems));
   }
   throw InputError({kWhat, file.string(), way_to_end(ended, patience) + "; the file is damaged", kRemedy});
@@ -85,7 +85,7 @@ int reply_apart(const std::filesystem::path& file, const std::function<std::stri
   } catch (const std::bad_alloc&) {
     problems.push_back({kWhat, "its reader", "memory is short", "run it where there is more memory"});
   }
-  return write_all(STDOUT_FILENO, json_text(problems)) ? kProblemsTold : 1;
+  return write_all(STDOUT_FILENO, json_text(problems)) ? kProblemsReported : 1;
 }
 
 }  // namespace swingbank

@@ -28,7 +28,7 @@ struct Arguments {
   jobs::AnalysisOptions of{"added"};
   std::string effect, truth, command;
   bool until_adequate = false, retrain = false;
-  nlohmann::json told;  ///< metadata of the records
+  nlohmann::json metadata;  ///< metadata of the records
   add::AddOptions options;
   retrain::RetrainOptions training;
   std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
@@ -97,7 +97,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   result["format"] = "swingbank-add-3";
   result["command"] = a.command;
   result["standard_values"] = before.defaults;
-  result["records"] = a.told;
+  result["records"] = a.metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   plant::write_plant_file(model_file, model, provenance);
@@ -168,7 +168,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const check::Preparing preparing = a.of.reading.apply(model, a.of.records);
   const check::RecordSet set = jobs::read_events(a.of.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
-  a.told = jobs::records_json(set);
+  a.metadata = jobs::records_json(set);
   calibrate::held_out_events(records, a.options.calibrate.held_out);
   for (const std::filesystem::path& file : std::vector<std::filesystem::path>{a.training.dataset, a.truth})
     if (!file.empty()) note_input(file);

@@ -110,7 +110,7 @@ struct AnalysisOptions {
     for (const auto& file : law_files)
       laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), loaded.library));
     keep_laws(loaded);
-    tell(loaded);
+    print_warnings(loaded);
     if (!to_fit) return loaded;
     if (loaded.submitted && !quiet)
       fmt::print(stderr, "note: started from the values before that calibration\n");

@@ -116,7 +116,7 @@ void say(const Arguments& a, const nlohmann::json& result, const std::string& te
 }
 
 int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
-                 const calibrate::Truth& truth, const nlohmann::json& told) {
+                 const calibrate::Truth& truth, const nlohmann::json& metadata) {
   const calibrate::CurveFit f = fit_curves(a, model, records);
   a.fitted.emplace();
   a.fitted->plant = f.model.plant;
@@ -129,7 +129,7 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["command"] = a.command;
   result["standard_values"] = model.defaults;
-  result["records"] = told;
+  result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
@@ -176,7 +176,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 
 /// Runs the sparse parameter selection (--fewest) and writes the model with the selected parameters changed.
 int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
-               const nlohmann::json& told) {
+               const nlohmann::json& metadata) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);
   a.fitted = w.found.fit;
   const auto played = play_both(a, model, w.model, records);
@@ -184,7 +184,7 @@ int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<r
       write_model(a, model, w.model, w.holds(), {"command: " + a.command, w.sentence});
   nlohmann::json result = calibrate::wrong_json(w);
   result["command"] = a.command;
-  result["records"] = told;
+  result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
@@ -205,7 +205,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
   const check::RecordSet set = jobs::read_events(a.of.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
-  const nlohmann::json told = jobs::records_json(set);
+  const nlohmann::json metadata = jobs::records_json(set);
   if (!a.start.empty()) note_input(a.start);
   a.of.open_results("calibrate", {kModel, kBiasedModel, kDyr, kCurveFit, kPage, kResult,
                                   jobs::kInterruptedModel, "calibrate-interrupted.json"});
@@ -215,8 +215,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
     throw InputError({"a method or a start of its own", "--fewest", "it is a method of its own",
                       "leave --method, --network and --start out"});
-  if (a.method == "curve-fit") return run_baseline(a, model, records, truth, told);
-  if (a.sparse) return run_sparse(a, model, records, told);
+  if (a.method == "curve-fit") return run_baseline(a, model, records, truth, metadata);
+  if (a.sparse) return run_sparse(a, model, records, metadata);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -236,7 +236,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.defaults;
-  result["records"] = told;
+  result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   result["statistically_complete"] = holds;

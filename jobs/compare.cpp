@@ -82,7 +82,7 @@ int run(Arguments& a) {
   const check::Preparing preparing = a.of.reading.apply(model, a.of.records);
   Problems problems;
   auto [records, warnings] = check::read_records(a.of.records, model, problems, preparing);
-  jobs::tell_events_elsewhere(a.of.records, model.reading.staged);
+  jobs::note_unused_events(a.of.records, model.reading.staged);
   problems.raise();
   records = a.of.compared(std::move(records));
   std::vector<std::string> names = {kPage, kResult, kInterrupted};

@@ -120,13 +120,13 @@ struct Reading {
     using validate::record::Component;
     for (const auto c : {Component::exciter, Component::governor, Component::machine})
       if (component == validate::record::component_name(c)) {
-        const std::size_t told = model.warnings.size();
+        const std::size_t warnings_before = model.warnings.size();
         model = validate::event::component_model(std::move(model), c);
-        for (std::size_t k = told; k < model.warnings.size(); ++k)
+        for (std::size_t k = warnings_before; k < model.warnings.size(); ++k)
           fmt::print(stderr, "note: {}\n", model.warnings[k]);
       }
-    return [told = given_switching_times(switches, records), at](validate::record::Record r) {
-      if (const auto of = told.find(r.name); of != told.end()) r.switched = of->second;
+    return [given_times = given_switching_times(switches, records), at](validate::record::Record r) {
+      if (const auto of = given_times.find(r.name); of != given_times.end()) r.switched = of->second;
       return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
     };
   }
@@ -134,8 +134,8 @@ struct Reading {
 
 /// Prints a note for each staged event that belongs to none of these records; it belongs to another test, or
 /// its name is misspelled.
-inline void tell_events_elsewhere(const std::vector<std::string>& files,
-                                  const std::vector<validate::record::StagedEvent>& staged) {
+inline void note_unused_events(const std::vector<std::string>& files,
+                               const std::vector<validate::record::StagedEvent>& staged) {
   if (quiet) return;
   for (const auto& e : staged)
     if (std::ranges::none_of(files, [&](const auto& file) { return validate::record::belongs_to(e, file); }))
@@ -162,7 +162,7 @@ inline validate::check::RecordSet read_events(const std::vector<std::string>& fi
     }
   for (const auto& [warning, of] : notes)
     if (!quiet) fmt::print(stderr, "note on {}: {}\n", of, warning);
-  tell_events_elsewhere(files, model.reading.staged);
+  note_unused_events(files, model.reading.staged);
   problems.raise();
   return set;
 }
@@ -178,7 +178,7 @@ inline nlohmann::json records_json(const validate::check::RecordSet& set) {
 }
 
 /// Prints a model's warnings and its default values to standard error.
-inline void tell(const validate::plant::PlantModel& model) {
+inline void print_warnings(const validate::plant::PlantModel& model) {
   if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
   if (!model.defaults.empty())

@@ -24,7 +24,7 @@ int run(const Arguments& a) {
   const bool dyd = a.format == "dyd";
   const std::string& file = a.plant;
   plant::PlantModel model = plant::load_plant_model(file);
-  jobs::tell(model);
+  jobs::print_warnings(model);
   if (!a.out.empty()) require_inputs_kept({{a.out, "--out"}});
   if (model.submitted)
     throw InputError({"a model that is not adequate", file,

@@ -67,7 +67,8 @@ std::string describe(const fleet::FleetRow& row, bool was_there) {
   return text + (was_there ? " (existed already)" : "");
 }
 
-int tell(const jobs::FleetCommand& c, const fleet::Fleet& fleet, const std::vector<fleet::FleetRow>& rows) {
+int write_reports(const jobs::FleetCommand& c, const fleet::Fleet& fleet,
+                  const std::vector<fleet::FleetRow>& rows) {
   const fs::path folder = c.out;
   const std::string json = fleet::fleet_json(fleet, rows);
   write_file(folder / "fleet.json", json);
@@ -139,7 +140,7 @@ int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
     return kSubmitAgain;
   }
   int code = 0;
-  if (first) code = jobs::guarded("diagnose", [&] { return tell(c, fleet, rows); });
+  if (first) code = jobs::guarded("diagnose", [&] { return write_reports(c, fleet, rows); });
   return ranks.from_first(code);
 }
 

@@ -210,7 +210,7 @@ int generate(const draw::DatasetConfig& config, const GenerateOptions& o, MPI_Co
     if (attempt) attempt->end("stopped");
     return kSubmitAgain;
   }
-  if (attempt) attempt->tell("databank", draw::values_hash(*bank));
+  if (attempt) attempt->add_property("databank", draw::values_hash(*bank));
   const Groups groups(world, rank, size, o.writer_ranks, o.dedicated_master ? size > 1 : size >= kLedFrom);
   draw::ShardMaker maker(study, *bank);
   Worker worker{study,

@@ -28,12 +28,12 @@ constexpr auto kPause = std::chrono::milliseconds(2);  // polling interval; item
 std::string packed(std::int64_t item, const std::string& result) {
   return fmt::format("{} {} {}", item, stop_asked() ? 1 : 0, result);
 }
-struct Told {
+struct RankMessage {
   std::int64_t item;
   bool stop;
   std::string result;
 };
-Told unpacked(const std::string& text) {
+RankMessage unpacked(const std::string& text) {
   const auto first = text.find(' '), second = text.find(' ', first + 1);
   return {std::stoll(text.substr(0, first)), text[first + 1] == '1', text.substr(second + 1)};
 }
@@ -143,12 +143,12 @@ class Giver {
       std::string text(static_cast<std::size_t>(length), '\0');
       MPI_Recv(text.data(), length, MPI_CHAR, status.MPI_SOURCE, kFinishedTag, ranks_.world,
                MPI_STATUS_IGNORE);
-      const Told told = unpacked(text);
-      stop_ = stop_ || told.stop;
+      const RankMessage message = unpacked(text);
+      stop_ = stop_ || message.stop;
       std::int64_t item = next(status.MPI_SOURCE);
       MPI_Send(&item, 1, MPI_INT64_T, status.MPI_SOURCE, kItemTag, ranks_.world);
       if (item == kNone) --others;
-      if (told.item != kNone) finish(static_cast<std::size_t>(told.item), told.result);
+      if (message.item != kNone) finish(static_cast<std::size_t>(message.item), message.result);
     }
   }
 

@@ -65,7 +65,7 @@ MpiSession::MpiSession(int* argc, char*** argv) {
 MpiSession::~MpiSession() {
   std::error_code ignored;
   if (store::h5::close_failed) {  // H5close, which MPI_Finalize calls too, would crash or hang on that file
-    if (const std::string why = store::h5::untold_failed_close(); !why.empty())
+    if (const std::string why = store::h5::unreported_failed_close(); !why.empty())
       std::fprintf(stderr, "a file could not be closed (%s): check the disk, then run the command again\n",
                    why.c_str());
     std::fflush(nullptr);

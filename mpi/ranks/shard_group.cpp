@@ -20,7 +20,7 @@ namespace {
 
 /// Time after which a failed rank prints its reason while the others have not responded [s]. Short, because
 /// another time limit, such as that of a lease, may end the run first.
-constexpr double kToldAfter = 1.0;
+constexpr double kReportAfter = 1.0;
 /// Further time after which it ends all ranks [s].
 constexpr double kOthersMayTake = 19.0;
 
@@ -89,7 +89,7 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
   // The failure may have occurred within a collective operation (writing by HDF5), in which the others wait
   // for this rank.
-  if (!wait_for(request, problems.empty() ? 0.0 : kToldAfter)) {
+  if (!wait_for(request, problems.empty() ? 0.0 : kReportAfter)) {
     const std::string why = problems.front().sentence();
     std::fprintf(stderr, "failure at rank %d of a group of %d (%s): the others are waited for\n", rank, size,
                  why.c_str());

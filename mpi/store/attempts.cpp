@@ -46,14 +46,14 @@ std::string name_of_this_run() {
 
 }  // namespace
 
-AttemptLog::AttemptLog(const fs::path& folder, const std::map<std::string, std::string>& told)
+AttemptLog::AttemptLog(const fs::path& folder, const std::map<std::string, std::string>& properties)
     : file_(folder / kAttemptsFile), id_(name_of_this_run()) {
   nlohmann::ordered_json line = {{"run", id_}, {"event", "begins"}, {"time", utc_now()}};
-  for (const auto& [name, value] : told) line[name] = value;
+  for (const auto& [name, value] : properties) line[name] = value;
   append_attempt(file_, line);
 }
 
-void AttemptLog::tell(const std::string& name, const std::string& value) {
+void AttemptLog::add_property(const std::string& name, const std::string& value) {
   append_attempt(file_, {{"run", id_}, {"event", "tells"}, {"time", utc_now()}, {name, value}});
 }
 
@@ -90,7 +90,7 @@ std::vector<Attempt> read_attempts(const fs::path& folder) {
     }
     for (const auto& [name, value] : j.items())
       if (name != "run" && name != "event" && name != "time" && name != "sum" && name != "outcome")
-        a.told[name] = value.get<std::string>();
+        a.properties[name] = value.get<std::string>();
   }
   return attempts;
 }

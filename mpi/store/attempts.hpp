@@ -11,22 +11,22 @@ namespace swingbank::mpi::store {
 
 /// One run on a dataset.
 struct Attempt {
-  std::string started, ended;               ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty if killed
-  std::string outcome;                      ///< "made", "stopped" or "failed"; empty if killed
-  std::map<std::string, std::string> told;  ///< host, process, ranks, software, shards found: by name
+  std::string started, ended;                     ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty if killed
+  std::string outcome;                            ///< "made", "stopped" or "failed"; empty if killed
+  std::map<std::string, std::string> properties;  ///< host, process, ranks, software, shards found: by name
 };
 
 /// Writer of one run's lines.
 class AttemptLog {
  public:
-  /// Appends the line of a start. `told`: properties of the run and the shards that it found.
-  AttemptLog(const std::filesystem::path& folder, const std::map<std::string, std::string>& told);
+  /// Appends the line of a start. `properties`: properties of the run and the shards that it found.
+  AttemptLog(const std::filesystem::path& folder, const std::map<std::string, std::string>& properties);
   /// Appends the outcome "failed" unless end() was called.
   ~AttemptLog();
   AttemptLog(const AttemptLog&) = delete;
   AttemptLog& operator=(const AttemptLog&) = delete;
   /// Appends another property of the run.
-  void tell(const std::string& name, const std::string& value);
+  void add_property(const std::string& name, const std::string& value);
   /// Appends the end of the run. `outcome`: "made", "stopped" or "failed".
   void end(const std::string& outcome);
 

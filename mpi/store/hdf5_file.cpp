@@ -91,7 +91,7 @@ void note_failed_close() {
   if (!close_failed.exchange(true)) first_failed_close = why;
 }
 
-std::string untold_failed_close() { return std::exchange(first_failed_close, {}); }
+std::string unreported_failed_close() { return std::exchange(first_failed_close, {}); }
 
 void File::fail(const std::string& what, const std::string& object) const {
   const int last = errno;
@@ -141,7 +141,7 @@ void File::close() {
   errno = 0;
   if (file_.reset() && !close_failed) return;
   // The cause is reported once; later files fail without it.
-  const std::string why = untold_failed_close();
+  const std::string why = unreported_failed_close();
   fail_for(why.empty() ? "something else could not be closed before" : why, "cannot complete the HDF5 file",
            "");
 }

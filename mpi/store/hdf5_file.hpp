@@ -25,7 +25,7 @@ inline std::atomic<bool> close_failed = false;
 void note_failed_close();
 /// Returns this reason once; empty if it was already returned. A destructor that closes an array cannot
 /// throw.
-std::string untold_failed_close();
+std::string unreported_failed_close();
 
 /// Owner of an HDF5 identifier.
 class Handle {

@@ -16,14 +16,14 @@ std::string describe_attempts(const std::filesystem::path& folder) {
   for (const Attempt& a : attempts) {
     killed += a.ended.empty() ? 1 : 0;
     failed += a.outcome == "failed" ? 1 : 0;
-    const auto told = [&](const char* name) {
-      return a.told.contains(name) ? a.told.at(name) : std::string();
+    const auto property = [&](const char* name) {
+      return a.properties.contains(name) ? a.properties.at(name) : std::string();
     };
-    if (!told("shards_repaired").empty()) repaired += std::stoul(told("shards_repaired"));
-    text +=
-        fmt::format("  {}  {} ranks on {}{}, {} shards found: {}\n", a.started, told("ranks"), told("host"),
-                    told("part").empty() ? "" : ", part " + told("part"), told("shards_found"),
-                    a.ended.empty() ? "killed, or still at work" : a.outcome + " at " + a.ended);
+    if (!property("shards_repaired").empty()) repaired += std::stoul(property("shards_repaired"));
+    text += fmt::format("  {}  {} ranks on {}{}, {} shards found: {}\n", a.started, property("ranks"),
+                        property("host"), property("part").empty() ? "" : ", part " + property("part"),
+                        property("shards_found"),
+                        a.ended.empty() ? "killed, or still at work" : a.outcome + " at " + a.ended);
   }
   if (attempts.empty()) return {};
   return fmt::format("{} attempts; survived: {} killed, {} failed, {} shards made anew\n", attempts.size(),

@@ -166,11 +166,11 @@ void EpcReader::read_sections() {
   rows("load", &EpcReader::load);
   rows("dc converter", &EpcReader::converter);
   rows("vs converter", &EpcReader::converter);
-  tell_left_out();
+  report_left_out();
 }
 
 /// Adds remarks on non-empty sections that are not read.
-void EpcReader::tell_left_out() {
+void EpcReader::report_left_out() {
   constexpr std::array known = {"bus",   "branch", "transformer",  "generator",   "load",
                                 "shunt", "svd",    "dc converter", "vs converter"};
   constexpr std::array nothing = {

@@ -82,8 +82,8 @@ std::optional<Problem> other_version(const std::vector<std::string>& lines, cons
                                      const std::vector<Problem>& faults) {
   // Fewer faults are reported individually. Another version is accepted if it has kTimesFewer times fewer
   // faults.
-  constexpr std::size_t kToldOneByOne = 3, kTimesFewer = 10;
-  if (faults.size() < kToldOneByOne || read_as == 0) return {};
+  constexpr std::size_t kReportedSingly = 3, kTimesFewer = 10;
+  if (faults.size() < kReportedSingly || read_as == 0) return {};
   constexpr std::array kVersions = {33, 34, 35, 32, 31, 30, 29, 28, 27, 26, 25, 24, 23};
   std::size_t least = faults.size() / kTimesFewer;
   int best = 0;

@@ -30,10 +30,10 @@ class GridMaker {
     find_named_buses(dynamics, grid_.network);
     if (!dynamics.empty() && dynamics.back().unended) cut_off_at_ = dynamics.back().line;
     for (const formats::DyrRecord& record : dynamics) add(record);
-    tell_refused();
-    tell_unknown();
+    report_refused();
+    report_unknown();
     for (plant::Plant& plant : grid_.plants) finish(plant);
-    tell_unmodelled();
+    report_unmodelled();
     problems_.raise();
     solve();
     net_generators();
@@ -108,7 +108,7 @@ class GridMaker {
     else
       same->lines.push_back(line);
   }
-  void tell_refused() {
+  void report_refused() {
     constexpr std::size_t kLines = 10;
     for (const Alike& a : alike_) {
       std::string more;
@@ -135,7 +135,7 @@ class GridMaker {
   }
   /// Returns true if the record has the required length, after completion as the options allow.
   bool fits(const Effect& effect, formats::DyrRecord& record, const std::string& where, Problems& problems) {
-    tell_empty(record, where);
+    report_empty(record, where);
     const Completion done = complete(effect, record, options_.complete_records, where, problems);
     if (!done.what.empty()) grid_.network.remark(done.what, done.place);
     return done.sound;
@@ -165,7 +165,7 @@ class GridMaker {
     if (!warning.empty())
       grid_.network.remark("the reactance of the .dyr counts where ZX of the network is another", warning);
   }
-  void tell_empty(const formats::DyrRecord& record, const std::string& where) {
+  void report_empty(const formats::DyrRecord& record, const std::string& where) {
     for (const int i : record.empty)
       grid_.network.remark("empty parameters of the .dyr are taken as zero",
                            record.model + " parameter " + std::to_string(i) + " (" + where + ")");
@@ -179,7 +179,7 @@ class GridMaker {
                                          : "equipment '" + record.equipment + "'";
     one.parameters = record.values.size() - std::min(record.values.size(), record.codes);
   }
-  void tell_unknown() {
+  void report_unknown() {
     for (const auto& [model, one] : unknown_) {
       const auto& [name, user] = model;
       const std::string others =
@@ -314,7 +314,7 @@ class GridMaker {
     return at_the_end ? "; all generators before them have one: the .dyr may be cut off" : "";
   }
   /// Reports all generators without a machine model in one problem.
-  void tell_unmodelled() {
+  void report_unmodelled() {
     if (unmodelled_.empty() || options_.net_generators) return;
     constexpr std::size_t most = 20;
     std::string list;

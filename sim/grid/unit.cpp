@@ -36,12 +36,12 @@ class UnitReader {
     problems_.raise();
     describe();
     read_models();
-    if (problems_.empty()) tell_dispatch();
+    if (problems_.empty()) note_infeasible_dispatch();
     if (choice_.measured_at)
       read_transformer(*choice_.measured_at);
     else
-      tell_transformer();
-    tell_far();
+      note_transformer();
+    note_remote_measurements();
     problems_.raise();
     return std::move(unit_);
   }
@@ -179,7 +179,7 @@ class UnitReader {
   }
   /// Adds a note if the model cannot hold the operating point of the .raw, because records probably start
   /// there.
-  void tell_dispatch() {
+  void note_infeasible_dispatch() {
     const network::Bus& bus = bus_at(generator().bus);
     if (!generator().in_service || !(bus.vm > 0)) return;
     unit_.dispatch = {generator().p * net().base_mva, generator().q * net().base_mva, bus.vm};
@@ -311,7 +311,7 @@ class UnitReader {
     }
     return ends;
   }
-  void tell_transformer() {
+  void note_transformer() {
     const std::set<int> ends = transformers_to();
     if (ends.empty() || ends.size() > 2) return;
     unit_.notes.push_back(fmt::format(
@@ -356,7 +356,7 @@ class UnitReader {
     d.V = there.vm;
   }
   /// Adds a note on remote measurements: in a plant file they take place at the measured bus.
-  void tell_far() {
+  void note_remote_measurements() {
     const int recorded = choice_.measured_at.value_or(unit_.bus);
     for (const plant::Block& block : unit_.plant.controls) {
       const Elsewhere& at = block.effect->elsewhere;

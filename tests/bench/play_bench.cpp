@@ -66,10 +66,10 @@ struct Bench {
   }
 };
 
-void tell(const Bench& bench) {
+void print_costs(const Bench& bench) {
   fmt::print("{}\n{:22} {:>5} {:>13} {:>8} {:>13} {:>8} {:>10} {:>12}\n",
-             bench.lenient ? "leniently" : "one tolerance", "", "runs", "steps/sample", "ms", "with sensitivities",
-             "ms", "largest", "mean square");
+             bench.lenient ? "leniently" : "one tolerance", "", "runs", "steps/sample", "ms",
+             "with sensitivities", "ms", "largest", "mean square");
   Cost all;
   for (const auto& [name, c] : bench.costs) {
     fmt::print("{:22} {:5} {:13.2f} {:8.2f} {:13.2f} {:8.2f} {:10.2g} {:12.2g}\n", name, c.runs,
@@ -115,7 +115,7 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::
   return fastest;
 }
 
-void tell_objective(const plant::PlantModel& model, const event::WhitenedEvents& events) {
+void print_objective(const plant::PlantModel& model, const event::WhitenedEvents& events) {
   fmt::print("{:22} {:>12} {:>12} {:>8}\n", "all records", "objective ms", "gradient ms", "ratio");
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) try {
       const sim::plant::PlantUnderTest tested{hypothesis::started(h, h.starts.front()), h.conventions};
@@ -131,14 +131,14 @@ int run(const char* model_file, std::size_t draws, std::span<const char* const> 
   std::vector<record::Record> records;
   for (const char* file : record_files) records.push_back(record::read_record(file, model.record_base));
   const auto events = event::prepare_events(model, records, {.measured_states = false});
-  tell_objective(model, events);
+  print_objective(model, events);
   for (const bool lenient : {false, true}) {
     Bench bench{events, lenient};
     bench.add("(the model alone)", model.under_test());
     for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
       for (std::size_t k = 0; k < std::min(h.starts.size(), 1 + draws); ++k)
         bench.add(h.name, {hypothesis::started(h, h.starts[k]), h.conventions});
-    tell(bench);
+    print_costs(bench);
   }
   return 0;
 }

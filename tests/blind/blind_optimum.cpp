@@ -58,7 +58,7 @@ fit::Fit from_truth(const Ended& ended, const event::WhitenedEvents& events, con
   return std::min(arrive(fit::continued(fresh, *ended.fit, ended.free)), arrive(fresh), fit::better);
 }
 
-void tell(const fs::path& run, const std::string& name, const diagnose::DiagnoseOptions& options) {
+void print_optimum(const fs::path& run, const std::string& name, const diagnose::DiagnoseOptions& options) {
   const fs::path file = run / "truth" / (name + ".json");
   const auto hidden = nlohmann::json::parse(read_text(file)).at("hidden");
   if (hidden.size() > 1 || (!hidden.empty() && !hidden.front().at("listed").get<bool>())) return;
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
       names.push_back(file.path().stem().string());
     std::ranges::sort(names);
     for (auto i = static_cast<std::size_t>(k - 1); i < names.size(); i += static_cast<std::size_t>(n))
-      tell(run, names[i], options);
+      print_optimum(run, names[i], options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

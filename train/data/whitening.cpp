@@ -178,12 +178,13 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
   if (sizes_.noisy > 0) {
     const std::size_t values = sizes_.channels * sizes_.samples + sizes_.levels + 1;
     for (Index i = 0; i < row.rows(); ++i) {
-      const float told = series[static_cast<std::size_t>(i + 1) * values - 1];
+      const float noise_input = series[static_cast<std::size_t>(i + 1) * values - 1];
       // Wiener filter: expected value of a signal of variance 1 observed with noise of this standard
       // deviation.
-      const auto level = static_cast<float>(level_of_input(told)) / std::exp(parts(i, parts.cols() - 1));
+      const auto level =
+          static_cast<float>(level_of_input(noise_input)) / std::exp(parts(i, parts.cols() - 1));
       row.row(i).head(kept).array() /= 1.0f + (level * noise_.array()).square();
-      row(i, kept + behind) = told;
+      row(i, kept + behind) = noise_input;
     }
   }
   const auto bounded = static_cast<Index>(length() - sizes_.regressed);

@@ -184,7 +184,7 @@ bool is_method(std::string_view name) { return std::ranges::find(kMethods, name)
 
 std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint64_t> rows,
                              std::string_view method, const data::NoiseRecipe& noise,
-                             const std::function<void(std::size_t)>& tell) {
+                             const std::function<void(std::size_t)>& report) {
   const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
   if (which == Method::floor && noise.level == 0)
     throw InputError({"a floor without noise", "--network floor", "records without noise have none",
@@ -209,7 +209,7 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
           },
           [](int) {});
       done = last;
-      if (tell) tell(done);
+      if (report) report(done);
     }
   }
   return out;

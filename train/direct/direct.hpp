@@ -26,11 +26,11 @@ inline constexpr std::array<std::string_view, 4> kMethods = {"closed-form", "ref
 bool is_method(std::string_view name);
 
 /// Returns estimates, rows x parameters [raw units], inside the sampling box, for rows of the dataset in
-/// ascending order. Uses complete records at full rate, whatever the network's input. `tell`: called with the
-/// number of finished rows. Throws InputError if the machine has no closed form, a required channel is not
-/// recorded, parameters of other effects vary, or the floor is requested without noise.
+/// ascending order. Uses complete records at full rate, whatever the network's input. `report`: called with
+/// the number of finished rows. Throws InputError if the machine has no closed form, a required channel is
+/// not recorded, parameters of other effects vary, or the floor is requested without noise.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                              std::string_view method, const data::NoiseRecipe& noise = {},
-                             const std::function<void(std::size_t)>& tell = {});
+                             const std::function<void(std::size_t)>& report = {});
 
 }  // namespace swingbank::train::direct

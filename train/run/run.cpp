@@ -245,7 +245,7 @@ class NetworkRun {
         stream_, split_.train, request_.experiment.input(request_.preset, request_.network).pca_components);
     loop::seed_torch(data::key(request_.seed, data::Purpose::weights));
     network_ = networks::make_network(recipe_.kind, shape_of(features_, scale_, known_));
-    tell_sizes();
+    print_sizes();
     const std::vector<float> targets = targets_of_training(), weights = scale_.weights(recipe_.loss_power);
     report_ = loop::train_network(
         *network_, {stream_, features_, split_.train, split_.validation, targets, known_.scaled, weights},
@@ -322,7 +322,7 @@ class NetworkRun {
       targets[i] -= static_cast<float>(scale_.scaled(known_.raw[i], i % known_.width));
     return targets;
   }
-  void tell_sizes() {
+  void print_sizes() {
     progress_.line(
         fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
                     split_.train.size(), split_.validation.size(), split_.test.size(), features_.channels(),

@@ -295,7 +295,7 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"),          f.at("pca_components"),
                                     f.at("pca_per_second"), f.at("levels"),           f.at("kept"),
                                     f.at("noisy"),          f.at("seconds_as_steps"), f.at("regressed")};
-  selection_.shows_level = info_.told_noise = sizes.noisy > 0;
+  selection_.shows_level = info_.noise_as_input = sizes.noisy > 0;
   selection_.regressions = sizes.regressed > 0;
   if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
     throw Unusable{"its sizes do not fit together"};

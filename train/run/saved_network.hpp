@@ -34,7 +34,7 @@ struct NetworkInfo {
   std::optional<double> fault_start;              ///< fault time in its records [s]; none: unknown
   std::optional<sim::FrequencyFilter> frequency;  ///< of the channel "frequency"
   double input_rms_seen = 0.0;  ///< largest root mean square of a validation row's normalised input
-  bool told_noise = false;      ///< trained at many noise levels; the record's level is an input
+  bool noise_as_input = false;  ///< trained at many noise levels; the record's level is an input
   std::vector<EstimatedParameter> parameters;
 };
 

@@ -63,7 +63,7 @@ class Bench {
                               "check the model's parameters and the record's base and units"});
           fits[e] = std::move(f.events.front());
         },
-        [&](int done) { tell(phase, done, static_cast<int>(all_.size())); });
+        [&](int done) { report_progress(phase, done, static_cast<int>(all_.size())); });
     return fits;
   }
   std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const {
@@ -72,7 +72,7 @@ class Bench {
       if (!out_[e]) states.push_back(fits[e].state);
     return states;
   }
-  void tell(event::Phase phase, int done, int total) const {
+  void report_progress(event::Phase phase, int done, int total) const {
     if (options_.progress) options_.progress(phase, "", done, total);
   }
 
@@ -223,7 +223,9 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
         known[e] =
             fit::information(fit::event_sensitivities(fitted, bench.all().whitened(e), fits[e].state, free));
       },
-      [&](int done) { bench.tell(event::Phase::sensitivities, done, static_cast<int>(fits.size())); });
+      [&](int done) {
+        bench.report_progress(event::Phase::sensitivities, done, static_cast<int>(fits.size()));
+      });
   const auto n = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd prior = Eigen::MatrixXd::Identity(n, n);
   Eigen::MatrixXd all = prior;

@@ -101,7 +101,7 @@ class Calibrating {
     const std::lock_guard guard(reaching_);
     if (!f.parameters.empty() && f.failed.empty() && std::isfinite(fit::penalised(f))) reached_.push_back(f);
   }
-  void tell(event::Phase phase, int done, int total) const {
+  void report(event::Phase phase, int done, int total) const {
     if (options_.progress) options_.progress(phase, "", done, total);
   }
   /// Fits the state of every event by itself, with fixed parameters.
@@ -112,7 +112,7 @@ class Calibrating {
         [&](std::size_t e) {
           fits[e] = std::move(alone(model_, plant, c_.prepared.alone(e)).events.front());
         },
-        [&](int done) { tell(phase, done, static_cast<int>(fits.size())); });
+        [&](int done) { report(phase, done, static_cast<int>(fits.size())); });
     return fits;
   }
 
@@ -159,7 +159,7 @@ class Calibrating {
           draws[k] = screen.draw(k);
           order[k] = {chi2_of({screen.with(draws[k]), model_.conventions}, seen_, states), k};
         },
-        [&](int done) { tell(event::Phase::parameter_sets, done, options_.draws); });
+        [&](int done) { report(event::Phase::parameter_sets, done, options_.draws); });
     std::ranges::sort(order);
     Starts starts;
     const auto refined = static_cast<std::size_t>(std::max(0, options_.starts));
@@ -186,7 +186,7 @@ class Calibrating {
           }
           reached(found[k]);
         },
-        [&](int done) { tell(event::Phase::starts, done, static_cast<int>(starts.size())); });
+        [&](int done) { report(event::Phase::starts, done, static_cast<int>(starts.size())); });
     for (std::size_t k = 0; k < starts.size(); ++k) {
       c_.started.push_back({.name = starts[k].name, .before = starts[k].before});
       fits.push_back(std::move(found[k]));
@@ -248,7 +248,7 @@ class Calibrating {
           all[e] =
               fit::event_sensitivities({plant, model_.conventions}, seen_.whitened(e), states_[e], free_);
         },
-        [&](int done) { tell(event::Phase::voltage_noise, done, static_cast<int>(all.size())); });
+        [&](int done) { report(event::Phase::voltage_noise, done, static_cast<int>(all.size())); });
     return all;
   }
   /// Removes the bias due to noise of the played-in voltage. Newton steps solve for the parameters at which
@@ -321,7 +321,7 @@ class Calibrating {
           jacobians[e] = fit::event_sensitivities({c_.fit.plant, model_.conventions}, c_.prepared.whitened(e),
                                                   c_.states[e], free_);
         },
-        [&](int done) { tell(event::Phase::sensitivities, done, static_cast<int>(jacobians.size())); });
+        [&](int done) { report(event::Phase::sensitivities, done, static_cast<int>(jacobians.size())); });
     const auto n = static_cast<Eigen::Index>(free_.size());
     const Eigen::MatrixXd prior = prior_at(c_.fit.plant);
     Eigen::MatrixXd data = Eigen::MatrixXd::Zero(n, n), scores = data;

@@ -176,9 +176,10 @@ report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth
       row.emplace_back(v ? fmt::format("{:.4g}", v->value) : "");
       if (has_interval(way)) row.emplace_back(v ? interval(*v) : "");
       if (truth.empty()) continue;
-      const bool told = v != nullptr && known != truth.end() && known->second != 0;
+      const bool is_comparable = v != nullptr && known != truth.end() && known->second != 0;
       row.emplace_back(
-          told ? fmt::format("{:+.2g} %", 100 * (v->value - known->second) / std::abs(known->second)) : "");
+          is_comparable ? fmt::format("{:+.2g} %", 100 * (v->value - known->second) / std::abs(known->second))
+                        : "");
     }
     if (!truth.empty()) row.emplace_back(known == truth.end() ? "" : fmt::format("{:.4g}", known->second));
     t.rows.push_back(std::move(row));

@@ -40,7 +40,7 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
 
 /// Returns whether noise alone may exceed the channel's nominal value in the bin, so that it has no
 /// information.
-bool tells_nothing(const NamedCell& named) { return !(named.cell->allowed() <= named.channel->size); }
+bool is_uninformative(const NamedCell& named) { return !(named.cell->allowed() <= named.channel->size); }
 
 /// Sentence about the bin with the largest ratio of noise to nominal value.
 std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
@@ -73,7 +73,7 @@ Adequacy judge(std::vector<EventComparison>& events) {
   for (const auto& named : cells) {
     ++a.cells;
     a.exceeding += named.cell->exceeds() ? 1 : 0;
-    a.vague += tells_nothing(named) ? 1 : 0;
+    a.vague += is_uninformative(named) ? 1 : 0;
     if (!worst || named.cell->normalised / named.cell->bound > worst->cell->normalised / worst->cell->bound)
       worst = &named;
   }

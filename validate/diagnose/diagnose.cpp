@@ -71,20 +71,20 @@ class Diagnoser {
       result_.ranked.clear();  // results on a worse base model
       result_.torque = result_.field = {};
       keep();
-      tell(first_sentence(result_, options_.adequate));
+      report_preliminary(first_sentence(result_, options_.adequate));
       if (stopped()) return false;
       few_wrong();
       if (stopped()) return false;
       infer_inputs();
       keep();
-      tell(side_sentence(result_));
+      report_preliminary(side_sentence(result_));
       const hypothesis::BaseModel base_model = present_model();
       result_.ranked = hypothesis::try_hypotheses(
           base_model,
           hypothesis::all_hypotheses(base_model.under_test(), base_model.library, base_model.component()),
           options_.progress);
       keep();
-      tell(leading_sentence(result_));
+      report_preliminary(leading_sentence(result_));
       if (stopped()) return false;
       const auto better = round < kBases ? better_start(base_model, result_) : std::nullopt;
       if (!better) break;
@@ -128,7 +128,7 @@ class Diagnoser {
     result_.wrong_evidence =
         fit::gain(result_.base, found.fit, fit::criterion) - o.each * static_cast<double>(found.wrong.size());
     result_.wrong = std::move(found);
-    tell(wrong_sentence(result_));
+    report_preliminary(wrong_sentence(result_));
   }
   /// If no addition reduces the residual to noise, tries to replace a control by one of another kind.
   void try_replacements() {
@@ -439,8 +439,8 @@ class Diagnoser {
             noise_transfer_ ? &*noise_transfer_ : nullptr};
   }
 
-  void tell(const std::string& sentence) const {
-    if (options_.told) options_.told(sentence);
+  void report_preliminary(const std::string& sentence) const {
+    if (options_.preliminary_result) options_.preliminary_result(sentence);
   }
   void report(event::Phase phase, const std::string& item, int done, int total) const {
     if (options_.progress) options_.progress(phase, item, done, total);

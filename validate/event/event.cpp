@@ -66,7 +66,7 @@ StepSpan trimmed(const std::vector<Complex>& step, StepSpan span, double limit) 
   return span;
 }
 /// Separates the two steps of a short fault that have merged, by their opposite directions.
-std::vector<StepSpan> told_apart(const std::vector<Complex>& step, StepSpan both, double limit) {
+std::vector<StepSpan> separate_merged(const std::vector<Complex>& step, StepSpan both, double limit) {
   constexpr double kBack = -0.15, kOn = 0.05;  // fraction of the largest change in the first step
   Complex onward = step[both.first];
   for (std::size_t i = both.first; i <= std::min(both.first + 2, both.last); ++i)
@@ -174,15 +174,15 @@ double still_until(const record::Record& r) {
 }
 
 /// Takes the switching times given by the user. Of the filtered samples, those around them remain marked.
-void take_told(FitEvent& e, StepShape step_shape) {
+void take_given_times(FitEvent& e, StepShape step_shape) {
   const auto found = std::exchange(e.switchings, {});
   for (const double t : e.record.switched) e.switchings.push_back({.time = t});
   for (std::size_t k = 0; k < e.filtered_samples.size(); ++k)
     e.filtered_samples[k] = step_shape == StepShape::spread && e.filtered_samples[k] &&
                             std::ranges::any_of(found, [&](const playin::Switching& switching) {
                               return std::abs(e.record.t[k] - switching.time) < switching.uncertainty &&
-                                     std::ranges::any_of(e.record.switched, [&](double told) {
-                                       return std::abs(told - switching.time) < switching.uncertainty;
+                                     std::ranges::any_of(e.record.switched, [&](double given) {
+                                       return std::abs(given - switching.time) < switching.uncertainty;
                                      });
                             });
 }
@@ -202,7 +202,7 @@ FitEvent prepare(record::Record record, const record::Record& seen, const FitEve
   // step is played in as a ramp.
   e.switchings = find_switchings(seen, options.step_threshold / 2, step_shape, e.filtered_samples);
   if (!e.record.switched.empty())
-    take_told(e, step_shape);
+    take_given_times(e, step_shape);
   else if (e.record.breaker()) {
     e.switchings = playin::breaker_times(e.record, e.switchings);
     e.filtered_samples.assign(e.filtered_samples.size(), 0);
@@ -338,7 +338,7 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     }
     if (is_swing(step, d, k, std::min(last, d.size() - 4))) continue;
     // samples first + 1 .. last lie inside the step
-    for (StepSpan span : told_apart(step, {k, last}, limit)) {
+    for (StepSpan span : separate_merged(step, {k, last}, limit)) {
       if (step_shape == StepShape::either && span.first == span.last && is_even(step, span.first, limit))
         span = {span.first - 1, span.first + 1};
       if (step_shape != StepShape::spread && span.last > span.first)

@@ -130,13 +130,13 @@ class Selection {
   /// Prediction of the quadratic model if a set is free and the other parameters keep to the tolerance of a
   /// correct value. `excess`: cost above that of the full fit; `at`: location of the optimum; `occam`: log
   /// determinant of the posterior precision (Fit::occam).
-  struct Foretold {
+  struct Prediction {
     double excess = 0, occam = 0;
     Eigen::VectorXd at = {};
   };
-  [[nodiscard]] Foretold foretold(const Set& set) const { return foretold(set, options_.right); }
+  [[nodiscard]] Prediction predict(const Set& set) const { return predict(set, options_.right); }
   /// `right`: prior standard deviation of the other parameters, relative.
-  [[nodiscard]] Foretold foretold(const Set& set, double right) const {
+  [[nodiscard]] Prediction predict(const Set& set, double right) const {
     const Eigen::VectorXd toward = curvature_ * at_;
     Eigen::MatrixXd held = curvature_;
     double believed = 0;
@@ -150,7 +150,7 @@ class Selection {
       believed += std::log(tighter);
     }
     const auto known = held.ldlt();
-    Foretold f{.at = known.solve(toward)};
+    Prediction f{.at = known.solve(toward)};
     f.excess = toward.dot(at_ - f.at);
     f.occam = known.vectorD().array().log().sum() - believed;
     return f;
@@ -172,7 +172,7 @@ class Selection {
         Set set = r.set;
         set.insert(std::ranges::upper_bound(set, i), i);
         if (!known.insert(set).second) continue;
-        const double cost = foretold(set).excess;
+        const double cost = predict(set).excess;
         next.push_back({cost, std::move(set)});
       }
     std::ranges::sort(next, {}, &Ranked::cost);
@@ -188,17 +188,17 @@ class Selection {
     if (options_.least == -std::numeric_limits<double>::infinity()) return false;
     double most = -std::numeric_limits<double>::infinity();
     std::size_t size = 0;
-    Foretold best;
+    Prediction best;
     for (std::size_t k = 1; k < beams_.size(); ++k)
       for (std::size_t i = 0; i < std::min(kRefitted, beams_[k].size()); ++i) {
-        Foretold f = foretold(beams_[k][i].set);
+        Prediction f = predict(beams_[k][i].set);
         if (const double its = worth(penalised(all_) + f.excess, f.occam, k); its > most)
           most = its, size = k, best = std::move(f);
       }
     return size == 0 || worth(best_of(size).first.cost, best.occam, size) < options_.least;
   }
   /// Returns the value of a parameter at the predicted optimum.
-  [[nodiscard]] double foretold_value(const Foretold& there, std::size_t i) const {
+  [[nodiscard]] double predicted_value(const Prediction& there, std::size_t i) const {
     const double believed = parameter_value(tested_.plant, free_[i].id),
                  z = there.at[static_cast<Eigen::Index>(i)];
     return moves_by_logarithm(parameter_record(tested_.plant, free_[i].id), believed)
@@ -216,7 +216,7 @@ class Selection {
   /// reached costs nothing more. The estimate is therefore at least the predicted excess, but not above the
   /// fit's own excess.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
-    const Foretold fixed = foretold(set, kExactly), soft = foretold(set);
+    const Prediction fixed = predict(set, kExactly), soft = predict(set);
     FitOptions o = kSearch;
     o.errors = errors;
     std::vector<FreeParameter> some;
@@ -224,7 +224,7 @@ class Selection {
     FitOptions from = o;
     if (!set.empty()) {
       from = continued(o, all_, some);
-      for (std::size_t i = 0; i < some.size(); ++i) from.values[i] = foretold_value(fixed, set[i]);
+      for (std::size_t i = 0; i < some.size(); ++i) from.values[i] = predicted_value(fixed, set[i]);
     }
     const double most = penalised(all_);
     Refit r{fit(tested_, events_, some, from)};
@@ -349,9 +349,9 @@ class Selection {
   /// Returns one or two parameters that could replace members of the set. A replacement that contains a
   /// smaller one is left out.
   [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
-    const double here = foretold(set).excess;
+    const double here = predict(set).excess;
     std::vector<Exchange> found;
-    const auto told = [&](const Set& gone, const Set& other) {
+    const auto is_covered = [&](const Set& gone, const Set& other) {
       return std::ranges::any_of(found, [&](const auto& f) {
         return std::ranges::includes(gone, f.first) && std::ranges::includes(other, f.second);
       });
@@ -363,9 +363,9 @@ class Selection {
         Set gone, other;
         std::ranges::set_difference(r.set, set, std::back_inserter(other));
         std::ranges::set_difference(set, r.set, std::back_inserter(gone));
-        if (gone.empty() || other.size() > 2 || told(gone, other)) continue;
+        if (gone.empty() || other.size() > 2 || is_covered(gone, other)) continue;
         // Beams are in ascending order of predicted cost, so all later sets are worse.
-        if (tried++ == kTied || foretold(r.set).excess > here + options_.each) break;
+        if (tried++ == kTied || predict(r.set).excess > here + options_.each) break;
         if (does_as_well(r.set, chosen)) found.emplace_back(std::move(gone), std::move(other));
       }
     }

@@ -111,7 +111,8 @@ class Identifying {
                          : std::make_shared<const reduced::Inference>(reduced::infer(
                                base_model_.under_test(), base_model_.events, polish_.free(), kInputs[i], 1));
         },
-        [&](int done) { tell(event::Phase::missing_input, "", done, kInputs.size()); }, base_model_.threads);
+        [&](int done) { report_progress(event::Phase::missing_input, "", done, kInputs.size()); },
+        base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
     // The better input alone; also the other one if its reduction of chi2 is similar.
     const auto takes_off = [&](std::size_t i) { return fit::penalised(base_model_.fit) - found[i]->chi2; };
@@ -146,8 +147,9 @@ class Identifying {
             });
         },
         [&](int done, std::size_t i) {
-          tell(base_model_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
-               tried_[i].hypothesis.name, done, tried_.size());
+          report_progress(
+              base_model_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
+              tried_[i].hypothesis.name, done, tried_.size());
         },
         base_model_.threads);
   }
@@ -297,10 +299,10 @@ class Identifying {
         [&](std::size_t k) {
           if (!base_model_.stopped()) until_interrupted([&] { act(*some[k]); });
         },
-        [&](int done, std::size_t k) { tell(phase, some[k]->hypothesis.name, done, some.size()); },
+        [&](int done, std::size_t k) { report_progress(phase, some[k]->hypothesis.name, done, some.size()); },
         base_model_.threads);
   }
-  void tell(event::Phase phase, const std::string& item, int done, std::size_t total) const {
+  void report_progress(event::Phase phase, const std::string& item, int done, std::size_t total) const {
     if (report_)
       report_(phase, item.empty() || base_model_.with.empty() ? item : item + " beside " + base_model_.with,
               done, static_cast<int>(total));

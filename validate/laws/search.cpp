@@ -87,7 +87,7 @@ class Searcher {
     const double level = trigger_level(case_.trial.events);
     s.traces = law_traces(case_.model, case_.trial.events, input_, level);
     s.ranked = law_candidates(s.kind, s.traces, level);
-    tell("", 1, 1);
+    report_progress("", 1, 1);
     const auto tried = leading(s.ranked);
     s.findings.resize(tried.size());
     in_turn("", tried.size(), [&](std::size_t k) { s.findings[k] = fitted(tried[k]); });
@@ -109,9 +109,9 @@ class Searcher {
   template <class Work>
   void in_turn(const std::string& item, std::size_t n, Work work) {
     in_parallel(
-        n, work, [&](int done) { tell(item, done, static_cast<int>(n)); }, case_.threads);
+        n, work, [&](int done) { report_progress(item, done, static_cast<int>(n)); }, case_.threads);
   }
-  void tell(const std::string& item, int done, int total) const {
+  void report_progress(const std::string& item, int done, int total) const {
     if (report_) report_(event::Phase::laws, item, done, total);
   }
 

@@ -55,7 +55,7 @@ class Data {
                       announced, read + surplus_, read));
     unwrap_stamps();
     times();
-    faults_.tell(problems_, out_.file);
+    faults_.report(problems_, out_.file);
     return std::move(out_);
   }
 

@@ -146,7 +146,7 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
                  fmt::format("a cycle needs at least {:g} samples", kMinPerCycle),
                  "export the record at a higher rate");
-  faults.tell(problems, comtrade.file);
+  faults.report(problems, comtrade.file);
   problems.raise();
   about.terminal = v->circuit;
   note_set(*v, true, about);

@@ -372,9 +372,9 @@ class CsvReader {
     double most = 0;
     for (const double v : fractions_)
       if (std::isfinite(v)) most = std::max(most, v);
-    const auto told = unit_in(Quantity::time, name, headings_[*fraction_].unit);
-    double scale = told ? to_record_units({Quantity::time, told, false, {}, false}, 1, base_) : 0;
-    if (!told && most < 1) scale = 1;
+    const auto named_unit = unit_in(Quantity::time, name, headings_[*fraction_].unit);
+    double scale = named_unit ? to_record_units({Quantity::time, named_unit, false, {}, false}, 1, base_) : 0;
+    if (!named_unit && most < 1) scale = 1;
     for (const double clock : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 16777216.0, 1e8, 1e9})
       if (scale == 0 && most < clock && most >= 0.8 * clock) scale = 1 / clock;
     if (scale == 0 || most * scale > 1)

@@ -29,7 +29,7 @@ std::string sha256_of(const fs::path& file) {
 }
 
 /// Reports the problems of a part at its key.
-void tell(Config& c, const std::string& key, const Problems& problems) {
+void report_problems(Config& c, const std::string& key, const Problems& problems) {
   for (const auto& p : problems.list()) c.problem(key, p.what, p.where + ": " + p.why, p.remedy);
 }
 template <class F>
@@ -92,11 +92,11 @@ void read_grid(Config& c, SystemCase& s) {
   s.grid.library = library;
   Problems problems;
   for (const auto& text : attached) sim::grid::attach(s.grid, text, "attach " + text, problems);
-  tell(c, "system.attach", problems);
+  report_problems(c, "system.attach", problems);
   problems = {};
   if (composed) sim::grid::loads_as_composed(s.grid, problems);
   for (const auto& text : loads) sim::grid::choose_load(s.grid, text, "load " + text, problems);
-  tell(c, "system.load", problems);
+  report_problems(c, "system.load", problems);
 }
 
 /// Returns the index of a plant of the grid; -1 and a problem if there is none.
@@ -139,7 +139,7 @@ void add_instruments(Config& c, const std::string& key, const SystemCase& s, Sys
   for (const auto& text : c.optional<Texts>(key, {}))
     if (auto block = sim::plant::read_measurement(text, s.grid.library, "instrument " + text, problems))
       t.instruments.push_back(std::move(*block));
-  tell(c, key, problems);
+  report_problems(c, key, problems);
   for (const sim::plant::Block& block : t.instruments)
     attempt(c, key, [&] {
       if (!is_repeatable(block, s.base.frequency))
@@ -163,7 +163,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   if (is_bus) {
     Problems problems;
     t.bus = sim::formats::read_bus(std::to_string(number), s.grid.network, "terminal " + name, problems);
-    tell(c, at + "bus", problems);
+    report_problems(c, at + "bus", problems);
   } else {
     t.plant = plant_named(c, at + "plant", plant, s.grid);
     if (t.plant >= 0) t.bus = s.grid.plants[static_cast<std::size_t>(t.plant)].bus;

@@ -54,7 +54,7 @@ struct Posterior {
   /// Total probability of the set of credible explanations [-].
   Threshold set{"posterior.set", 0.95, "probability", "total probability of the credible set (decision 41)"};
   /// Probability above which the verdict names the first explanation of the set [-].
-  Threshold told{
+  Threshold named{
       "posterior.told", 0.5, "probability",
       "least probability at which the verdict names the first explanation of the set (decision 41)"};
   /// Probability relative to the leading explanation below which a fit is not continued [-].
@@ -87,8 +87,8 @@ struct HeldOut {
                   "an effect acts in one event only if that event has a larger share; other events then "
                   "cannot predict it"};
   /// Share of such an event's chi2 that must remain when the fit excludes it [-].
-  Threshold foretold{"held_out.foretold", 0.5, "share of that event's chi2",
-                     "and if a larger share of its chi2 remains when the fit excludes it"};
+  Threshold unpredicted{"held_out.foretold", 0.5, "share of that event's chi2",
+                        "and if a larger share of its chi2 remains when the fit excludes it"};
 };
 inline constexpr HeldOut held_out;  ///< the thresholds in use
 

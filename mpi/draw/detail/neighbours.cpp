@@ -14,7 +14,7 @@ constexpr std::size_t kAxes = 4;     ///< largest number of axes with cells; a s
 constexpr double kWorthwhile = 3.0;  ///< smallest width of an axis with cells, in distances
 constexpr unsigned kBits = 16;       ///< bits of a cell number per axis
 constexpr int kPointsAtOnce = 8;     ///< points per block
-constexpr std::size_t kTell = 4;     ///< axes after which a block is tested for early rejection
+constexpr std::size_t kEarlyTestAxes = 4;  ///< axes after which a block is tested for early rejection
 using Block = sim::Pack<kPointsAtOnce>;
 
 bool any_below(Block sums, double limit) { return any_positive(Block(limit) - sums); }
@@ -50,7 +50,7 @@ bool Neighbours::near_in(std::uint64_t key, const double* x) const {
     for (std::size_t i = 0; i < n; ++i) {
       const Block d = Block::load(p + i * kPointsAtOnce) - Block(x[i]);
       sums = sums + d * d;
-      if (i + 1 == kTell && !any_below(sums, limit)) break;
+      if (i + 1 == kEarlyTestAxes && !any_below(sums, limit)) break;
     }
     if (any_below(sums, limit)) return true;
   }

@@ -62,15 +62,15 @@ std::map<std::string, std::string> made_by(const std::string& software) {
 
 std::map<std::string, std::string> attempt_of(const GenerateOptions& o, int ranks, std::size_t journalled,
                                               std::size_t bad) {
-  std::map<std::string, std::string> told = {{"host", host()},
-                                             {"process", std::to_string(::getpid())},
-                                             {"ranks", std::to_string(ranks)},
-                                             {"software", o.software},
-                                             {"shards_found", std::to_string(journalled)}};
-  if (bad > 0) told["shards_repaired"] = std::to_string(bad);
-  if (!o.part.all()) told["part"] = fmt::format("{}/{}", o.part.number, o.part.of);
-  if (const char* job = std::getenv("SLURM_JOB_ID"); job != nullptr) told["slurm_job"] = job;
-  return told;
+  std::map<std::string, std::string> properties = {{"host", host()},
+                                                   {"process", std::to_string(::getpid())},
+                                                   {"ranks", std::to_string(ranks)},
+                                                   {"software", o.software},
+                                                   {"shards_found", std::to_string(journalled)}};
+  if (bad > 0) properties["shards_repaired"] = std::to_string(bad);
+  if (!o.part.all()) properties["part"] = fmt::format("{}/{}", o.part.number, o.part.of);
+  if (const char* job = std::getenv("SLURM_JOB_ID"); job != nullptr) properties["slurm_job"] = job;
+  return properties;
 }
 
 }  // namespace swingbank::mpi::ranks

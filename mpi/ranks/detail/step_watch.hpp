@@ -13,9 +13,9 @@ namespace swingbank::mpi::ranks {
 /// that this thread has received since its start.
 class StepWatch {
  public:
-  /// `step`: "create"; `where`: "shards/0.h5"; `told_after`: time until the message.
+  /// `step`: "create"; `where`: "shards/0.h5"; `warn_after`: time until the message.
   StepWatch(int rank, std::string step, std::string where,
-            std::chrono::milliseconds told_after = std::chrono::seconds(10));
+            std::chrono::milliseconds warn_after = std::chrono::seconds(10));
   ~StepWatch();
   StepWatch(const StepWatch&) = delete;
   StepWatch& operator=(const StepWatch&) = delete;

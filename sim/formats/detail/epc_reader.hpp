@@ -45,7 +45,7 @@ class EpcReader {
   void solution_parameters(const std::vector<std::string>& block, std::size_t first);
   void read_sections();
   void rows(const char* name, Reads take);
-  void tell_left_out();
+  void report_left_out();
   void finish();
 
   void bus(const Row& row);

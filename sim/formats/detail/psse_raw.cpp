@@ -12,8 +12,8 @@ namespace {
 bool is_rawx(const std::string& name) { return name.ends_with(".rawx") || name.ends_with(".RAWX"); }
 
 /// Throws InputError with the likely version if many faults are due to a wrong version.
-void tell_version(const std::vector<std::string>& lines, const std::string& name, const RawOptions& options,
-                  int read_as, const std::vector<Problem>& faults) {
+void refuse_wrong_version(const std::vector<std::string>& lines, const std::string& name,
+                          const RawOptions& options, int read_as, const std::vector<Problem>& faults) {
   if (const auto other = psse::other_version(lines, name, options, read_as, faults)) throw InputError(*other);
 }
 network::Network read_lines_as_raw(const std::vector<std::string>& lines, const std::string& name,
@@ -22,7 +22,7 @@ network::Network read_lines_as_raw(const std::vector<std::string>& lines, const 
   try {
     return reader.read();
   } catch (const InputError& error) {
-    tell_version(lines, name, options, reader.version(), error.problems());
+    refuse_wrong_version(lines, name, options, reader.version(), error.problems());
     throw;
   }
 }
@@ -30,7 +30,7 @@ RawSurvey survey_lines(const std::vector<std::string>& lines, const std::string&
                        const RawOptions& options) {
   psse::RawReader reader(lines, name, options);
   RawSurvey survey = reader.survey();
-  tell_version(lines, name, options, reader.version(), survey.faults);
+  refuse_wrong_version(lines, name, options, reader.version(), survey.faults);
   return survey;
 }
 }  // namespace

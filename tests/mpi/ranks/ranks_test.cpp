@@ -78,10 +78,11 @@ TEST_F(Ranks, RanksWithoutRowsTakePart) {
 
 TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
   const swingbank::mpi::ranks::Ranks ranks{MPI_COMM_WORLD};
-  std::vector<int> told(20, 0);
+  std::vector<int> reported(20, 0);
   int own = 0;
   SharedItems shared;
-  for (std::size_t i = 0; i < told.size(); i += 2) shared.items.push_back(i);  // an arbitrary set of numbers
+  for (std::size_t i = 0; i < reported.size(); i += 2)
+    shared.items.push_back(i);  // an arbitrary set of numbers
   shared.work = [&](std::size_t i) {
     ++own;
     // the last rank is slow: the others take its items
@@ -91,10 +92,11 @@ TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
   shared.done = [&](std::size_t i, const std::string& result) {
     EXPECT_EQ(rank, 0);
     EXPECT_THAT(result, ::testing::StartsWith(fmt::format("item {}\nby ", i)));
-    ++told[i];
+    ++reported[i];
   };
   EXPECT_TRUE(share_items(ranks, shared));
-  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], rank == 0 && i % 2 == 0 ? 1 : 0) << i;
+  for (std::size_t i = 0; i < reported.size(); ++i)
+    EXPECT_EQ(reported[i], rank == 0 && i % 2 == 0 ? 1 : 0) << i;
   int sum = 0, most = 0;
   MPI_Allreduce(&own, &sum, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
   MPI_Allreduce(&own, &most, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);

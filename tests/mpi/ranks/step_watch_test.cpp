@@ -22,10 +22,10 @@ TEST(StepWatch, ReportsAStepThatHangs) {
     EXPECT_EQ(::open("", O_RDONLY), -1);
   }
   EXPECT_EQ(errno, ENOENT);
-  const std::string told = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(told,
+  const std::string message = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(message,
               HasSubstr("rank 3 has tried to create shards/0.h5 for 0.02 s; the system: Is a directory"));
-  EXPECT_EQ(told.find("rank 3"), told.rfind("rank 3"));
+  EXPECT_EQ(message.find("rank 3"), message.rfind("rank 3"));
 }
 
 TEST(StepWatch, IgnoresStepsThatEnd) {

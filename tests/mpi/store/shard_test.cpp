@@ -178,7 +178,7 @@ TEST(Shard, DistinguishesDamagedFiles) {
   const std::filesystem::path file = folder.path / "s.h5";
   write_shard(file, test::sample_shard());
   const std::string whole = read_text(file);
-  int told = 0;
+  int reported = 0;
   for (std::size_t k = 0; k < 40; ++k) {  // over the whole file: most bytes are metadata
     std::string bytes = whole;
     bytes[k * whole.size() / 40] ^= '\x7f';
@@ -186,11 +186,11 @@ TEST(Shard, DistinguishesDamagedFiles) {
     try {
       (void)read_shard_apart(file);
     } catch (const InputError& e) {
-      ++told;
+      ++reported;
       EXPECT_NE(std::string(e.what()).find("s.h5"), std::string::npos) << e.what();
     }
   }
-  EXPECT_GE(told, 1);
+  EXPECT_GE(reported, 1);
 }
 TEST(Shard, ForeignHdf5IsRefused) {
   const Folder folder;

@@ -174,7 +174,7 @@ TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
 
   // the saved network has the posterior that was tested
   const SavedNetwork saved = SavedNetwork::load(file);
-  EXPECT_TRUE(saved.info().told_noise);
+  EXPECT_TRUE(saved.info().noise_as_input);
   const data::ShardStream stream = w.stream(0.0);
   const data::RowSplit split = data::leave_one_out(
       stream.labels(), {.generator = 33, .validation_share = 0.1, .seed = 1, .set_aside = 2});

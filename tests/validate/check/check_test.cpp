@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::string told(const std::vector<Finding>& findings) {
+std::string findings_text(const std::vector<Finding>& findings) {
   std::string all;
   for (const auto& f : findings)
     all += fmt::format("{} {}: {}\n", f.severity == Severity::refuse ? "refuse" : "warn", f.kind,
@@ -123,7 +123,7 @@ TEST_P(RecordMistakeTest, IsRecognised) {
   const Mistake& m = GetParam();
   for (int i = 1; i <= 4; ++i) {
     const auto findings = check_record(rewritten(example(i), m.written), {m.mva, 60});
-    EXPECT_TRUE(refused(findings, m.kind)) << "event " << i << "\n" << told(findings);
+    EXPECT_TRUE(refused(findings, m.kind)) << "event " << i << "\n" << findings_text(findings);
     EXPECT_THROW(raise_refusals(findings), InputError);
   }
 }
@@ -167,8 +167,8 @@ TEST(RecordCheckTest, ShortRecordsAreRefusedInOneSentence) {
     const auto findings = check_record(r, {100, 60});
     if (length >= 0.5) continue;
     ++refused_as_short;
-    ASSERT_EQ(findings.size(), 1U) << told(findings);
-    EXPECT_THAT(told(findings), ::testing::HasSubstr(fmt::format("{:.3g} s is too short", length)));
+    ASSERT_EQ(findings.size(), 1U) << findings_text(findings);
+    EXPECT_THAT(findings_text(findings), ::testing::HasSubstr(fmt::format("{:.3g} s is too short", length)));
   }
   EXPECT_GT(refused_as_short, 200);
 }
@@ -185,7 +185,7 @@ TEST(RecordSignalsTest, RecordsShorterThanATenthOfASecondHaveAnAngle) {
 TEST(RecordCheckTest, VoltsUnderTheHeadingOfKilovolts_NameTheUnit) {
   const Written volts{
       .V = "V_kV", .edit = [](std::vector<double>& x) { x[1] *= 138e3; }, .base = {100, 60, 138}};
-  EXPECT_THAT(told(check_record(rewritten(example(1), volts), {100, 60})),
+  EXPECT_THAT(findings_text(check_record(rewritten(example(1), volts), {100, 60})),
               ::testing::HasSubstr("a voltage in V taken as kV"));
 }
 
@@ -198,7 +198,7 @@ TEST(RecordCheckTest, ReportsSlowRecord) {
       for (std::size_t k = 0; k < c->size(); k += stride) (*c)[kept++] = (*c)[k];
       c->resize(kept);
     }
-    return told(check_record(thin, {100, 60}));
+    return findings_text(check_record(thin, {100, 60}));
   };
   ASSERT_NEAR(r.rate(), 60, 1e-6);
   EXPECT_THAT(every(2), ::testing::Not(::testing::HasSubstr("slow_rate")));
@@ -223,8 +223,8 @@ bool warned(const std::vector<Finding>& findings, const std::string& kind) {
 }
 TEST(RecordCheckTest, WarnsOfPreEventOfAFifthOfASecond) {
   const auto findings = check_record(record::stretch(example(1), 1.79, 1e9), {100, 60});
-  EXPECT_TRUE(warned(findings, "short_pre_event")) << told(findings);
-  EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
+  EXPECT_TRUE(warned(findings, "short_pre_event")) << findings_text(findings);
+  EXPECT_NO_THROW(raise_refusals(findings)) << findings_text(findings);
 }
 /// A dip of the frequency over 40 s that starts at the first sample; P and Q without noise or quantised.
 record::Record dip(double noise, double step) {
@@ -245,16 +245,17 @@ record::Record dip(double noise, double step) {
 TEST(RecordCheckTest, AcceptsEventsWithoutSwitching) {
   for (const double noise : {0.0, 1e-5, 1e-3}) {
     const auto findings = check_record(dip(noise, 0), {100, 60});
-    EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
+    EXPECT_NO_THROW(raise_refusals(findings)) << findings_text(findings);
   }
   const auto findings = check_record(dip(0, 0.005), {100, 60});
-  EXPECT_NO_THROW(raise_refusals(findings)) << told(findings);
-  EXPECT_TRUE(warned(findings, "quantised_P")) << told(findings);
-  EXPECT_THAT(told(findings), testing::HasSubstr("the noise is taken to be at least the quantisation noise"));
+  EXPECT_NO_THROW(raise_refusals(findings)) << findings_text(findings);
+  EXPECT_TRUE(warned(findings, "quantised_P")) << findings_text(findings);
+  EXPECT_THAT(findings_text(findings),
+              testing::HasSubstr("the noise is taken to be at least the quantisation noise"));
   record::Record coarse = dip(0, 0);
   for (double& v : coarse.V) v = 5e-4 * std::round(v / 5e-4);
   for (std::size_t k = 0; k < coarse.V.size(); ++k) coarse.V[k] += 5e-4 * static_cast<double>(k % 2);
-  const std::string of_voltage = told(check_record(coarse, {100, 60}));
+  const std::string of_voltage = findings_text(check_record(coarse, {100, 60}));
   EXPECT_THAT(of_voltage, testing::HasSubstr("behind a regulator the error is slow"));
 }
 TEST(RecordCheckTest, DoesNotCheckIntegratedAngle) {
@@ -275,14 +276,14 @@ TEST(RecordCheckTest, AcceptsUnwrappedRadians) {
       if (i == 2 && !with_frequency)  // its angle hardly steps: degrees would be plausible too
         EXPECT_TRUE(refused(findings, "angle_unit"));
       else
-        EXPECT_EQ(told(findings), "") << "event " << i;
+        EXPECT_EQ(findings_text(findings), "") << "event " << i;
     }
 }
 TEST(RecordCheckTest, AcceptsTheExample) {
   for (int i = 1; i <= 4; ++i) {
     const record::Record r = example(i);
-    EXPECT_EQ(told(check_record(r, {100, 60})), "") << r.name;
-    EXPECT_EQ(told(check_record(rewritten(r, {}), {100, 60})), "") << r.name;
+    EXPECT_EQ(findings_text(check_record(r, {100, 60})), "") << r.name;
+    EXPECT_EQ(findings_text(check_record(rewritten(r, {}), {100, 60})), "") << r.name;
   }
 }
 

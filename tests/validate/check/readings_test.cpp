@@ -92,7 +92,7 @@ TEST(ReadingsOfAWrongModel, AreNotReported) {
 struct DispatchTest : ReadingsTest {
   const double mw = sound.base.mva;
   DispatchTest() { model.dispatch = {sound.P[0] * mw, sound.Q[0] * mw, sound.V[0]}; }
-  [[nodiscard]] std::string told(const record::Record& r) const {
+  [[nodiscard]] std::string dispatch_warning(const record::Record& r) const {
     for (const Finding& f : check_record(r, plant_facts(model)))
       if (f.kind == "dispatch") {
         EXPECT_EQ(f.severity, Severity::warn);
@@ -101,11 +101,14 @@ struct DispatchTest : ReadingsTest {
     return {};
   }
 };
-TEST_F(DispatchTest, AcceptsSameOperatingPoint) { EXPECT_EQ(told(sound), ""); }
+TEST_F(DispatchTest, AcceptsSameOperatingPoint) { EXPECT_EQ(dispatch_warning(sound), ""); }
 TEST_F(DispatchTest, RatioAndItsLikelyCauseAreReported) {
-  EXPECT_THAT(told(scaled(1.0 / 3)), AllOf(HasSubstr("0.33 times the case's"), HasSubstr("one phase")));
-  EXPECT_THAT(told(scaled(1 / std::numbers::sqrt3)), AllOf(HasSubstr("0.58 times"), HasSubstr("sqrt(3)")));
-  EXPECT_THAT(told(scaled(0.45)), AllOf(HasSubstr("0.45 times"), HasSubstr("another unit or base")));
+  EXPECT_THAT(dispatch_warning(scaled(1.0 / 3)),
+              AllOf(HasSubstr("0.33 times the case's"), HasSubstr("one phase")));
+  EXPECT_THAT(dispatch_warning(scaled(1 / std::numbers::sqrt3)),
+              AllOf(HasSubstr("0.58 times"), HasSubstr("sqrt(3)")));
+  EXPECT_THAT(dispatch_warning(scaled(0.45)),
+              AllOf(HasSubstr("0.45 times"), HasSubstr("another unit or base")));
 }
 TEST_F(DispatchTest, PowerFactorAngleIsReported) {
   record::Record r = sound;
@@ -114,7 +117,7 @@ TEST_F(DispatchTest, PowerFactorAngleIsReported) {
     const Complex made = std::polar(std::abs(s0), 1.3 - std::arg(s0));
     r.P[k] = made.real(), r.Q[k] = made.imag();
   }
-  EXPECT_THAT(told(r), AllOf(HasSubstr("1.00 times"), HasSubstr("power-factor angle")));
+  EXPECT_THAT(dispatch_warning(r), AllOf(HasSubstr("1.00 times"), HasSubstr("power-factor angle")));
 }
 
 TEST(WrongMachineBase, RemedyNamesTheMachinesMva) {

@@ -28,10 +28,10 @@ TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
     read_records({kFirst, "none.csv", kFirst}, model);
     FAIL() << "nothing was refused";
   } catch (const InputError& error) {
-    const std::string told = error.what();
-    EXPECT_THAT(told, ::testing::HasSubstr("none.csv"));
-    EXPECT_THAT(told, ::testing::HasSubstr("two records named avr_ev1.csv"));
-    EXPECT_GE(error.problems().size(), 3U) << told;  // the check refuses the record as well
+    const std::string message = error.what();
+    EXPECT_THAT(message, ::testing::HasSubstr("none.csv"));
+    EXPECT_THAT(message, ::testing::HasSubstr("two records named avr_ev1.csv"));
+    EXPECT_GE(error.problems().size(), 3U) << message;  // the check refuses the record as well
   }
 }
 TEST_F(RecordSets, AppendToKnownProblems) {

@@ -10,7 +10,7 @@
 namespace swingbank::validate::check {
 namespace {
 
-std::string told_of(const std::vector<Finding>& findings) {
+std::string kinds_text(const std::vector<Finding>& findings) {
   std::string all;
   for (const auto& f : findings) all += f.kind + ": " + f.problem.sentence() + "\n";
   return all;
@@ -59,7 +59,7 @@ record::Record one_cycle(const record::Record& fine, std::size_t stride) {
 }
 
 void expect_sound(const record::Record& r, double mva, const std::string& which) {
-  EXPECT_EQ(told_of(check_record(r, {mva, 60})), "") << which;
+  EXPECT_EQ(kinds_text(check_record(r, {mva, 60})), "") << which;
 }
 /// Expects no finding for every plant in operation, at 120, 60 and 30 samples/s, noise of 0.1 and 0.2 %, with
 /// and without a one-cycle window. Returns the number of records.

@@ -148,13 +148,13 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
                                                   std::string("20 ×"), std::string("1.5 ×")}));
   }
   const auto parameters = table_after(page(), "95 % intervals.");
-  const auto& told = j["after"]["parameters"];
-  ASSERT_EQ(parameters.size(), told.size());
-  for (std::size_t i = 0; i < told.size(); ++i) {
+  const auto& written = j["after"]["parameters"];
+  ASSERT_EQ(parameters.size(), written.size());
+  for (std::size_t i = 0; i < written.size(); ++i) {
     EXPECT_EQ(parameters[i][0],
-              told[i]["block"].get<std::string>() + " " + symbol(told[i]["block"], told[i]["name"]));
+              written[i]["block"].get<std::string>() + " " + symbol(written[i]["block"], written[i]["name"]));
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", told[i]["value"].get<double>());
+    std::snprintf(text, sizeof text, "%.4g", written[i]["value"].get<double>());
     EXPECT_EQ(parameters[i][4], text);
   }
   EXPECT_EQ(j["hypotheses"][1]["name"], "A < B");
@@ -237,10 +237,10 @@ TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
   EXPECT_EQ(rows[0][5], "accepted");
   EXPECT_EQ(rows[1][4], "–");
   EXPECT_EQ(rows[1][5], "it worsens <ev3>");
-  const auto told = diagnosis_json(example().model, d, {})["laws"];
-  EXPECT_EQ(told["input"], "field_voltage");
-  EXPECT_EQ(told["found"], "LAW1");
-  EXPECT_EQ(told["fitted"][1]["why_not"], "it worsens <ev3>");
+  const auto written = diagnosis_json(example().model, d, {})["laws"];
+  EXPECT_EQ(written["input"], "field_voltage");
+  EXPECT_EQ(written["found"], "LAW1");
+  EXPECT_EQ(written["fitted"][1]["why_not"], "it worsens <ev3>");
 }
 TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   Diagnosis d = with_laws();

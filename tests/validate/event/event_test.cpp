@@ -244,10 +244,10 @@ TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const FitEvent found = prepare_events(model, {r}).front();
   r.switched = {3.0, 3.1};
-  const FitEvent told = prepare_events(model, {r}).front();
-  EXPECT_EQ(told.filtered_samples, found.filtered_samples);
-  EXPECT_EQ(told.start.samples, found.start.samples);
-  EXPECT_EQ(told.switchings[1].time, 3.1);
+  const FitEvent given = prepare_events(model, {r}).front();
+  EXPECT_EQ(given.filtered_samples, found.filtered_samples);
+  EXPECT_EQ(given.start.samples, found.start.samples);
+  EXPECT_EQ(given.switchings[1].time, 3.1);
 }
 /// A fault near the terminal behind a triangular window of two cycles, time stamps with six decimals: the
 /// filtered fault end is one interval wider than its beginning.

@@ -295,9 +295,9 @@ TEST(RecordComtradeTest, AcceptsSimulatedFaultRecorderWaveforms) {
           {current ? "I" : "V", std::string(1, static_cast<char>('A' + p)), "G2", current ? "kA" : "kV", 1, 0,
            [=](double t) { return Machine{}.wave(at(t, current), t, p, current ? amperes : volts); }});
   const Record r = w.read(base);
-  std::string told;
-  for (const auto& f : check::check_record(r, {fine.base.mva, 60})) told += f.problem.sentence() + "\n";
-  EXPECT_EQ(told, "");
+  std::string findings;
+  for (const auto& f : check::check_record(r, {fine.base.mva, 60})) findings += f.problem.sentence() + "\n";
+  EXPECT_EQ(findings, "");
   // Away from the switchings phasors equal the simulated values; within a cycle they move by 1e-4.
   for (std::size_t k = 0; k < r.t.size(); ++k) {
     if (r.t[k] > 1.9 && r.t[k] < 2.3) continue;

@@ -104,14 +104,14 @@ TEST_F(RecordHdf5Test, RefusesDamagedBytes) {
   write("swingbank-run-1");
   const std::string whole = read_bytes(file_);
   ::setenv("SWINGBANK_READER_SECONDS", "1", 1);
-  int told = 0, crashed = 0;
+  int reported = 0, crashed = 0;
   for (const std::size_t at : kDamaged) {
     ASSERT_LT(at, whole.size());
     std::string bytes = whole;
     bytes[at] = static_cast<char>(~bytes[at]);
     std::ofstream(file_, std::ios::binary) << bytes;
     for (const std::string& sentence : faults("#GENROU 7")) {
-      ++told;
+      ++reported;
       // The address sanitizer ends a reader by an exit code before the signal does.
       for (const char* end : {"its reader was ended by a signal", "its reader ended with code"})
         crashed += sentence.find(end) != sentence.npos ? 1 : 0;
@@ -119,7 +119,7 @@ TEST_F(RecordHdf5Test, RefusesDamagedBytes) {
     }
   }
   ::unsetenv("SWINGBANK_READER_SECONDS");
-  EXPECT_GE(told, 6);
+  EXPECT_GE(reported, 6);
   EXPECT_GE(crashed, 3);
 }
 class RecordHdf5Nightly : public RecordHdf5Test {};
@@ -127,21 +127,21 @@ TEST_F(RecordHdf5Nightly, EveryFlippedByteOfTheDescriptions) {
   write("swingbank-run-1");
   const std::string whole = read_bytes(file_);
   ::setenv("SWINGBANK_READER_SECONDS", "2", 1);
-  int tried = 0, told = 0, crashed = 0;
+  int tried = 0, reported = 0, crashed = 0;
   for (std::size_t at = 0; at < whole.size(); at += 5, ++tried) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(~bytes[at]);
     std::ofstream(file_, std::ios::binary) << bytes;
     std::vector<std::string> sentences;
     ASSERT_NO_THROW(sentences = test::messages([&] { read_record(file_.string() + "#GENROU 7", {}); })) << at;
-    told += sentences.empty() ? 0 : 1;
+    reported += sentences.empty() ? 0 : 1;
     crashed += !sentences.empty() && sentences[0].find("ended by a signal") != std::string::npos ? 1 : 0;
   }
   ::unsetenv("SWINGBANK_READER_SECONDS");
   fmt::print(
       "{} bytes flipped, {} told, {} of them by the reader's end; the others change a sample or nothing\n",
-      tried, told, crashed);
-  EXPECT_GT(told, 50);
+      tried, reported, crashed);
+  EXPECT_GT(reported, 50);
 }
 
 }  // namespace

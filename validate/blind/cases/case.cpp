@@ -47,7 +47,7 @@ class Maker {
                                   world_.controlled(), draw);
     made_.pmu_filter = conditions_.filter != Filter::none;
     made_.voltage_noise = made_.noise * conditions_.voltage_noise;
-    made_.conditions = told(conditions_, config);
+    made_.conditions = condition_names(conditions_, config);
     if (!config.conditions.machines.empty())
       made_.conditions.emplace_back(target(world_.plain()).machine.effect->name);
     if (world_.transformed()) made_.conditions.emplace_back("behind its transformer");

@@ -66,7 +66,7 @@ Conditions draw_conditions(const BlindConfig& config, bool instrument, bool dips
   return c;
 }
 
-std::vector<std::string> told(const Conditions& c, const BlindConfig& config) {
+std::vector<std::string> condition_names(const Conditions& c, const BlindConfig& config) {
   std::vector<std::string> all;
   if (!config.conditions.rates.empty()) all.push_back(fmt::format("{:g}/s", c.rate));
   if (!config.conditions.voltage_noise.empty())

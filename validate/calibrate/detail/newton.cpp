@@ -50,10 +50,10 @@ sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit:
 }
 
 Eigen::VectorXd Secants::step(const Eigen::VectorXd& plain) {
-  constexpr double kSecantTells = 1e-3;  // least share of a step for a secant update
+  constexpr double kMinSecantShare = 1e-3;  // least share of a step for a secant update
   if (taken_.size() > 0) {
     const Eigen::VectorXd done = inverse_ * (plain_ - plain);
-    if (const double along = taken_.dot(done); std::abs(along) > kSecantTells * taken_.squaredNorm())
+    if (const double along = taken_.dot(done); std::abs(along) > kMinSecantShare * taken_.squaredNorm())
       inverse_ += ((taken_ - done) * (taken_.transpose() * inverse_) / along).eval();
   }
   plain_ = plain;

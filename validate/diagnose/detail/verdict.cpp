@@ -80,7 +80,7 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
   const auto most = std::ranges::max_element(best.held_out, {}, &hypothesis::HeldOut::saves);
   const auto e = static_cast<std::size_t>(most - best.held_out.begin());
   if (most->saves() > thresholds::held_out.alone * saved &&
-      most->after > thresholds::held_out.foretold * most->before)
+      most->after > thresholds::held_out.unpredicted * most->before)
     return fmt::format(
         "it acts in {} alone, so no other event predicts it; with this event in the fit, its "
         "normalised RMS falls from {:.2f} to {:.2f}",
@@ -183,7 +183,7 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
   d.verdict = d.equivalent.empty() ? Verdict::missing : Verdict::confusable;
   const bool pairs = !best.hypothesis.with.empty();
   const std::string does = best.hypothesis.replaces ? "explains the records" : "is missing";
-  if (first->probability > thresholds::posterior.told)
+  if (first->probability > thresholds::posterior.named)
     d.sentence =
         fmt::format("{} {} ({}){}",
                     capitalised(best.hypothesis.with.empty()

@@ -19,7 +19,7 @@ constexpr int kTurnSteps = 12;
 
 /// Samples on each side for the extrapolation of f to the switching, and their minimum near another
 /// switching.
-constexpr std::size_t kForetell = 4, kMinToForetell = 2;
+constexpr std::size_t kExtrapolationSamples = 4, kMinExtrapolationSamples = 2;
 constexpr double kStandsOut = 5;     ///< threshold of a peak in standard deviations of f's noise, and
 constexpr double kLeastPeak = 0.02;  ///< its minimum [Hz]
 
@@ -51,7 +51,7 @@ struct Peak {
 
 /// Extrapolates f from the samples on either side up to `begin` and down to `end` [s]; linear between the
 /// two.
-std::vector<double> foretold(const record::Record& r, const Peak& p, double begin, double end) {
+std::vector<double> extrapolate(const record::Record& r, const Peak& p, double begin, double end) {
   const auto [from, to] = std::pair(p.from, p.to);
   const Line before(r, from - p.before, from), after(r, to, to + p.after);
   std::vector<double> f;
@@ -135,12 +135,14 @@ void drop_peaks(FitEvent& event) {
   const auto begins = [&](std::size_t k) { return behind(r, at[k].time - reach); };
   const auto ends = [&](std::size_t k) { return behind(r, at[k].time + reach); };
   for (std::size_t first = 0, last; first < at.size(); first = last + 1) {
-    for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kMinToForetell;) ++last;
+    for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kMinExtrapolationSamples;)
+      ++last;
     const std::size_t from = begins(first), to = ends(last), free_from = first > 0 ? ends(first - 1) : 0,
                       free_to = last + 1 < at.size() ? begins(last + 1) : r.t.size();
-    const Peak peak{from, to, std::min(kForetell, from - free_from), std::min(kForetell, free_to - to)};
-    if (std::min(peak.before, peak.after) < kMinToForetell) continue;
-    const std::vector<double> quiet = foretold(r, peak, at[first].time, at[last].time);
+    const Peak peak{from, to, std::min(kExtrapolationSamples, from - free_from),
+                    std::min(kExtrapolationSamples, free_to - to)};
+    if (std::min(peak.before, peak.after) < kMinExtrapolationSamples) continue;
+    const std::vector<double> quiet = extrapolate(r, peak, at[first].time, at[last].time);
     const auto begin = r.f.begin() + static_cast<std::ptrdiff_t>(from);
     if (std::equal(quiet.begin(), quiet.end(), begin,
                    [&](double a, double b) { return std::abs(a - b) <= least; }))

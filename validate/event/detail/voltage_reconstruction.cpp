@@ -135,7 +135,7 @@ class SwitchingTimeSearch {
 /// Returns the width of the search for switching times after so many rounds [s].
 double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
 
-bool told(const FitEvent& e) { return !e.record.switched.empty(); }
+bool has_given_times(const FitEvent& e) { return !e.record.switched.empty(); }
 
 /// Returns approximate switching times; those given by the user are unchanged. All windows are even, so one
 /// of them suffices.
@@ -146,7 +146,7 @@ std::vector<double> approximate_switching_times(const FitEvent& e, const Cluster
     middle.push_back(e.switchings[s].time);
     width.push_back(e.switchings[s].uncertainty);
   }
-  if (told(e)) return middle;
+  if (has_given_times(e)) return middle;
   BroughtBack best;
   for (const double roughness : kScanRoughness) {
     BroughtBack scanned{middle, roughness};
@@ -168,7 +168,7 @@ void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& b
 BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow& window,
                          const std::vector<double>& switching_times) {
   BroughtBack best{switching_times};
-  if (told(e)) {
+  if (has_given_times(e)) {
     take_roughness(c, window, best);
     return best;
   }
@@ -197,8 +197,8 @@ Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>&
 
 /// Returns the log of the fraction of a switching time's uncertainty `open` [s] in which the evidence is near
 /// its maximum (Laplace approximation).
-double told_share(const Cluster& c, const FilterWindow& window, const BroughtBack& b, std::size_t time_index,
-                  double open) {
+double log_occam_factor(const Cluster& c, const FilterWindow& window, const BroughtBack& b,
+                        std::size_t time_index, double open) {
   const double aside = c.stretch.step / 50;
   double falls = 0;
   int sides = 0;
@@ -225,7 +225,7 @@ std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterW
     std::size_t which = 0;
     for (std::size_t i = 0, k = 0; i < c.count; ++i) {
       if (!stays[i]) continue;
-      const double share = told_share(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
+      const double share = log_occam_factor(c, window, b, k, 2 * e.switchings[c.first + i].uncertainty);
       BroughtBack without{b.switching_times};
       without.switching_times.erase(without.switching_times.begin() + static_cast<std::ptrdiff_t>(k++));
       take_roughness(c, window, without);
@@ -260,7 +260,7 @@ void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, 
   for (std::size_t i = 0; i < clusters.size(); ++i) {
     Cluster& c = clusters[i];
     std::vector<char>& its = stays[c.event];
-    const std::vector<char> some = told(events[c.event])
+    const std::vector<char> some = has_given_times(events[c.event])
                                        ? std::vector<char>(c.count, 1)
                                        : drop_swings(events[c.event], c, a.window, a.clusters[i]);
     c.first = static_cast<std::size_t>(std::ranges::count(its, 1));
@@ -311,7 +311,7 @@ void replace(FitEvent& e, int segment, double from, double to, const Reconstruct
 }
 
 void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
-  if (told(e)) return;
+  if (has_given_times(e)) return;
   for (std::size_t i = 0; i < c.count; ++i)
     e.switchings[c.first + i] = {.time = b.switching_times[i], .uncertainty = e.record.step() / 5};
 }
@@ -389,7 +389,7 @@ FilterWindow reconstruct_voltage(std::vector<FitEvent>& events) {
   Attempt best = most_probable(events, all);
   std::vector<Cluster>& clusters = all.clusters;
   for (std::size_t i = 0; i < clusters.size(); ++i)
-    if (!told(events[clusters[i].event]))
+    if (!has_given_times(events[clusters[i].event]))
       SwitchingTimeSearch(clusters[i], best.window)
           .run(best.clusters[i], width_after(clusters[i], kNarrowings), kLastNarrowings);
   drop_swings(events, clusters, best);

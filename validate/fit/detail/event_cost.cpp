@@ -15,7 +15,7 @@ namespace {
 constexpr double kOffAtMost = 0.2;
 /// Sensitivities are reused if they predicted a step up to this share of the residuals' change, at most kGoOn
 /// times in a row.
-constexpr double kAsForetold = 0.2;
+constexpr double kMaxPredictionError = 0.2;
 constexpr int kGoOn = 6;
 
 bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() == b.size() && a == b; }
@@ -66,7 +66,7 @@ bool EventCost::evaluate(double const* const* blocks, double* residuals, double*
     here[i] = i < n ? z[i] : state[i - n];
   const bool looks = jacobians && points_ > 0, known = same(here, last_.at);
   if (!known) last_ = {here, {}, nullptr};
-  if (looks ? !(known && foretold()) : !known) {
+  if (looks ? !(known && reuse_sensitivities()) : !known) {
     event::RowMatrix e = values(z, state, looks);
     if (e.size() == 0) {
       last_ = {};
@@ -102,14 +102,14 @@ Eigen::MatrixXd EventCost::by_column(const Eigen::VectorXd& missed, const Eigen:
                    : Eigen::MatrixXd::Zero(missed.size(), step.size());
 }
 
-bool EventCost::foretold() const {
+bool EventCost::reuse_sensitivities() const {
   if (!setting_.lenient || looked_.at.size() == 0) return false;
   if (renew_) return false;
   if (same(looked_.at, last_.at)) return true;
   const Eigen::Index n = last_.at.size();
   const Eigen::VectorXd step = last_.at - looked_.at, moved = last_.residual - looked_.e.col(n),
                         missed = moved - looked_.e.leftCols(n) * step;
-  if (!setting_.goes_on || looked_.gone_on >= kGoOn || !(missed.norm() <= kAsForetold * moved.norm()))
+  if (!setting_.goes_on || looked_.gone_on >= kGoOn || !(missed.norm() <= kMaxPredictionError * moved.norm()))
     return false;
   looked_.e.leftCols(n) += by_column(missed, step);
   looked_.e.col(n) = last_.residual;

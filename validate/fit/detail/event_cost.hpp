@@ -41,7 +41,7 @@ class EventCost : public ceres::CostFunction {
   [[nodiscard]] Eigen::MatrixXd by_column(const Eigen::VectorXd& missed, const Eigen::VectorXd& step) const;
   /// Returns whether the previous sensitivities predicted the residuals at the last point well enough. If so,
   /// they are updated and assigned to the last point.
-  [[nodiscard]] bool foretold() const;
+  [[nodiscard]] bool reuse_sensitivities() const;
   /// Stores new sensitivities at the last point, corrected by the prediction errors of earlier steps.
   void take(event::RowMatrix e) const;
 

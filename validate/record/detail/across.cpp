@@ -42,7 +42,7 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
   rest.resize(x.size(), 0.0);
   Curve step(x.size()), before(x.size(), 0.0), now(x.size(), 1.0);
   std::ranges::transform(x, step.begin(), [](double t) { return t > 0 ? 1.0 : 0.0; });
-  Across told;
+  Across result;
   double smooth = std::numeric_limits<double>::infinity(), with_step = smooth, step_height = 0,
          norm_before = 1;
   for (std::size_t degree = 0; degree <= kHighestDegree; ++degree) {  // by Forsythe's orthogonal polynomials
@@ -52,7 +52,7 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
     const double left = dot(rest, rest, n), of_step = dot(step, step, n), along = dot(rest, step, n);
     if (const double c = criterion(left, n, degree + 2); c < smooth) {
       smooth = c;
-      told.inside.assign(rest.begin() + static_cast<std::ptrdiff_t>(n), rest.end());
+      result.inside.assign(rest.begin() + static_cast<std::ptrdiff_t>(n), rest.end());
     }
     if (of_step > kRounding)
       if (const double c = criterion(std::max(0.0, left - along * along / of_step), n, degree + 3);
@@ -64,9 +64,9 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
     if (degree > 0) add(next, -norm / norm_before, before);
     before = std::move(now), now = std::move(next), norm_before = norm;
   }
-  for (double& y : told.inside) y = -y;
-  if (with_step < smooth) told.step = step_height;
-  return told;
+  for (double& y : result.inside) y = -y;
+  if (with_step < smooth) result.step = step_height;
+  return result;
 }
 
 }  // namespace swingbank::validate::record

@@ -58,22 +58,22 @@ std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
 }
 
 /// Interpolates one channel across the gap from these samples.
-Across told_across(const std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
+Across interpolate(const std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& neighbours) {
   const auto place = [&](std::size_t k) {
     return (static_cast<double>(k) - static_cast<double>(gap.first + gap.last) / 2) /
            static_cast<double>(kReach);
   };
   std::vector<double> at, value, inside;
-  for (const std::size_t k : told) at.push_back(place(k)), value.push_back(y[k]);
+  for (const std::size_t k : neighbours) at.push_back(place(k)), value.push_back(y[k]);
   for (std::size_t k = gap.first; k <= gap.last; ++k) inside.push_back(place(k));
   return across(at, value, inside);
 }
 /// Returns whether the voltage steps in the gap. With too few samples, its change is compared with the
 /// adjacent ones.
-bool steps_within(const Record& r, const Gap& gap, const std::vector<std::size_t>& told) {
-  if (told.size() >= kMinAcross)
-    return std::abs(told_across(r.V, gap, told).step) > kStepThreshold ||
-           (!r.theta.empty() && std::abs(told_across(r.theta, gap, told).step) > kStepThreshold);
+bool steps_within(const Record& r, const Gap& gap, const std::vector<std::size_t>& neighbours) {
+  if (neighbours.size() >= kMinAcross)
+    return std::abs(interpolate(r.V, gap, neighbours).step) > kStepThreshold ||
+           (!r.theta.empty() && std::abs(interpolate(r.theta, gap, neighbours).step) > kStepThreshold);
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
   const std::size_t p = gap.first - 1, q = gap.last + 1;
   const std::complex<double> before = p > 0 ? v(p) - v(p - 1) : 0.0,
@@ -82,8 +82,9 @@ bool steps_within(const Record& r, const Gap& gap, const std::vector<std::size_t
   return std::abs(v(q) - v(p) - steps * (before + after) / 2.0) >
          kStepThreshold + steps * std::abs(before - after) / 2;
 }
-void smooth(std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& told) {
-  std::ranges::copy(told_across(y, gap, told).inside, y.begin() + static_cast<std::ptrdiff_t>(gap.first));
+void smooth(std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& neighbours) {
+  std::ranges::copy(interpolate(y, gap, neighbours).inside,
+                    y.begin() + static_cast<std::ptrdiff_t>(gap.first));
 }
 void hold(std::vector<double>& y, const Gap& gap) {
   const std::size_t p = gap.first - 1, q = gap.last + 1;
@@ -135,18 +136,18 @@ bool gaps_are_short(EvenRows& rows, Record& about) {
 
 void bridge(Record& r) {
   for (const Gap& gap : gaps_of(r.lost.size(), [&](std::size_t k) { return r.lost[k] != 0; })) {
-    const auto told = r.V.empty() ? std::vector<std::size_t>() : beside(r, gap);
-    const bool stepped = !r.V.empty() && steps_within(r, gap, told);
+    const auto neighbours = r.V.empty() ? std::vector<std::size_t>() : beside(r, gap);
+    const bool stepped = !r.V.empty() && steps_within(r, gap, neighbours);
     if (stepped)
       r.notes.push_back(fmt::format(
           "The voltage has a step where frames are missing, between t = {:.4f} and {:.4f} s: this "
           "is the uncertainty of the switching time.",
           r.t[gap.first - 1], r.t[gap.last + 1]));
-    const bool bends = !stepped && told.size() >= kMinAcross;
+    const bool bends = !stepped && neighbours.size() >= kMinAcross;
     for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {
       if (y->empty()) continue;
       if (bends)
-        smooth(*y, gap, told);
+        smooth(*y, gap, neighbours);
       else if (stepped && (y == &r.V || y == &r.theta))
         hold(*y, gap);
       else

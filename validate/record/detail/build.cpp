@@ -177,7 +177,7 @@ EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFau
   if (!gaps_are_short(rows, r) || (!lost.empty() && std::ranges::any_of(raw.columns, [&](const RawColumn& c) {
         return c.meaning.quantity != Quantity::time && is_long_without(c.values, rows);
       })))
-    faults.tell_missing();
+    faults.report_missing();
   return rows;
 }
 
@@ -395,7 +395,7 @@ std::vector<char> SampleFaults::lost(std::size_t samples) const {
   return marks;
 }
 
-void SampleFaults::tell_missing() {
+void SampleFaults::report_missing() {
   std::ranges::move(missing_, std::back_inserter(faults_));
   missing_.clear();
 }
@@ -405,7 +405,7 @@ void SampleFaults::keep(std::size_t first, std::size_t last) {
     std::erase_if(*faults, [&](const Fault& f) { return f.last < first || f.first > last; });
 }
 
-void SampleFaults::tell(Problems& problems, const std::string& file) const {
+void SampleFaults::report(Problems& problems, const std::string& file) const {
   constexpr std::size_t kShown = 50;
   for (std::size_t i = 0; i < std::min(kShown, faults_.size()); ++i) {
     const Fault& f = faults_[i];
@@ -437,7 +437,7 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   if (!raw.uneven && check_clock(times_of(raw), time_of(raw).meaning, options, file, problems))
     problems.raise();
   const EvenRows rows = settle(raw, options, r, faults);
-  faults.tell(problems, file);
+  faults.report(problems, file);
   if (rows.place.size() < kMinSamples)
     problems.add(fmt::format("{} samples", rows.place.size()), file,
                  fmt::format("a record needs at least {}", kMinSamples), "give a longer record");

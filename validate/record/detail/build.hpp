@@ -29,12 +29,12 @@ class SampleFaults {
   /// Adds a fault. `subject` identifies repetitions (a column); `what` describes the first sample.
   void add(const std::string& subject, std::string what, std::size_t sample, std::string why,
            std::string remedy);
-  /// Adds a missing value, which becomes a fault in tell_missing() if its gap is longer than kLongestGap.
+  /// Adds a missing value, which becomes a fault in report_missing() if its gap is longer than kLongestGap.
   void lose(const std::string& subject, std::string what, std::size_t sample, std::string why,
             std::string remedy);
   /// Returns marks of the samples of lose(); empty if there are none.
   [[nodiscard]] std::vector<char> lost(std::size_t samples) const;
-  void tell_missing();
+  void report_missing();
   /// Removes faults of samples outside first .. last.
   void keep(std::size_t first, std::size_t last);
   /// Renumbers the samples so that `first` becomes 0.
@@ -43,7 +43,7 @@ class SampleFaults {
   void keep_rows(std::vector<std::size_t> rows);
   [[nodiscard]] std::string where(std::size_t sample) const { return where_(sample, sample); }
   /// Adds the faults to `problems`, in order; a long list is truncated.
-  void tell(Problems& problems, const std::string& file) const;
+  void report(Problems& problems, const std::string& file) const;
 
  private:
   struct Fault {

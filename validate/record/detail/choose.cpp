@@ -352,10 +352,10 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
       continue;
     }
     const auto q = static_cast<std::size_t>(meaning->quantity);
-    const bool told = std::ranges::any_of(about.named, [wanted = meaning->quantity](const auto& word) {
-      return quantity_of(word)->quantity == wanted;
-    });
-    if (!meaning->unit && !told && !is_unit_in_values(headings[i]) &&
+    const bool given_by_user = std::ranges::any_of(
+        about.named,
+        [wanted = meaning->quantity](const auto& word) { return quantity_of(word)->quantity == wanted; });
+    if (!meaning->unit && !given_by_user && !is_unit_in_values(headings[i]) &&
         (meaning->quantity != time || meaning->unknown_unit))
       problems.add(fmt::format("column '{}'", name), where, "its unit is missing or not known",
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +

@@ -124,7 +124,7 @@ class Grid {
       low = std::min(low, off), high = std::max(high, off);
     }
     if (!(high - low <= 1.05 * rows_.resolution + (coarse() ? 0.02 : 0.2) * h_)) return std::nullopt;
-    tell(about, faults);
+    add_notes(about, faults);
     EvenRows even;
     const double first = coarse() ? (low + high) / 2 : t_[row_.front()];
     even.place.assign(index_.back() + 1, std::numeric_limits<double>::quiet_NaN());
@@ -180,7 +180,7 @@ class Grid {
     return row_.size() > 1;
   }
 
-  void tell(Record& about, SampleFaults& faults) const {
+  void add_notes(Record& about, SampleFaults& faults) const {
     const auto rate = 1 / h_;
     if (!twice_.empty())
       about.notes.push_back(
@@ -289,7 +289,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
 }
 
 /// Reports times shared by many samples as one fault; returns whether there are any.
-bool tell_standing(const Rows& rows, SampleFaults& faults) {
+bool report_repeated_times(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const StandingClock clock = standing(t);
   if (!clock.even || (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size())) return false;
@@ -318,13 +318,13 @@ bool tell_standing(const Rows& rows, SampleFaults& faults) {
 }
 
 /// Reports every step that differs from the others.
-void tell_steps(const Rows& rows, SampleFaults& faults) {
+void report_uneven_steps(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const std::vector<double> steps = steps_of(t);
   std::vector<double> known;
   std::ranges::copy_if(steps, std::back_inserter(known), [](double s) { return std::isfinite(s); });
   if (known.empty()) return;
-  const bool stands = known.size() == steps.size() && tell_standing(rows, faults);
+  const bool stands = known.size() == steps.size() && report_repeated_times(rows, faults);
   const double usual = upper_median(known), resolution = rows.resolution;
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
@@ -366,7 +366,7 @@ EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults) {
     if (varies(even.t))
       if (auto sampled = resampled(rows, about)) return *sampled;
   }
-  tell_steps(rows, faults);
+  report_uneven_steps(rows, faults);
   return even;
 }
 

@@ -211,16 +211,16 @@ TEST_F(BlindScoring, JudgesOnlyPendingCases) {
   add({}, {"adequate", {}, {}, "none", 1});
   fs::create_directories(run_ / "cases" / "c7");
   fs::create_directories(run_ / "cases" / "c8");
-  std::vector<std::string> asked, told;
+  std::vector<std::string> asked, reported;
   const BlindJudge judge = [&](const fs::path& folder) -> BlindVerdict {
     asked.push_back(folder.filename().string());
     if (asked.back() == "c8") throw InputError({"broken", "here", "why", "mend"});
     return {"adequate", {}, {}, "none", 2};
   };
-  const auto tell = [&](const std::string& name, const BlindVerdict&) { told.push_back(name); };
-  const auto faults = judge_cases(run_, judge, {1, 1}, tell);
+  const auto report = [&](const std::string& name, const BlindVerdict&) { reported.push_back(name); };
+  const auto faults = judge_cases(run_, judge, {1, 1}, report);
   EXPECT_THAT(asked, testing::ElementsAre("c7", "c8"));
-  EXPECT_THAT(told, testing::ElementsAre("c7"));
+  EXPECT_THAT(reported, testing::ElementsAre("c7"));
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_DOUBLE_EQ(read_verdict(run_ / "verdicts" / "c7.json").seconds, 2.0);
   EXPECT_FALSE(fs::exists(run_ / "verdicts" / "c8.json"));

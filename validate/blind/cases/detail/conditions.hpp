@@ -29,7 +29,7 @@ struct Conditions {
 /// governors, which a frequency dip needs.
 Conditions draw_conditions(const BlindConfig& config, bool instrument, bool dips, BlindDraw& draw);
 /// Names of the conditions that differ from a clean record, for the truth: "30/s", "class M", "loads drift".
-std::vector<std::string> told(const Conditions& c, const BlindConfig& config);
+std::vector<std::string> condition_names(const Conditions& c, const BlindConfig& config);
 
 /// Adds the variation of the loads to an event, as load steps every 0.025 s that lie off the samples.
 void let_loads_move(BlindEvent& event, const sim::network::Network& network, const Conditions& c,
