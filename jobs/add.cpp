@@ -258,7 +258,7 @@ int swingbank::jobs::add_command(CommandLine& line, int argc, char** argv) {
   if (a.of.model.empty()) return line.lacks("--model with --records");
   auto& c = a.options.calibrate;
   c.events = a.of.events();
-  c.spread = a.of.spread;
+  c.prior_sd = a.of.prior_sd;
   c.held_out = a.of.held_out;
   a.of.limit_threads();
   a.command = jobs::command_line("add", argc, argv);

@@ -28,7 +28,7 @@ struct AnalysisOptions {
   int threads = -1;  ///< 0: one per core; -1: option absent
   double step_threshold = validate::playin::kStepThreshold;
   double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
-  double spread = validate::thresholds::parameters.spread;          ///< prior standard deviation, relative
+  double prior_sd = validate::thresholds::parameters.prior_sd;      ///< prior standard deviation, relative
   Reading reading;
   Judging judging;
   std::vector<std::pair<std::string, const sim::Effect*>> laws;  ///< user-defined models, by file
@@ -74,7 +74,7 @@ struct AnalysisOptions {
   /// Declares the options of commands that fit parameters.
   std::vector<Option> declare_fit(CommandLine& line) {
     line.group("Expert");
-    return {line.add("--spread", spread, "prior standard deviation of the model's parameters, relative")
+    return {line.add("--spread", prior_sd, "prior standard deviation of the model's parameters, relative")
                 .shows_default()
                 .between(0.001, 2.0)};
   }

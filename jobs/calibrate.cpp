@@ -221,7 +221,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
   if (estimate) {
-    estimated = calibrate::estimated_plant(*estimate, model, a.options.spread);
+    estimated = calibrate::estimated_plant(*estimate, model, a.options.prior_sd);
     a.options.given.push_back({"network", estimated});
   }
   const calibrate::Calibration c = calibrate::calibrate(model, records, a.options);
@@ -317,7 +317,7 @@ int swingbank::jobs::calibrate_command(CommandLine& line, int argc, char** argv)
   if (a.of.model.empty()) return line.lacks("--model with --records");
   a.options.progress = jobs::progress_line(a.sparse ? jobs::kSparsePlan : jobs::kCalibratePlan);
   a.options.events = a.of.events();
-  a.options.spread = a.of.spread;
+  a.options.prior_sd = a.of.prior_sd;
   a.options.held_out = a.of.held_out;
   a.of.limit_threads();
   a.command = jobs::command_line("calibrate", argc, argv);

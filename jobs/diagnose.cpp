@@ -41,7 +41,7 @@ int run(Command& c) {
   const check::Preparing preparing = c.of.reading.apply(model, c.of.records);
   const check::RecordSet set = jobs::read_events(c.of.records, model, preparing);
   diagnose::DiagnoseOptions options;
-  options.spread = c.of.spread;
+  options.prior_sd = c.of.prior_sd;
   options.events = c.of.events();
   options.progress = jobs::progress_line(jobs::kDiagnosePlan);
   if (!jobs::quiet)

@@ -123,7 +123,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
                                {"effect", p.effect},
                                {"unit", p.unit},
                                {"estimate", mean},
-                               {"spread", p.spread},
+                               {"spread", p.rms_error},
                                {"bias", p.bias},
                                {"scatter", scatter},
                                {"low", p.low},
@@ -139,9 +139,9 @@ std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
     const auto& p = n.parameters[i];
     const auto [mean, scatter] = over_records(all, i);
-    text +=
-        fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.spread, scatter, p.unit,
-                    p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
+    text += fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.rms_error, scatter,
+                        p.unit,
+                        p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
   }
   return text +
          "RMSE: root mean square error on generators (or values) outside the training data; "

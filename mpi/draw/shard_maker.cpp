@@ -20,7 +20,7 @@ struct ShardMaker::Slots {
   std::size_t per_draw, channels, samples;
   std::vector<Draw> draws;
   std::vector<std::uint8_t> outcome;
-  std::vector<double> spread;
+  std::vector<double> angle_spread;
   std::vector<float> records;
   std::vector<std::uint8_t> valid;
 };
@@ -70,7 +70,7 @@ store::ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count,
           {},
           {}};
   s.outcome.assign(count, store::kRefused);
-  s.spread.assign(count, 0.0);
+  s.angle_spread.assign(count, 0.0);
   s.records.assign(count * s.per_draw * s.channels * s.samples, 0.0F);
   if (angle_recorded_) s.valid.assign(count * s.per_draw * s.samples, 1);
   std::map<std::size_t, std::vector<std::uint64_t>> by_generator;
@@ -106,7 +106,7 @@ void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::lanes::Batch
 void ShardMaker::keep(Slots& s, const sim::lanes::Job& job, const sim::Trajectory& t) const {
   const std::size_t draw = job.id - s.first;
   s.outcome[draw] = static_cast<std::uint8_t>(t.outcome);
-  s.spread[draw] = t.largest_spread;
+  s.angle_spread[draw] = t.largest_spread;
   if (t.outcome != sim::Outcome::stable) return;
   for (std::size_t g = 0; g < s.per_draw; ++g) keep_row(s, draw * s.per_draw + g, t, g);
   const std::size_t size = s.per_draw * s.channels * s.samples;
@@ -164,7 +164,7 @@ store::ShardData ShardMaker::compact(Slots& s) const {
       d.generator.push_back(buses[static_cast<std::size_t>(study_.grid.plants[plant].bus)].number);
       d.fault.insert(d.fault.end(), {static_cast<double>(buses[static_cast<std::size_t>(fault.bus)].number),
                                      fault.t_on, fault.t_off, fault.z.real(), fault.z.imag()});
-      d.largest_spread.push_back(s.spread[i]);
+      d.largest_spread.push_back(s.angle_spread[i]);
       if (c.operating_point) d.machine_base.push_back(draw.job.grid->plants[plant].mva);
     }
   }

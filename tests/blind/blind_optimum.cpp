@@ -28,13 +28,13 @@ struct Ended {
 };
 /// Returns the diagnosis' fit of the true structure; nullopt if the diagnosis did not fit it.
 std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Diagnosis& d,
-                              const nlohmann::json& hidden, double spread) {
-  if (hidden.empty()) return Ended{model.under_test(), fit::free_parameters(model.plant, spread), &d.base};
+                              const nlohmann::json& hidden, double prior_sd) {
+  if (hidden.empty()) return Ended{model.under_test(), fit::free_parameters(model.plant, prior_sd), &d.base};
   const auto accepted_names = hidden.front().at("answers").get<std::vector<std::string>>();
   for (const hypothesis::Judgement& j : d.ranked)
     if (j.fitted && j.fit.failed.empty() &&
         std::ranges::count(accepted_names, hypothesis::full_name(j.hypothesis)))
-      return Ended{j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, spread), &j.fit};
+      return Ended{j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, prior_sd), &j.fit};
   return std::nullopt;
 }
 
@@ -68,7 +68,7 @@ void print_optimum(const fs::path& run, const std::string& name, const diagnose:
                                              hidden.front().at("left_noise").get<double>());
   const blind::score::SeenCase seen = blind::score::read_seen_case(run / "cases" / name);
   const diagnose::Diagnosis d = diagnose::diagnose(seen.model, seen.records, options);
-  const auto ended = true_one(seen.model, d, hidden, options.spread);
+  const auto ended = true_one(seen.model, d, hidden, options.prior_sd);
   if (!ended) {
     fmt::print("{} {}: not fitted\n", name, what);
   } else {

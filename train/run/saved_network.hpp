@@ -20,7 +20,7 @@ struct EstimatedParameter {
   std::string name, unit, effect;  ///< "SEXS.K", "pu", "SEXS"
   double low = 0.0, high = 0.0;    ///< sampling box; equal: constant, not learnt
   double bias = 0.0;               ///< mean of estimate minus truth on test rows [unit]
-  double spread = 0.0;             ///< root mean square of estimate minus truth [unit]
+  double rms_error = 0.0;          ///< root mean square of estimate minus truth [unit]
 };
 
 /// Inputs and outputs of a network.

@@ -96,10 +96,10 @@ fit::Fit go_on(const sim::plant::PlantUnderTest& tested, const Bench& bench,
 }
 
 fit::Fit fit_without(const plant::PlantModel& model, const Bench& bench,
-                     const std::vector<fit::EventState>& states, double spread) {
+                     const std::vector<fit::EventState>& states, double prior_sd) {
   fit::FitOptions o;
   o.start = states;
-  return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, spread), o);
+  return fit::fit(model.under_test(), bench.seen(), fit::free_parameters(model.plant, prior_sd), o);
 }
 
 /// The fits without and with the effect.
@@ -114,7 +114,7 @@ class Adding {
                     .conventions = model.conventions,
                     .library = model.library,
                     .fit = a.without,
-                    .spread = options.calibrate.spread,
+                    .prior_sd = options.calibrate.prior_sd,
                     .threads = omp_get_max_threads(),
                     .stop = interruption_asked,
                     .reached = [this](const fit::Fit& f) { keep(f); }} {}
@@ -182,7 +182,7 @@ class Adding {
   /// Returns the fit completed with standard errors: fits of the search have none, or those of lenient steps.
   [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const {
     fit::Fit f = go_on(j.hypothesis.under_test(), bench_,
-                       hypothesis::free_of(j.hypothesis, base_model_.spread), j.fit);
+                       hypothesis::free_of(j.hypothesis, base_model_.prior_sd), j.fit);
     return f.failed.empty() ? f : j.fit;
   }
   /// Measures the noise again through the fit with the effect, if it is close, and repeats both fits.
@@ -190,8 +190,8 @@ class Adding {
     const hypothesis::Hypothesis& h = a_.hypothesis;
     if (!bench_.measure_noise(a_.with, h.conventions)) return false;
     a_.without = go_on(base_model_.under_test(), bench_,
-                       fit::free_parameters(base_model_.plant, base_model_.spread), a_.without);
-    a_.with = go_on(h.under_test(), bench_, hypothesis::free_of(h, base_model_.spread), a_.with);
+                       fit::free_parameters(base_model_.plant, base_model_.prior_sd), a_.without);
+    a_.with = go_on(h.under_test(), bench_, hypothesis::free_of(h, base_model_.prior_sd), a_.with);
     return true;
   }
   void keep(const fit::Fit& f) {
@@ -248,7 +248,7 @@ void calibrate_addition(Addition& a, const std::vector<record::Record>& records,
   o.draws = o.starts = 0;
   o.only_given = true;
   o.given = {{a.hypothesis.name, a.with.plant}};
-  o.free = hypothesis::free_of(a.hypothesis, options.calibrate.spread);
+  o.free = hypothesis::free_of(a.hypothesis, options.calibrate.prior_sd);
   if (options.calibrate.progress)
     o.progress = [&](event::Phase, const std::string& item, int done, int total) {
       options.calibrate.progress(event::Phase::sensitivities, item, done, total);
@@ -329,7 +329,7 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   const auto states = bench.states_of(before);
   hypothesis::Hypothesis& hypothesis = a.hypothesis;
   a.model = model;
-  a.without = fit_without(model, bench, states, options.calibrate.spread);
+  a.without = fit_without(model, bench, states, options.calibrate.prior_sd);
   if (!a.without.failed.empty())
     throw InputError({"the model cannot be fitted", model.origin, a.without.failed, "correct the model"});
   if (Adding(model, bench, options, a).run())
@@ -339,7 +339,7 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   const auto refitted = bench.each({a.without.plant, model.conventions}, event::Phase::effect_left_out);
   const auto after = bench.each({a.with.plant, hypothesis.conventions}, event::Phase::effect_added);
   const auto allowed = allowances({a.with.plant, hypothesis.conventions}, bench, after,
-                                  hypothesis::free_of(hypothesis, options.calibrate.spread));
+                                  hypothesis::free_of(hypothesis, options.calibrate.prior_sd));
   a.earns = true;
   std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
@@ -390,12 +390,12 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
   r.model = model;
   r.model.plant.controls.erase(r.model.plant.controls.begin() + static_cast<std::ptrdiff_t>(control));
   const auto states = bench.states_of(bench.each(model.under_test(), event::Phase::effect_added));
-  const double spread = options.calibrate.spread;
-  fit::Fit with = fit_without(model, bench, states, spread),
-           without = fit_without(r.model, bench, states, spread);
+  const double prior_sd = options.calibrate.prior_sd;
+  fit::Fit with = fit_without(model, bench, states, prior_sd),
+           without = fit_without(r.model, bench, states, prior_sd);
   if (with.failed.empty() && without.failed.empty() && bench.measure_noise(with, model.conventions)) {
-    with = go_on(model.under_test(), bench, fit::free_parameters(model.plant, spread), with);
-    without = go_on({r.model.plant, model.conventions}, bench, fit::free_parameters(r.model.plant, spread),
+    with = go_on(model.under_test(), bench, fit::free_parameters(model.plant, prior_sd), with);
+    without = go_on({r.model.plant, model.conventions}, bench, fit::free_parameters(r.model.plant, prior_sd),
                     without);
   }
   r.evidence = fit::gain(without, with, fit::criterion);

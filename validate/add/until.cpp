@@ -48,7 +48,7 @@ void prune(Completion& c, const std::vector<record::Record>& records, const AddO
 
 void work(const std::vector<record::Record>& records, const AddOptions& options, int most, Completion& c) {
   diagnose::DiagnoseOptions how;
-  how.spread = options.calibrate.spread;
+  how.prior_sd = options.calibrate.prior_sd;
   how.adequate = options.calibrate.adequate;
   how.events = options.calibrate.events;
   how.progress = options.calibrate.progress;

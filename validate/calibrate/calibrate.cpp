@@ -54,7 +54,7 @@ class Calibrating {
       : model_(model),
         options_(options),
         out_(held_out_events(records, options.held_out)),
-        free_(options.free.empty() ? chosen_parameters(model.plant, options.spread, options.fixed)
+        free_(options.free.empty() ? chosen_parameters(model.plant, options.prior_sd, options.fixed)
                                    : options.free) {
     c_.model = model;
     c_.prepared = event::prepare_events(model, std::move(records), options.events);
@@ -266,7 +266,7 @@ class Calibrating {
                            noise_, free_);
       Eigen::VectorXd missing = pull_.score;
       const Eigen::MatrixXd prior = prior_at(plant);
-      if (options_.spread > 0)
+      if (options_.prior_sd > 0)
         missing -= (off_prior(model_.plant, plant, free_).array() * prior.diagonal().array().sqrt()).matrix();
       Eigen::MatrixXd data = Eigen::MatrixXd::Zero(missing.size(), missing.size());
       for (const auto& s : fitted_sensitivities(plant)) {
@@ -308,7 +308,7 @@ class Calibrating {
   /// Returns the information of the priors per axis_unit() of `plant`.
   Eigen::MatrixXd prior_at(const sim::plant::Plant& plant) const {
     const auto n = static_cast<Eigen::Index>(free_.size());
-    if (options_.spread <= 0) return Eigen::MatrixXd::Zero(n, n);
+    if (options_.prior_sd <= 0) return Eigen::MatrixXd::Zero(n, n);
     return prior_information(model_.plant, plant, free_).asDiagonal();
   }
 

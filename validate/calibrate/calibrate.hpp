@@ -19,7 +19,7 @@ struct GivenStart {
 
 /// Effort, priors and data of a calibration.
 struct CalibrateOptions {
-  double spread = thresholds::parameters.spread;  ///< relative prior standard deviation of the parameters
+  double prior_sd = thresholds::parameters.prior_sd;  ///< relative prior standard deviation of the parameters
   int draws = 24;  ///< random parameter sets evaluated as starts, unless the closed form fits well enough
   int starts = 2;  ///< number of the best draws that are refined
   std::uint64_t seed = 1;                     ///< seed of the random draws
@@ -126,7 +126,7 @@ Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record
 
 /// Returns the plant's free parameters and the invertible instrument errors, without those in `fixed`
 /// ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, or no free parameter.
-std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
+std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double prior_sd,
                                                   const std::vector<std::string>& fixed);
 
 /// Returns one flag per record: true where `names` holds its name (with or without extension) or its number

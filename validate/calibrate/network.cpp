@@ -33,9 +33,10 @@ NetworkEstimate parse(const json& j, const std::filesystem::path& file) {
   return e;
 }
 
-/// Returns whether `value` is within kBridged prior standard deviations (`spread`, relative) of [low, high].
-bool within_reach(double value, double low, double high, double spread) {
-  const double reach = kBridged * spread * std::abs(value);
+/// Returns whether `value` is within kBridged prior standard deviations (`prior_sd`, relative) of [low,
+/// high].
+bool within_reach(double value, double low, double high, double prior_sd) {
+  const double reach = kBridged * prior_sd * std::abs(value);
   return value == 0 || (value + reach >= low - 1e-9 && value - reach <= high + 1e-9);
 }
 
@@ -55,7 +56,7 @@ NetworkEstimate read_estimate(const std::filesystem::path& file) {
 }
 
 sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::PlantModel& model,
-                                  double spread) {
+                                  double prior_sd) {
   Problems problems;
   sim::plant::Plant plant = model.plant;
   const auto machine = std::string(plant.machine.effect->name);
@@ -80,7 +81,7 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
       continue;
     }
     double& value = sim::plant::parameter_value(plant, {*block, index});
-    if (!within_reach(value, p.low, p.high, spread)) {
+    if (!within_reach(value, p.low, p.high, prior_sd)) {
       const std::string learnt = p.learnt() ? fmt::format("was trained on {:g} to {:g}", p.low, p.high)
                                             : fmt::format("has the fixed value {:g}", p.low);
       problems.add(fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,

@@ -16,7 +16,7 @@ struct NetworkEstimate {
   struct Parameter {
     std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); "GENROU"; "s"
     double value = 0;                ///< mean over the records [unit]
-    double spread = 0,
+    double rms_error = 0,
            scatter = 0;        ///< RMS error on validation records; deviation between the records [unit]
     double low = 0, high = 0;  ///< training range [unit]; equal: the parameter was constant
     /// Whether the parameter varied in the training data.
@@ -40,10 +40,10 @@ NetworkEstimate read_estimate(const std::filesystem::path& file);
 
 /// Returns the plant with the network's estimates, clamped to each parameter's search range. Throws
 /// InputError: the network was trained for another machine model or for an effect that the plant lacks, or
-/// the plant's value lies more than three prior standard deviations (`spread`, relative) outside the range or
-/// constant of the training.
+/// the plant's value lies more than three prior standard deviations (`prior_sd`, relative) outside the range
+/// or constant of the training.
 sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::PlantModel& model,
-                                  double spread);
+                                  double prior_sd);
 
 /// Throws InputError if the estimate is based on a held-out event.
 void require_unseen(const NetworkEstimate& estimate, const std::vector<record::Record>& records,

@@ -24,7 +24,7 @@ std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share);
 bool strained(const fit::FittedParameter& p) {
   const bool logarithmic = p.start > 0 && p.value > 0;
   const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;
-  return p.where.spread > 0 && moved > thresholds::parameters.beyond_prior * p.where.spread;
+  return p.where.prior_sd > 0 && moved > thresholds::parameters.beyond_prior * p.where.prior_sd;
 }
 
 std::string notes(const Calibration& c, std::size_t i) {

@@ -48,13 +48,14 @@ double rms(const event::FitEvent& event, const fit::EventFit& fitted, std::size_
 
 double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event,
                           double least) {
-  double spread = 1;  // variance of a sum of squares of coloured noise / that of white noise (Bartlett)
+  double variance_ratio =
+      1;  // variance of a sum of squares of coloured noise / that of white noise (Bartlett)
   const int n = std::max(2, event.start.samples);
   for (const double r : correlations(event, fitted))
-    spread += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is the expectation for white noise
-  const double samples = 2 * spread / event.values();
+    variance_ratio += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is the expectation for white noise
+  const double samples = 2 * variance_ratio / event.values();
   const double estimate =
-      2 * spread / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
+      2 * variance_ratio / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));
   return thresholds::event_limit(std::sqrt(samples + estimate), least);
 }
 
@@ -124,12 +125,12 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
   return out;
 }
 
-std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double spread,
+std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double prior_sd,
                                                   const std::vector<std::string>& fixed) {
-  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, spread);
+  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, prior_sd);
   for (int block = sim::plant::first_measurement(plant); block < sim::plant::block_count(plant); ++block)
     if (playin::can_be_taken_back(sim::plant::block_effect(plant, block)))
-      std::ranges::copy(fit::free_parameters(plant, block, spread), std::back_inserter(free));
+      std::ranges::copy(fit::free_parameters(plant, block, prior_sd), std::back_inserter(free));
   Problems problems;
   std::vector<sim::plant::ParameterId> ids;
   for (const auto& f : free) ids.push_back(f.id);

@@ -133,8 +133,8 @@ Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, cons
   Way way{"network", {}, try_plant(plant, c)};
   for (const auto& p : estimate.parameters)
     if (p.learnt())
-      way.values.push_back({p.full(), p.unit, p.value, p.value - constants::normal95 * p.spread,
-                            p.value + constants::normal95 * p.spread});
+      way.values.push_back({p.full(), p.unit, p.value, p.value - constants::normal95 * p.rms_error,
+                            p.value + constants::normal95 * p.rms_error});
   return way;
 }
 

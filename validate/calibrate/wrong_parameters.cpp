@@ -12,7 +12,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
   std::vector<record::Record> seen;
   for (std::size_t k = 0; k < records.size(); ++k)
     if (!out[k]) seen.push_back(std::move(records[k]));
-  const auto free = chosen_parameters(model.plant, options.spread, options.fixed);
+  const auto free = chosen_parameters(model.plant, options.prior_sd, options.fixed);
   const auto events = event::prepare_events(model, std::move(seen), options.events);
   fit::SparseOptions o;
   o.progress = options.progress;

@@ -19,7 +19,7 @@ struct WrongParameters {
 };
 
 /// Selects the parameters that must change. Held-out records are not used. Of the other options it uses
-/// `spread`, `fixed`, `events`, `adequate` and `progress`. Throws InputError as calibrate().
+/// `prior_sd`, `fixed`, `events`, `adequate` and `progress`. Throws InputError as calibrate().
 WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
                                  const CalibrateOptions& options);
 

@@ -20,7 +20,7 @@ constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
 /// Least-squares line through values at 0, 1, 2 …
 struct Line {
-  double middle = 0, slope = 0, spread = 0;  ///< spread: standard deviation about the line
+  double middle = 0, slope = 0, standard_deviation = 0;  ///< spread: standard deviation about the line
 };
 Line fit_line(std::span<const double> y) {
   const auto n = static_cast<double>(y.size());
@@ -45,7 +45,7 @@ void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   const auto width = std::clamp<std::size_t>(static_cast<std::size_t>(rate), 10, y.size());
   double quietest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + width <= y.size(); k += std::max<std::size_t>(width / 2, 1))
-    quietest = std::min(quietest, fit_line(std::span(y).subspan(k, width)).spread);
+    quietest = std::min(quietest, fit_line(std::span(y).subspan(k, width)).standard_deviation);
   facts.white = median_of(std::move(second)) / kMedianSecondDifference;
   facts.quietest = quietest;
   facts.noise = std::max(facts.white, quietest);
@@ -124,8 +124,8 @@ void describe(const record::Record& r, const std::vector<double>& y, const Signa
   const Line line = fit_line(before);
   const auto n = static_cast<double>(before.size());
   facts.drift = line.slope * (n - 1);
-  facts.swing = line.spread;
-  facts.drift_error = std::max(line.spread, facts.noise) * std::sqrt(12 / n);
+  facts.swing = line.standard_deviation;
+  facts.drift_error = std::max(line.standard_deviation, facts.noise) * std::sqrt(12 / n);
 }
 
 /// Returns the differences of consecutive values.

@@ -9,7 +9,7 @@
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/detail/power_doubt.hpp"
-#include "validate/compare/detail/spread.hpp"
+#include "validate/compare/detail/standard_deviation.hpp"
 #include "validate/compare/event_title.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
@@ -90,7 +90,7 @@ bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
     if (measured.size() != modelled.size()) return false;
     std::vector<double> residual(measured.size());
     std::ranges::transform(modelled, measured, residual.begin(), std::minus<>());
-    return spread(residual, e.playback.start.samples) < floor;
+    return standard_deviation(residual, e.playback.start.samples) < floor;
   };
   return least(e.record.P, e.playback.P) && least(e.record.Q, e.playback.Q);
 }
@@ -235,7 +235,7 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
 
 void explain(EventComparison& e, event::StepShape step_shape, bool tried, const std::string& failed) {
   if (const auto filtered_count = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
-      step_shape == event::StepShape::spread && filtered_count > 0)
+      step_shape == event::StepShape::filtered && filtered_count > 0)
     e.notes.push_back(
         fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
                     "nor compared, and {} fitted to P and Q.",
@@ -291,7 +291,7 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   c.residual.resize(measured.size());
   std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
   const int quiet = event.playback.start.samples;
-  c.noise = spread(c.residual, quiet);
+  c.noise = standard_deviation(c.residual, quiet);
   const auto& t = event.record.t;
   const auto measured_in = [&](const Window& window, bool first) {
     return measure(t, c.residual, event.left_out, window, first, c.noise);
@@ -407,7 +407,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
     }
     return fitted_with(Fitted::start_stands);
   };
-  if (!e.record.breaker() && step_shape == event::StepShape::spread &&
+  if (!e.record.breaker() && step_shape == event::StepShape::filtered &&
       options.input == PlaybackInput::voltage) {
     e = fitted();
   } else {

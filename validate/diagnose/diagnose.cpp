@@ -117,7 +117,7 @@ class Diagnoser {
   void few_wrong() {
     result_.wrong.reset();
     if (result_.base.reduced_chi2() > options_.adequate) return;
-    const auto free = fit::free_parameters(model_.plant, options_.spread);
+    const auto free = fit::free_parameters(model_.plant, options_.prior_sd);
     fit::SparseOptions o;
     o.progress = options_.progress;
     o.stop = options_.stop;
@@ -158,12 +158,12 @@ class Diagnoser {
     };
     const fit::FitOptions how{.iterations = kOnwards, .lenient = true};
     result_.base =
-        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.spread), result_.base, how);
+        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.prior_sd), result_.base, how);
     require_fitted(result_.base, model_);
     each(result_.ranked, event::Phase::noise_again, [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
       j.fit =
-          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.spread), j.fit, how);
+          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.prior_sd), j.fit, how);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     if (stopped()) throw Interrupted{};  // some fits still have the former noise model
@@ -173,7 +173,7 @@ class Diagnoser {
     return true;
   }
   void infer_inputs() {
-    const auto free = fit::free_parameters(model_.plant, options_.spread);
+    const auto free = fit::free_parameters(model_.plant, options_.prior_sd);
     const auto infer = [&](std::size_t i) {
       (i == 0 ? result_.torque : result_.field) =
           reduced::free_input(i == 0 ? fit::InputKind::torque : fit::InputKind::field, model_.under_test(),
@@ -219,7 +219,7 @@ class Diagnoser {
             .conventions = model_.conventions,
             .library = model_.library,
             .fit = result_.base,
-            .spread = options_.spread,
+            .prior_sd = options_.prior_sd,
             .threads = threads_,
             .stop = [this] { return stopped(); },
             .torque = &result_.torque,
@@ -435,7 +435,7 @@ class Diagnoser {
   }
 
   [[nodiscard]] hypothesis::Trial trial() const {
-    return {result_.events, options_.spread, options_.adequate, thresholds::evidence.accepted,
+    return {result_.events, options_.prior_sd, options_.adequate, thresholds::evidence.accepted,
             noise_transfer_ ? &*noise_transfer_ : nullptr};
   }
 

@@ -55,7 +55,7 @@ struct Diagnosis {
 /// Limits, effort and callbacks of a diagnosis.
 struct DiagnoseOptions {
   /// Prior standard deviation of the model's parameters, relative.
-  double spread = thresholds::parameters.spread;
+  double prior_sd = thresholds::parameters.prior_sd;
   /// Reduced chi-square up to which the residual counts as noise.
   double adequate = thresholds::adequacy.reduced_chi2;
   int threads = 0;                     ///< 0: number of cores

@@ -178,7 +178,7 @@ void take_given_times(FitEvent& e, StepShape step_shape) {
   const auto found = std::exchange(e.switchings, {});
   for (const double t : e.record.switched) e.switchings.push_back({.time = t});
   for (std::size_t k = 0; k < e.filtered_samples.size(); ++k)
-    e.filtered_samples[k] = step_shape == StepShape::spread && e.filtered_samples[k] &&
+    e.filtered_samples[k] = step_shape == StepShape::filtered && e.filtered_samples[k] &&
                             std::ranges::any_of(found, [&](const playin::Switching& switching) {
                               return std::abs(e.record.t[k] - switching.time) < switching.uncertainty &&
                                      std::ranges::any_of(e.record.switched, [&](double given) {
@@ -293,31 +293,31 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 }  // namespace
 
 StepShape step_shape_of(const std::vector<record::Record>& records, double threshold) {
-  bool any_spread = false, any_sharp = false, any_open = false;
-  std::vector<FitEvent> if_spread;
+  bool any_filtered = false, any_sharp = false, any_open = false;
+  std::vector<FitEvent> if_filtered;
   for (record::Record r : records) {
     // an integrated angle does not contain the instrument's filtering of the phasor
     if (r.angle == record::AngleSource::integrated) r.theta.assign(r.t.size(), 0.0);
     if (!r.switched.empty()) {
-      if (moves_before(r, threshold)) return StepShape::spread;
+      if (moves_before(r, threshold)) return StepShape::filtered;
       any_sharp = true;
       continue;
     }
     std::vector<char> filtered_samples;
     const auto found = find_switchings(r, threshold, StepShape::either, filtered_samples);
     if (!found.empty() && found.front().uncertainty > r.step() && is_shared_out(r, found.front()))
-      return StepShape::spread;
+      return StepShape::filtered;
     const bool sharp = is_sharp(r, found, threshold);
     any_sharp = any_sharp || sharp;
     any_open = any_open || (!sharp && !found.empty());
-    any_spread = any_spread || std::ranges::count(filtered_samples, 1) > 0;
-    FitEvent& e = if_spread.emplace_back();
-    e.switchings = find_switchings(r, threshold / 2, StepShape::spread, e.filtered_samples);
+    any_filtered = any_filtered || std::ranges::count(filtered_samples, 1) > 0;
+    FitEvent& e = if_filtered.emplace_back();
+    e.switchings = find_switchings(r, threshold / 2, StepShape::filtered, e.filtered_samples);
     if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear();
     e.record = std::move(r);
   }
-  if (any_sharp && any_open && passed_filter(if_spread)) return StepShape::spread;
-  return any_sharp ? StepShape::sharp : any_spread ? StepShape::spread : StepShape::either;
+  if (any_sharp && any_open && passed_filter(if_filtered)) return StepShape::filtered;
+  return any_sharp ? StepShape::sharp : any_filtered ? StepShape::filtered : StepShape::either;
 }
 
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,
@@ -341,20 +341,20 @@ std::vector<playin::Switching> find_switchings(const record::Record& record, dou
     for (StepSpan span : separate_merged(step, {k, last}, limit)) {
       if (step_shape == StepShape::either && span.first == span.last && is_even(step, span.first, limit))
         span = {span.first - 1, span.first + 1};
-      if (step_shape != StepShape::spread && span.last > span.first)
+      if (step_shape != StepShape::filtered && span.last > span.first)
         if (const std::size_t m = largest_of(step, span);
             step_shape == StepShape::sharp ? has_peak(step, span, m) : decays_after(step, m, limit))
           span = {m, m};
-      const bool wide = span.last > span.first, spread = wide || step_shape == StepShape::spread;
+      const bool wide = span.last > span.first, filtered = wide || step_shape == StepShape::filtered;
       if (wide && step_shape == StepShape::sharp) continue;
       const double from = record.t[span.first], to = record.t[span.last + 1];
-      found.push_back({(from + to) / 2, (to - from) / 2 + (spread ? record.step() : 0.0)});
-      if (spread)
+      found.push_back({(from + to) / 2, (to - from) / 2 + (filtered ? record.step() : 0.0)});
+      if (filtered)
         for (std::size_t s = span.first; s <= span.last + 1; ++s) filtered_samples[s] = 1;
     }
     k = last;
   }
-  if (found.empty() && step_shape != StepShape::spread)
+  if (found.empty() && step_shape != StepShape::filtered)
     return playin::find_isolated_steps(record, 2 * threshold);
   return found;
 }

@@ -10,7 +10,7 @@
 namespace swingbank::validate::event {
 
 /// Shape of voltage steps as the instrument records them: all filtered (spread), or none.
-enum class StepShape { either, sharp, spread };
+enum class StepShape { either, sharp, filtered };
 
 /// Options of the preparation of records for fitting.
 struct FitEventOptions {

@@ -28,7 +28,7 @@ struct Axis {
   /// Returns z of a parameter value.
   [[nodiscard]] double z(double v) const { return logarithmic ? std::log(v / start) : (v - start) / unit; }
   /// Prior standard deviation of z.
-  [[nodiscard]] double spread() const { return where.spread; }
+  [[nodiscard]] double prior_sd() const { return where.prior_sd; }
 };
 
 /// Constructs the axis of a free parameter: start at its value, bounds from its search range.

@@ -205,15 +205,15 @@ class Search {
     bounds_->fix(states_[e].data(), fixed);
   }
   void add_priors() {
-    std::vector<double> spread;
+    std::vector<double> prior_sd;
     for (std::size_t i = 0; i < setting_.axes.size(); ++i) {
       const Axis& a = setting_.axes[i];
-      spread.push_back(a.spread());
+      prior_sd.push_back(a.prior_sd());
       problem_->SetParameterLowerBound(z_.data(), static_cast<int>(i), std::min(0.0, a.z(a.low)));
       problem_->SetParameterUpperBound(z_.data(), static_cast<int>(i), std::max(0.0, a.z(a.high)));
     }
     bounds_->fix(z_.data(), {});
-    problem_->AddResidualBlock(new GaussianPrior(spread, &discrepancy_), nullptr, {z_.data()});
+    problem_->AddResidualBlock(new GaussianPrior(prior_sd, &discrepancy_), nullptr, {z_.data()});
     auto walls = std::make_unique<Walls>(setting_, &discrepancy_);
     if (!walls->empty()) problem_->AddResidualBlock(walls.release(), nullptr, {z_.data()});
   }
@@ -261,9 +261,9 @@ class Search {
     Eigen::MatrixXd with_prior = Eigen::MatrixXd::Zero(n, n);
     for (std::size_t e = 0; options_.errors && e < costs_.size(); ++e) add_curvature(e, with_prior);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double spread = setting_.axes[static_cast<std::size_t>(i)].spread();
-      if (spread > 0) with_prior(i, i) += 1 / (spread * spread);
-      fit.prior_cost += spread > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / spread, 2) : 0.0;
+      const double prior_sd = setting_.axes[static_cast<std::size_t>(i)].prior_sd();
+      if (prior_sd > 0) with_prior(i, i) += 1 / (prior_sd * prior_sd);
+      fit.prior_cost += prior_sd > 0 ? std::pow(z_[static_cast<std::size_t>(i)] / prior_sd, 2) : 0.0;
     }
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, std::nan(""));
     fit.occam = std::nan("");
@@ -271,7 +271,7 @@ class Search {
       const auto known = with_prior.ldlt();
       covariance = known.solve(Eigen::MatrixXd::Identity(n, n));
       fit.occam = known.vectorD().array().log().sum();
-      for (const Axis& a : setting_.axes) fit.occam += a.spread() > 0 ? 2 * std::log(a.spread()) : 0.0;
+      for (const Axis& a : setting_.axes) fit.occam += a.prior_sd() > 0 ? 2 * std::log(a.prior_sd()) : 0.0;
     }
     const Walls walls(setting_, &discrepancy_);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -291,7 +291,8 @@ class Search {
       p.high = std::min(a.high, a.value(z + constants::normal95 * error));
       p.held_by = walls.holding(static_cast<std::size_t>(i), z_.data());
       p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6 || !p.held_by.empty();
-      p.decided = a.spread() > 0 ? std::clamp(1 - error * error / (a.spread() * a.spread()), 0.0, 1.0) : 1.0;
+      p.decided =
+          a.prior_sd() > 0 ? std::clamp(1 - error * error / (a.prior_sd() * a.prior_sd()), 0.0, 1.0) : 1.0;
       fit.parameters.push_back(p);
     }
   }

@@ -14,18 +14,18 @@ namespace swingbank::validate::fit {
 
 using event::EventState, event::InputKind;
 
-/// A parameter that may move. `spread` is its prior standard deviation: relative if the parameter is positive
-/// by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
+/// A parameter that may move. `prior_sd` is its prior standard deviation: relative if the parameter is
+/// positive by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
 struct FreeParameter {
   sim::plant::ParameterId id;  ///< parameter of the plant
-  double spread = 0.3;         ///< relative or absolute, see above
+  double prior_sd = 0.3;       ///< relative or absolute, see above
 };
 
 /// Returns the parameters of a block that a fit may move. Codes, parameters at zero or at their null value,
 /// and parameters that set the time of an action are left out.
-std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread);
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd);
 /// The same for all blocks except the instruments.
-std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double spread);
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double prior_sd);
 
 /// Returns the present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);

@@ -20,7 +20,7 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters) {
   return names.empty() ? "" : names + ": at a bound, where the 95 % interval is not valid.";
 }
 
-std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double spread) {
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd) {
   const sim::Effect& effect = block_effect(plant, block);
   const auto& values = block_at(plant, block).p;
   std::vector<double> switching_times;
@@ -30,14 +30,14 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int b
     const auto& p = effect.parameters[i];
     if (p.is_code() || values[i] == 0.0 || values[i] == p.null_value) continue;
     if (std::ranges::count(switching_times, values[i])) continue;
-    free.push_back({{block, static_cast<int>(i)}, spread});
+    free.push_back({{block, static_cast<int>(i)}, prior_sd});
   }
   return free;
 }
-std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double spread) {
+std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double prior_sd) {
   std::vector<FreeParameter> all;
   for (int b = 0; b < sim::plant::first_measurement(plant); ++b) {
-    const auto some = free_parameters(plant, b, spread);
+    const auto some = free_parameters(plant, b, prior_sd);
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

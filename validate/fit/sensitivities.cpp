@@ -22,7 +22,7 @@ std::vector<playin::SensitivityParameter> own_parameters(const event::FitEvent& 
   for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
     along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale * kTurnPrior});
   for (std::size_t k = 0; k < std::size(kStateKind); ++k)
-    along.push_back({.kind = kStateKind[k], .scale = kStateSpread[k]});
+    along.push_back({.kind = kStateKind[k], .scale = kStatePriorSd[k]});
   return along;
 }
 
@@ -37,7 +37,7 @@ Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventStat
                       ? (state.turns[k] - event.switchings[k].turn) / (kTurnScale * kTurnPrior)
                       : 0.0);
   const double values[kStates] = {state.P, state.Q, state.angle, state.speed};
-  for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStateSpread[k]);
+  for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStatePriorSd[k]);
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
@@ -55,7 +55,7 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   const auto& record = parameter_record(plant, f.id);
   const double value = parameter_value(plant, f.id);
   const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
-  return (f.spread > 0 ? f.spread : 1.0) * size;
+  return (f.prior_sd > 0 ? f.prior_sd : 1.0) * size;
 }
 
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,

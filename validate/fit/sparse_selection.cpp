@@ -123,7 +123,7 @@ class Selection {
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& p = all_.parameters[static_cast<std::size_t>(i)];
       at_[i] = moves_by_logarithm(parameter_record(tested_.plant, p.where.id), p.start)
-                   ? std::log(p.value / p.start) / p.where.spread
+                   ? std::log(p.value / p.start) / p.where.prior_sd
                    : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
@@ -143,7 +143,7 @@ class Selection {
     for (std::size_t i = 0; i < free_.size(); ++i) {
       if (std::ranges::binary_search(set, i)) continue;
       FreeParameter held_to = free_[i];
-      held_to.spread = std::min(held_to.spread, right);
+      held_to.prior_sd = std::min(held_to.prior_sd, right);
       const double tighter =
           std::pow(axis_unit(tested_.plant, free_[i]) / axis_unit(tested_.plant, held_to), 2);
       held.diagonal()[static_cast<Eigen::Index>(i)] += tighter - 1;
@@ -202,7 +202,7 @@ class Selection {
     const double believed = parameter_value(tested_.plant, free_[i].id),
                  z = there.at[static_cast<Eigen::Index>(i)];
     return moves_by_logarithm(parameter_record(tested_.plant, free_[i].id), believed)
-               ? believed * std::exp(z * free_[i].spread)
+               ? believed * std::exp(z * free_[i].prior_sd)
                : believed + z * axis_unit(tested_.plant, free_[i]);
   }
   /// A fit with only these parameters free, and its estimated cost if the others move within the tolerance.

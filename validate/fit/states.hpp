@@ -32,10 +32,10 @@ inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e
 /// event.
 inline constexpr std::array<double, kStates> kStatePrior = {20, 20, 20, 20};
 /// The same in physical units.
-inline constexpr std::array<double, kStates> kStateSpread = [] {
-  std::array<double, kStates> spread{};
-  for (std::size_t k = 0; k < kStates; ++k) spread[k] = kStateScale[k] * kStatePrior[k];
-  return spread;
+inline constexpr std::array<double, kStates> kStatePriorSd = [] {
+  std::array<double, kStates> prior_sd{};
+  for (std::size_t k = 0; k < kStates; ++k) prior_sd[k] = kStateScale[k] * kStatePrior[k];
+  return prior_sd;
 }();
 
 /// Returns the prior standard deviation of each state variable, in units of the search; 0: no prior.

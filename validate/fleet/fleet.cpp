@@ -81,7 +81,7 @@ json block_json(const sim::plant::Block& b) {
 std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   const plant::PlantModel& m = l.model;
   json j = {kFormat, SWINGBANK_VERSION, plant.name, m.sha256};
-  j.push_back({plant.spread, plant.power_only});
+  j.push_back({plant.prior_sd, plant.power_only});
   j.push_back({m.plant.mva, m.conventions.speed_voltage, m.conventions.mechanical_power,
                m.conventions.frequency, m.record_base.mva, m.record_base.frequency, m.record_base.kv});
   j.push_back(block_json(m.plant.machine));
@@ -156,7 +156,7 @@ std::string plant_json(const FleetRow& row) { return json_text(row_json(row), 1)
 std::string command_of(const FleetPlant& plant, const std::vector<std::string>& files) {
   std::string text = fmt::format("swingbank diagnose --model {} --records", plant.model.string());
   for (const auto& file : files) text += " " + file;
-  text += fmt::format(" --spread {:g}", plant.spread);
+  text += fmt::format(" --spread {:g}", plant.prior_sd);
   return text + (plant.power_only ? " --power-only" : "");
 }
 
@@ -193,7 +193,7 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
       return o;
     }
     diagnose::DiagnoseOptions options = given;
-    options.spread = plant.spread;
+    options.prior_sd = plant.prior_sd;
     options.events.measured_states = !plant.power_only;
     const diagnose::Diagnosis d = diagnose::diagnose(l.model, std::move(l.records), options);
     o.row = row_of(d);

@@ -21,7 +21,7 @@ FleetPlant read_plant(Config& c, const std::string& name, const fs::path& folder
   p.name = name;
   p.model = folder / c.require<std::string>(at + "model");
   p.records = c.require<std::vector<std::string>>(at + "records");
-  p.spread = c.optional<double>(at + "spread", common.spread, {0.001, 2.0, "relative"});
+  p.prior_sd = c.optional<double>(at + "spread", common.prior_sd, {0.001, 2.0, "relative"});
   p.power_only = c.optional<bool>(at + "power_only", common.power_only);
   if (c.has(at + "records") && p.records.empty())
     c.problem(at + "records", "no record", "a diagnosis needs those of two events or more",
@@ -35,7 +35,7 @@ Fleet load_fleet(const fs::path& file) {
   Config c(file);
   Fleet fleet{file, file.parent_path(), {}};
   FleetPlant common;
-  common.spread = c.optional<double>("options.spread", common.spread, {0.001, 2.0, "relative"});
+  common.prior_sd = c.optional<double>("options.spread", common.prior_sd, {0.001, 2.0, "relative"});
   common.power_only = c.optional<bool>("options.power_only", false);
   for (const auto& name : c.keys("plant")) {
     if (is_name(name)) {

@@ -67,7 +67,7 @@ event::FitEvent quiet(const event::FitEvent& like, double dip) {
 
 class Separations {
  public:
-  Separations(std::vector<const Judgement*> competitors, const event::WhitenedEvents& events, double spread)
+  Separations(std::vector<const Judgement*> competitors, const event::WhitenedEvents& events, double prior_sd)
       : competitors_(std::move(competitors)), events_(events), known_(competitors_.size()) {
     for (std::size_t e = 0; e < events.size(); ++e)
       scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
@@ -78,7 +78,7 @@ class Separations {
                            .time = step.record.t.front() + kSceneBegins,
                            .size = kReferenceStep}};
     scenes_.push_back({step, -1, fmt::format("after a Vref step of {} pu", kReferenceStep)});
-    for (const Judgement* j : competitors_) free_.push_back(free_of(j->hypothesis, spread));
+    for (const Judgement* j : competitors_) free_.push_back(free_of(j->hypothesis, prior_sd));
     measure_noise();
   }
 
@@ -209,7 +209,7 @@ std::optional<double> expected_size(const Separations& between, std::size_t scen
 }  // namespace
 
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
-                           const event::WhitenedEvents& events, double spread, int threads) {
+                           const event::WhitenedEvents& events, double prior_sd, int threads) {
   Decision d;
   d.now = effects_in_set(all);
   std::vector<Explanation> set;
@@ -223,7 +223,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
     return e.record.component == record::Component::plant && e.record.staged.empty();
   });
   if (set.size() < 2 || !whole) return d;
-  Separations between(competitors, events, spread);
+  Separations between(competitors, events, prior_sd);
   between.play(threads);
   const auto consider = [&](std::size_t scene, const std::vector<Output>& outputs,
                             const std::string& channel) {

@@ -27,11 +27,11 @@ constexpr std::size_t kRedraws = 20;      ///< maximum number of tries per draw 
 /// Shortest draw of the longest time constant, relative to the time allowed.
 constexpr double kShortestDraw = 3e-3;
 /// Prior standard deviation of ln(value) of parameters at their null values.
-constexpr double kGroupSpread = 2.0;
+constexpr double kGroupPriorSd = 2.0;
 /// Prior standard deviation of an added effect's parameters: a factor e.
-constexpr double kAddedSpread = 1.0;
+constexpr double kAddedPriorSd = 1.0;
 /// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
-constexpr double kFactorSpread = 0.1;
+constexpr double kFactorPriorSd = 0.1;
 
 Side side_of(Slot slot) {
   switch (slot) {
@@ -92,7 +92,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
     for (const auto& f : free) {
       const auto& p = sim::plant::parameter_record(plant, f.id);
       // Gains are uncertain by decades, times and limits by a factor.
-      const double width = (p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8) * f.spread;
+      const double width = (p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8) * f.prior_sd;
       const double whole = common.try_emplace(p.unit, normal(random)).first->second;
       const bool bounded = p.unit == "s" && within > 0;
       const double shared = std::sqrt(0.5) * width * whole, own = std::sqrt(0.5) * width * normal(random);
@@ -114,7 +114,7 @@ std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
 void start_near_null(Hypothesis& h, int block) {
   const sim::Effect& effect = sim::plant::block_effect(h.plant, block);
   for (std::size_t i = 0; i < effect.parameters.size(); ++i)
-    if (!effect.parameters[i].is_code()) h.free.push_back({{block, static_cast<int>(i)}, kAddedSpread});
+    if (!effect.parameters[i].is_code()) h.free.push_back({{block, static_cast<int>(i)}, kAddedPriorSd});
   for (const double share : {0.002, -0.002}) {
     std::vector<double> values;
     for (const auto& f : h.free) {
@@ -128,11 +128,11 @@ void start_near_null(Hypothesis& h, int block) {
 /// Returns the free parameters of an added effect. A parameter whose default value is its null value stays
 /// fixed, unless it is a factor: the ratio of an undocumented transformer is unknown.
 std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, int block) {
-  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedSpread);
+  std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedPriorSd);
   const auto& parameters = sim::plant::block_effect(plant, block).parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (const auto& p = parameters[i]; p.null_value == p.default_value && p.null_value > 0 && !p.is_code())
-      free.push_back({{block, static_cast<int>(i)}, kFactorSpread});
+      free.push_back({{block, static_cast<int>(i)}, kFactorPriorSd});
   return free;
 }
 
@@ -250,7 +250,7 @@ std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, in
       h.starts.push_back(values);
     }
     if (h.starts.empty()) continue;
-    for (const int i : group) h.free.push_back({{b, i}, kGroupSpread});
+    for (const int i : group) h.free.push_back({{b, i}, kGroupPriorSd});
     all.push_back(std::move(h));
   }
   return all;
@@ -319,7 +319,7 @@ std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector
     for (const fit::FreeParameter& f : freed) {
       double& value = sim::plant::parameter_value(plant, f.id);
       const auto range = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
-      value = std::clamp(value * std::exp(f.spread * uniform(random)), range.low, range.high);
+      value = std::clamp(value * std::exp(f.prior_sd * uniform(random)), range.low, range.high);
     }
     if (playin::can_run(sim::plant::block_at(plant, h.free.front().id.block)))
       all.push_back(fit::values_of(plant, h.free));
@@ -388,7 +388,7 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
       std::vector<fit::FreeParameter> free = h.free, freed = group.free;
       for (fit::FreeParameter& f : free)
         if (acts_only_beside(h.plant, with.plant, f.id)) {
-          f.spread = kGroupSpread;
+          f.prior_sd = kGroupPriorSd;
           freed.push_back(f);
         }
       free.insert(free.end(), group.free.begin(), group.free.end());

@@ -14,9 +14,9 @@ constexpr int kMostSteps = 60;
 
 }  // namespace
 
-std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread) {
+std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd) {
   std::vector<fit::FreeParameter> free;
-  for (const auto& f : fit::free_parameters(h.plant, spread))
+  for (const auto& f : fit::free_parameters(h.plant, prior_sd))
     if (std::ranges::none_of(h.free, [&](const fit::FreeParameter& own) { return own.id == f.id; }))
       free.push_back(f);
   free.insert(free.end(), h.free.begin(), h.free.end());
@@ -37,7 +37,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
     out[left].record = trial.events[left].record.name;
     out[left].values = trial.events[left].values();
     if (others.empty()) continue;
-    const auto& all = free.empty() ? fit::free_parameters(tested.plant, trial.spread) : free;
+    const auto& all = free.empty() ? fit::free_parameters(tested.plant, trial.prior_sd) : free;
     o.values = fit::values_of(whole.plant, all);
     const fit::Fit seen = fit::fit(tested, others, all, o);
     fit::FitOptions unseen;
@@ -66,7 +66,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
            Judgement& j) {
   if (!j.fitted) return;
   j.why_not.clear();
-  const auto free = free_of(j.hypothesis, trial.spread);
+  const auto free = free_of(j.hypothesis, trial.prior_sd);
   fit::FitOptions o{.iterations = kMostSteps, .lenient = true};
   o.values = fit::values_of(j.fit.plant, free);
   for (const auto& e : j.fit.events) o.start.push_back(e.state);

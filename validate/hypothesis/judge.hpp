@@ -41,12 +41,12 @@ struct Judgement {
 };
 
 /// Returns the plant parameters that a refit may move, then the hypothesis's own parameters.
-std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double spread);
+std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd);
 
 /// Events of the judgement, and the limits of acceptance.
 struct Trial {
   const event::WhitenedEvents& events;  ///< events with their noise model
-  double spread;                        ///< prior standard deviation of the model's parameters
+  double prior_sd;                      ///< prior standard deviation of the model's parameters
   double adequate;                      ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
   /// Noise transfer of the base model: a lower noise transfer is no evidence. Null: it is ignored.

@@ -34,7 +34,7 @@ Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";
   j.fit.plant = h.plant;
-  copy_values(from.plant, h.plant, free_of(h, then.spread), j.fit.plant);
+  copy_values(from.plant, h.plant, free_of(h, then.prior_sd), j.fit.plant);
   copy_values(then.fit.plant, then.plant, then.own, j.fit.plant);
   for (const auto& e : from.events) j.fit.events.emplace_back().state = e.state;
   bring(then, h);
@@ -46,13 +46,13 @@ Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
 
 BaseModel after(const BaseModel& base_model, const Judgement& j) {
   return {base_model.events, j.hypothesis.plant, j.hypothesis.conventions, base_model.library, j.fit,
-          j.hypothesis.free, j.hypothesis.name,  base_model.spread,        base_model.threads};
+          j.hypothesis.free, j.hypothesis.name,  base_model.prior_sd,      base_model.threads};
 }
 
 void bring(const BaseModel& base_model, Hypothesis& h) {
   h.with = base_model.with;
   for (const fit::FreeParameter& f : base_model.own) {
-    h.free.push_back({sim::plant::same_parameter(h.plant, base_model.plant, f.id).value(), f.spread});
+    h.free.push_back({sim::plant::same_parameter(h.plant, base_model.plant, f.id).value(), f.prior_sd});
     const double value = sim::plant::parameter_value(base_model.fit.plant, f.id);
     for (auto* starts : {&h.starts, &h.further})
       for (auto& start : *starts) start.push_back(value);
@@ -81,7 +81,7 @@ std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& p
 
 void try_begun(const BaseModel& base_model, Judgement& j) {
   if (j.fit.events.empty()) return;  // the candidate has no start
-  const auto free = free_of(j.hypothesis, base_model.spread);
+  const auto free = free_of(j.hypothesis, base_model.prior_sd);
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), base_model.events, free,
                             fit::continued({.lenient = true}, j.fit, free));
       f.failed.empty())

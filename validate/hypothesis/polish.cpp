@@ -25,7 +25,7 @@ const fit::Fit* Identified::best() const {
 }
 
 Polish::Polish(const BaseModel& base_model)
-    : base_model_(base_model), free_(fit::free_parameters(base_model.plant, base_model.spread)) {
+    : base_model_(base_model), free_(fit::free_parameters(base_model.plant, base_model.prior_sd)) {
   for (const fit::FreeParameter& f : base_model.own) {
     std::erase_if(free_, [&](const fit::FreeParameter& known) { return known.id == f.id; });
     free_.push_back(f);
@@ -73,13 +73,16 @@ std::vector<event::EventState> Polish::states_of(const Point& point) const {
 
 double Polish::prior_cost(const Identified& h, const Point& point) const {
   double cost = 0;
-  const auto add = [&](double z, double spread) { cost += spread > 0 ? z * z / (spread * spread) : 0.0; };
-  for (std::size_t i = 0; i < free_.size(); ++i) add(point.plant[static_cast<Index>(i)], free_[i].spread);
+  const auto add = [&](double z, double prior_sd) {
+    cost += prior_sd > 0 ? z * z / (prior_sd * prior_sd) : 0.0;
+  };
+  for (std::size_t i = 0; i < free_.size(); ++i) add(point.plant[static_cast<Index>(i)], free_[i].prior_sd);
   for (std::size_t i = 0; i < h.trial.free.size(); ++i)
-    add(point.own[static_cast<Index>(i)], h.trial.free[i].spread);
+    add(point.own[static_cast<Index>(i)], h.trial.free[i].prior_sd);
   for (std::size_t e = 0; e < point.states.size(); ++e) {
-    const auto spreads = fit::state_priors(base_model_.events[e]);
-    for (std::size_t k = 0; k < spreads.size(); ++k) add(point.states[e][static_cast<Index>(k)], spreads[k]);
+    const auto prior_sds = fit::state_priors(base_model_.events[e]);
+    for (std::size_t k = 0; k < prior_sds.size(); ++k)
+      add(point.states[e][static_cast<Index>(k)], prior_sds[k]);
   }
   return cost;
 }
@@ -192,7 +195,7 @@ void Polish::polish(Identified& h, const reduced::Reduction& from, double goal) 
 fit::Fit Polish::fit_from(const Identified& h, const Point& point, fit::FitOptions options) const {
   Hypothesis brought = h.hypothesis;
   bring(base_model_, brought);
-  const auto free = free_of(brought, base_model_.spread);
+  const auto free = free_of(brought, base_model_.prior_sd);
   options.start = states_of(point);
   options.values = fit::values_of(whole(h, point), free);
   return fit_at(base_model_, {h.trial.plant, brought.conventions}, free, options);

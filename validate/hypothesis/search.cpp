@@ -100,7 +100,7 @@ class WholeFits {
       }
     }
     c.prior = prior_mean(base_model_, h);
-    c.free = free_of(h, base_model_.spread);
+    c.free = free_of(h, base_model_.prior_sd);
     bool changes = false;
     const auto add_best = [&](const sim::plant::Plant& about, const std::vector<fit::EventState>& states,
                               bool submitted) {
@@ -218,7 +218,7 @@ sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h) {
 }
 
 std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f) {
-  const auto free = free_of(h, base_model.spread);
+  const auto free = free_of(h, base_model.prior_sd);
   fit::Fit known = fit::fit(h.under_test(), base_model.events, free,
                             fit::continued({.iterations = 0, .lenient = true}, f, free));
   if (!known.failed.empty()) return std::nullopt;
@@ -226,7 +226,7 @@ std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesi
 }
 
 void fit_alone(const BaseModel& base_model, Judgement& j) {
-  const auto free = free_of(j.hypothesis, base_model.spread);
+  const auto free = free_of(j.hypothesis, base_model.prior_sd);
   fit::FitOptions o{.lenient = true};
   for (const auto& e : base_model.fit.events) o.start.push_back(e.state);
   j.fit = fit_at(base_model, j.hypothesis.under_test(), free, o);
@@ -236,7 +236,7 @@ void fit_alone(const BaseModel& base_model, Judgement& j) {
 
 void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j) {
   const Hypothesis& h = j.hypothesis;
-  const auto free = free_of(h, base_model.spread);
+  const auto free = free_of(h, base_model.prior_sd);
   fit::FitOptions o{.lenient = true};
   for (const fit::FreeParameter& f : free) {
     const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);

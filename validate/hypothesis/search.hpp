@@ -23,9 +23,9 @@ struct BaseModel {
   const fit::Fit& fit;                         ///< of this base model
   /// Parameters of effects added before, with their IDs in `plant`.
   std::vector<fit::FreeParameter> own = {};
-  std::string with = {};                          ///< name of the effect added before; empty: the given model
-  double spread = thresholds::parameters.spread;  ///< prior standard deviation of the model's parameters
-  int threads = 1;                                ///< number of threads
+  std::string with = {};  ///< name of the effect added before; empty: the given model
+  double prior_sd = thresholds::parameters.prior_sd;  ///< prior standard deviation of the model's parameters
+  int threads = 1;                                    ///< number of threads
   /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
   std::function<bool()> stop = {};
   /// Inferred inputs that are free in time with this base model; null: not yet inferred.

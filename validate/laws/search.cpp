@@ -19,7 +19,7 @@ namespace swingbank::validate::laws {
 namespace {
 
 /// Prior standard deviation of a parameter about the regression's value: a factor e.
-constexpr double kLawSpread = 1.0;
+constexpr double kRegressionPriorSd = 1.0;
 constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that are fitted to the records
 constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
 constexpr std::size_t kJudged = 3;     ///< number of candidates that are judged on held-out events
@@ -127,9 +127,9 @@ class Searcher {
     int block = 0;
     h.plant = with_law(case_.model.plant, *f.effect, block);
     for (std::size_t i = 0; i < law.parameters.size(); ++i)
-      h.free.push_back({{block, static_cast<int>(i)}, kLawSpread});
+      h.free.push_back({{block, static_cast<int>(i)}, kRegressionPriorSd});
     h.starts = {f.effect->default_parameters()};
-    const auto free = hypothesis::free_of(h, case_.trial.spread);
+    const auto free = hypothesis::free_of(h, case_.trial.prior_sd);
     fit::FitOptions o;
     o.iterations = 10;
     o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);

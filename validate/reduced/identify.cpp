@@ -102,7 +102,7 @@ class Identifying {
         const auto stream =
             static_cast<std::uint32_t>(2 * axes_.size() + static_cast<std::size_t>(round) * axes_.size() + i);
         z[static_cast<Index>(i)] +=
-            width * axes_[i].spread() *
+            width * axes_[i].prior_sd() *
             sim::normal_pair(trial_.stream, stream, static_cast<std::uint64_t>(draw))[0];
       }
       points.push_back(within(std::move(z)));
@@ -147,8 +147,8 @@ class Identifying {
   [[nodiscard]] double prior_cost(const VectorXd& z) const {
     double cost = 0;
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      if (const double spread = axes_[i].spread(); spread > 0)
-        cost += std::pow(z[static_cast<Index>(i)] / spread, 2);
+      if (const double prior_sd = axes_[i].prior_sd(); prior_sd > 0)
+        cost += std::pow(z[static_cast<Index>(i)] / prior_sd, 2);
     return cost;
   }
   /// Returns the costs; infinite for a trial that cannot be simulated.
@@ -184,7 +184,7 @@ class Identifying {
       const double factor = std::pow(10.0, -kDecadesBelow * where);
       z[static_cast<Index>(i)] =
           which >= kShareOfLow
-              ? kDrawWidth * axes_[i].spread() * sim::normal_pair(trial_.stream, 2 * number + 1, sample)[0]
+              ? kDrawWidth * axes_[i].prior_sd() * sim::normal_pair(trial_.stream, 2 * number + 1, sample)[0]
           : axes_[i].logarithmic ? std::log(factor)
                                  : axes_[i].z(factor * axes_[i].start);
     }
@@ -284,9 +284,9 @@ class Identifying {
       }
       ReducedPlant::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, jacobian);
       for (Index i = 0; i < np; ++i)
-        if (const double spread = axes_[static_cast<std::size_t>(i)].spread(); spread > 0) {
-          quadratic.curvature(1 + i, 1 + i) += 1 / (spread * spread);
-          quadratic.gradient[1 + i] += s.z[i] / (spread * spread);
+        if (const double prior_sd = axes_[static_cast<std::size_t>(i)].prior_sd(); prior_sd > 0) {
+          quadratic.curvature(1 + i, 1 + i) += 1 / (prior_sd * prior_sd);
+          quadratic.gradient[1 + i] += s.z[i] / (prior_sd * prior_sd);
         }
       for (const double length : kLengths) {
         const VectorXd step = bounded_step(quadratic, s, length * s.damping);

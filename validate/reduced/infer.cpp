@@ -302,8 +302,8 @@ class Inferring {
   [[nodiscard]] double prior_cost(const Point& p) const {
     double cost = 0;
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      if (const double spread = axes_[i].spread(); spread > 0)
-        cost += std::pow(p.z[static_cast<Index>(i)] / spread, 2);
+      if (const double prior_sd = axes_[i].prior_sd(); prior_sd > 0)
+        cost += std::pow(p.z[static_cast<Index>(i)] / prior_sd, 2);
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const auto priors = own_priors(events_[e]);
       for (std::size_t k = 0; k < priors.size(); ++k)
@@ -314,7 +314,7 @@ class Inferring {
   /// Returns the log determinant of the prior precision of all free variables.
   [[nodiscard]] double log_prior(double intensity) const {
     double sum = 0;
-    for (const fit::Axis& axis : axes_) sum -= axis.spread() > 0 ? 2 * std::log(axis.spread()) : 0.0;
+    for (const fit::Axis& axis : axes_) sum -= axis.prior_sd() > 0 ? 2 * std::log(axis.prior_sd()) : 0.0;
     for (std::size_t e = 0; e < events_.size(); ++e) {
       for (const double b : own_priors(events_[e])) sum -= b > 0 ? 2 * std::log(b) : 0.0;
       for (const event::InputKind kind : {event::InputKind::torque, event::InputKind::field})

@@ -254,8 +254,8 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
   const auto is_held = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
   if (gain_.number >= 0 && is_held(gain_.number)) gain_ = {};
   for (Index i = 0; i < numbers_; ++i) {
-    const double spread = at.free[static_cast<std::size_t>(i)].spread,
-                 precision = spread > 0 ? 1 / (spread * spread) : 0.0;
+    const double prior_sd = at.free[static_cast<std::size_t>(i)].prior_sd,
+                 precision = prior_sd > 0 ? 1 / (prior_sd * prior_sd) : 0.0;
     if (i == gain_.number) {
       gain_precision_ = precision;
       gain_offset_ = at.offset[i];
@@ -278,8 +278,8 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
       continue;
     }
     const Index i = free_[static_cast<std::size_t>(k)];
-    const double spread = at.free[static_cast<std::size_t>(i)].spread;
-    curvature(k, k) = spread > 0 ? 1 / (spread * spread) : 0.0;
+    const double prior_sd = at.free[static_cast<std::size_t>(i)].prior_sd;
+    curvature(k, k) = prior_sd > 0 ? 1 / (prior_sd * prior_sd) : 0.0;
     first_[k] = curvature(k, k) * at.offset[i];
   }
   Index row = 0;

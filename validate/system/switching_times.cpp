@@ -68,7 +68,7 @@ class SwitchingTimeFit {
     const event::StepShape step_shape = event::step_shape_of(records, playin::kStepThreshold);
     for (const SystemTerminal& t : s_.terminals) {
       filtered_samples_.emplace_back(t.record.t.size(), 0);
-      if (!declared(t) && step_shape == event::StepShape::spread)
+      if (!declared(t) && step_shape == event::StepShape::filtered)
         event::find_switchings(t.record, playin::kStepThreshold / 2, step_shape, filtered_samples_.back());
     }
   }
@@ -99,13 +99,13 @@ class SwitchingTimeFit {
     if (measured.empty()) return 0;
     const auto quiet = static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(std::ranges::lower_bound(t, best_.front() - 0.05) - t.begin(), 2));
-    double mean = 0, spread = 0, sum = 0;
+    double mean = 0, variance = 0, sum = 0;
     for (std::size_t k = 0; k < quiet; ++k) mean += (modelled[k] - measured[k]) / static_cast<double>(quiet);
     for (std::size_t k = 0; k < quiet; ++k)
-      spread += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
+      variance += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
     for (std::size_t k = 0; k < t.size(); ++k)
       if (!filtered_samples[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
-    return sum / (spread + event::kLeastNoise * event::kLeastNoise);
+    return sum / (variance + event::kLeastNoise * event::kLeastNoise);
   }
 
   SystemCase s_;

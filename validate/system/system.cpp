@@ -40,12 +40,12 @@ double filter_reach_of(const SystemCase& system) {
   std::vector<record::Record> records;
   for (const SystemTerminal& t : system.terminals)
     if (!(sim::plant::memory(t.instruments) > 0)) records.push_back(t.record);
-  if (event::step_shape_of(records, playin::kStepThreshold) != event::StepShape::spread) return 0;
+  if (event::step_shape_of(records, playin::kStepThreshold) != event::StepShape::filtered) return 0;
   double farthest = 0;
   for (const record::Record& r : records) {
     std::vector<char> filtered_samples;
     for (const playin::Switching& s :
-         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::spread, filtered_samples))
+         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::filtered, filtered_samples))
       farthest = std::max(farthest, s.uncertainty);
   }
   return farthest;

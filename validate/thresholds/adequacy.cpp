@@ -27,8 +27,8 @@ Ruling judged_by_cells(int exceeding, int cells) {
   return {Criterion::cells, exceeding == 0, static_cast<double>(exceeding), 0, fmt::format("of {}", cells)};
 }
 
-double event_limit(double spread, double least) {
-  return std::max(least, 1 + adequacy.one_in_thousand * spread);
+double event_limit(double standard_deviation, double least) {
+  return std::max(least, 1 + adequacy.one_in_thousand * standard_deviation);
 }
 
 Ruling judged_by_remainder(const Refitted& r, double least) {

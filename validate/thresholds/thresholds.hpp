@@ -200,7 +200,7 @@ inline constexpr Addition addition;  ///< the thresholds in use
 /// Statements of calibrate and the tables on a parameter (decision 17).
 struct Parameters {
   /// Prior standard deviation of a model's parameters, relative [-].
-  Threshold spread{
+  Threshold prior_sd{
       "parameters.spread", 0.2, "relative",
       "prior standard deviation of a model's parameters, unless --spread is given (decision 15)"};
   /// Share decided by the records below which a parameter is not identified [-].

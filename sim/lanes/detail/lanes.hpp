@@ -124,7 +124,7 @@ class Lanes {
   const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* buffer) const;
   void evaluate_pending(int lane, int count);
   void drop_waiting(LaneRun& run, int count);
-  void spread_constants(int lane);
+  void broadcast_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
   void hold(LaneRun& run, int until) const;
   /// Returns true if the recording of a lane computes the currents of all plants.
@@ -170,8 +170,8 @@ class Lanes {
   void watch_stage(Watch& watch, const T& vs);
   void commit(unsigned accepted);
   void clamp_states();
-  T spread(const T* x) const;
-  double spread_of_islands(int lane) const;
+  T angle_spread(const T* x) const;
+  double angle_spread_within_islands(int lane) const;
   void settle(unsigned accepted, const Next& next, const Done& done);
 
   const grid::Grid& grid_;
@@ -199,7 +199,8 @@ class Lanes {
   std::vector<int> moving_;            ///< states that are not constant in some lane
   std::vector<int> wanted_, sampled_;  ///< states that the outputs need; the moving ones among them
   std::vector<char> needed_;           ///< per state: 1 if the outputs need it
-  std::vector<std::pair<std::size_t, std::size_t>> spread_;  ///< coefficients of the outputs: first, number
+  std::vector<std::pair<std::size_t, std::size_t>>
+      broadcast_;  ///< coefficients of the outputs: first, number
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;

@@ -50,8 +50,8 @@ void Lanes<T>::build_slices() {
       needed_.push_back(needed);
     }
   };
-  const auto add_spread = [&](int first, int count) {
-    spread_.push_back({static_cast<std::size_t>(first), static_cast<std::size_t>(count)});
+  const auto add_broadcast = [&](int first, int count) {
+    broadcast_.push_back({static_cast<std::size_t>(first), static_cast<std::size_t>(count)});
   };
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     const plant::Plant& plant = grid_.plants[i];
@@ -64,8 +64,8 @@ void Lanes<T>::build_slices() {
     m += equations.scratch();
     const bool recorded = std::ranges::find(recorded_, static_cast<int>(i)) != recorded_.end();
     add_states(*plant.machine.effect, plants_.back().c, true);
-    add_spread(plants_.back().c,
-               recorded ? equations.coefficients() : plant.machine.effect->coefficients + plant::kJoint);
+    add_broadcast(plants_.back().c,
+                  recorded ? equations.coefficients() : plant.machine.effect->coefficients + plant::kJoint);
     int coefficient = plants_.back().c + plant.machine.effect->coefficients + plant::kJoint;
     const auto has = [&](Slot slot) {
       return std::ranges::any_of(plant.controls,
@@ -89,7 +89,7 @@ void Lanes<T>::build_slices() {
     states_ += loads_.back().equations.states();
     c += loads_.back().equations.coefficients();
     add_states(*load.block.effect, loads_.back().c, true);
-    add_spread(loads_.back().c, loads_.back().equations.coefficients());
+    add_broadcast(loads_.back().c, loads_.back().equations.coefficients());
   }
   for (Constants* k : {&per_lane_, &per_sample_}) k->c.assign(static_cast<std::size_t>(c), T(0.0));
   m_.assign(static_cast<std::size_t>(m), T(0.0));

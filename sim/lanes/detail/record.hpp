@@ -109,7 +109,7 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
 
 /// Broadcasts one lane's constants to every lane of the recording set.
 template <class T>
-void Lanes<T>::spread_constants(int lane) {
+void Lanes<T>::broadcast_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
     if (count == 0) return;  // data() of an empty vector may be null
@@ -120,7 +120,7 @@ void Lanes<T>::spread_constants(int lane) {
   };
   const Constants& from = per_lane_;
   Constants& to = per_sample_;
-  for (const auto& [first, count] : spread_) copy(from.c, to.c, first, count);
+  for (const auto& [first, count] : broadcast_) copy(from.c, to.c, first, count);
   const auto n = static_cast<std::size_t>(n_);
   for (const auto& [source, target] : {std::pair{&from.efd, &to.efd},
                                        {&from.tm, &to.tm},
@@ -170,7 +170,7 @@ template <class T>
 void Lanes<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (count == 0) return;
-  spread_constants(lane);
+  broadcast_constants(lane);
   for (int first = 0, now = 0; first < count; first += now) {
     const T* x = waiting_pack(run, first, wanted_, kept_.data());
     now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line

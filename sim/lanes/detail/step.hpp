@@ -117,7 +117,7 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
 
 /// Returns the largest change since the start of the angle between two rotors, over all plants [rad].
 template <class T>
-T Lanes<T>::spread(const T* x) const {
+T Lanes<T>::angle_spread(const T* x) const {
   T low(std::numeric_limits<Real>::max()), high = -low;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     if (!plants_[i].rotor) continue;
@@ -136,7 +136,7 @@ T Lanes<T>::spread(const T* x) const {
 
 /// Returns the same for a lane with several islands: the largest value within one island [rad].
 template <class T>
-double Lanes<T>::spread_of_islands(int lane) const {
+double Lanes<T>::angle_spread_within_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);
   const std::vector<int>& island = lanes_[l].islands;
   std::map<int, std::pair<double, double>> range;
@@ -198,7 +198,7 @@ void Lanes<T>::clamp_states() {
 template <class T>
 void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
-  LaneTraits<Flat>::store(Traits::value(spread(y_.data())), angle);
+  LaneTraits<Flat>::store(Traits::value(angle_spread(y_.data())), angle);
   // The voltage search may succeed with a shorter step.
   if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
   per_lane_.fallen = 0;
@@ -211,7 +211,7 @@ void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
       refill(l, next, done);
       continue;
     }
-    if (!run.islands.empty()) angle[l] = spread_of_islands(l);
+    if (!run.islands.empty()) angle[l] = angle_spread_within_islands(l);
     if (angle[l] > run.record.largest_spread) run.record.largest_spread = angle[l];
     const bool lost = angle[l] > options_.lose_at;
     if (lost || run.clock.t >= options_.t_end) {

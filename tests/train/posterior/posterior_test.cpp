@@ -137,8 +137,8 @@ TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
   Head head(shown, 1, {{0, 0.0, 1.0, 1.0, 0.0}, {1, 0.0, 1.0, 1.0, 0.0}});
   const auto rows = [&](std::int64_t n, at::Tensor& x, at::Tensor& y) {
     x = at::rand({n, 1, 1}) * 0.6 + 0.2;
-    const at::Tensor spread = 0.5 * x.reshape({n, 1}), common = at::randn({n, 1});
-    y = at::sigmoid(at::logit(x.reshape({n, 1})) + spread * (0.8 * common + 0.6 * at::randn({n, 2})));
+    const at::Tensor sd = 0.5 * x.reshape({n, 1}), common = at::randn({n, 1});
+    y = at::sigmoid(at::logit(x.reshape({n, 1})) + sd * (0.8 * common + 0.6 * at::randn({n, 2})));
   };
   at::Tensor x, y;
   std::vector<at::Tensor> weights = head.parameters(), momentum, square;

@@ -233,9 +233,9 @@ TEST(SavedNetwork, SpreadIsTheErrorOnTheLeftOutGenerator) {
   EXPECT_EQ(h.effect, "TEST");
   // One row at a time instead of a batch: single-precision sums in another order.
   EXPECT_NEAR(h.bias, sum / n, 1e-4);
-  EXPECT_NEAR(h.spread, std::sqrt(square / n), 1e-4);
+  EXPECT_NEAR(h.rms_error, std::sqrt(square / n), 1e-4);
   EXPECT_NEAR(saved.info().input_rms_seen, largest, 1e-5);
-  EXPECT_GT(h.spread, 0.01);
+  EXPECT_GT(h.rms_error, 0.01);
 }
 
 TEST(SavedNetwork, RefusesOtherFiles) {

@@ -108,10 +108,10 @@ plant::PlantModel off_as_believed(const plant::PlantModel& truth, unsigned seed)
   const CalibrateOptions options;
   while (true) {
     plant::PlantModel model = truth;
-    for (const auto& f : fit::free_parameters(truth.plant, options.spread)) {
+    for (const auto& f : fit::free_parameters(truth.plant, options.prior_sd)) {
       const auto name = sim::plant::parameter_record(truth.plant, f.id).name;
       if (name == "EMIN" || name == "EMAX") continue;
-      sim::plant::parameter_value(model.plant, f.id) *= std::exp(f.spread * normal(generator));
+      sim::plant::parameter_value(model.plant, f.id) *= std::exp(f.prior_sd * normal(generator));
     }
     const sim::plant::Block& machine = model.plant.machine;
     if (machine.effect->unphysical(machine.p.data()).empty()) return model;

@@ -40,7 +40,7 @@ TEST(BetterStart, TriesLimitThatTheModelNeverReaches) {
   Diagnosis d;
   d.events = event::prepare_events(model, records);
   fit_base(model, {}, {.lenient = true}, d);
-  const auto free = fit::free_parameters(model.plant, thresholds::parameters.spread);
+  const auto free = fit::free_parameters(model.plant, thresholds::parameters.prior_sd);
   const auto infer = [&](fit::InputKind kind) {
     return reduced::free_input(kind, model.under_test(), d.events, free, d.base, 2);
   };

@@ -133,7 +133,7 @@ TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
   ASSERT_EQ(step_shape_of({looks_sharp}, playin::kStepThreshold), StepShape::sharp);
   ASSERT_EQ(step_shape_of({open}, playin::kStepThreshold), StepShape::either);
-  EXPECT_EQ(step_shape_of({looks_sharp, open}, playin::kStepThreshold), StepShape::spread);
+  EXPECT_EQ(step_shape_of({looks_sharp, open}, playin::kStepThreshold), StepShape::filtered);
   for (const double phase : {0.0, 0.2, 0.4, 0.6, 0.8})
     EXPECT_EQ(step_shape_of({near_loss(0.85), behind(0, 3 + phase * kOneCycle, 0.1, 0.97, 0.04, 0.02)},
                             playin::kStepThreshold),
@@ -142,12 +142,12 @@ TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
 }
 TEST(FindSwitchings, SharpSmallStepExcludesFilter) {
   EXPECT_EQ(step_shape_of({near_loss(0.85)}, playin::kStepThreshold), StepShape::sharp);
-  EXPECT_EQ(step_shape_of({filtered(near_loss(0.85))}, playin::kStepThreshold), StepShape::spread);
+  EXPECT_EQ(step_shape_of({filtered(near_loss(0.85))}, playin::kStepThreshold), StepShape::filtered);
 }
 TEST(FindSwitchings, TreatsAllRecordsAsFilteredOrSharp) {
   const record::Record quiet = record_of([](double) { return 1.0; });
   EXPECT_EQ(step_shape_of({quiet, near_loss()}, playin::kStepThreshold), StepShape::sharp);
-  EXPECT_EQ(step_shape_of({quiet, filtered(near_loss())}, playin::kStepThreshold), StepShape::spread);
+  EXPECT_EQ(step_shape_of({quiet, filtered(near_loss())}, playin::kStepThreshold), StepShape::filtered);
 }
 /// A fault of `cycles` at 60 Hz in a record of 30/s, with a subtransient of time constant `tau` after both
 /// steps and a swinging rotor. `on`: position of the switching in its sample interval, 0 to 1.
@@ -191,7 +191,7 @@ TEST(FindSwitchings, RecognisesTriangularFilter) {
       EXPECT_EQ(step_shape_of({record_of(
                                   V, [](double) { return 0.1; }, rate)},
                               playin::kStepThreshold),
-                StepShape::spread)
+                StepShape::filtered)
           << on << " at " << rate;
     }
 }
@@ -287,7 +287,7 @@ TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   r.P.assign(r.t.size(), 0.4);
   r.Q.assign(r.t.size(), 0.1);
   std::vector<char> filtered_samples;
-  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::spread, filtered_samples);
+  const auto found = find_switchings(r, playin::kStepThreshold / 2, StepShape::filtered, filtered_samples);
   ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
   ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));

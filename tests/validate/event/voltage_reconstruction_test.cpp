@@ -57,7 +57,7 @@ FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTr
     e.record.V.push_back(std::abs(v) + normal(random));
     e.record.theta.push_back(std::arg(v) + normal(random));
   }
-  e.switchings = find_switchings(e.record, playin::kStepThreshold, StepShape::spread, e.filtered_samples);
+  e.switchings = find_switchings(e.record, playin::kStepThreshold, StepShape::filtered, e.filtered_samples);
   e.clean = without(e.record, e.filtered_samples);
   return e;
 }

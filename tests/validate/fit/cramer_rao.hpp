@@ -13,16 +13,16 @@ namespace swingbank::validate::test {
 inline double known_noise(playin::Output channel) { return channel == playin::Output::speed ? 2e-5 : 2e-3; }
 
 /// Least standard errors [unit of the parameter] given the events and priors of relative standard deviation
-/// `FreeParameter::spread`. Switching times and start of every event are unknown too. Omits the noise of the
-/// voltage (2e-4 pu, which adds some per cent).
+/// `FreeParameter::prior_sd`. Switching times and start of every event are unknown too. Omits the noise of
+/// the voltage (2e-4 pu, which adds some per cent).
 inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
                                       const std::vector<event::FitEvent>& events,
                                       const std::vector<fit::FreeParameter>& free) {
   const auto n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
-    if (const double spread = free[static_cast<std::size_t>(i)].spread; spread > 0)
-      information(i, i) = 1 / (spread * spread);
+    if (const double prior_sd = free[static_cast<std::size_t>(i)].prior_sd; prior_sd > 0)
+      information(i, i) = 1 / (prior_sd * prior_sd);
   for (const event::FitEvent& e : events) {
     event::EventState found;
     for (const auto& s : e.switchings) found.switchings.push_back(s.time);

@@ -15,9 +15,9 @@ inline playin::Response response_to(const event::FitEvent& e, const EventState& 
 struct ExciterExample {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   event::WhitenedEvents events;
-  double spread;  ///< prior relative standard deviation of every parameter
+  double prior_sd;  ///< prior relative standard deviation of every parameter
   /// `TE` of the exciter [s]; the true value is 0.05.
-  explicit ExciterExample(double believed, double TE = 0.05) : spread(believed) {
+  explicit ExciterExample(double believed, double TE = 0.05) : prior_sd(believed) {
     model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
     record::Record r =
         record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
@@ -25,7 +25,7 @@ struct ExciterExample {
   }
   [[nodiscard]] std::vector<FreeParameter> free(const std::vector<std::string>& names) const {
     std::vector<FreeParameter> some;
-    for (const auto& f : free_parameters(model.plant, spread))
+    for (const auto& f : free_parameters(model.plant, prior_sd))
       if (std::ranges::count(names, parameter_record(model.plant, f.id).name) > 0) some.push_back(f);
     return some;
   }

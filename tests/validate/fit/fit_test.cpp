@@ -11,25 +11,25 @@
 namespace swingbank::validate::fit {
 namespace {
 
-constexpr double kSpread = 0.2;
+constexpr double kPriorSd = 0.2;
 
 TEST(FitEvidence, UndeterminedParameterAddsNothing) {
-  const Fit f = ExciterExample(kSpread).fitted({"EMIN"});
+  const Fit f = ExciterExample(kPriorSd).fitted({"EMIN"});
   ASSERT_EQ(f.parameters.size(), 1U);
   EXPECT_LT(f.parameters.front().decided, 1e-9);  // the response never reaches that limit
   EXPECT_NEAR(f.occam, 0.0, 1e-9);
 }
 TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
-  const Fit f = ExciterExample(kSpread).fitted({"H"});
+  const Fit f = ExciterExample(kPriorSd).fitted({"H"});
   ASSERT_EQ(f.parameters.size(), 1U);
   const auto& H = f.parameters.front();
   const double sigma = H.error / H.value;  // H is fitted as a logarithm
-  EXPECT_LT(sigma, 0.1 * kSpread);         // otherwise the records determine nothing
-  EXPECT_NEAR(f.occam, 2 * std::log(kSpread / sigma), 1e-9);
+  EXPECT_LT(sigma, 0.1 * kPriorSd);        // otherwise the records determine nothing
+  EXPECT_NEAR(f.occam, 2 * std::log(kPriorSd / sigma), 1e-9);
   EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }
 TEST(FitEvidence, UnobservableStructureHasNoPenalty) {
-  const ExciterExample example(kSpread);
+  const ExciterExample example(kPriorSd);
   const Fit without = example.fitted({"H"}), with = example.fitted({"H", "EMIN"});
   ASSERT_EQ(with.parameters.size(), 2U);
   // Two searches agree within 1e-5 of chi2, which is some 2000.
@@ -45,7 +45,7 @@ TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
 }
 /// The plant on a quarter of its base: H is beyond its usual range, and the search continues from there.
 TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
-  ExciterExample example(kSpread);
+  ExciterExample example(kPriorSd);
   sim::plant::Block& machine = example.model.plant.machine;
   const auto at = [&](const char* name) -> double& {
     return machine.p[static_cast<std::size_t>(machine.effect->parameter_index(name))];

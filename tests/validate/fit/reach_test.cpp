@@ -46,7 +46,7 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   const event::WhitenedEvents events = with_response_of(example, truth);
   std::vector<FreeParameter> free = free_parameters(example.model.plant, 0.2);
   for (auto& f : free)
-    if (f.id.block > sim::plant::kMachineBlock) f.spread = 1;
+    if (f.id.block > sim::plant::kMachineBlock) f.prior_sd = 1;
   const Fit f = fit(example.model.under_test(), events, free,
                     {.iterations = GetParam() ? 60 : 30, .lenient = GetParam()});
   ASSERT_EQ(f.failed, "");
@@ -67,7 +67,8 @@ TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
   ASSERT_FALSE(sim::plant::violated(machine).empty());
   const event::WhitenedEvents events = with_response_of(example, example.model.plant);
-  const Fit f = fit(example.model.under_test(), events, free_parameters(example.model.plant, example.spread));
+  const Fit f =
+      fit(example.model.under_test(), events, free_parameters(example.model.plant, example.prior_sd));
   ASSERT_EQ(f.failed, "");
   EXPECT_LT(f.reduced_chi2(), 1e-3);
   sim::plant::Block found = f.plant.machine;

@@ -91,10 +91,10 @@ spread = 0.1
   EXPECT_EQ(fleet.plants[0].name, "a");  // sorted by name
   EXPECT_EQ(fleet.plants[0].model, "/elsewhere/m.toml");
   EXPECT_FALSE(fleet.plants[0].power_only);
-  EXPECT_EQ(fleet.plants[0].spread, 0.1);
+  EXPECT_EQ(fleet.plants[0].prior_sd, 0.1);
   EXPECT_EQ(fleet.plants[1].model, folder / "m.toml");
   EXPECT_TRUE(fleet.plants[1].power_only);
-  EXPECT_EQ(fleet.plants[1].spread, 0.3);
+  EXPECT_EQ(fleet.plants[1].prior_sd, 0.3);
   EXPECT_EQ(fleet.plants[1].records, (std::vector<std::string>{"e1.csv", "e*.csv"}));
 }
 

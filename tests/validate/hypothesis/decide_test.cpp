@@ -8,7 +8,7 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-constexpr double kDecideSpread = 0.2;  ///< prior standard deviation of the machine's parameters, relative
+constexpr double kDecidePriorSd = 0.2;  ///< prior standard deviation of the machine's parameters, relative
 
 class Decide : public ::testing::Test {
  protected:
@@ -19,7 +19,7 @@ class Decide : public ::testing::Test {
     fit::FitOptions brief;
     brief.iterations = 4;
     brief.errors = false;
-    j.fit = fit::fit(j.hypothesis.under_test(), events_, free_of(j.hypothesis, kDecideSpread), brief);
+    j.fit = fit::fit(j.hypothesis.under_test(), events_, free_of(j.hypothesis, kDecidePriorSd), brief);
     if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
     return j;
   }
@@ -28,7 +28,7 @@ class Decide : public ::testing::Test {
     std::vector<Explanation> all;
     for (const Judgement& j : competitors)
       all.push_back({j.hypothesis.name, 100, static_cast<int>(all.size())});
-    return what_would_decide(competitors, posterior(std::move(all), 0), events_, kDecideSpread, 1);
+    return what_would_decide(competitors, posterior(std::move(all), 0), events_, kDecidePriorSd, 1);
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const event::WhitenedEvents events_ = event::prepare_events(

@@ -49,7 +49,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   ASSERT_TRUE(best.fitted);
   EXPECT_LT(best.fit.reduced_chi2(), 1.05);
   // Parameter values of the plant that made the records.
-  const auto free = free_of(best.hypothesis, base_model_.spread);
+  const auto free = free_of(best.hypothesis, base_model_.prior_sd);
   fit::FitOptions truth{.iterations = 20, .lenient = true};
   for (const auto& e : best.fit.events) truth.start.push_back(e.state);
   truth.values = fit::values_of(best.hypothesis.plant, free);

@@ -22,7 +22,7 @@ TEST_F(WholeFit, FindsParameterAtItsNullValue) {
   constexpr double kRa = 0.03;
   sim::plant::parameter_value(truth.plant, truth.free.front().id) = kRa;
   record_response_of(truth.under_test());
-  base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, base_model_.spread));
+  base_ = fit::fit(model_.under_test(), events_, fit::free_parameters(model_.plant, base_model_.prior_sd));
   const auto tried = try_hypotheses(base_model_, {named("PTERROR"), truth, named("IEEEVC")});
   ASSERT_EQ(tried.size(), 2U);
   EXPECT_EQ(tried.front().hypothesis.name, "GENROU:Ra");

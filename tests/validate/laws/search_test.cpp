@@ -152,13 +152,13 @@ struct Case {
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   reduced::FreeInput torque, field;
-  static constexpr double kSpread = thresholds::parameters.spread,
+  static constexpr double kPriorSd = thresholds::parameters.prior_sd,
                           kAdequate = thresholds::adequacy.reduced_chi2;
 
   template <class Change>
   Case(const std::vector<int>& numbers, const sim::Effect* law, Change change) {
     plant::PlantModel truth = model;
-    for (const auto& f : fit::free_parameters(truth.plant, kSpread))
+    for (const auto& f : fit::free_parameters(truth.plant, kPriorSd))
       sim::plant::parameter_value(truth.plant, f.id) *= 1 + 0.1 * std::sin(3.0 * f.id.index + 1);
     int block = 0;
     if (law) truth.plant = with_law(truth.plant, *law, block);
@@ -186,14 +186,14 @@ struct Case {
       records.push_back(std::move(r));
     }
     events = event::prepare_events(model, std::move(records), {.measured_states = false});
-    base = fit::fit(model.under_test(), events, fit::free_parameters(model.plant, kSpread), {});
-    const hypothesis::Trial trial{events, kSpread, kAdequate};
+    base = fit::fit(model.under_test(), events, fit::free_parameters(model.plant, kPriorSd), {});
+    const hypothesis::Trial trial{events, kPriorSd, kAdequate};
     held_out = hypothesis::hold_out(trial, model.under_test(), {}, base);
     torque = reduced::free_input(fit::InputKind::torque, model.under_test(), events,
-                                 fit::free_parameters(model.plant, kSpread), base, 2);
+                                 fit::free_parameters(model.plant, kPriorSd), base, 2);
   }
   LawSearch search(int threads = 2) {
-    return search_laws({model, {events, kSpread, kAdequate}, base, held_out, torque, field, threads});
+    return search_laws({model, {events, kPriorSd, kAdequate}, base, held_out, torque, field, threads});
   }
 };
 sim::Effect torque_law(const std::string& value) {

@@ -187,7 +187,7 @@ BlindConfig load_blind_config(const std::filesystem::path& file) {
   b.frequency_events = static_cast<int>(config.require<std::int64_t>("events.frequency", {0, 50}));
   b.wrong = config.interval("model.wrong", {0.0, 0.5});
   b.size = config.interval("size", {0.1, 1e4, "detection limits"});
-  b.spread = config.require<double>("model.spread", {0.0, 0.5});
+  b.relative_range = config.require<double>("model.spread", {0.0, 0.5});
   b.filter_share = config.require<double>("record.filter_share", {0.0, 1.0});
   b.channels_share = config.require<double>("record.channels_share", {0.0, 1.0});
   b.controlled_share = config.require<double>("events.controlled_share", {0.0, 1.0});

@@ -72,7 +72,7 @@ struct BlindConfig {
   int faults = 4, frequency_events = 1;
   std::pair<double, double> wrong{0.1, 0.2};  ///< range of relative errors of the model's machine parameters
   std::pair<double, double> size{1.0, 10.0};  ///< range of drawn sizes in detection limits
-  double spread = 0.1;                        ///< largest relative change of true parameters from the files
+  double relative_range = 0.1;                ///< largest relative change of true parameters from the files
   BlindConditions conditions;
   double filter_share = 0.5, channels_share = 0.5, controlled_share = 0.5;
   std::uint64_t hash = 0;  ///< XXH64 of the file

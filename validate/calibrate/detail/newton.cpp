@@ -16,7 +16,7 @@ Eigen::VectorXd off_prior(const sim::plant::Plant& believed, const sim::plant::P
     const double start = sim::plant::parameter_value(believed, f.id),
                  value = sim::plant::parameter_value(plant, f.id);
     off[i] = fit::moves_by_logarithm(sim::plant::parameter_record(plant, f.id), start)
-                 ? std::log(value / start) / f.spread
+                 ? std::log(value / start) / f.prior_sd
                  : (value - start) / fit::axis_unit(believed, f);
   }
   return off;

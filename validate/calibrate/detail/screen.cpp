@@ -38,7 +38,7 @@ double Screen::one(const fit::FreeParameter& f, double normal) const {
   const auto& record = sim::plant::parameter_record(plant_, f.id);
   sim::plant::Plant plant = plant_;
   const double value = sim::plant::parameter_value(plant, f.id);
-  const double moved = fit::moves_by_logarithm(record, value) ? value * std::exp(f.spread * normal)
+  const double moved = fit::moves_by_logarithm(record, value) ? value * std::exp(f.prior_sd * normal)
                                                               : value + normal * fit::axis_unit(plant_, f);
   const auto [low, high] = sim::plant::search_range(record, value);
   return std::clamp(moved, low, high);

@@ -43,7 +43,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.record.theta = event.record.theta;  // angle as played in
   e.record.notes = event.record.notes;
   e.fitted = true;
-  e.left_out = step_shape == event::StepShape::spread || event.turns() ? event.left_out : e.record.lost;
+  e.left_out = step_shape == event::StepShape::filtered || event.turns() ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "validate/compare/detail/spread.hpp"
+#include "validate/compare/detail/standard_deviation.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -33,7 +33,7 @@ class PowerDoubt {
  private:
   /// Adds the pre-event noise to the samples about the switchings.
   void noise(std::vector<double> record::Record::*power) {
-    const double deviation = spread(e_.record.*power, e_.playback.start.samples);
+    const double deviation = standard_deviation(e_.record.*power, e_.playback.start.samples);
     if (!(deviation > 0)) return;
     const std::size_t together = (last_ - first_ + kRuns - 1) / kRuns;
     for (std::size_t k = first_; k < last_; k += together) {

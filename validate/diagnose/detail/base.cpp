@@ -45,7 +45,7 @@ fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
 /// gradient.
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
-  const auto free = fit::free_parameters(base_model.plant, base_model.spread);
+  const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);
   std::vector<fit::EventState> states;
   for (const auto& e : base_model.fit.events) states.push_back(e.state);
   std::vector<sim::plant::Plant> plants;
@@ -75,7 +75,7 @@ void require_fitted(const fit::Fit& base, const plant::PlantModel& model) {
 
 void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
               Diagnosis& d) {
-  const auto free = fit::free_parameters(model.plant, options.spread);
+  const auto free = fit::free_parameters(model.plant, options.prior_sd);
   d.base = fit::fit(model.under_test(), d.events, free, from);
   for (int measured = 0; d.base.failed.empty() && measured < kMeasured; ++measured) {
     d.events = d.events.with(fit::measure_noise_through(d.base, model.conventions, d.events));
@@ -89,7 +89,7 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
 
 std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d) {
   const auto from = [&](const fit::Fit& f) {
-    return fit::continued({.lenient = true}, f, fit::free_parameters(base_model.plant, base_model.spread));
+    return fit::continued({.lenient = true}, f, fit::free_parameters(base_model.plant, base_model.prior_sd));
   };
   const double leads = d.ranked.empty() ? 0.0 : std::max(0.0, d.ranked.front().gain);
   if (leads >= thresholds::evidence.accepted)

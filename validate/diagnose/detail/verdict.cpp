@@ -196,7 +196,7 @@ void name_best(const laws::Unexplained& judged, Diagnosis& d) {
   d.sentence += fmt::format(": {}.", fall_of_error(d.base, best));
   if (set.size() > 1 && pairs) d.sentence += " " + by_effect_sentence(d);
   d.would_decide = hypothesis::what_would_decide(d.ranked, d.probabilities, judged.trial.events,
-                                                 judged.trial.spread, judged.threads);
+                                                 judged.trial.prior_sd, judged.threads);
   if (const std::string words = hypothesis::decide_sentence(d.would_decide); !words.empty())
     d.sentence += " " + words;
 }

@@ -29,12 +29,12 @@ struct Line {
   Line(const record::Record& r, std::size_t first, std::size_t last) {
     const auto n = static_cast<double>(last - first);
     for (std::size_t k = first; k < last; ++k) middle += r.t[k] / n, mean += r.f[k] / n;
-    double spread = 0;
+    double squares = 0;
     for (std::size_t k = first; k < last; ++k) {
       slope += (r.t[k] - middle) * (r.f[k] - mean);
-      spread += (r.t[k] - middle) * (r.t[k] - middle);
+      squares += (r.t[k] - middle) * (r.t[k] - middle);
     }
-    slope = spread > 0 ? slope / spread : 0.0;
+    slope = squares > 0 ? slope / squares : 0.0;
   }
   double operator()(double t) const { return mean + slope * (t - middle); }
 };

@@ -38,15 +38,15 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
 /// Gaussian priors: one residual z/spread per parameter, scaled by the reduced chi-square reached.
 class GaussianPrior : public ceres::CostFunction {
  public:
-  GaussianPrior(std::vector<double> spread, const double* discrepancy)
-      : spread_(std::move(spread)), discrepancy_(discrepancy) {
-    set_num_residuals(static_cast<int>(spread_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(spread_.size()));
+  GaussianPrior(std::vector<double> prior_sd, const double* discrepancy)
+      : prior_sd_(std::move(prior_sd)), discrepancy_(discrepancy) {
+    set_num_residuals(static_cast<int>(prior_sd_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(prior_sd_.size()));
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const std::size_t n = spread_.size();
+    const std::size_t n = prior_sd_.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const double weight = spread_[i] > 0 ? std::sqrt(*discrepancy_) / spread_[i] : 0.0;
+      const double weight = prior_sd_[i] > 0 ? std::sqrt(*discrepancy_) / prior_sd_[i] : 0.0;
       residuals[i] = weight * blocks[0][i];
       if (jacobians && jacobians[0])
         for (std::size_t j = 0; j < n; ++j) jacobians[0][i * n + j] = i == j ? weight : 0.0;
@@ -55,7 +55,7 @@ class GaussianPrior : public ceres::CostFunction {
   }
 
  private:
-  std::vector<double> spread_;
+  std::vector<double> prior_sd_;
   const double* discrepancy_;
 };
 

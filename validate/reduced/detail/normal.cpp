@@ -40,9 +40,9 @@ Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const
   const auto n = static_cast<Index>(axes.size());
   Normal normal{MatrixXd::Zero(n, n), VectorXd::Zero(n), {}, {}, {}, {}};
   for (Index i = 0; i < n; ++i)
-    if (const double spread = axes[static_cast<std::size_t>(i)].spread(); spread > 0) {
-      normal.plant(i, i) += 1 / (spread * spread);
-      normal.gradient[i] += at.z[i] / (spread * spread);
+    if (const double prior_sd = axes[static_cast<std::size_t>(i)].prior_sd(); prior_sd > 0) {
+      normal.plant(i, i) += 1 / (prior_sd * prior_sd);
+      normal.gradient[i] += at.z[i] / (prior_sd * prior_sd);
     }
   for (std::size_t e = 0; e < sensitivities.size(); ++e) {
     const EventSensitivities& s = sensitivities[e];

@@ -34,7 +34,7 @@ Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
   const auto f = figure_of(task, of);
   if (!f) return otherwise;
   std::string text = shown(f->mse);
-  if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->spread);
+  if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->standard_deviation);
   text += fmt::format(" ({:.2g}", f->ratio);
   if (f->over_floor) text += fmt::format("; {:.3g} × floor", *f->over_floor);
   text += f->seeds == 1 ? ") ¹" : f->seeds == 2 ? ") ²" : ")";

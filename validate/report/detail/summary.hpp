@@ -34,7 +34,7 @@ std::vector<const RunResult*> runs_of(const Task& task, const Of& of);
 /// Mean over generators of the means over seeds.
 struct Figure {
   double mse = 0, ratio = 0, baseline = 0;
-  double spread = 0;  ///< standard deviation of the seeds' means
+  double standard_deviation = 0;  ///< standard deviation of the seeds' means
   std::size_t seeds = 0, generators = 0;
   std::optional<double> over_floor;  ///< ratio to the floor over the runs that have one
 };

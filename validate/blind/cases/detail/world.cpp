@@ -86,13 +86,13 @@ void set_path(sim::plant::Plant& plant, sim::Conventions& conventions, const Bli
 
 }  // namespace
 
-void jitter(sim::plant::Block& block, double spread, BlindDraw& draw) {
+void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw) {
   const sim::Effect& effect = *block.effect;
   const std::vector<double> middle = block.p;
   for (int k = 0; k < kBlockTries; ++k) {
     for (std::size_t i = 0; i < middle.size(); ++i) {
       const sim::Parameter& record = effect.parameters[i];
-      const double factor = draw.uniform(1.0 - spread, 1.0 + spread);
+      const double factor = draw.uniform(1.0 - relative_range, 1.0 + relative_range);
       if (record.is_code() || is_limit(record.name)) continue;
       block.p[i] = std::clamp(middle[i] * factor, record.low, record.high);
     }
@@ -135,7 +135,7 @@ BlindWorld::BlindWorld(const BlindConfig& config, const std::vector<const BlindK
   if (const auto& machines = config.conditions.machines; !machines.empty())
     take_machine(grid_.plants[static_cast<std::size_t>(plant_)],
                  block_of(machines[draw.below(machines.size())]));
-  draw_machines(config.spread, draw);
+  draw_machines(config.relative_range, draw);
   recorded_ = {plant_};
   draw_target(config.conditions, draw);
   split_target(config, draw);
@@ -143,11 +143,11 @@ BlindWorld::BlindWorld(const BlindConfig& config, const std::vector<const BlindK
   if (controlled_) draw_others(draw);
 }
 
-void BlindWorld::draw_machines(double spread, BlindDraw& draw) {
+void BlindWorld::draw_machines(double relative_range, BlindDraw& draw) {
   const bool saturated = draw.coin(), damped = draw.coin();
   for (std::size_t i = 0; i < grid_.plants.size(); ++i) {
     sim::plant::Block& machine = grid_.plants[i].machine;
-    jitter(machine, spread, draw);
+    jitter(machine, relative_range, draw);
     if (static_cast<int>(i) != plant_) continue;
     const auto zero = [&](const char* name) {
       if (const int k = machine.effect->parameter_index(name); k >= 0)
@@ -212,7 +212,7 @@ void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   sim::plant::Plant other = plant;
   other.name = plant.name + "/2";
   other.controls.clear();
-  jitter(other.machine, config.spread, draw);
+  jitter(other.machine, config.relative_range, draw);
   std::vector<std::string> controls = config.conditions.controls;
   if (!converter()) controls = {kKnownExciter, kKnownGovernor};
   for (const std::string& text : controls) {

@@ -37,7 +37,7 @@ class BlindWorld {
   [[nodiscard]] bool transformed() const { return transformed_; }
 
  private:
-  void draw_machines(double spread, BlindDraw& draw);
+  void draw_machines(double relative_range, BlindDraw& draw);
   void draw_target(const BlindConditions& conditions, BlindDraw& draw);
   void split_target(const BlindConfig& config, BlindDraw& draw);
   void draw_others(BlindDraw& draw);
@@ -51,9 +51,9 @@ class BlindWorld {
   bool controlled_ = false, transformed_ = false;
 };
 
-/// Varies every parameter except codes and limits by up to `spread` (relative), until the effect's checks
-/// accept them. After 200 draws the values stay unchanged.
-void jitter(sim::plant::Block& block, double spread, BlindDraw& draw);
+/// Varies every parameter except codes and limits by up to `relative_range` (relative), until the effect's
+/// checks accept them. After 200 draws the values stay unchanged.
+void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw);
 
 /// Changes every parameter of a machine by a share in the range `wrong`, up or down, until the machine is
 /// physical. Returns false if none of 10,000 draws is.
