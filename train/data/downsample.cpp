@@ -91,7 +91,7 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
   s.rate = dataset.rate / static_cast<double>(s.step);
   if (s.form == InputForm::physics) {
     s.physics = physics_of(recipe, dataset);
-    s.samples = s.physics->cells();
+    s.samples = s.physics->bins();
     s.shows_level = recipe.shows_level;
     s.regressions = recipe.regressions;
   }

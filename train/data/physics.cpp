@@ -34,12 +34,12 @@ class Signal {
       v = sum;
     }
   }
-  template <class Cells>
-  float* means(const Cells& cells, float* out) const {
-    for (const auto& cell : cells) {
+  template <class Bins>
+  float* means(const Bins& bins, float* out) const {
+    for (const auto& bin : bins) {
       double sum = 0.0;
-      for (std::size_t k = cell.first; k < cell.first + cell.count; ++k) sum += values_[k];
-      *out++ = static_cast<float>(sum / static_cast<double>(cell.count));
+      for (std::size_t k = bin.first; k < bin.first + bin.count; ++k) sum += values_[k];
+      *out++ = static_cast<float>(sum / static_cast<double>(bin.count));
     }
     return out;
   }
@@ -76,19 +76,19 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
   const std::size_t end = sample(window.end_s);
   for (std::size_t at = sample(window.start_s); at < end;) {
     const double behind = static_cast<double>(at) / window.rate - window.event_s;
-    const double cells = behind < kFineUntil     ? window.rate
-                         : behind < kMiddleUntil ? kMiddleRate
-                                                 : kCoarseRate;
-    const auto count = std::max<std::size_t>(1, sample(1.0 / cells));
+    const double bins_per_second = behind < kFineUntil     ? window.rate
+                                   : behind < kMiddleUntil ? kMiddleRate
+                                                           : kCoarseRate;
+    const auto count = std::max<std::size_t>(1, sample(1.0 / bins_per_second));
     if (at + count > end) break;
-    cells_.push_back({at, count});
+    bins_.push_back({at, count});
     at += count;
   }
 }
 
-std::vector<float> Physics::cell_samples() const {
+std::vector<float> Physics::bin_samples() const {
   std::vector<float> all;
-  for (const Cell& cell : cells_) all.push_back(static_cast<float>(cell.count));
+  for (const Bin& bin : bins_) all.push_back(static_cast<float>(bin.count));
   return all;
 }
 
@@ -102,9 +102,9 @@ void Physics::apply(const float* record, std::size_t stride, float* out) const {
   const auto least = static_cast<float>(window_.least_voltage);
   const auto voltage = [&](std::size_t k) { return std::max(V[k], least); };
   const double x = window_.reactance, step = 1.0 / window_.rate;
-  float* levels = out + channels() * cells();
+  float* levels = out + channels() * bins();
   Signal s(std::max(samples(), steady_));
-  const auto show = [&] { out = s.means(cells_, out); };
+  const auto show = [&] { out = s.means(bins_, out); };
   const auto level = [&] { return static_cast<float>(s.level(steady_)); };
   const auto integral = [&] {
     s.integrate(step);

@@ -33,24 +33,24 @@ class Physics {
 
   [[nodiscard]] const PhysicsWindow& window() const { return window_; }
   [[nodiscard]] std::size_t channels() const;
-  [[nodiscard]] std::size_t cells() const { return cells_.size(); }
+  [[nodiscard]] std::size_t bins() const { return bins_.size(); }
   /// Returns the number of steady values after the series: P, Q, V, E, its angle, and the field current if
   /// recorded.
   [[nodiscard]] std::size_t levels() const { return field_ >= 0 ? 6 : 5; }
   /// Returns the number of samples of a record that are used, from its first.
-  [[nodiscard]] std::size_t samples() const { return cells_.back().first + cells_.back().count; }
+  [[nodiscard]] std::size_t samples() const { return bins_.back().first + bins_.back().count; }
   /// Returns the number of samples in each bin.
-  [[nodiscard]] std::vector<float> cell_samples() const;
+  [[nodiscard]] std::vector<float> bin_samples() const;
   /// Computes the input of one row, whose channels are `stride` apart. out: channels() x cells(), then
   /// levels().
   void apply(const float* record, std::size_t stride, float* out) const;
 
  private:
-  struct Cell {
+  struct Bin {
     std::size_t first, count;
   };
   PhysicsWindow window_;
-  std::vector<Cell> cells_;
+  std::vector<Bin> bins_;
   std::size_t steady_ = 1;  ///< samples before the event
   int P_ = -1, Q_ = -1, V_ = -1, speed_ = -1, field_ = -1, frequency_ = -1;
 };

@@ -62,7 +62,7 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
   stream.read(some, series.data(), s.shows_level ? Noise{0.0} : stream.judged());
   w.fit_bases(series);
   w.fit_whole(w.components(series.data(), some.size()));
-  if (s.regressions) w.fit_regressions(series, s.physics->cell_samples());
+  if (s.regressions) w.fit_regressions(series, s.physics->bin_samples());
   if (!s.shows_level) return w;
   some.resize(std::min(some.size(), kRowsOfNoise));
   Rows noisy(static_cast<Index>(some.size()), series.cols());

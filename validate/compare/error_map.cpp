@@ -108,8 +108,8 @@ struct Filling {
     square += other.square;
     relative += other.relative;
   }
-  [[nodiscard]] MapCell cell(std::size_t samples) const {
-    MapCell c;
+  [[nodiscard]] TimeFrequencyBin bin(std::size_t samples) const {
+    TimeFrequencyBin c;
     c.values = values;
     if (values == 0) return c;
     c.rms = std::sqrt(square / static_cast<double>(samples));
@@ -217,14 +217,14 @@ ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
           shapes.push_back(std::span(shape).subspan(begin, end - begin));
       const WindowFilling f = fill(residual.subspan(begin, end - begin), step, noise,
                                    first ? 0.0 : start_error, first && options.starts_at_mean, shapes);
-      row.all = f.all.cell(end - begin);
-      for (std::size_t b = 0; b < row.bands.size(); ++b) row.bands[b] = f.bands[b].cell(end - begin);
+      row.all = f.all.bin(end - begin);
+      for (std::size_t b = 0; b < row.bands.size(); ++b) row.bands[b] = f.bands[b].bin(end - begin);
       whole.add(f.all);
       total += end - begin;
     }
     map.rows.push_back(std::move(row));
   }
-  map.whole = whole.cell(std::max<std::size_t>(total, 1));
+  map.whole = whole.bin(std::max<std::size_t>(total, 1));
   return map;
 }
 
@@ -234,14 +234,14 @@ void set_bounds(std::span<ErrorMap* const> maps, double probability) {
       action(map->whole, map->freedom);
       for (auto& row : map->rows) {
         action(row.all, map->freedom);
-        for (auto& cell : row.bands) action(cell, map->freedom);
+        for (auto& bin : row.bands) action(bin, map->freedom);
       }
     }
   };
-  int cells = 0;
-  each([&](const MapCell& cell, int) { cells += cell.empty() ? 0 : 1; });
-  each([&](MapCell& cell, int freedom) {
-    if (!cell.empty()) cell.bound = noise_bound(cell.values, freedom, probability / cells);
+  int bins = 0;
+  each([&](const TimeFrequencyBin& bin, int) { bins += bin.empty() ? 0 : 1; });
+  each([&](TimeFrequencyBin& bin, int freedom) {
+    if (!bin.empty()) bin.bound = noise_bound(bin.values, freedom, probability / bins);
   });
 }
 

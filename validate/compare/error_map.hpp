@@ -40,7 +40,7 @@ ChannelNoise estimate_noise(std::span<const double> quiet, double floor);
 ChannelNoise white_noise(double sigma);
 
 /// Time-frequency bin of an error map.
-struct MapCell {
+struct TimeFrequencyBin {
   /// Number of independent components; 0: the window is too short for the band.
   int values = 0;
   double rms = 0;  ///< of the residual's components in window and band [pu]
@@ -61,12 +61,12 @@ struct MapCell {
 struct ErrorMap {
   /// Bins of one window.
   struct Row {
-    MapCell all;                 ///< every frequency, the mean included
-    std::vector<MapCell> bands;  ///< as error_bands()
+    TimeFrequencyBin all;                 ///< every frequency, the mean included
+    std::vector<TimeFrequencyBin> bands;  ///< as error_bands()
   };
-  std::vector<Row> rows;  ///< one per window
-  MapCell whole;          ///< all windows, all frequencies
-  int freedom = 0;        ///< degrees of freedom of the noise estimate; 0: the noise is known
+  std::vector<Row> rows;   ///< one per window
+  TimeFrequencyBin whole;  ///< all windows, all frequencies
+  int freedom = 0;         ///< degrees of freedom of the noise estimate; 0: the noise is known
 };
 
 /// Options of an error map.

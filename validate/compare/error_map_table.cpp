@@ -14,15 +14,15 @@ namespace {
 
 /// Returns the shade of a bin: 0 within its bound, 0.35 just above it, rising logarithmically to 1 at 25 ×
 /// the bound.
-double shade(const MapCell& cell) {
-  if (cell.empty() || !std::isfinite(cell.bound)) return -1;
-  if (!cell.exceeds()) return 0;
-  return std::clamp(0.35 + 0.65 * std::log(cell.normalised / cell.bound) / std::log(25.0), 0.0, 1.0);
+double shade(const TimeFrequencyBin& bin) {
+  if (bin.empty() || !std::isfinite(bin.bound)) return -1;
+  if (!bin.exceeds()) return 0;
+  return std::clamp(0.35 + 0.65 * std::log(bin.normalised / bin.bound) / std::log(25.0), 0.0, 1.0);
 }
 
-report::Cell map_cell(const MapCell& cell) {
-  if (cell.empty()) return {"–"};
-  return {times_noise(cell.normalised) + (cell.exceeds() ? " *" : ""), shade(cell)};
+report::Cell map_cell(const TimeFrequencyBin& bin) {
+  if (bin.empty()) return {"–"};
+  return {times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin)};
 }
 
 std::vector<std::string> columns(bool with_event) {
@@ -41,13 +41,13 @@ void add_row(report::Table& table, const LabelledMap& m, const std::string& wind
   cells.emplace_back(window);
   cells.emplace_back(row.all.empty() ? "–" : fmt::format("{:.3g} {}", row.all.rms * m.scale, m.unit));
   cells.push_back(map_cell(row.all));
-  for (const MapCell& cell : row.bands) cells.push_back(map_cell(cell));
+  for (const TimeFrequencyBin& bin : row.bands) cells.push_back(map_cell(bin));
   table.rows.push_back(std::move(cells));
 }
 
-void keep_worse(MapCell& worst, const MapCell& cell) {
-  if (cell.empty()) return;
-  if (worst.empty() || cell.normalised / cell.bound > worst.normalised / worst.bound) worst = cell;
+void keep_worse(TimeFrequencyBin& worst, const TimeFrequencyBin& bin) {
+  if (bin.empty()) return;
+  if (worst.empty() || bin.normalised / bin.bound > worst.normalised / worst.bound) worst = bin;
 }
 
 /// Text ", in n of m events": events in which the bin exceeds its bound, of those that have the bin.
@@ -129,17 +129,17 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
   std::string text;
   for (const auto& channel : channels) {
-    MapCell worst;
+    TimeFrequencyBin worst;
     std::string window;
     std::size_t band = 0;
     for (const auto& m : maps)
       for (std::size_t w = 0; m.channel == channel && w < m.windows->size(); ++w)
         for (std::size_t b = 0; b < m.map->rows[w].bands.size(); ++b) {
-          const MapCell& cell = m.map->rows[w].bands[b];
-          if (!cell.exceeds() ||
-              (!worst.empty() && cell.normalised / cell.bound <= worst.normalised / worst.bound))
+          const TimeFrequencyBin& bin = m.map->rows[w].bands[b];
+          if (!bin.exceeds() ||
+              (!worst.empty() && bin.normalised / bin.bound <= worst.normalised / worst.bound))
             continue;
-          worst = cell;
+          worst = bin;
           window = (*m.windows)[w].name;
           band = b;
         }
@@ -155,14 +155,14 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
 
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map) {
   auto rows = nlohmann::json::array();
-  const auto add = [&](const std::string& window, std::string_view band, const MapCell& cell) {
-    nlohmann::json j = {{"window", window}, {"band", band}, {"values", cell.values}};
+  const auto add = [&](const std::string& window, std::string_view band, const TimeFrequencyBin& bin) {
+    nlohmann::json j = {{"window", window}, {"band", band}, {"values", bin.values}};
     const auto number = [&](double v) {
-      return cell.empty() || !std::isfinite(v) ? nlohmann::json(nullptr) : nlohmann::json(v);
+      return bin.empty() || !std::isfinite(v) ? nlohmann::json(nullptr) : nlohmann::json(v);
     };
-    j["rms_pu"] = number(cell.rms);
-    j["normalised_rms"] = number(cell.normalised);
-    j["normalised_bound"] = number(cell.bound);
+    j["rms_pu"] = number(bin.rms);
+    j["normalised_rms"] = number(bin.normalised);
+    j["normalised_bound"] = number(bin.bound);
     rows.push_back(std::move(j));
   };
   for (std::size_t w = 0; w < windows.size(); ++w) {

@@ -12,19 +12,19 @@ namespace swingbank::validate::compare {
 namespace {
 
 /// Bin of an error map with its name.
-struct NamedCell {
+struct NamedBin {
   const EventComparison* event;
   const ChannelComparison* channel;
   std::string where;
-  const MapCell* cell;
+  const TimeFrequencyBin* bin;
 };
-std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
-  std::vector<NamedCell> all;
+std::vector<NamedBin> all_bins(const std::vector<EventComparison>& events) {
+  std::vector<NamedBin> all;
   for (const auto& e : events)
     for (const auto& c : e.channels) {
       if (!c.judged) continue;
-      const auto add = [&](const std::string& where, const MapCell& cell) {
-        if (!cell.empty()) all.push_back({&e, &c, where, &cell});
+      const auto add = [&](const std::string& where, const TimeFrequencyBin& bin) {
+        if (!bin.empty()) all.push_back({&e, &c, where, &bin});
       };
       add("over the whole record", c.map.whole);
       for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
@@ -40,23 +40,23 @@ std::vector<NamedCell> all_cells(const std::vector<EventComparison>& events) {
 
 /// Returns whether noise alone may exceed the channel's nominal value in the bin, so that it has no
 /// information.
-bool is_uninformative(const NamedCell& named) { return !(named.cell->allowed() <= named.channel->size); }
+bool is_uninformative(const NamedBin& named) { return !(named.bin->allowed() <= named.channel->size); }
 
 /// Sentence about the bin with the largest ratio of noise to nominal value.
-std::string vague_sentence(const std::vector<NamedCell>& cells, int vague) {
-  const auto share = [](const NamedCell& n) { return n.cell->allowed() / n.channel->size; };
+std::string vague_sentence(const std::vector<NamedBin>& bins, int vague) {
+  const auto share = [](const NamedBin& n) { return n.bin->allowed() / n.channel->size; };
   constexpr double kNoSize = 10;  // largest ratio shown as a number; above it the model is clearly unstable
-  const NamedCell& most = *std::ranges::max_element(cells, {}, share);
+  const NamedBin& most = *std::ranges::max_element(bins, {}, share);
   const std::string by =
       share(most) < kNoSize
           ? fmt::format("{:.3g} {}, {:.3g} times the nominal value",
-                        most.cell->allowed() * most.channel->scale, most.channel->unit, share(most))
+                        most.bin->allowed() * most.channel->scale, most.channel->unit, share(most))
           : fmt::format("more than {:g} times the nominal value", kNoSize);
   return fmt::format(
       "Undecided: the model is unstable in this playback. In {} of {} time/frequency bins the "
       "voltage noise alone may change the response by more than its nominal value ({} {}: by "
       "{}). Check the damping, the time constants and the order of the reactances.",
-      vague, cells.size(), most.channel->name, most.where, by);
+      vague, bins.size(), most.channel->name, most.where, by);
 }
 
 }  // namespace
@@ -68,32 +68,32 @@ Adequacy judge(std::vector<EventComparison>& events) {
       if (c.judged) maps.push_back(&c.map);
   set_bounds(maps, thresholds::adequacy.false_alarm);
   Adequacy a;
-  const NamedCell* worst = nullptr;
-  const auto cells = all_cells(events);
-  for (const auto& named : cells) {
-    ++a.cells;
-    a.exceeding += named.cell->exceeds() ? 1 : 0;
+  const NamedBin* worst = nullptr;
+  const auto bins = all_bins(events);
+  for (const auto& named : bins) {
+    ++a.bins;
+    a.exceeding += named.bin->exceeds() ? 1 : 0;
     a.vague += is_uninformative(named) ? 1 : 0;
-    if (!worst || named.cell->normalised / named.cell->bound > worst->cell->normalised / worst->cell->bound)
+    if (!worst || named.bin->normalised / named.bin->bound > worst->bin->normalised / worst->bin->bound)
       worst = &named;
   }
-  a.ruling = thresholds::judged_by_cells(a.exceeding + a.vague, a.cells);
+  a.ruling = thresholds::judged_by_bins(a.exceeding + a.vague, a.bins);
   a.adequate = a.ruling.adequate;
   if (a.vague > 0) {
-    a.sentence = vague_sentence(cells, a.vague);
+    a.sentence = vague_sentence(bins, a.vague);
     return a;
   }
-  a.sentence =
-      a.adequate ? fmt::format("Adequate: each of {} time/frequency bins is within the noise limit", a.cells)
-                 : fmt::format("Not adequate: {} of {} time/frequency bins exceed the noise limit",
-                               a.exceeding, a.cells);
+  a.sentence = a.adequate
+                   ? fmt::format("Adequate: each of {} time/frequency bins is within the noise limit", a.bins)
+                   : fmt::format("Not adequate: {} of {} time/frequency bins exceed the noise limit",
+                                 a.exceeding, a.bins);
   a.sentence += fmt::format(" (joint {:g} % level).", 100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
     a.sentence += fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
                               a.adequate ? "Nearest to its bound" : "Largest violation", worst->channel->name,
                               worst->where, worst->event->record.name,
-                              worst->cell->rms * worst->channel->scale, worst->channel->unit,
-                              times_noise(worst->cell->normalised), times_noise(worst->cell->bound));
+                              worst->bin->rms * worst->channel->scale, worst->channel->unit,
+                              times_noise(worst->bin->normalised), times_noise(worst->bin->bound));
   return a;
 }
 

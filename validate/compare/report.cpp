@@ -135,7 +135,7 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
       {"fitness", fitness_json(fitness)},
       {"verdict", adequacy.sentence},
       {"adequacy", thresholds::ruling_json(adequacy.ruling)},
-      {"cells", adequacy.cells},
+      {"cells", adequacy.bins},
       {"cells_exceeding", adequacy.exceeding},
       {"cells_telling_nothing", adequacy.vague},
       {"false_alarm_probability", thresholds::adequacy.false_alarm.value},

@@ -194,7 +194,7 @@ std::string system_json(const SystemCase& s, const SystemComparison& c, const re
             {"verdict", c.adequacy.sentence},
             {"adequacy", thresholds::ruling_json(c.adequacy.ruling)},
             {"culprit", c.culprit},
-            {"cells", c.adequacy.cells},
+            {"cells", c.adequacy.bins},
             {"cells_exceeding", c.adequacy.exceeding},
             {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
             {"event", event_lines(s.texts)},

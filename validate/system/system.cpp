@@ -181,15 +181,15 @@ class Comparer {
 };
 
 /// Returns the bin with the largest normalised RMS / bound: the ratio and the bin's name.
-std::pair<double, std::string> worst_cell(const compare::EventComparison& e) {
+std::pair<double, std::string> worst_bin(const compare::EventComparison& e) {
   double worst = 0;
   std::string where;
   const auto look = [&](const compare::ChannelComparison& c, const std::string& place,
-                        const compare::MapCell& cell) {
-    if (cell.empty() || !(cell.normalised / cell.bound > worst)) return;
-    worst = cell.normalised / cell.bound;
-    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(cell.normalised),
-                        cell.rms * c.scale, c.unit);
+                        const compare::TimeFrequencyBin& bin) {
+    if (bin.empty() || !(bin.normalised / bin.bound > worst)) return;
+    worst = bin.normalised / bin.bound;
+    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(bin.normalised),
+                        bin.rms * c.scale, c.unit);
   };
   for (const auto& c : e.channels) {
     if (!c.judged) continue;
@@ -223,7 +223,7 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
     std::vector<compare::EventComparison> one = {compare::compare_event(model, std::move(record))};
     one.front().record.name = t.name;
     rank.alone = compare::judge(one);
-    std::tie(rank.alone_worst, rank.alone_where) = worst_cell(one.front());
+    std::tie(rank.alone_worst, rank.alone_where) = worst_bin(one.front());
   } catch (const InputError& error) {
     rank.alone_where = "playback failed: " + error.problems().front().sentence();
     c.terminals[rank.terminal].notes.push_back("Record alone: " + rank.alone_where);
@@ -236,7 +236,7 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
   for (std::size_t i = 0; i < c.terminals.size(); ++i) {
     TerminalRank r;
     r.terminal = i;
-    std::tie(r.worst, r.where) = worst_cell(c.terminals[i]);
+    std::tie(r.worst, r.where) = worst_bin(c.terminals[i]);
     if (s.terminals[i].plant >= 0) play_alone(s, c, r);
     c.ranking.push_back(std::move(r));
   }

@@ -23,8 +23,8 @@ const CriterionRecord& criterion_record(Criterion criterion) {
   return records[static_cast<std::size_t>(criterion)];
 }
 
-Ruling judged_by_cells(int exceeding, int cells) {
-  return {Criterion::cells, exceeding == 0, static_cast<double>(exceeding), 0, fmt::format("of {}", cells)};
+Ruling judged_by_bins(int exceeding, int bins) {
+  return {Criterion::bins, exceeding == 0, static_cast<double>(exceeding), 0, fmt::format("of {}", bins)};
 }
 
 double event_limit(double standard_deviation, double least) {

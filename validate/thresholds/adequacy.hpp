@@ -19,7 +19,7 @@ namespace swingbank::validate::thresholds {
 
 /// Criterion of a verdict.
 enum class Criterion {
-  cells,         ///< compare: no bin of the error maps exceeds its limit
+  bins,          ///< compare: no bin of the error maps exceeds its limit
   events,        ///< calibrate, add: no event's reduced chi-square exceeds its limit
   reduced_chi2,  ///< diagnose: reduced chi-square over all events
   slow,          ///< diagnose: slow remainder of the residual
@@ -46,8 +46,8 @@ struct Ruling {
   std::string where = {};                  ///< record, bin or input; empty: all together
 };
 
-/// Returns the ruling by the error maps' bins: `exceeding` of `cells` exceed their limits.
-Ruling judged_by_cells(int exceeding, int cells);
+/// Returns the ruling by the error maps' bins: `exceeding` of `bins` exceed their limits.
+Ruling judged_by_bins(int exceeding, int bins);
 
 /// Returns whether an event's reduced chi-square is within its limit.
 inline bool within_limit(double reduced_chi2, double limit) { return reduced_chi2 <= limit; }

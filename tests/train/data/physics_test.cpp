@@ -29,13 +29,13 @@ TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
   constexpr std::size_t samples = 720;
   const Physics physics(kNames, {rate, 0.5, 6.0, 1.0, X});
   ASSERT_EQ(physics.channels(), 12u);
-  std::vector<float> out(physics.channels() * physics.cells() + physics.levels());
+  std::vector<float> out(physics.channels() * physics.bins() + physics.levels());
   const auto in = record(rate, samples);
   physics.apply(in.data(), samples, out.data());
   // the bin that begins at 2.0 s has 1/30 s; the one before it a single sample
   const std::size_t at = 180;
-  const auto value = [&](std::size_t channel, std::size_t cell) {
-    return out[channel * physics.cells() + cell];
+  const auto value = [&](std::size_t channel, std::size_t bin) {
+    return out[channel * physics.bins() + bin];
   };
   const double t = 1.0 + 1.5 / rate;  // middle of the four samples, after the event
   const double P = 0.8 + 0.3 * t, V = 1.0 - 0.1 * t, Q = 0.2;
@@ -62,7 +62,7 @@ TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
 TEST(Physics, CoarsensAfterTheEventAndEndsInsideTheWindow) {
   const Physics physics(kNames, {120, 0.5, 10.0, 1.0, 0.3});
   // 0.5 to 2 s sample by sample, to 6 s in thirtieths, to 10 s in fifteenths
-  EXPECT_EQ(physics.cells(), 180u + 120u + 60u);
+  EXPECT_EQ(physics.bins(), 180u + 120u + 60u);
   EXPECT_EQ(physics.samples(), 1200u);
 }
 

@@ -23,15 +23,15 @@ constexpr double kFineRate = 480;
 constexpr int kCopies = 34;  // of 18 parameters each: 612 intervals
 
 /// Instrument properties of one test condition.
-struct Cell {
+struct Condition {
   double magnitude;  ///< noise of |V| and |I| [% of themselves]
   double angle;      ///< noise of either angle [degrees]
   int rate;          ///< records per second
 };
 
 /// Prints a condition in GoogleTest's messages.
-void PrintTo(const Cell& cell, std::ostream* out) {
-  *out << fmt::format("{} % {} degrees {}/s", cell.magnitude, cell.angle, cell.rate);
+void PrintTo(const Condition& condition, std::ostream* out) {
+  *out << fmt::format("{} % {} degrees {}/s", condition.magnitude, condition.angle, condition.rate);
 }
 
 /// Three faults at generator 2 of IEEE 14, finely sampled, behind a class P filter.
@@ -59,10 +59,10 @@ struct Filtered {
     truth.plant.measurements = filter;
   }
   /// Returns the events as the instruments of a condition record them.
-  [[nodiscard]] std::vector<record::Record> recorded(const Cell& cell, unsigned seed) const {
+  [[nodiscard]] std::vector<record::Record> recorded(const Condition& condition, unsigned seed) const {
     std::mt19937_64 generator(seed);
     std::normal_distribution<double> normal;
-    const double relative = cell.magnitude / 100, turned = cell.angle * constants::turn / 360;
+    const double relative = condition.magnitude / 100, turned = condition.angle * constants::turn / 360;
     const auto noisy = [&](Complex phasor) {
       const double size = 1 + relative * normal(generator);
       return phasor * std::polar(size, turned * normal(generator));
@@ -72,7 +72,7 @@ struct Filtered {
       record::Record seen;
       seen.name = r.name;
       seen.base = r.base;
-      for (std::size_t k = 0; k < r.t.size(); k += static_cast<std::size_t>(kFineRate / cell.rate)) {
+      for (std::size_t k = 0; k < r.t.size(); k += static_cast<std::size_t>(kFineRate / condition.rate)) {
         const Complex exact = std::polar(r.V[k], r.theta[k]);
         const Complex current = noisy(std::conj(Complex(r.P[k], r.Q[k]) / exact));
         const Complex V = noisy(exact), S = V * std::conj(current);
@@ -135,7 +135,7 @@ TEST(CoverageFull, AcceptsRightModelWithNoiseOfTheAngle) {
   EXPECT_GT(c.voltage_noise, 0.9);
 }
 
-class CoverageNightly : public ::testing::TestWithParam<Cell> {};
+class CoverageNightly : public ::testing::TestWithParam<Condition> {};
 
 TEST_P(CoverageNightly, IntervalsContainTheTruth) {
   static const Filtered events;
@@ -160,11 +160,11 @@ TEST_P(CoverageNightly, IntervalsContainTheTruth) {
       by_parameter[std::string(p.fit.name)] += inside;
     }
   }
-  const Cell& cell = GetParam();
+  const Condition& condition = GetParam();
   std::string text;
   for (const auto& [name, count] : by_parameter) text += fmt::format(" {} {}", name, count);
-  fmt::print("| {} | {} | {} | {} of {} | {:.1f} % | {} of {} |{}\n", cell.magnitude, cell.angle, cell.rate,
-             covered, tries, 100.0 * covered / tries, adequate, kCopies, text);
+  fmt::print("| {} | {} | {} | {} of {} | {:.1f} % | {} of {} |{}\n", condition.magnitude, condition.angle,
+             condition.rate, covered, tries, 100.0 * covered / tries, adequate, kCopies, text);
   for (const Calibration& c : all)
     if (c.adequacy == Adequacy::structure_poor)
       for (const auto& e : c.events)
@@ -178,11 +178,12 @@ TEST_P(CoverageNightly, IntervalsContainTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNightly,
-                         ::testing::Values(Cell{0.02, 0.02, 30}, Cell{0.02, 0.1, 30}, Cell{0.1, 0.02, 30},
-                                           Cell{0.1, 0.1, 30}, Cell{0.1, 0.1, 60}, Cell{0.02, 0.02, 120},
-                                           Cell{0.1, 0.1, 120}),
+                         ::testing::Values(Condition{0.02, 0.02, 30}, Condition{0.02, 0.1, 30},
+                                           Condition{0.1, 0.02, 30}, Condition{0.1, 0.1, 30},
+                                           Condition{0.1, 0.1, 60}, Condition{0.02, 0.02, 120},
+                                           Condition{0.1, 0.1, 120}),
                          [](const auto& which) {
-                           const Cell& c = which.param;
+                           const Condition& c = which.param;
                            return fmt::format("V{}Angle{}At{}",
                                               static_cast<int>(std::lround(1000 * c.magnitude)),
                                               static_cast<int>(std::lround(1000 * c.angle)), c.rate);

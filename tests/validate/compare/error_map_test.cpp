@@ -73,9 +73,9 @@ void expect_unit(double colour, bool estimated) {
     const ErrorMap map = error_map(t, x, w, model);
     for (std::size_t i = 0; i < 5; ++i)
       for (std::size_t b = 0; b < 5; ++b) {
-        const MapCell& cell = b == 4 ? map.rows[i].all : map.rows[i].bands[b];
-        values[i][b] = cell.values;
-        if (!cell.empty()) sum[i][b] += cell.normalised * cell.normalised / kDraws;
+        const TimeFrequencyBin& bin = b == 4 ? map.rows[i].all : map.rows[i].bands[b];
+        values[i][b] = bin.values;
+        if (!bin.empty()) sum[i][b] += bin.normalised * bin.normalised / kDraws;
       }
   }
   for (std::size_t i = 0; i < 5; ++i)
@@ -171,7 +171,7 @@ TEST(NoiseBoundTest, NoiseAloneStaysBelowAllBounds) {
     bool any = map.whole.exceeds();
     for (const auto& row : map.rows) {
       any = any || row.all.exceeds();
-      for (const auto& cell : row.bands) any = any || cell.exceeds();
+      for (const auto& bin : row.bands) any = any || bin.exceeds();
     }
     above += any;
   }

@@ -15,10 +15,10 @@ struct Event {
 };
 
 TEST(Adequacy, OneBinBeyondItsBoundIsEnough) {
-  EXPECT_TRUE(judged_by_cells(0, 405).adequate);
-  const Ruling one = judged_by_cells(1, 405);
+  EXPECT_TRUE(judged_by_bins(0, 405).adequate);
+  const Ruling one = judged_by_bins(1, 405);
   EXPECT_FALSE(one.adequate);
-  EXPECT_EQ(one.by, Criterion::cells);
+  EXPECT_EQ(one.by, Criterion::bins);
   EXPECT_DOUBLE_EQ(one.value, 1);
   EXPECT_EQ(one.where, "of 405");
 }
