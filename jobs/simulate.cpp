@@ -272,9 +272,9 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   grid::CaseOptions all;
   all.dyr = models;
   all.raw = {o.frequency_hz, o.raw_version};
-  all.raw.devices = o.devices == "none"   ? network::StandIn::none
-                    : o.devices == "file" ? network::StandIn::file
-                                          : network::StandIn::checked;
+  all.raw.devices = o.devices == "none"   ? network::DeviceReplacement::none
+                    : o.devices == "file" ? network::DeviceReplacement::file
+                                          : network::DeviceReplacement::checked;
   all.complete_records = o.complete_records == "zero"       ? grid::Lacking::zero
                          : o.complete_records == "standard" ? grid::Lacking::standard
                                                             : grid::Lacking::refused;

@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 namespace {
 sim::grid::CaseOptions case_options(const DatasetConfig& config) {
   using sim::grid::Lacking;
-  using sim::network::StandIn;
+  using sim::network::DeviceReplacement;
   const CaseConfig& mend = config.mend;
   sim::grid::CaseOptions options;
   options.dyr = config.models;
   options.raw = {config.frequency_hz, mend.raw_version};
-  options.raw.devices = mend.devices == "none"   ? StandIn::none
-                        : mend.devices == "file" ? StandIn::file
-                                                 : StandIn::checked;
+  options.raw.devices = mend.devices == "none"   ? DeviceReplacement::none
+                        : mend.devices == "file" ? DeviceReplacement::file
+                                                 : DeviceReplacement::checked;
   options.net_generators = mend.net_generators;
   options.complete_records = mend.complete_records == "zero"       ? Lacking::zero
                              : mend.complete_records == "standard" ? Lacking::standard

@@ -204,7 +204,7 @@ void EpcReader::finish() {
   if (!problems_.empty()) return;
   if (!devices_.empty() || !identities_.kept().empty()) network::settle_stars(network_, stars_);
   network::settle_duplicates(network_, identities_.kept(), options_.repeated == Repeated::voltages, devices_);
-  network::stand_in(network_, devices_, options_.devices, problems_);
+  network::replace_devices(network_, devices_, options_.devices, problems_);
   network::settle_generators(network_, [&](std::size_t i) { return place(generator_line_[i]); });
   network::settle_islands(network_);
 }

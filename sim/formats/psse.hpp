@@ -22,8 +22,8 @@ enum class Repeated {
 
 /// Options for data that a .raw does not determine.
 struct RawOptions {
-  /// Equipment without a model; network::stand_in.
-  network::StandIn devices = network::StandIn::checked;
+  /// Equipment without a model; network::replace_devices.
+  network::DeviceReplacement devices = network::DeviceReplacement::checked;
   std::optional<double> frequency_hz = {};  ///< frequency if BASFRQ is missing [Hz]
   bool needs_frequency = true;              ///< false: a file without a frequency is accepted; do not use it
   int version = 0;                          ///< version if REV is missing; 0: not given

@@ -72,17 +72,17 @@ class Widener {
  private:
   static constexpr double kAllOpen = 100.0;  ///< [pu] more than any operating point requires
   double& value(const Limit& l) { return plant_.controls[l.block].p[l.parameter]; }
-  bool stands() { return hindrances(grid_, plant_).empty(); }
+  bool is_feasible() { return hindrances(grid_, plant_).empty(); }
   /// Restores a limit to its given value, or to the nearest value with a feasible operating point.
   void narrow(const Limit& l) {
     double near = 0.0, far = kAllOpen;
     value(l) = l.given;
-    if (stands()) return;
+    if (is_feasible()) return;
     constexpr double fine = 1e-9;  // [pu]
     while (far - near > fine) {
       const double middle = 0.5 * (near + far);
       value(l) = l.given + l.way * middle;
-      (stands() ? far : near) = middle;
+      (is_feasible() ? far : near) = middle;
     }
     value(l) = l.given + l.way * far;
     const plant::Block& block = plant_.controls[l.block];

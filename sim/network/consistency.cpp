@@ -205,16 +205,18 @@ std::string mva(const Network& n, double value) {
 
 /// Decides on generators at load buses by the file's voltages.
 void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>& where) {
-  const auto stands = [&](const Generator& g) { return g.in_service && at(n, g.bus).type == BusType::load; };
-  if (std::ranges::none_of(n.generators, stands)) return;
+  const auto at_load_bus = [&](const Generator& g) {
+    return g.in_service && at(n, g.bus).type == BusType::load;
+  };
+  if (std::ranges::none_of(n.generators, at_load_bus)) return;
   std::vector<int> pool;
   const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
   std::map<int, Complex> given;
   for (const Generator& g : n.generators)
-    if (stands(g)) given[g.bus] += Complex(g.p, g.q);
+    if (at_load_bus(g)) given[g.bus] += Complex(g.p, g.q);
   for (std::size_t i = 0; i < n.generators.size(); ++i) {
     Generator& g = n.generators[i];
-    if (!stands(g)) continue;
+    if (!at_load_bus(g)) continue;
     const Complex with = left[static_cast<std::size_t>(g.bus)], without = with + given[g.bus];
     const bool shown = std::abs(with) < std::abs(without);
     n.remark(shown ? "generators at a bus of type 1 deliver their P and Q, as the file's voltages show"
@@ -363,7 +365,8 @@ std::string power_text(Complex s, double base) {
 
 }  // namespace
 
-void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Problems& problems) {
+void replace_devices(Network& n, const std::vector<Device>& devices, DeviceReplacement how,
+                     Problems& problems) {
   std::map<int, std::string> at_bus;
   std::string where;
   for (const Device& d : devices)
@@ -374,7 +377,7 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
       if (where.empty()) where = d.where;
     }
   if (at_bus.empty() || !problems.empty()) return;
-  if (how == StandIn::none) {
+  if (how == DeviceReplacement::none) {
     for (const auto& [b, names] : at_bus)
       n.remark("equipment without a model here is left out, as asked",
                names + " at bus " + std::to_string(at(n, b).number));
@@ -389,7 +392,7 @@ void stand_in(Network& n, const std::vector<Device>& devices, StandIn how, Probl
   const auto [worst, bus] = worst_elsewhere(n, left, pool, sharing);
   const bool finite = std::ranges::all_of(
       left, [](const Complex& c) { return std::isfinite(c.real()) && std::isfinite(c.imag()); });
-  if (!finite || (worst > most && how == StandIn::checked)) {
+  if (!finite || (worst > most && how == DeviceReplacement::checked)) {
     problems.add(at_bus.begin()->second + " without a model here", where,
                  "the file's voltages would say what it draws, but they are no solution: they leave " +
                      pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),

@@ -50,14 +50,15 @@ struct Device {
   std::vector<double> scheduled{};  ///< scheduled consumption [pu] at each; NaN: unknown
 };
 /// Replacement of equipment without a model.
-enum class StandIn {
+enum class DeviceReplacement {
   checked,  ///< loads computed from the file's voltages; a problem if these are no solution at the other
             ///< buses
   file,     ///< the same without that check
   none      ///< no replacement
 };
 /// Replaces devices by loads, with a remark. Errors are added to `problems`.
-void stand_in(Network& network, const std::vector<Device>& devices, StandIn how, Problems& problems);
+void replace_devices(Network& network, const std::vector<Device>& devices, DeviceReplacement how,
+                     Problems& problems);
 /// Adds a problem for each item with a number that is not finite, a quotient of extreme values. `file`: for
 /// messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);

@@ -55,7 +55,7 @@ class Initialiser {
       for (std::size_t i = 1; i < places_.size(); ++i) held(steady(places_[i]), places_[i]);
     problems_.raise();
     within_limits();
-    standing();
+    check_steady();
     problems_.raise();
     return std::move(o_);
   }
@@ -171,7 +171,7 @@ class Initialiser {
       }
   }
   /// Checks that the controls' Efd and Tm equal the machine's, and that every derivative is zero.
-  void standing() {
+  void check_steady() {
     std::vector<T> dx(o_.x.size(), T(0.0));
     Signals<T> s = o_.s;
     s.Efd = o_.Efd;

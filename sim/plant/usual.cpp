@@ -13,7 +13,7 @@ std::string with_unit(std::string number, std::string_view unit) {
   return number;
 }
 /// Whether a value means "none": 99, 999, -9999, ... are common codes for "no limit" or "no such block".
-bool stands_for_none(double value) {
+bool means_none(double value) {
   double nines = 99.0;
   for (int digits = 2; digits < 8; ++digits, nines = 10 * nines + 9)
     if (std::abs(value) == nines) return true;
@@ -29,7 +29,7 @@ std::vector<int> unusual(const Block& block) {
   std::vector<int> list;
   for (std::size_t i = 0; i < block.p.size(); ++i)
     if (const Parameter& p = block.effect->parameters[i];
-        !(block.p[i] >= p.low && block.p[i] <= p.high) && !stands_for_none(block.p[i]))
+        !(block.p[i] >= p.low && block.p[i] <= p.high) && !means_none(block.p[i]))
       list.push_back(static_cast<int>(i));
   return list;
 }

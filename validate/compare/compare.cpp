@@ -405,7 +405,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
       if (EventComparison other = fitted_with(how); explained(other)) return other;
     }
-    return fitted_with(Fitted::start_stands);
+    return fitted_with(Fitted::steady_start);
   };
   if (!e.record.breaker() && step_shape == event::StepShape::filtered &&
       options.input == PlaybackInput::voltage) {

@@ -184,7 +184,7 @@ MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& t
 namespace {
 
 /// A unit behind the point, with the record prepared for its model.
-struct Standing {
+struct PreparedUnit {
   sim::plant::PlantUnderTest tested;
   Complex start;  ///< P and Q before the event [pu on the record's base]
   WhitenedEvents events;
@@ -208,20 +208,21 @@ FitEventOptions of_all(double mva) {
 }
 
 /// Prepares a unit whose operating point is P + jQ = `start`, a part of the whole power `seen`.
-Standing standing(const plant::PlantModel& model, const record::Record& seen, double mva, Complex start) {
+PreparedUnit prepare_unit(const plant::PlantModel& model, const record::Record& seen, double mva,
+                          Complex start) {
   FitEventOptions options = of_all(mva);
   options.start = start;
   return {model.under_test(), start, prepare_events(model, {seen}, options)};
 }
 
 /// Returns the residual of measured P and Q minus those of all units, until shortly after the switchings.
-Eigen::VectorXd left_over(const std::vector<Standing>& units, const record::Record& whole,
+Eigen::VectorXd left_over(const std::vector<PreparedUnit>& units, const record::Record& whole,
                           const EventState& state) {
   constexpr double kAfter = 0.5;  // [s]; later the models matter more than the switching times
   const FitEvent& event = units[0].events[0];
   const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
   std::vector<playin::Response> responses;
-  for (const Standing& unit : units) responses.push_back(unit.response(state, how));
+  for (const PreparedUnit& unit : units) responses.push_back(unit.response(state, how));
   Eigen::VectorXd left = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(whole.t.size()));
   for (std::size_t k = 0; k < whole.t.size() && whole.t[k] <= how.until; ++k) {
     if (!event.compared(k)) continue;
@@ -261,7 +262,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd le
 /// Fits the switching times within their sample intervals, and the turns of an integrated angle, to the sum
 /// of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of several
 /// per cent of the units' power during a fault.
-EventState fit_switching_times(const std::vector<Standing>& units, const record::Record& whole) {
+EventState fit_switching_times(const std::vector<PreparedUnit>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
   constexpr double kAside = 0.02,
                    kPointSettled = 1e-4;  // fraction of the half interval, or of the largest turn
@@ -327,15 +328,15 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   const Complex whole = mean_power(seen, samples_before_event(seen, of_all(mva)));
   const std::vector<plant::PlantModel> models =
       models_at(point);  // must outlive the units, which refer to them
-  std::vector<Standing> units;
+  std::vector<PreparedUnit> units;
   Complex others = 0;
   for (std::size_t k = 0; k < point.others.size(); ++k) {
     const OtherUnit& unit = point.others[k];
     const Complex start = unit.share > 0 ? unit.share * whole : Complex(unit.P, unit.Q) / record.base.mva;
-    units.push_back(standing(models[k], seen, mva, start));
+    units.push_back(prepare_unit(models[k], seen, mva, start));
     others += start;
   }
-  units.push_back(standing(models.back(), seen, mva, whole - others));
+  units.push_back(prepare_unit(models.back(), seen, mva, whole - others));
   EventState state;
   if (!units[0].events[0].switchings.empty()) state = fit_switching_times(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {

@@ -200,7 +200,7 @@ class Search {
       problem_->SetParameterLowerBound(states_[e].data(), static_cast<int>(k), -bound);
       problem_->SetParameterUpperBound(states_[e].data(), static_cast<int>(k), bound);
     }
-    for (int k = 0; options_.start_stands && k < kStates; ++k)
+    for (int k = 0; options_.steady_start && k < kStates; ++k)
       fixed.push_back(static_cast<int>(switching_numbers(event)) + k);
     bounds_->fix(states_[e].data(), fixed);
   }

@@ -132,7 +132,7 @@ struct FitOptions {
   /// The fit is compared only with other brief fits. A lenient fit then keeps the response of its own search
   /// instead of computing it without the allowance.
   bool brief = false;
-  bool start_stands = false;           ///< every event starts in its pre-event steady state
+  bool steady_start = false;           ///< every event starts in its pre-event steady state
   double enough = 1e-5;                ///< relative change of the cost that ends the fit
   std::vector<EventState> start = {};  ///< start values of the event states; empty: as prepared
   std::vector<double> values = {};     ///< start values of the free parameters; empty: the plant's

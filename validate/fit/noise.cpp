@@ -364,7 +364,7 @@ event::FitEvent at_rest(const event::FitEvent& like, double seconds) {
   r.V.assign(samples, std::abs(like.start.voltage));
   r.theta.assign(samples, std::arg(like.start.voltage));
   for (auto* channel : {&r.P, &r.Q, &r.speed, &r.Efd, &r.Ifd}) channel->assign(samples, 0.0);
-  if (r.component != record::Component::plant) playin::stand_still(r, like.start);
+  if (r.component != record::Component::plant) playin::set_to_initial(r, like.start);
   for (record::StagedEvent& e : r.staged) e.time = std::numeric_limits<double>::infinity();
   event.switchings.clear();
   event.filtered_samples.clear();

@@ -84,7 +84,7 @@ constexpr Probe kProbes[] = {
 /// InputError if it has no steady state.
 std::vector<std::string> used_signals(const sim::plant::PlantUnderTest& part, double Efd, double Tm) {
   auto p = sim::plant::block_parameters(part.plant);
-  p.front() = recorded::standing<double>(Efd, Efd, Tm);
+  p.front() = recorded::operating_parameters<double>(Efd, Efd, Tm);
   const auto at = sim::plant::operating_point_of<double>(part.plant, p, 1.0, 0.6, 0.2, part.conventions);
   const sim::plant::PlantEquations<double> equations(part.plant);
   const auto derivatives = [&](const Probe* probe, double by) {

@@ -55,7 +55,7 @@ record::Record packed(const record::Record& r, const Source& a, const Source* b)
 
 Given::Given(const record::Record& played, const std::vector<Switching>& switchings,
              const OperatingPoint& start)
-    : before_(standing(start)) {
+    : before_(steady_values(start)) {
   auto plain = switchings;
   for (Switching& s : plain) s.has_before = s.has_after = false;  // these are one-sided voltages
   const std::vector<Source> all = sources(played, start);
@@ -90,7 +90,7 @@ std::vector<Switching> breaker_times(const record::Record& record, const std::ve
   return {{.time = breaker.time, .uncertainty = record.step()}};
 }
 
-void stand_still(record::Record& r, const OperatingPoint& start) {
+void set_to_initial(record::Record& r, const OperatingPoint& start) {
   const std::pair<std::vector<double>*, double> all[] = {
       {&r.P, start.P},       {&r.Q, start.Q},     {&r.speed, start.speed}, {&r.f, start.speed},
       {&r.Efd, start.Efd},   {&r.Ifd, start.Ifd}, {&r.Vs, start.Vs},       {&r.Vref, start.Vref},
@@ -104,7 +104,7 @@ std::optional<Given> given_of(const record::Record& record, const std::vector<Sw
   return Given(record, switchings, start);
 }
 
-Given::At Given::standing(const OperatingPoint& start) {
+Given::At Given::steady_values(const OperatingPoint& start) {
   At at;
   at.P = start.P;
   at.Q = start.Q;

@@ -21,7 +21,7 @@ class Given {
   /// Returns the signals at t [s] in a segment of the voltage curve.
   [[nodiscard]] At operator()(int segment, double t) const;
   /// Returns the steady-state values before the event.
-  static At standing(const OperatingPoint& start);
+  static At steady_values(const OperatingPoint& start);
 
  private:
   struct Pair {
@@ -42,7 +42,7 @@ inline bool is_part(const record::Record& r) {
 std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found);
 constexpr double kNearBreaker = 0.2;  ///< [s]
 /// Sets every input and every compared channel of a component to its initial value.
-void stand_still(record::Record& record, const OperatingPoint& start);
+void set_to_initial(record::Record& record, const OperatingPoint& start);
 /// Returns the inputs of the record's component; none if the whole plant is tested.
 std::optional<Given> given_of(const record::Record& record, const std::vector<Switching>& switchings,
                               const OperatingPoint& start);

@@ -17,7 +17,7 @@ constexpr int kFine = 8;
 constexpr double kMove = 1e-5;
 
 /// Gain of the chain of instruments for constant phasors.
-struct Standing {
+struct SteadyGain {
   Complex V = 1, I = 1;
 };
 
@@ -28,7 +28,7 @@ sim::Phasors phasors(const std::vector<Complex>& V, const std::vector<double>& P
   return p;
 }
 
-Standing standing(const std::vector<sim::plant::Block>& chain, double rate, double frequency) {
+SteadyGain steady_gain(const std::vector<sim::plant::Block>& chain, double rate, double frequency) {
   const auto beside = static_cast<std::size_t>(std::ceil(sim::plant::memory(chain) * rate)) + 2;
   const std::vector<Complex> one(2 * beside + 1, 1.0);
   sim::Phasors p{rate, frequency, one, one, std::vector<double>(one.size(), 0.0)};
@@ -66,7 +66,7 @@ class Observed {
       : run_(run), chain_(run.plant->measurements), inner_(run), parameters_(parameters) {
     const record::Record& r = *run.record;
     const double rate = 1 / r.step(), frequency = run.conventions.frequency;
-    const Standing gain = gain_ = standing(chain_, rate, frequency);
+    const SteadyGain gain = gain_ = steady_gain(chain_, rate, frequency);
     back_ = 1.0 / (gain.V * std::conj(gain.I));
     inner_.voltage_factor = run.voltage_factor / gain.V;
     inner_.start.voltage = run.start.voltage / gain.V;
@@ -116,7 +116,7 @@ class Observed {
     sim::plant::Plant above = *run_.plant, below = above;
     sim::plant::parameter_value(above, d.parameter) += move;
     sim::plant::parameter_value(below, d.parameter) -= move;
-    if (!(stands_as_before(above) && stands_as_before(below))) return along_both(d, above, below, move);
+    if (!(has_same_gain(above) && has_same_gain(below))) return along_both(d, above, below, move);
     const Power more = measured(above.measurements, shown_, stride_),
                 less = measured(below.measurements, shown_, stride_);
     Response::Sensitivity sensitivity;
@@ -130,8 +130,9 @@ class Observed {
 
  private:
   [[nodiscard]] double fine_rate() const { return static_cast<double>(stride_) / run_.record->step(); }
-  [[nodiscard]] bool stands_as_before(const sim::plant::Plant& moved) const {
-    const Standing gain = standing(moved.measurements, 1 / run_.record->step(), run_.conventions.frequency);
+  [[nodiscard]] bool has_same_gain(const sim::plant::Plant& moved) const {
+    const SteadyGain gain =
+        steady_gain(moved.measurements, 1 / run_.record->step(), run_.conventions.frequency);
     return gain.V == gain_.V && gain.I == gain_.I &&
            (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
   }
@@ -183,7 +184,7 @@ class Observed {
   PlaybackRun inner_;
   std::span<const SensitivityParameter> parameters_;
   record::Record fine_;
-  Standing gain_;
+  SteadyGain gain_;
   sim::Phasors shown_;  ///< inputs of the chain
   Complex back_ = 1;    ///< ratio of power in the plant to measured power, for constant phasors
   std::size_t stride_ = 1;

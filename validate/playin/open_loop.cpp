@@ -61,7 +61,7 @@ class BlockLanes {
     scratch_.resize(static_cast<std::size_t>(equations_.scratch()));
     for (std::size_t lane = 0; lane < plants.size(); ++lane) {
       auto p = sim::plant::block_parameters(plants[lane]);
-      p.front() = recorded::standing<double>(start.Efd, start.Ifd, start.Tm);
+      p.front() = recorded::operating_parameters<double>(start.Efd, start.Ifd, start.Tm);
       try {
         const auto at = sim::plant::operating_point_of<double>(plants[lane], p, start.V, P, Q, conventions);
         if (c_.empty()) {
@@ -221,7 +221,7 @@ double rounded(double h) { return static_cast<double>(static_cast<float>(h)); }
 }  // namespace
 
 OpenLoop::OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::Conventions& conventions)
-    : standing_(run.standing), seen_(std::move(run.seen)), conventions_(conventions) {
+    : steady_(run.steady), seen_(std::move(run.seen)), conventions_(conventions) {
   const int segments = seen_.back().segment + 1;
   for (int s = 0; s <= segments; ++s)
     first_of_.push_back(
@@ -273,7 +273,7 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
                                                   std::numeric_limits<double>::quiet_NaN());
   for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
     const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
-    BlockLanes controls(made, some, standing_, conventions_);
+    BlockLanes controls(made, some, steady_, conventions_);
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {
       for (std::size_t lane = 0; lane < some.size(); ++lane)

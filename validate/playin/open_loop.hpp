@@ -43,7 +43,7 @@ class OpenLoop {
   };
   [[nodiscard]] Seen between(int segment, double t) const;
 
-  Seen standing_;
+  Seen steady_;
   std::vector<Seen> seen_;
   std::vector<std::size_t> first_of_;  ///< first entry of each segment in `seen_`, then the end
   sim::Conventions conventions_;

@@ -421,7 +421,7 @@ SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times) {
   PlaybackRun still = run;
   still.angle = still.speed = 0;
   still.torque = still.field = {};
-  PlaybackEquations<double> standing(still, {}), equations(run, {});
+  PlaybackEquations<double> steady(still, {}), equations(run, {});
   const std::size_t n = equations.x0.size();
   std::vector<double> x(n), dx(n);
   const auto seen = [](double t, const Side& side, const sim::Signals<double>& s) -> Seen {
@@ -430,8 +430,8 @@ SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times) {
   SeenAlong all;
   const Complex v = run.start.voltage;
   const double begin = run.record->t.front();
-  standing.evaluate_at(v.real(), v.imag(), begin, standing.x0.data(), dx.data());
-  all.standing = seen(begin, standing.side, standing.signals);
+  steady.evaluate_at(v.real(), v.imag(), begin, steady.x0.data(), dx.data());
+  all.steady = seen(begin, steady.side, steady.signals);
   const auto see = [&](double t, const Side& side, const double* states) {
     equations.side = side;
     equations.evaluate(t, states, dx.data());

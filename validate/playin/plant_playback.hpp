@@ -127,7 +127,7 @@ struct Seen {
 };
 /// Inputs of a plant's controls along a run.
 struct SeenAlong {
-  Seen standing;           ///< at the operating point, in steady state
+  Seen steady;             ///< at the operating point, in steady state
   std::vector<Seen> seen;  ///< along the run
 };
 /// Returns these inputs at every sample and integration step, on both sides of every switching time, and at

@@ -13,7 +13,7 @@ namespace {
 /// Returns the smaller distance of each step from the extrapolations of the two steps before and of the two
 /// after it [pu]. A switching step differs from both, the change next to it from one, a rotor swing from
 /// none.
-std::vector<double> standing_out(const std::vector<Complex>& step) {
+std::vector<double> extrapolation_errors(const std::vector<Complex>& step) {
   std::vector<double> out(step.size(), 0.0);
   for (std::size_t k = 2; k + 2 < step.size(); ++k)
     out[k] = std::min(std::abs(step[k] - 2.0 * step[k - 1] + step[k - 2]),
@@ -57,10 +57,10 @@ std::size_t before_power_step(const record::Record& record, std::size_t n) {
   for (std::size_t k = kSamplesBefore; k + kSamplesBeside < n; ++k) {
     const auto beside = std::span(step_height).subspan(k - kReaches, 2 * kReaches + 1);
     const auto before = std::span(step_height).first(k - kReaches);
-    const bool stands_out =
+    const bool is_peak =
         step_height[k] == std::ranges::max(beside) && step_height[k] > kOfBefore * std::ranges::max(before);
-    if (stands_out && step_height[k] > std::max(least, kErrorsOfHeight * std::sqrt(height_variance(P, k) +
-                                                                                   height_variance(Q, k))))
+    if (is_peak && step_height[k] > std::max(least, kErrorsOfHeight * std::sqrt(height_variance(P, k) +
+                                                                                height_variance(Q, k))))
       return k;
   }
   return n - 1;
@@ -81,7 +81,7 @@ Switching within_step(const record::Record& record, std::size_t k) {
 std::vector<Switching> find_isolated_steps(const record::Record& record, double threshold) {
   constexpr double kOfThreshold = 0.05, kOfAround = 5;
   constexpr std::size_t kAround = 10, kSamplesBefore = 4;  // the record may begin just before the event
-  const auto out = standing_out(voltage_steps(record));
+  const auto out = extrapolation_errors(voltage_steps(record));
   const auto is_lone = [&](std::size_t k) {
     if (out[k] <= kOfThreshold * threshold) return false;
     for (std::size_t j = k > kAround ? k - kAround : 0; j <= k + kAround; ++j)

@@ -231,9 +231,9 @@ TEST(FoundFiles, OmitsOrInfersDevicesOnRequest) {
   c.loads += "103,'2',1,1,1,90.0,0\n";
   EXPECT_THAT(sentences_of([&] { c.read(); }), HasSubstr("--devices file"));
   RawOptions options;
-  options.devices = network::StandIn::file;
+  options.devices = network::DeviceReplacement::file;
   EXPECT_EQ(parse_raw(c.text(), "case.raw", options).loads.back().kind, network::LoadKind::device);
-  options.devices = network::StandIn::none;
+  options.devices = network::DeviceReplacement::none;
   const network::Network n = parse_raw(c.text(), "case.raw", options);
   EXPECT_EQ(n.loads.size(), 2u);
   EXPECT_THAT(places(n, "left out, as asked"), ::testing::SizeIs(1));

@@ -217,7 +217,7 @@ TEST(Comments, AreIgnoredAtLineEndsAndOnTheirOwnLines) {
 TEST(DcLine, FarFromItsScheduleIsNamed) {
   RawCase c;
   RawOptions file;
-  file.devices = network::StandIn::file;
+  file.devices = network::DeviceReplacement::file;
   const auto line = [](const std::string& mode, const std::string& set) {
     return "'DC1'," + mode + ",8.0," + set + ",200.0\n102,1,20.0\n103,1,20.0\n";
   };

@@ -71,7 +71,7 @@ bool is_near_critical(const grid::Grid& grid, network::Event event, BatchOptions
 /// Returns whether the operating point is stable: a load step of 1e-4 pu for 0.2 s does not change any Efd by
 /// 0.3 pu within `seconds`. Drawn controls may be unstable (a stabiliser with input V: growth rate 30/s);
 /// rounding then determines when the run diverges.
-bool stands(const grid::Grid& grid, double seconds) {
+bool is_stable(const grid::Grid& grid, double seconds) {
   BatchOptions options;
   options.t_end = seconds;
   options.rate = 60.0;
@@ -169,7 +169,7 @@ constexpr double kLookedAt = 3.0, kLookedAtInFloat = 6.0;  // [s]
 grid::Grid drawn(const grid::Grid& plain, Draws& draws, Tally& tally, double seconds = kLookedAt) {
   while (true) {
     grid::Grid grid = test::dressed(plain, draws);
-    if (stands(grid, seconds)) {
+    if (is_stable(grid, seconds)) {
       test::add_effects(grid, tally.seen);
       return grid;
     }

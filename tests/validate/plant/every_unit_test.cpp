@@ -28,7 +28,7 @@ struct Case {
   std::string name, raw, dyr;
   int version = 0;
   std::optional<double> hz = {};
-  sim::network::StandIn devices = sim::network::StandIn::checked;
+  sim::network::DeviceReplacement devices = sim::network::DeviceReplacement::checked;
   sim::grid::Lacking complete = sim::grid::Lacking::refused;
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -48,7 +48,7 @@ const std::vector<Case> kCases = {
      .hz = 60.0,
      .complete = sim::grid::Lacking::zero},
     {"gridpack_300bus_cmpld", "300bus_v23_no0imp_pslf.raw", "300bus_detail_model_cmpld_combine.dyr", 23, 60.0,
-     sim::network::StandIn::file},
+     sim::network::DeviceReplacement::file},
     {"powerfulcases_activsg2000", "ACTIVSg2000.raw", "ACTIVSg2000.dyr"},
     {.name = "gridpack_texas2000",
      .raw = "texas2000_hr_4882_mod_33.raw",

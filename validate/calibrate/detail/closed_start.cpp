@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kClassical = 2;  // number of states of a machine without a field
 
-bool stands_alone(const sim::plant::Plant& plant) {
+bool is_bare_machine(const sim::plant::Plant& plant) {
   return plant.machine.effect->closed_form && !plant.transformer.effect && plant.controls.empty() &&
          plant.measurements.empty();
 }
@@ -65,7 +65,7 @@ std::vector<double> medians(const std::vector<sim::Recording>& records, const si
 std::vector<std::vector<double>> closed_starts(const sim::plant::PlantUnderTest& tested,
                                                const event::WhitenedEvents& events,
                                                const std::vector<fit::FreeParameter>& free) {
-  if (!stands_alone(tested.plant)) return {};
+  if (!is_bare_machine(tested.plant)) return {};
   std::vector<sim::Recording> records;
   for (const auto& event : events) {
     if (!shows_enough(event.record, *tested.plant.machine.effect)) return {};

@@ -29,7 +29,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
                                              .pre_event = options.play_in.pre_event,
                                              .step_shape = step_shape});
   const event::FitEvent& event = events.front();
-  fit::Fit f = fit::fit(model.under_test(), events, {}, {.start_stands = how == Fitted::start_stands});
+  fit::Fit f = fit::fit(model.under_test(), events, {}, {.steady_start = how == Fitted::steady_start});
   if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
   if (!f.failed.empty())
     throw InputError({"playback of the record fails", e.record.name, f.failed,

@@ -10,7 +10,7 @@ namespace swingbank::validate::compare {
 enum class Fitted {
   in_white_noise,
   in_slow_noise,  ///< the noise of P and Q includes the plant's response to voltage noise
-  start_stands    ///< the start is the steady state before the event; noise is white
+  steady_start    ///< the start is the steady state before the event; noise is white
 };
 
 /// Fits switching times and start of an event whose record is set, with the model unchanged. Sets switchings,

@@ -20,8 +20,8 @@ constexpr int kTurnSteps = 12;
 /// Samples on each side for the extrapolation of f to the switching, and their minimum near another
 /// switching.
 constexpr std::size_t kExtrapolationSamples = 4, kMinExtrapolationSamples = 2;
-constexpr double kStandsOut = 5;     ///< threshold of a peak in standard deviations of f's noise, and
-constexpr double kLeastPeak = 0.02;  ///< its minimum [Hz]
+constexpr double kPeakThreshold = 5;  ///< threshold of a peak in standard deviations of f's noise, and
+constexpr double kLeastPeak = 0.02;   ///< its minimum [Hz]
 
 /// Least-squares line through the samples [first, last) of f.
 struct Line {
@@ -125,8 +125,8 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 void drop_peaks(FitEvent& event) {
   record::Record& r = event.record;
   if (!event.turns() || !event.filtered_samples.empty()) return;
-  const double least = std::max(kStandsOut * std::sqrt(white_variance(std::span(r.f).first(
-                                                 static_cast<std::size_t>(event.start.samples)))),
+  const double least = std::max(kPeakThreshold * std::sqrt(white_variance(std::span(r.f).first(
+                                                     static_cast<std::size_t>(event.start.samples)))),
                                 kLeastPeak / r.base.frequency),
                reach = kPeakReach * r.step();
   const auto& at = event.switchings;

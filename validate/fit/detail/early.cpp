@@ -73,7 +73,7 @@ std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
   if (late < kRunAway * early) return std::nullopt;
   FitOptions o{.iterations = kEarlySteps, .tolerance = options.tolerance, .lenient = options.lenient};
   o.brief = true;
-  o.start_stands = true;
+  o.steady_start = true;
   o.errors = false;
   o.start = {as_prepared(e)};
   const Fit f = fit(tested, first_part(whole, until), {}, o);

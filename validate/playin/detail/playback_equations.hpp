@@ -178,7 +178,7 @@ class PlaybackEquations {
       }
       if (d.kind == Kind::Q) Seeds<T>::add(Q, i, d.scale * to_machine);
     });
-    if (recorded_) p.front() = recorded::standing<T>(field, T(run_.start.Ifd), Pm);
+    if (recorded_) p.front() = recorded::operating_parameters<T>(field, T(run_.start.Ifd), Pm);
     auto at = sim::plant::operating_point_of<T>(plant, p, run_.start.voltage, P, Q, run_.conventions);
     c = std::move(at.c);
     x0 = std::move(at.x);
@@ -233,7 +233,7 @@ class PlaybackEquations {
   /// Applies the recorded inputs other than the voltage.
   void give(const T& vr, const T& vi, double t, sim::Signals<T>& s) {
     if (!recorded_ && !run_.given) return;
-    const Given::At at = run_.given ? (*run_.given)(side.segment, t) : Given::standing(run_.start);
+    const Given::At at = run_.given ? (*run_.given)(side.segment, t) : Given::steady_values(run_.start);
     const double to_machine = run_.record->base.mva / run_.plant->mva;
     s.Efd = s.Efd + T(at.Efd);
     s.Tm = s.Tm + T(at.Pm * to_machine);

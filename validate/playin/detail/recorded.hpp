@@ -10,7 +10,7 @@ enum Coefficient { Ifd, kCoefficients };
 enum Move { speed, dIfd, Vs, kMoves };  ///< since the operating point [pu]
 
 template <class T>
-std::vector<T> standing(const T& efd, const T& ifd, const T& tm) {
+std::vector<T> operating_parameters(const T& efd, const T& ifd, const T& tm) {
   std::vector<T> p(kParameters);
   p[Efd] = efd;
   p[Tm] = tm;

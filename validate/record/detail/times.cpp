@@ -227,13 +227,13 @@ bool differ(const std::vector<double>& steps) {
 }
 
 /// Rows that repeat the time of the row before: number, first one, longest run.
-struct StandingClock {
+struct RepeatedTimes {
   std::size_t rows = 0, first = 0, longest = 0;
   /// The steps between different times are equal. A simulation's are not, and it repeats a time at an event.
   bool even = true;
 };
-StandingClock standing(const std::vector<double>& t) {
-  StandingClock found;
+RepeatedTimes repeated_times(const std::vector<double>& t) {
+  RepeatedTimes found;
   std::vector<double> apart;
   for (const double step : steps_of(t))
     if (step > 0) apart.push_back(step);
@@ -260,7 +260,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   const std::vector<double> steps = steps_of(t);
   const double length = t.back() - t.front();
   if (!(length > 0) || std::ranges::any_of(steps, [](double s) { return s < 0; })) return std::nullopt;
-  const StandingClock clock = standing(t);
+  const RepeatedTimes clock = repeated_times(t);
   if (clock.even && (clock.longest >= kMostAtOneTime ||
                      static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size())))
     return std::nullopt;
@@ -291,7 +291,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
 /// Reports times shared by many samples as one fault; returns whether there are any.
 bool report_repeated_times(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
-  const StandingClock clock = standing(t);
+  const RepeatedTimes clock = repeated_times(t);
   if (!clock.even || (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size())) return false;
   const double length = t.back() - t.front();
   // Rounding repeats times throughout the record; a stopped clock does so once.
@@ -324,18 +324,18 @@ void report_uneven_steps(const Rows& rows, SampleFaults& faults) {
   std::vector<double> known;
   std::ranges::copy_if(steps, std::back_inserter(known), [](double s) { return std::isfinite(s); });
   if (known.empty()) return;
-  const bool stands = known.size() == steps.size() && report_repeated_times(rows, faults);
+  const bool repeated = known.size() == steps.size() && report_repeated_times(rows, faults);
   const double usual = upper_median(known), resolution = rows.resolution;
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!std::isfinite(steps[k])) continue;  // already reported as a value
-    if (steps[k] < 0 || (steps[k] == 0 && !stands)) {
+    if (steps[k] < 0 || (steps[k] == 0 && !repeated)) {
       faults.add(steps[k] == 0 ? "repeated" : "backwards",
                  fmt::format("t = {:.10g} s after t = {:.10g} s", t[k + 1], t[k]), k + 1,
                  steps[k] == 0 ? "the time is repeated" : "time runs backwards",
                  "sort the record and remove repeated lines");
-    } else if (usual > 0 && !stands && std::abs(steps[k] - usual) > slack) {
+    } else if (usual > 0 && !repeated && std::abs(steps[k] - usual) > slack) {
       const double missing = std::round(steps[k] / usual) - 1;
       faults.add("step", fmt::format("a step of {:.6g} s", steps[k]), k + 1,
                  fmt::format("elsewhere samples are {:.6g} s apart", usual) +
