@@ -65,22 +65,22 @@ std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& eve
   return names;
 }
 
-/// Writes the model to `kModel` with its .dyr records, or to `kBiasedModel` if it is not adequate (`holds` is
-/// false). Returns the lines for the terminal.
-std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool holds,
+/// Writes the model to `kModel` with its .dyr records, or to `kBiasedModel` if it is not adequate (`adequate`
+/// is false). Returns the lines for the terminal.
+std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool adequate,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
   model = event::whole_model(std::move(model));
-  const auto file = a.of.results().file(holds ? kModel : kBiasedModel);
+  const auto file = a.of.results().file(adequate ? kModel : kBiasedModel);
   model.submitted.reset();
-  if (!holds) model.submitted = before.plant;
+  if (!adequate) model.submitted = before.plant;
   std::vector<std::string> head = provenance;
-  if (!holds)
+  if (!adequate)
     head.insert(
         head.begin(),
         "NOT ADEQUATE: a component is missing in this model, and its parameters are biased. Do not use them.");
   plant::write_plant_file(file, model, head);
-  if (!holds)
+  if (!adequate)
     return fmt::format(
         "model: {} (not adequate: its parameters are biased, do not use them)\nnext: swingbank "
         "diagnose --model {} --records ... names the missing component",
@@ -181,23 +181,23 @@ int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<r
   a.fitted = w.found.fit;
   const auto played = play_both(a, model, w.model, records);
   const std::string written =
-      write_model(a, model, w.model, w.holds(), {"command: " + a.command, w.sentence});
+      write_model(a, model, w.model, w.is_adequate(), {"command: " + a.command, w.sentence});
   nlohmann::json result = calibrate::wrong_json(w);
   result["command"] = a.command;
   result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
-  page.complete = w.holds();
+  page.complete = w.is_adequate();
   page.sentence = w.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
   write_page(a, model, std::move(page), result);
   say(a, result,
-      compare::fitness_text(played) + compare::complete_text(w.holds(), calibrate::wrong_text(w)) + "\n" +
-          compare::error_text(played) + "\n" + written);
+      compare::fitness_text(played) + compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) +
+          "\n" + compare::error_text(played) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
-  return played.back().fitness.exit_code(w.holds());
+  return played.back().fitness.exit_code(w.is_adequate());
 }
 
 int run(Arguments& a, plant::PlantModel& model) {
@@ -226,12 +226,12 @@ int run(Arguments& a, plant::PlantModel& model) {
   }
   const calibrate::Calibration c = calibrate::calibrate(model, records, a.options);
   a.fitted = c.fit;
-  const bool holds = c.adequacy != calibrate::Adequacy::structure_poor;
+  const bool adequate = c.adequacy != calibrate::Adequacy::structure_poor;
   std::optional<calibrate::CurveFit> curve;
   if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
   std::string text = compare::fitness_text(played) +
-                     compare::complete_text(holds, calibrate::terminal_report(c)) + "\n" +
+                     compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
                      compare::error_text(played, unseen_of(c.events));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
@@ -239,7 +239,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
-  result["statistically_complete"] = holds;
+  result["statistically_complete"] = adequate;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
     plant::write_plant_file(a.of.results().file(kCurveFit), event::whole_model(curve->model),
@@ -254,7 +254,7 @@ int run(Arguments& a, plant::PlantModel& model) {
     result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
   compare::CommandPage page;
-  page.complete = holds;
+  page.complete = adequate;
   page.sentence = c.sentence;
   page.played = played;
   std::vector<fit::FittedParameter> fitted;
@@ -263,10 +263,10 @@ int run(Arguments& a, plant::PlantModel& model) {
   page.unseen = unseen_of(c.events);
   for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
   write_page(a, model, std::move(page), result);
-  text += "\n" + write_model(a, model, c.model, holds, calibrate::provenance_lines(c, a.command));
+  text += "\n" + write_model(a, model, c.model, adequate, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
   a.of.judging.print(a.of.results().path() / kPage);
-  return played.back().fitness.exit_code(holds);
+  return played.back().fitness.exit_code(adequate);
 }
 
 int run_interruptible(Arguments& a) {

@@ -15,10 +15,10 @@ namespace swingbank::jobs {
 namespace {
 
 /// Returns a validator for a one-sided range. CLI11's own would print the largest double as the other bound.
-CLI::Validator number_that(bool (*holds)(double), const std::string& name, const std::string& wanted) {
-  return {[holds, wanted](std::string& text) {
+CLI::Validator number_that(bool (*accepts)(double), const std::string& name, const std::string& wanted) {
+  return {[accepts, wanted](std::string& text) {
             double value = 0;
-            if (CLI::detail::lexical_cast(text, value) && holds(value)) return std::string();
+            if (CLI::detail::lexical_cast(text, value) && accepts(value)) return std::string();
             return "“" + text + "” is not a number " + wanted;
           },
           name};

@@ -109,7 +109,7 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
     j["records"].push_back({{"file", e.record.name},
                             {"sha256", e.record.sha256},
                             {"event_s", e.input.event_s},
-                            {"held_before_record_s", e.input.held_s},
+                            {"held_before_record_s", e.input.padding_s},
                             {"input_rms", e.estimate.input_rms},
                             {"unlike_training", unlike_training(n, e)},
                             {"estimates", e.estimate.values}});

@@ -18,7 +18,7 @@ namespace swingbank {
 struct NetworkInput {
   std::vector<float> values;  ///< channels x samples
   double event_s = 0.0;       ///< time of the event in the record [s]
-  double held_s = 0.0;        ///< length before the record's start, filled with steady-state values [s]
+  double padding_s = 0.0;     ///< length before the record's start, filled with steady-state values [s]
 };
 
 namespace record_detail {
@@ -88,7 +88,7 @@ inline NetworkInput network_input(const validate::record::Record& record,
         fmt::format("a record until {:g} s", record.t.back()), record.name,
         fmt::format("the network reads until {:g} s, {:g} s after the event", last, last - in.event_s),
         "give a longer record");
-  in.held_s = std::max(0.0, record.t.front() - shift);
+  in.padding_s = std::max(0.0, record.t.front() - shift);
   for (const auto& channel : network.channels) {
     const auto x = record_detail::series_of(channel, record, model, network);
     if (x.empty()) {

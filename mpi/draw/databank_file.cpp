@@ -20,8 +20,8 @@ std::string databank_hash(const DatasetConfig& c, const sim::plant::Plant& base)
                                  static_cast<int>(c.databank.policy), c.databank.distance, c.databank.scaled);
   for (const Box& b : c.box) text += fmt::format("{} {:.17g} {:.17g}\n", c.name_of(b), b.low, b.high);
   for (int block = sim::plant::kMachineBlock; block < sim::plant::first_measurement(base); ++block) {
-    const auto& held = sim::plant::block_at(base, block);
-    text += fmt::format("{} {:.17g}\n", held.effect->name, fmt::join(held.p, " "));
+    const auto& base_block = sim::plant::block_at(base, block);
+    text += fmt::format("{} {:.17g}\n", base_block.effect->name, fmt::join(base_block.p, " "));
   }
   return hex(XXH3_64bits(text.data(), text.size()));
 }

@@ -35,12 +35,12 @@ void draw_loads(const OperatingPointConfig& c, double common, Random& random, ne
 
 /// Draws dispatch and voltage setpoints. Generators at one bus share the setpoint of the first one.
 void draw_generators(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
-  std::vector<double> held(n.buses.size(), 0.0);
+  std::vector<double> setpoint(n.buses.size(), 0.0);
   for (auto& g : n.generators) {
     g.p *= common * random.uniform(c.dispatch_low, c.dispatch_high);
     const double v = g.vset + random.uniform(-c.voltage, c.voltage);
     if (!g.in_service) continue;
-    double& here = held[static_cast<std::size_t>(g.bus)];
+    double& here = setpoint[static_cast<std::size_t>(g.bus)];
     if (here == 0.0) here = v;
     g.vset = here;
   }

@@ -34,9 +34,9 @@ class FrequencyLags {
   /// Returns the angle [rad] at the next sample, whose frequency deviation is `f` [pu]: the exact, stable
   /// inverse.
   double angle(double f) {
-    const double held = washout_.keep * washout_.x - filter_.keep * filter_.x;
-    const double u =
-        (f / scale_ - held - (washout_.before - filter_.before) * last_) / (washout_.after - filter_.after);
+    const double from_states = washout_.keep * washout_.x - filter_.keep * filter_.x;
+    const double u = (f / scale_ - from_states - (washout_.before - filter_.before) * last_) /
+                     (washout_.after - filter_.after);
     washout_.step(last_, u);
     filter_.step(last_, u);
     return last_ = u;

@@ -200,14 +200,14 @@ struct Model {
     const T rides = Core::ride_through(c, Vf);
     const T injected = dip * rides + later * (c[frozen] + c[goes_on] * rides);
     const T stays = renewable::timer(dip, c[hold_p], x[after_p], dx[after_p]);
-    const auto held = [&](const T& left) {
+    const auto active_limit = [&](const T& left) {
       dx[kept] = (one - stays) * (left - x[kept]) * c[follows];
       return left + stays * (x[kept] - left);
     };
     Core::commands(
         c, x, Vf, Vf, one - dip, (c[Core::pneed] + s.Pext) * turning(c, s),
         {renewable::by_voltage(c + of_p, Vf), T(0.0), renewable::by_voltage(c + of_q, Vf)},
-        [&](const T& Iq) { return Iq + injected; }, renewable::as_it_is, held, s, dx);
+        [&](const T& Iq) { return Iq + injected; }, renewable::as_it_is, active_limit, s, dx);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

@@ -262,12 +262,12 @@ struct Model {
       return now + later * (c[frozen] + c[keeps] * x[kept_q] - now);
     };
     const auto active = [&](const T& asked) { return asked + stays * (x[kept_p] - asked); };
-    const auto held = [&](const T& left) {
+    const auto active_limit = [&](const T& left) {
       dx[kept_most] = (one - stays) * (left - x[kept_most]) * c[follows_p];
       return left + stays * live * (x[kept_most] - left);
     };
     Core::commands(c, x, Vf, Vc, one - dip, (c[Core::pneed] + s.Pext) * turning(c, s), limits(c, Vf, live),
-                   total, active, held, s, dx);
+                   total, active, active_limit, s, dx);
     dx[kept_p] = (one - stays) * (s.Tm - x[kept_p]) * c[follows_p];
   }
   template <class T>

@@ -191,7 +191,7 @@ struct Model {
   }
   /// Returns the exciter's input for a steady `field` voltage [pu].
   template <class T>
-  static T held_by(const T* c, const T& field) {
+  static T steady_input(const T* c, const T& field) {
     return select(c[iTE] > T(0.0), c[self] * field + Quadratic<T>{c[satA], c[satB]}(field), field);
   }
   template <class T>
@@ -213,12 +213,12 @@ struct Model {
     dx[rate] = (vr - x[rate]) * c[iTF1];
     dx[rate_lag] = (c[feedback] * (vr - x[rate]) - x[rate_lag]) * c[iTF2];
     const T E0 = clamp(vr * supply(c, s), c[efdmin], c[efdmax]);
-    dx[Efd] = (E0 - held_by(c, x[Efd])) * c[iTE];
+    dx[Efd] = (E0 - steady_input(c, x[Efd])) * c[iTE];
     s.Efd = select(c[iTE] > T(0.0), x[Efd], E0);
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    const T VB = supply(c, s), E0 = held_by(c, s.Efd);
+    const T VB = supply(c, s), E0 = steady_input(c, s.Efd);
     if (auto why = Feed::refuses(VB, s); !why.empty()) return why;
     const T vr = E0 / VB;
     const auto outside = [](const char* what, const T& is, const T& low, const T& high) {

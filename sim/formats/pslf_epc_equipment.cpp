@@ -149,14 +149,14 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
   const std::size_t first = row.starts.empty() ? columns : row.starts[0];
   const double band = std::abs(static_cast<double>(f.number(11, "vband", 0.0L)));
   double inductive = 0.0, capacitive = 0.0;
-  int held_bus = shunt.bus;
+  int regulated_bus = shunt.bus;
   if (const auto found = index_.find(regulated); found != index_.end())
-    held_bus = found->second;
+    regulated_bus = found->second;
   else if (regulated > 0)
     network_.remark("switched shunts that hold a bus that is not there hold their own",
                     "bus " + std::to_string(at(shunt.bus).number) + ": regulated bus " +
                         std::to_string(regulated) + " (" + f.where() + ")");
-  network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), held_bus, 0.0, 0.0, {0.0}};
+  network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), regulated_bus, 0.0, 0.0, {0.0}};
   for (std::size_t k = 0; k < blocks; ++k) {
     const int steps = f.integer(first + 2 * k, "n", 0);
     const double each = static_cast<double>(f.number(first + 2 * k + 1, "b of a step", 0.0L));
@@ -168,11 +168,11 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
   }
   if (s.steps.size() == 1) return;  // no steps to switch
-  const double held = vsched_[static_cast<std::size_t>(held_bus)];
-  s.least = held - band;
-  s.most = held + band;
+  const double setpoint = vsched_[static_cast<std::size_t>(regulated_bus)];
+  s.least = setpoint - band;
+  s.most = setpoint + band;
   std::ranges::sort(s.steps);
-  if (held > 0) network_.switched.push_back(std::move(s));
+  if (setpoint > 0) network_.switched.push_back(std::move(s));
 }
 
 void EpcReader::generator(const Row& row) {
@@ -215,13 +215,13 @@ void EpcReader::generator(const Row& row) {
   if (g.in_service && step_up && tap != 1.0)
     network_.remark("step-up transformers inside a generator's record are at their nominal ratio",
                     where + ": gtap = " + shortest(tap));
-  int held = g.bus;
+  int regulated_bus = g.bus;
   if (const auto found = index_.find(regulated); found != index_.end())
-    held = found->second;
+    regulated_bus = found->second;
   else if (regulated > 0 && g.in_service && !units_only_)
     network_.remark("generators that hold a bus that is not there hold their own", where);
-  g.regulated = held == g.bus ? -1 : held;
-  g.vset = vsched_[static_cast<std::size_t>(held)];
+  g.regulated = regulated_bus == g.bus ? -1 : regulated_bus;
+  g.vset = vsched_[static_cast<std::size_t>(regulated_bus)];
   if (!(g.vset > 0)) {
     if (g.in_service && !units_only_)
       network_.remark("generators that hold a voltage that is not above 0 hold that of the file", where);

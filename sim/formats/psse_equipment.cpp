@@ -231,13 +231,14 @@ void RawReader::generator(const Record& record) {
   g.share = static_cast<double>(f.number(columns_.gen_status + 1, "RMPCT", 100.0L));
   if (g.bus < 0) return;
   if (g.in_service && !units_only_ && !(g.vset > 0))
-    hold_own(g, "generators that hold a voltage that is not above 0 hold that of the file", f.where());
+    regulate_own_bus(g, "generators that hold a voltage that is not above 0 hold that of the file",
+                     f.where());
   regulated_.push_back(regulated == number ? 0 : regulated);
   if (!record.place.empty()) places_.push_back(record.place);
   network_.generators.push_back(std::move(g));
 }
 
-void RawReader::hold_own(network::Generator& g, const char* what, const std::string& where) {
+void RawReader::regulate_own_bus(network::Generator& g, const char* what, const std::string& where) {
   g.regulated = -1;
   g.vset = at(g.bus).vm;
   network_.remark(what, "'" + g.id + "' at bus " + std::to_string(at(g.bus).number) + " (" + where + ")");

@@ -114,12 +114,12 @@ int Reader::first_order(const std::string& name, Block& block) {
     const int passed = with_gain(name, block_input(name));
     const StateEntry& limits = states_[static_cast<std::size_t>(state)];
     const double far = 1e300;
-    const int held =
+    const int clamped =
         limits.low < 0 && limits.high < 0
             ? passed
             : graph_.make(Act::clamp, passed, limits.low < 0 ? graph_.constant(-far) : limits.low,
                           limits.high < 0 ? graph_.constant(far) : limits.high);
-    return graph_.make(Act::select_less, graph_.constant(0.0), graph_.make(Act::inverse, T), out, held);
+    return graph_.make(Act::select_less, graph_.constant(0.0), graph_.make(Act::inverse, T), out, clamped);
   }
   const int u = block_input(name), zero = graph_.constant(0.0);
   const bool washout = block.kind == "washout";

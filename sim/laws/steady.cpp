@@ -130,7 +130,7 @@ class Search {
     return fmt::format("its {} is no number there", law_.output_name());
   }
   /// Returns true if a limit clamps the state against its derivative.
-  [[nodiscard]] bool held(std::size_t i, double dx) const {
+  [[nodiscard]] bool is_clamped(std::size_t i, double dx) const {
     const State& state = law_.states[i];
     return (state.low >= 0 && x_[i] <= c_[state.low] && dx < 0.0) ||
            (state.high >= 0 && x_[i] >= c_[state.high] && dx > 0.0);
@@ -149,7 +149,7 @@ class Search {
     double output = 0.0;
     laws::run<double, false>(law_.code.loop, c_, x_, s_, registers.data(), dx.data(), output);
     for (std::size_t i = 0; i < dx.size(); ++i)
-      if (!(std::abs(dx[i]) < kTolerance) && !held(i, dx[i]))
+      if (!(std::abs(dx[i]) < kTolerance) && !is_clamped(i, dx[i]))
         return fmt::format("state {} does not come to rest: it moves at {:.4g} per second at {:.4g} {}",
                            law_.states[i].name, dx[i], x_[i], law_.states[i].unit);
     const double asked =

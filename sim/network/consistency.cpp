@@ -227,7 +227,7 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
 }
 
 /// A generator whose regulated bus is out of service regulates its own bus.
-void hold_own(Network& n, Generator& g, const std::string& place) {
+void regulate_own_bus(Network& n, Generator& g, const std::string& place) {
   if (g.regulated < 0 || at(n, g.regulated).type != BusType::isolated) return;
   n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
   g.regulated = -1;
@@ -281,7 +281,7 @@ void settle_generators(Network& n, const std::function<std::string(std::size_t)>
     }
     const std::string place = unit_text(n, g) + " (" + where(i) + ")";
     if (g.regulated == g.bus) g.regulated = -1;
-    hold_own(n, g, place);
+    regulate_own_bus(n, g, place);
     if (g.q_min > g.q_max) {
       n.remark("reactive limits with QB above QT are taken as none", place);
       g.q_min = -99.99;
@@ -326,7 +326,7 @@ void settle_islands(Network& n) {
   }
   settle_isolated(n);
   for (Generator& g : n.generators)
-    if (g.in_service) hold_own(n, g, unit_text(n, g));
+    if (g.in_service) regulate_own_bus(n, g, unit_text(n, g));
 }
 
 namespace {

@@ -56,11 +56,11 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
   problems.raise();
 
   const auto island = islands(n);
-  std::vector<char> held(n.buses.size() + 1, 0);
-  for (const int s : slacks) held[as_index(island[as_index(s)])] = 1;
+  std::vector<char> has_slack(n.buses.size() + 1, 0);
+  for (const int s : slacks) has_slack[as_index(island[as_index(s)])] = 1;
   std::vector<int> lost;
   for (std::size_t i = 0; i < island.size(); ++i)
-    if (island[i] >= 0 && !held[as_index(island[i])]) lost.push_back(static_cast<int>(i));
+    if (island[i] >= 0 && !has_slack[as_index(island[i])]) lost.push_back(static_cast<int>(i));
   if (!lost.empty())
     throw InputError({bus_list(n, lost) + (lost.size() == 1 ? " is" : " are") + " islanded", n.origin,
                       "no branch in service leads to the slack bus",
@@ -91,7 +91,7 @@ class Newton {
       const Role& role = roles[as_index(i)];
       if (role.kind == Role::out || role.kind == Role::slack) continue;
       angle_[as_index(i)] = unknowns_++;
-      if (role.kind != Role::holds) magnitude_[as_index(i)] = unknowns_++;
+      if (role.kind != Role::regulated) magnitude_[as_index(i)] = unknowns_++;
     }
     bus_unknowns_ = unknowns_;
     unknowns_ += 2 * static_cast<int>(ties_.size());
@@ -105,8 +105,8 @@ class Newton {
     }
     if (v_.size() == 0) return;
     for (int i = 0; i < count; ++i)
-      if (roles[as_index(i)].kind == Role::holds)
-        v_[i] = std::polar(roles[as_index(i)].held, std::arg(v_[i]));
+      if (roles[as_index(i)].kind == Role::regulated)
+        v_[i] = std::polar(roles[as_index(i)].setpoint, std::arg(v_[i]));
   }
 
   /// Iterates from the present voltages. Returns true if every mismatch is within tolerance or rounding.
@@ -127,8 +127,8 @@ class Newton {
     for (std::size_t i = 0; i < n_.buses.size(); ++i) {
       const Bus& b = n_.buses[i];
       const Role& role = (*roles_)[i];
-      const bool fixed = role.kind == Role::holds || role.kind == Role::slack;
-      const double vm = fixed ? role.held : (flat ? 1.0 : b.vm);
+      const bool fixed = role.kind == Role::regulated || role.kind == Role::slack;
+      const double vm = fixed ? role.setpoint : (flat ? 1.0 : b.vm);
       const double va = flat && role.kind != Role::slack ? shifted[i] : b.va;
       v_[static_cast<Eigen::Index>(i)] = role.kind == Role::out ? Complex{} : std::polar(vm, va);
     }
@@ -211,7 +211,7 @@ class Newton {
       if (angle_[as_index(i)] >= 0) f_[angle_[as_index(i)]] += d.real();
       for (const Row& r : reactive_[as_index(i)]) f_[r.row] += r.factor * d.imag();
       if (role(i).kind == Role::leads)
-        f_[magnitude_[as_index(i)]] += std::abs(v_[role(i).target]) - role(i).held;
+        f_[magnitude_[as_index(i)]] += std::abs(v_[role(i).target]) - role(i).setpoint;
     }
     double worst = 0.0;
     int bus = -1;
@@ -317,7 +317,7 @@ class Newton {
       if (angle_[as_index(i)] < 0) continue;
       const double vm =
           std::abs(v_[i]) - (magnitude_[as_index(i)] >= 0 ? share * dx[magnitude_[as_index(i)]] : 0.0);
-      v_[i] = (role(i).kind == Role::holds ? role(i).held : vm) *
+      v_[i] = (role(i).kind == Role::regulated ? role(i).setpoint : vm) *
               std::polar(1.0, std::arg(v_[i]) - share * dx[angle_[as_index(i)]]);
     }
     return true;

@@ -26,11 +26,11 @@ Regulation::Regulation(const Network& network)
     const bool remote =
         g.regulated >= 0 && g.regulated != g.bus && base_[as_index(g.regulated)].kind != Role::out;
     if (base_[as_index(g.bus)].kind == Role::slack)
-      base_[as_index(g.bus)].held = remote ? n_.buses[as_index(g.bus)].vm : g.vset;
+      base_[as_index(g.bus)].setpoint = remote ? n_.buses[as_index(g.bus)].vm : g.vset;
     const auto [found, fresh] = source_of.emplace(g.bus, sources_.size());
     if (fresh) sources_.push_back({g.bus, remote ? g.regulated : g.bus, g.vset});
     Source& source = sources_[found->second];
-    source.held = g.vset;
+    source.setpoint = g.vset;
     source.share += g.share;
     source.q_min += g.q_min;
     source.q_max += g.q_max;
@@ -44,22 +44,22 @@ Regulation::Regulation(const Network& network)
 
 void Regulation::assign() {
   roles_ = base_;
-  std::map<int, std::vector<const Source*>> held_by;
+  std::map<int, std::vector<const Source*>> remote_sources;
   for (const Source& s : sources_) {
     Role& role = roles_[as_index(s.bus)];
     if (role.kind == Role::slack) continue;
     role.share = s.share;
-    role.held = s.held;
+    role.setpoint = s.setpoint;
     if (s.side != 0)
       role.generation += Complex(0.0, s.side > 0 ? s.q_max : s.q_min);
     else if (s.target == s.bus)
-      role.kind = Role::holds;
+      role.kind = Role::regulated;
     else
-      held_by[s.target].push_back(&s);
+      remote_sources[s.target].push_back(&s);
   }
-  for (const auto& [target, sources] : held_by) {
+  for (const auto& [target, sources] : remote_sources) {
     const Role::Kind kind = roles_[as_index(target)].kind;
-    const bool itself = kind == Role::slack || kind == Role::holds;
+    const bool itself = kind == Role::slack || kind == Role::regulated;
     if (kind == Role::slack && !(roles_[as_index(target)].share > 0.0)) roles_[as_index(target)].share = 1.0;
     const int leader = itself ? target : sources.front()->bus;
     for (const Source* s : sources) {
@@ -85,7 +85,7 @@ bool Regulation::limit(const std::function<double(int)>& reactive,
       const double q = reactive(s.bus);
       s.side = q > s.q_max + beyond ? 1 : q < s.q_min - beyond ? -1 : 0;
       moved = moved || s.side != 0;
-    } else if (s.returns < most && s.q_max > s.q_min && s.side * (voltage(s.target) - s.held) > beyond) {
+    } else if (s.returns < most && s.q_max > s.q_min && s.side * (voltage(s.target) - s.setpoint) > beyond) {
       s.side = 0;
       ++s.returns;
       moved = true;

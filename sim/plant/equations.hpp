@@ -147,7 +147,7 @@ class PlantEquations {
   void derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     signals(c, x, m, s, dx);
     machine_.derivative(c, x, m, s, dx);
-    hold_at_limits(c, x, dx);
+    limit_derivatives(c, x, dx);
   }
   /// As derivative(), with torque and field voltage added to the controls' outputs.
   void derivative_with(const T* c, const T* x, T* m, const T& torque, const T& field, Signals<T>& s,
@@ -156,7 +156,7 @@ class PlantEquations {
     s.Tm = s.Tm + torque;
     s.Efd = s.Efd + field;
     machine_.derivative(c, x, m, s, dx);
-    hold_at_limits(c, x, dx);
+    limit_derivatives(c, x, dx);
   }
   /// As derivative(), where machine_alone(): only Ir and Ii are needed.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
@@ -232,7 +232,7 @@ class PlantEquations {
                          state.high < 0 ? -1 : coefficient + state.high});
     }
   }
-  void hold_at_limits(const T* c, const T* x, T* dx) const {
+  void limit_derivatives(const T* c, const T* x, T* dx) const {
     for (const Limit& l : limits_) {
       T& d = dx[l.state];
       if (l.low >= 0) d = select(x[l.state] > c[l.low], d, positive_part(d));

@@ -44,7 +44,8 @@ class Initialiser {
 
   OperatingOf<T> run() {
     const auto& machine = places_.front();
-    held(ops(machine).machine.steady(machine.p, coefficients(machine), o_.s, states(machine)), machine);
+    add_problem(ops(machine).machine.steady(machine.p, coefficients(machine), o_.s, states(machine)),
+                machine);
     o_.Efd = o_.s.Efd;
     o_.Tm = o_.s.Tm;
     emf();
@@ -52,7 +53,7 @@ class Initialiser {
     if (machine.effect->converter)
       converter_controls();
     else
-      for (std::size_t i = 1; i < places_.size(); ++i) held(steady(places_[i]), places_[i]);
+      for (std::size_t i = 1; i < places_.size(); ++i) add_problem(steady(places_[i]), places_[i]);
     problems_.raise();
     within_limits();
     check_steady();
@@ -99,7 +100,7 @@ class Initialiser {
       o_.s.pitch = pitch;
       for (std::size_t i = places_.size(); --i > 0;) {
         const std::string why = steady(places_[i]);
-        if (last) held(why, places_[i]);
+        if (last) add_problem(why, places_[i]);
       }
     }
   }
@@ -121,7 +122,7 @@ class Initialiser {
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
   }
-  void held(const std::string& why, const Place<T>& p) {
+  void add_problem(const std::string& why, const Place<T>& p) {
     if (why.empty()) return;
     const Signals<T>& s = o_.s;
     problems_.add(

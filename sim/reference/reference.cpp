@@ -75,15 +75,15 @@ class Recorder {
   bool finish(int k, Outcome outcome) {
     run_.outcome = outcome;
     run_.stopped_at = k / options_.rate;
-    const auto hold = [&](auto& values) {
+    const auto repeat_last = [&](auto& values) {
       for (std::size_t row = 0; row * run_.samples < values.size(); ++row) {
         double* first = values.data() + row * run_.samples;
         std::fill(first + k + 1, first + run_.samples, first[k]);
       }
     };
-    hold(run_.values);
-    hold(run_.bus_v);
-    hold(run_.bus_theta);
+    repeat_last(run_.values);
+    repeat_last(run_.bus_v);
+    repeat_last(run_.bus_theta);
     return false;
   }
 

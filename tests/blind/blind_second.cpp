@@ -37,7 +37,7 @@ blind::cases::BlindEvent fault(second::Setup& s, blind::cases::BlindDraw& d) {
   const second::Phasor line(d.uniform(0.01, 0.03), d.uniform(0.15, 0.35));
   const second::Phasor zf(d.uniform(0, 0.02), d.uniform(0.005, 0.15));
   const double along = d.uniform(0.2, 0.9), on = d.uniform(1.5, 2.0), off = on + d.uniform(0.06, 0.14);
-  const second::Phasor source = second::holding_source(s, line), far = (1 - along) * line;
+  const second::Phasor source = second::source_voltage(s, line), far = (1 - along) * line;
   s.grid = {{0, source, line},
             {on, source * zf / (zf + far), along * line + zf * far / (zf + far)},
             {off, source, line}};
@@ -47,7 +47,7 @@ blind::cases::BlindEvent fault(second::Setup& s, blind::cases::BlindDraw& d) {
 }
 blind::cases::BlindEvent frequency_dip(second::Setup& s, blind::cases::BlindDraw& d) {
   const second::Phasor line(d.uniform(0.01, 0.03), d.uniform(0.15, 0.35));
-  s.grid = {{0, second::holding_source(s, line), line}};
+  s.grid = {{0, second::source_voltage(s, line), line}};
   s.dip = {d.uniform(1.5, 2.0), -d.uniform(0.003, 0.008), d.uniform(1.5, 3.0)};
   return {fmt::format("frequency falls by {:.4f} pu from {:.5f} s", -s.dip.depth, s.dip.start), {}, {}};
 }

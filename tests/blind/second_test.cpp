@@ -26,7 +26,7 @@ second::Setup base() {
   s.machine = {6.5, 0.06, 0.9, 0.08, 4.2, 1.0, 1.8, 1.7, 0.38, 0.58, 0.28, 0.16, 0.0, 0.0, 0.002};
   const second::Phasor line(0.02, 0.3), fault(0.0, 0.08);
   const second::Phasor far = 0.5 * line, behind = fault * far / (fault + far);
-  const second::Phasor source = second::holding_source(s, line);
+  const second::Phasor source = second::source_voltage(s, line);
   s.grid = {{0.0, source, line}, {kOn, source * fault / (fault + far), far + behind}, {kOff, source, line}};
   s.dip = {3.0, -0.004, 2.0};
   return s;

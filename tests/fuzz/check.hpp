@@ -21,8 +21,8 @@ namespace swingbank::fuzz {
   std::fprintf(stderr, "violated: %s\n", what);
   std::abort();
 }
-inline void require(bool holds, const char* what) {
-  if (!holds) fail(what);
+inline void require(bool condition, const char* what) {
+  if (!condition) fail(what);
 }
 
 /// Runs `action`. An InputError must contain at least one sentence with all parts filled.

@@ -8,30 +8,30 @@
 namespace swingbank::train::posterior {
 namespace {
 
-constexpr std::size_t kHeld = kHeldAt.size();
-using Held = std::array<double, kHeld>;
+constexpr std::size_t kNodes = kNodeProbabilities.size();
+using NodeScores = std::array<double, kNodes>;
 
-const Held& standard() {
-  static const Held scores = [] {
-    Held all{};
-    for (std::size_t i = 0; i < kHeld; ++i) all[i] = normal_quantile(kHeldAt[i]);
+const NodeScores& standard() {
+  static const NodeScores scores = [] {
+    NodeScores all{};
+    for (std::size_t i = 0; i < kNodes; ++i) all[i] = normal_quantile(kNodeProbabilities[i]);
     return all;
   }();
   return scores;
 }
 
 /// Interpolates linearly; extrapolates with the slope across the outer three points.
-double along(const Held& from, const Held& to, double x) {
+double along(const NodeScores& from, const NodeScores& to, double x) {
   const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
   if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);
-  if (x >= from.back()) return to.back() + (x - from.back()) * slope(kHeld - 3, kHeld - 1);
+  if (x >= from.back()) return to.back() + (x - from.back()) * slope(kNodes - 3, kNodes - 1);
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(from, x) - from.begin());
   return to[after - 1] + (x - from[after - 1]) * slope(after - 1, after);
 }
 
 }  // namespace
 
-Recalibration::Recalibration() : held_(standard()) {}
+Recalibration::Recalibration() : node_scores_(standard()) {}
 
 Recalibration Recalibration::fit(std::span<const double> scores) {
   constexpr std::size_t kMinRows = 20;
@@ -40,21 +40,22 @@ Recalibration Recalibration::fit(std::span<const double> scores) {
   if (scores.size() < kMinRows) return r;
   std::vector<double> sorted(scores.begin(), scores.end());
   std::ranges::sort(sorted);
-  for (std::size_t i = 0; i < kHeld; ++i) {
-    const double at = kHeldAt[i] * static_cast<double>(sorted.size() - 1);
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    const double at = kNodeProbabilities[i] * static_cast<double>(sorted.size() - 1);
     const auto left = std::min(static_cast<std::size_t>(at), sorted.size() - 2);
-    r.held_[i] = std::lerp(sorted[left], sorted[left + 1], at - static_cast<double>(left));
-    if (i > 0) r.held_[i] = std::max(r.held_[i], r.held_[i - 1] + kClosest);
+    r.node_scores_[i] = std::lerp(sorted[left], sorted[left + 1], at - static_cast<double>(left));
+    if (i > 0) r.node_scores_[i] = std::max(r.node_scores_[i], r.node_scores_[i - 1] + kClosest);
   }
   return r;
 }
 
-double Recalibration::right(double score) const { return along(held_, standard(), score); }
-double Recalibration::wrong(double right) const { return along(standard(), held_, right); }
+double Recalibration::right(double score) const { return along(node_scores_, standard(), score); }
+double Recalibration::wrong(double right) const { return along(standard(), node_scores_, right); }
 
 Recalibration Recalibration::between(const Recalibration& a, const Recalibration& b, double share) {
   Recalibration r;
-  for (std::size_t i = 0; i < kHeld; ++i) r.held_[i] = std::lerp(a.held_[i], b.held_[i], share);
+  for (std::size_t i = 0; i < kNodes; ++i)
+    r.node_scores_[i] = std::lerp(a.node_scores_[i], b.node_scores_[i], share);
   return r;
 }
 

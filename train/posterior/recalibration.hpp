@@ -7,17 +7,20 @@
 namespace swingbank::train::posterior {
 
 /// Probabilities of the map's nodes, between which it is linear.
-inline constexpr std::array<double, 11> kHeldAt = {0.01,  0.05, 0.125, 0.25, 0.375, 0.5,
-                                                   0.625, 0.75, 0.875, 0.95, 0.99};
+inline constexpr std::array<double, 11> kNodeProbabilities = {0.01,  0.05, 0.125, 0.25, 0.375, 0.5,
+                                                              0.625, 0.75, 0.875, 0.95, 0.99};
 
 class Recalibration {
  public:
   Recalibration();  ///< the identity
   /// Fits the map. `scores`: of the truths under the posteriors; fewer than 20 give the identity.
   static Recalibration fit(std::span<const double> scores);
-  /// `held`: scores at kHeldAt.
-  explicit Recalibration(const std::array<double, kHeldAt.size()>& held) : held_(held) {}
-  [[nodiscard]] const std::array<double, kHeldAt.size()>& held() const { return held_; }
+  /// `node_scores`: scores at kNodeProbabilities.
+  explicit Recalibration(const std::array<double, kNodeProbabilities.size()>& node_scores)
+      : node_scores_(node_scores) {}
+  [[nodiscard]] const std::array<double, kNodeProbabilities.size()>& node_scores() const {
+    return node_scores_;
+  }
   [[nodiscard]] double right(double score) const;
   /// Inverse of right().
   [[nodiscard]] double wrong(double right) const;
@@ -25,7 +28,7 @@ class Recalibration {
   static Recalibration between(const Recalibration& a, const Recalibration& b, double share);
 
  private:
-  std::array<double, kHeldAt.size()> held_{};
+  std::array<double, kNodeProbabilities.size()> node_scores_{};
 };
 
 }  // namespace swingbank::train::posterior

@@ -417,12 +417,12 @@ class Calibrating {
   void judge() {
     if (shift_.squaredNorm() > 0) allow_correction();
     double before = 0, after = 0, values = 0, spare = 0;
-    bool held = true;
+    bool adequate_before = true;
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
       EventScore s = score_event(c_.prepared.whitened(e), before_[e], after_[e], !out_[e],
                                  pre_event_samples(c_.prepared), options_.adequate);
       s.limit += allowance_[e];
-      held = held && thresholds::within_limit(s.before, s.limit);
+      adequate_before = adequate_before && thresholds::within_limit(s.before, s.limit);
       if (s.seen) {
         before += before_[e].chi2;
         after += after_[e].chi2;
@@ -436,7 +436,7 @@ class Calibrating {
     c_.limit = spare;
     c_.ruling = thresholds::judged_by_events(c_.events);
     c_.adequacy = !c_.ruling.adequate ? Adequacy::structure_poor
-                  : held              ? Adequacy::adequate
+                  : adequate_before   ? Adequacy::adequate
                                       : Adequacy::parameters_poor;
     c_.sentence = sentence();
     if (const std::string bounds = fit::bounds_text(c_.fit.parameters); !bounds.empty())

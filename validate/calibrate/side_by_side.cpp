@@ -148,7 +148,7 @@ Distance distance(const Way& way, const Truth& truth) {
     ++d.parameters;
     if (std::isfinite(v.low) && std::isfinite(v.high)) {
       ++d.intervals;
-      d.held += v.low <= at->second && at->second <= v.high;
+      d.covering += v.low <= at->second && at->second <= v.high;
     }
     d.mse += std::pow(v.value - at->second, 2);
     if (at->second == 0) continue;
@@ -211,7 +211,7 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
     text += fmt::format("{}: {:.3g} % rms from the truth, mean squared error {:.3g} (raw units)", way.name,
                         100 * d.relative, d.mse);
     if (has_interval(way))
-      text += fmt::format(", {} of {} intervals contain the true value", d.held, d.intervals);
+      text += fmt::format(", {} of {} intervals contain the true value", d.covering, d.intervals);
     text += "\n";
   }
   return text;
@@ -236,7 +236,7 @@ json beside_json(const std::vector<Way>& ways, const Truth& truth) {
       const Distance d = distance(way, truth);
       j["truth"] = {{"parameters", d.parameters},
                     {"intervals", has_interval(way) ? json(d.intervals) : json(nullptr)},
-                    {"inside_interval", has_interval(way) ? json(d.held) : json(nullptr)},
+                    {"inside_interval", has_interval(way) ? json(d.covering) : json(nullptr)},
                     {"rms_relative", d.relative},
                     {"mse_raw_units", d.mse}};
     }
@@ -262,7 +262,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
   return text + fmt::format(
                     "\n{:.3g} % rms from the truth, mean squared error {:.3g} (raw units), {} of {} "
                     "intervals contain the true value\n",
-                    100 * d.relative, d.mse, d.held, d.intervals);
+                    100 * d.relative, d.mse, d.covering, d.intervals);
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {

@@ -46,10 +46,11 @@ Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, cons
 
 /// Error of an estimate over the parameters whose true value is known.
 struct Distance {
-  int parameters = 0;           ///< number of parameters compared
-  int intervals = 0, held = 0;  ///< parameters with a finite 95 % interval; intervals that contain the truth
-  double relative = 0;          ///< RMS of (value - truth) / |truth|
-  double mse = 0;               ///< mean of (value - truth)^2 in raw units, as in the thesis
+  int parameters = 0;  ///< number of parameters compared
+  int intervals = 0,
+      covering = 0;     ///< parameters with a finite 95 % interval; intervals that contain the truth
+  double relative = 0;  ///< RMS of (value - truth) / |truth|
+  double mse = 0;       ///< mean of (value - truth)^2 in raw units, as in the thesis
 };
 /// Returns the errors of a method against the true values.
 Distance distance(const Way& way, const Truth& truth);

@@ -100,7 +100,7 @@ nlohmann::json wrong_json(const WrongParameters& w) {
            {{"model", w.found.before},
             {"these_changed", w.found.fit.reduced_chi2()},
             {"all_free", w.found.best}}},
-          {"statistically_complete", w.holds()}};
+          {"statistically_complete", w.is_adequate()}};
 }
 
 }  // namespace swingbank::validate::calibrate

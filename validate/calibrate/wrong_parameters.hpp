@@ -15,7 +15,7 @@ struct WrongParameters {
   double adequate = 0;         ///< limit of the reduced chi-square for noise alone
   std::string sentence;        ///< result in words
   /// Whether the residual is noise with these parameters changed.
-  [[nodiscard]] bool holds() const { return found.fit.reduced_chi2() <= adequate; }
+  [[nodiscard]] bool is_adequate() const { return found.fit.reduced_chi2() <= adequate; }
 };
 
 /// Selects the parameters that must change. Held-out records are not used. Of the other options it uses

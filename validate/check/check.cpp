@@ -92,10 +92,10 @@ class Check : Findings {
            fmt::format("{} samples with V, P and Q exactly zero, first at t = {:.4g} s", zeros, r_.t[first]),
            "they are played in as a fault at the terminals; instruments write zeros where data were lost",
            "cut the record before it (--until) if there was no such fault");
-    if (signals_.longest_hold >= 3)
+    if (signals_.longest_repeat >= 3)
       warn("held_samples",
-           fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_hold,
-                       r_.t[signals_.hold_at]),
+           fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_repeat,
+                       r_.t[signals_.repeat_start]),
            "all channels are constant although the record has noise",
            "check whether the instrument held its last value while data were lost");
   }

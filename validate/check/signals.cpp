@@ -201,14 +201,14 @@ void describe_angle(const record::Record& r, Signals& s) {
   s.angle_per_frequency = angle_per_frequency(r, theta);
 }
 
-void find_holds(const record::Record& r, Signals& s) {
+void find_repeats(const record::Record& r, Signals& s) {
   if (!(s.P.quietest > 2e-5)) return;  // without noise, constant values are no defect
   std::size_t run = 0;
   for (std::size_t k = 1; k < r.t.size(); ++k) {
     const bool same =
         r.V[k] == r.V[k - 1] && r.theta[k] == r.theta[k - 1] && r.P[k] == r.P[k - 1] && r.Q[k] == r.Q[k - 1];
     run = same ? run + 1 : 0;
-    if (run > s.longest_hold) s.longest_hold = run, s.hold_at = k + 1 - run;
+    if (run > s.longest_repeat) s.longest_repeat = run, s.repeat_start = k + 1 - run;
   }
 }
 
@@ -227,7 +227,7 @@ Signals record_signals(const record::Record& r) {
   describe(r, r.P, s, s.P);
   describe(r, r.Q, s, s.Q);
   describe_angle(r, s);
-  find_holds(r, s);
+  find_repeats(r, s);
   return s;
 }
 

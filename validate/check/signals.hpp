@@ -33,8 +33,8 @@ struct Signals {
   bool wraps_of_360 = false;  ///< the angle, as written in "rad", steps by about 360
   double angle_per_frequency =
       0;  ///< rate of the angle over the deviation of frequency or speed; 1 if consistent, 0 if unknown
-  std::size_t longest_hold = 0,
-              hold_at =
+  std::size_t longest_repeat = 0,
+              repeat_start =
                   0;  ///< longest run of samples equal to the previous one in V, theta, P and Q; its start
 };
 

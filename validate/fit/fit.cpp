@@ -137,7 +137,7 @@ class Search {
     const int before = done;
     bool converged = search(iterations, done);
     while (converged && done - before < iterations && !out_of_reach_ && !interruption_asked() &&
-           bounds_->hold())
+           bounds_->activate())
       converged = search(iterations - (done - before), done);
     bounds_->release();
     for (EventCost* c : costs_) c->look_at(1);  // for the sensitivities of the final errors
@@ -289,8 +289,8 @@ class Search {
       p.error = a.derivative(z) * error;
       p.low = std::max(a.low, a.value(z - constants::normal95 * error));
       p.high = std::min(a.high, a.value(z + constants::normal95 * error));
-      p.held_by = walls.holding(static_cast<std::size_t>(i), z_.data());
-      p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6 || !p.held_by.empty();
+      p.active_constraint = walls.active_constraint(static_cast<std::size_t>(i), z_.data());
+      p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6 || !p.active_constraint.empty();
       p.decided =
           a.prior_sd() > 0 ? std::clamp(1 - error * error / (a.prior_sd() * a.prior_sd()), 0.0, 1.0) : 1.0;
       fit.parameters.push_back(p);

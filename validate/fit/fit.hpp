@@ -52,7 +52,7 @@ struct FittedParameter {
   double low = 0, high = 0;       ///< 95 % interval [unit], within the physical bounds
   /// At the end of its range, or at an ordering constraint (X''d > Xl). The interval is then not valid.
   bool at_bound = false;
-  std::string held_by = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
+  std::string active_constraint = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
   /// Returns "block.parameter".
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
   /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value; 1:

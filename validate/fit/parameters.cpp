@@ -16,7 +16,7 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters) {
   for (const auto& p : parameters)
     if (p.at_bound)
       names += (names.empty() ? "" : ", ") + p.full_name() +
-               (p.held_by.empty() ? "" : " (limited by " + p.held_by + ")");
+               (p.active_constraint.empty() ? "" : " (limited by " + p.active_constraint + ")");
   return names.empty() ? "" : names + ": at a bound, where the 95 % interval is not valid.";
 }
 

@@ -138,18 +138,18 @@ class Selection {
   /// `right`: prior standard deviation of the other parameters, relative.
   [[nodiscard]] Prediction predict(const Set& set, double right) const {
     const Eigen::VectorXd toward = curvature_ * at_;
-    Eigen::MatrixXd held = curvature_;
+    Eigen::MatrixXd precision = curvature_;
     double believed = 0;
     for (std::size_t i = 0; i < free_.size(); ++i) {
       if (std::ranges::binary_search(set, i)) continue;
-      FreeParameter held_to = free_[i];
-      held_to.prior_sd = std::min(held_to.prior_sd, right);
+      FreeParameter tightened = free_[i];
+      tightened.prior_sd = std::min(tightened.prior_sd, right);
       const double tighter =
-          std::pow(axis_unit(tested_.plant, free_[i]) / axis_unit(tested_.plant, held_to), 2);
-      held.diagonal()[static_cast<Eigen::Index>(i)] += tighter - 1;
+          std::pow(axis_unit(tested_.plant, free_[i]) / axis_unit(tested_.plant, tightened), 2);
+      precision.diagonal()[static_cast<Eigen::Index>(i)] += tighter - 1;
       believed += std::log(tighter);
     }
-    const auto known = held.ldlt();
+    const auto known = precision.ldlt();
     Prediction f{.at = known.solve(toward)};
     f.excess = toward.dot(at_ - f.at);
     f.occam = known.vectorD().array().log().sum() - believed;

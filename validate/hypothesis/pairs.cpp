@@ -71,8 +71,8 @@ std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& p
   for (Hypothesis& h : all_hypotheses(then.under_test(), then.library, then.component())) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
-    const bool holds = known != alone.end() && known->accepted && known->hypothesis.with.empty();
-    if (h.name == first->name || h.name == second->name || !(in_slot || holds)) continue;
+    const bool accepted_alone = known != alone.end() && known->accepted && known->hypothesis.with.empty();
+    if (h.name == first->name || h.name == second->name || !(in_slot || accepted_alone)) continue;
     const bool found = known != alone.end() && known->fitted;
     competitors.push_back(begun(then, std::move(h), found ? known->fit : pair.fit));
   }

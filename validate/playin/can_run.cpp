@@ -10,9 +10,9 @@ namespace swingbank::validate::playin {
 namespace {
 
 template <class F>
-bool all_blocks(const sim::plant::Plant& plant, F holds) {
-  return holds(plant.machine) && (!plant.transformer.effect || holds(plant.transformer)) &&
-         std::ranges::all_of(plant.controls, holds) && std::ranges::all_of(plant.measurements, holds);
+bool all_blocks(const sim::plant::Plant& plant, F predicate) {
+  return predicate(plant.machine) && (!plant.transformer.effect || predicate(plant.transformer)) &&
+         std::ranges::all_of(plant.controls, predicate) && std::ranges::all_of(plant.measurements, predicate);
 }
 
 bool is_ordered(const sim::plant::Block& b) {

@@ -75,7 +75,7 @@ class Data {
   }
   /// Returns whether the four-byte values are floats: integers interpreted as floats are mostly denormal or
   /// not finite.
-  [[nodiscard]] bool holds_floats() const {
+  [[nodiscard]] bool contains_floats() const {
     const std::size_t size = sample_size(4), n = dat_.size() / size;
     bool any = false;
     for (std::size_t k = 0; k < n; ++k)
@@ -95,7 +95,7 @@ class Data {
     if (text)
       kind = "ASCII";
     else if (const bool two = counts_up(sample_size(2)), four = counts_up(sample_size(4)); two != four)
-      kind = two ? "BINARY" : holds_floats() ? "FLOAT32" : out_.kind == "FLOAT32" ? out_.kind : "BINARY32";
+      kind = two ? "BINARY" : contains_floats() ? "FLOAT32" : out_.kind == "FLOAT32" ? out_.kind : "BINARY32";
     if (kind == out_.kind || dat_.empty()) return;
     out_.notes.push_back(
         fmt::format("The configuration names the data type {}, the data are {}: they were read as such.",

@@ -35,7 +35,7 @@ constexpr double kLengths[] = {0.1, 1.0, 10.0,
                                1000.0};  ///< factors on the damping of the steps that are tried at once
 
 /// Marks parameters of the submitted plant whose blocks are absent from `plant`.
-std::vector<char> held_by(const Inference& inference, const sim::plant::Plant& plant) {
+std::vector<char> mark_absent(const Inference& inference, const sim::plant::Plant& plant) {
   std::vector<char> marks;
   for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.base, f.id) ? 0 : 1);
   return marks;
@@ -49,7 +49,7 @@ class Identifying {
       : reduction_(reduction),
         input_(input),
         trial_(about(reduction.inference(), trial)),
-        reduced_(reduction, input, held_by(reduction.inference(), trial.plant), freed) {
+        reduced_(reduction, input, mark_absent(reduction.inference(), trial.plant), freed) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
       // A time constant far below the sampling interval is indistinguishable from zero in the records.

@@ -72,9 +72,9 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
 
 /// Returns the switching times that would leave their range at the optimum of the event's state (active set),
 /// with their moves to the end of the range.
-std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& event,
-                                                     const EventSensitivities& sensitivities,
-                                                     const std::vector<double>& priors) {
+std::vector<std::pair<Index, double>> active_bounds(const event::FitEvent& event,
+                                                    const EventSensitivities& sensitivities,
+                                                    const std::vector<double>& priors) {
   const Index n = sensitivities.state.cols();
   MatrixXd curvature = sensitivities.state.transpose() * sensitivities.state;
   VectorXd gradient = sensitivities.state.transpose() * sensitivities.residual;
@@ -83,28 +83,28 @@ std::vector<std::pair<Index, double>> held_at_bounds(const event::FitEvent& even
       curvature(k, k) += 1 / (b * b);
       gradient[k] += sensitivities.state_at[k] / (b * b);
     }
-  std::vector<std::pair<Index, double>> held;
+  std::vector<std::pair<Index, double>> active;
   for (bool changed = true; changed;) {
     changed = false;
     MatrixXd left = curvature;
     VectorXd right = gradient;
-    for (const auto& [k, move] : held) {
+    for (const auto& [k, move] : active) {
       right += curvature.col(k) * move;
       left.row(k).setZero();
       left.col(k).setZero();
       left(k, k) = 1;
     }
-    for (const auto& [k, move] : held) right[k] = -move;
+    for (const auto& [k, move] : active) right[k] = -move;
     const VectorXd best = sensitivities.state_at - left.ldlt().solve(right);
     VectorXd kept = best;
     keep_in_range(event, kept);
     for (Index k = 0; k < n; ++k)
-      if (kept[k] != best[k] && std::ranges::count(held, k, &std::pair<Index, double>::first) == 0) {
-        held.emplace_back(k, kept[k] - sensitivities.state_at[k]);
+      if (kept[k] != best[k] && std::ranges::count(active, k, &std::pair<Index, double>::first) == 0) {
+        active.emplace_back(k, kept[k] - sensitivities.state_at[k]);
         changed = true;
       }
   }
-  return held;
+  return active;
 }
 
 VectorXd at_times(const playin::PiecewiseLinear& input,
@@ -168,7 +168,7 @@ Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
         all(values + k, k) = 1 / b;
         all(values + k, all.cols() - 1) = s.state_at[k] / b;
       }
-    for (const auto& [k, move] : held_at_bounds(events[e], s, priors)) {
+    for (const auto& [k, move] : active_bounds(events[e], s, priors)) {
       all.rightCols(1) += all.col(k) * move;
       all.col(k).setZero();
       all.row(values + k).setZero();

@@ -55,7 +55,7 @@ struct DcBehindLeadLag : RotatingDc<Model> {
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     const std::string why = Dc::steady_exciter(p, c, s, x);
     if (!why.empty()) return why;
-    if (std::string held = Model::hindrance(c, x[Vr], s.V); !held.empty()) return held;
+    if (std::string reason = Model::hindrance(c, x[Vr], s.V); !reason.empty()) return reason;
     x[leadlag] = x[Vr] / p[KA];
     c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
     return {};

@@ -148,11 +148,11 @@ struct ElectricalControl {
   };
   /// Computes both commands: s.Tm (active) and s.Efd (reactive). A Model passes three functions. `total` adds
   /// the ride-through contribution to the reactive current. `active` maps the ordered to the active current.
-  /// `held` maps the remaining limit to that of the active current.
-  template <class T, class Total, class Active, class Held>
+  /// `active_limit` maps the remaining limit to that of the active current.
+  template <class T, class Total, class Active, class ActiveLimit>
   static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                        const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,
-                       const Held& held, Signals<T>& s, T* dx) {
+                       const ActiveLimit& active_limit, Signals<T>& s, T* dx) {
     const T zero(0.0), half(0.5);
     const auto p_first = c[active_first] > half;
     const T asked = active(ordered(c, x, wanted, runs, dx) / at_least_small(measured));
@@ -161,7 +161,7 @@ struct ElectricalControl {
     const T Iq = reactive(c, x, measured, regulated, runs, most, s, dx);
     s.Efd = clamp(total(Iq), zero - most, most);
     const T beside = select(p_first, c[imax], other_current(c[imax], s.Efd));
-    s.Tm = clamp(asked, larger(limits.least_p, zero - beside), held(smaller(limits.most_p, beside)));
+    s.Tm = clamp(asked, larger(limits.least_p, zero - beside), active_limit(smaller(limits.most_p, beside)));
   }
   /// Initialises states and references from the commands. `regulated`: as in reactive(); `injected`: steady
   /// ride-through current; `bias`: added to a Qext that is a voltage; `turning`: factor of Pext.

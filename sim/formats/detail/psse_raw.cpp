@@ -307,8 +307,9 @@ void RawReader::finish() {
     if (network::Generator& g = network_.generators[i]; regulated_[i] != 0 && g.in_service) {
       const auto found = index_.find(std::abs(regulated_[i]));
       if (found == index_.end())
-        hold_own(g, "generators that hold a bus that is not there hold their own at the file's voltage",
-                 generator_place(i));
+        regulate_own_bus(g,
+                         "generators that hold a bus that is not there hold their own at the file's voltage",
+                         generator_place(i));
       else if (found->second != g.bus)
         g.regulated = found->second;
     }

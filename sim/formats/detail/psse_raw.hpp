@@ -92,7 +92,7 @@ class RawReader {
   void fixed_shunt(const Record& record);
   void generator(const Record& record);
   /// Makes the generator regulate its own bus to the voltage in the file, with a remark.
-  void hold_own(network::Generator& g, const char* what, const std::string& where);
+  void regulate_own_bus(network::Generator& g, const char* what, const std::string& where);
   void branch(const Record& record);
   void switching_device(const Record& record);
   void transformer(const Record& first);

@@ -126,7 +126,7 @@ class Lanes {
   void drop_waiting(LaneRun& run, int count);
   void broadcast_constants(int lane);
   void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
-  void hold(LaneRun& run, int until) const;
+  void repeat_last(LaneRun& run, int until) const;
   /// Returns true if the recording of a lane computes the currents of all plants.
   [[nodiscard]] bool records_whole(int lane) const { return whole_record_ && !shared_.whole(lane); }
   T unwrapped(T angle, const T& squared, double last, int count) const;

@@ -316,7 +316,7 @@ void Lanes<T>::record_steady_start(int lane) {
   const int count = samples_until(first);
   run.pending = 1;
   evaluate_pending(lane, 1);
-  hold(run, count);
+  repeat_last(run, count);
   run.clock.t = first;
   if (switches) {
     run.segment = 1;
@@ -403,7 +403,7 @@ void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   run.record.outcome = outcome;
   run.record.stopped_at = run.clock.t;
   evaluate_pending(lane, run.pending);
-  hold(run, samples_);
+  repeat_last(run, samples_);
   done(run.job, run.record);
 }
 

@@ -300,7 +300,7 @@ T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
 
 /// Repeats the last sample until the record has `until` samples.
 template <class T>
-void Lanes<T>::hold(LaneRun& run, int until) const {
+void Lanes<T>::repeat_last(LaneRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;
   for (std::size_t k = 0; k < recorded_.size(); ++k)
     for (std::size_t j = 0; j < channels_.size(); ++j) {

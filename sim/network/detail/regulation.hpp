@@ -11,16 +11,16 @@ namespace swingbank::sim::network {
 /// Role of a bus in the power flow.
 struct Role {
   enum Kind {
-    out,     ///< isolated
-    slack,   ///< angle and magnitude are given
-    holds,   ///< magnitude is given, regulated by its own generators
-    load,    ///< P and Q are given
-    leads,   ///< Q is an unknown that keeps the magnitude of `target`, another bus
-    follows  ///< Q is in proportion to that of `leader`, by the shares
+    out,        ///< isolated
+    slack,      ///< angle and magnitude are given
+    regulated,  ///< magnitude is given, regulated by its own generators
+    load,       ///< P and Q are given
+    leads,      ///< Q is an unknown that keeps the magnitude of `target`, another bus
+    follows     ///< Q is in proportion to that of `leader`, by the shares
   };
   Kind kind = load;
-  Complex generation{};  ///< P, and Q where it is given, of its generators [pu]
-  double held = 0.0;     ///< regulated magnitude [pu]
+  Complex generation{};   ///< P, and Q where it is given, of its generators [pu]
+  double setpoint = 0.0;  ///< regulated magnitude [pu]
   double share = 1.0;
   int target = -1, leader = -1;
 };
@@ -42,7 +42,7 @@ class Regulation {
  private:
   struct Source {  ///< the generators of one bus
     int bus, target;
-    double held, share = 0.0, q_min = 0.0, q_max = 0.0;
+    double setpoint, share = 0.0, q_min = 0.0, q_max = 0.0;
     bool bounded = true;
     int side = 0;     ///< -1, +1: at the lower, upper limit
     int returns = 0;  ///< number of returns from a limit

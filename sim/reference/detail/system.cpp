@@ -28,16 +28,17 @@ int delta_state(const Effect& machine) {
 /// no solution. A converter follows a voltage and does not set one.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
-  std::vector<bool> held(island.size() + 1, false);
+  std::vector<bool> has_source(island.size() + 1, false);
   for (const plant::Plant& plant : grid.plants)
     if (!plant.machine.effect->converter && !std::ranges::binary_search(topology.tripped, plant.generator))
-      held[island[plant.bus] + 1] = true;
-  for (const auto& [bus, z] : topology.faults) held[island[bus] + 1] = true;
-  for (const int bus : network::dead_buses(grid.network, topology)) held[island[bus] + 1] = true;  // V = 0
-  held[0] = true;  // isolated buses (-1) are out of the grid
+      has_source[island[plant.bus] + 1] = true;
+  for (const auto& [bus, z] : topology.faults) has_source[island[bus] + 1] = true;
+  for (const int bus : network::dead_buses(grid.network, topology))
+    has_source[island[bus] + 1] = true;  // V = 0
+  has_source[0] = true;                  // isolated buses (-1) are out of the grid
   std::vector<int> lost;
   for (int b = 0; b < static_cast<int>(island.size()); ++b)
-    if (!held[island[b] + 1]) lost.push_back(b);
+    if (!has_source[island[b] + 1]) lost.push_back(b);
   return lost;
 }
 

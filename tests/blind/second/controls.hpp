@@ -8,7 +8,7 @@
 namespace swingbank::blind_second {
 
 /// Rate of a state with limits: zero at a limit if the rate points outwards.
-inline double held(double rate, double x, double low, double high) {
+inline double limited_rate(double rate, double x, double low, double high) {
   if (x >= high && rate > 0) return 0.0;
   if (x <= low && rate < 0) return 0.0;
   return rate;
@@ -28,7 +28,7 @@ struct Sexs {
   [[nodiscard]] State rates(const State& x, double V, double Vs) const {
     const double error = reference - V + Vs;
     const double lead = x.lag + ratio * (error - x.lag);  // (1 + s TA)/(1 + s TB)
-    return {(error - x.lag) / TB, held((K * lead - x.Efd) / TE, x.Efd, low, high)};
+    return {(error - x.lag) / TB, limited_rate((K * lead - x.Efd) / TE, x.Efd, low, high)};
   }
 };
 
@@ -48,7 +48,7 @@ struct Tgov1 {
   }
   [[nodiscard]] State rates(const State& x, double w) const {
     const double valve = std::clamp(x.valve, low, high);
-    return {held(((reference - w) / R - x.valve) / T1, x.valve, low, high), (valve - x.reheat) / T3};
+    return {limited_rate(((reference - w) / R - x.valve) / T1, x.valve, low, high), (valve - x.reheat) / T3};
   }
 };
 

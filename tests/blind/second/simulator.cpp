@@ -133,7 +133,7 @@ void advance(Simulation& s, double t, double h, Vector& x) {
 
 }  // namespace
 
-Phasor holding_source(const Setup& setup, Phasor impedance) {
+Phasor source_voltage(const Setup& setup, Phasor impedance) {
   return setup.V - impedance * std::conj(Phasor(setup.P, setup.Q) / setup.V);
 }
 

@@ -57,6 +57,6 @@ struct Output {
 Output simulate(const Setup& setup, double seconds, double rate = 60, double step = 1.0 / 2400);
 
 /// Returns the source voltage that gives P, Q, V behind `impedance`; V has angle 0.
-Phasor holding_source(const Setup& setup, Phasor impedance);
+Phasor source_voltage(const Setup& setup, Phasor impedance);
 
 }  // namespace swingbank::blind_second

@@ -57,7 +57,7 @@ class ControlBench {
   [[nodiscard]] std::vector<double> derivative() const {
     std::vector<double> dx(x.size());
     evaluate(x, dx);
-    hold(x, dx);
+    limit_derivatives(x, dx);
     return dx;
   }
   [[nodiscard]] double largest_derivative() const {
@@ -144,7 +144,7 @@ class ControlBench {
            state.high < 0 ? inf : c[static_cast<std::size_t>(state.high)]);
     }
   }
-  void hold(const std::vector<double>& at, std::vector<double>& dx) const {
+  void limit_derivatives(const std::vector<double>& at, std::vector<double>& dx) const {
     limits([&](std::size_t i, double low, double high) {
       if (at[i] <= low) dx[i] = std::max(dx[i], 0.0);
       if (at[i] >= high) dx[i] = std::min(dx[i], 0.0);
@@ -162,7 +162,7 @@ class ControlBench {
     const double weight[] = {1.0, 2.0, 2.0, 1.0}, reach[] = {0.5, 0.5, 1.0, 0.0};
     for (int stage = 0; stage < 4; ++stage) {
       evaluate(at, k);
-      hold(at, k);
+      limit_derivatives(at, k);
       for (std::size_t i = 0; i < n; ++i) {
         sum[i] += weight[stage] * k[i] / 6.0;
         at[i] = x[i] + reach[stage] * h * k[i];

@@ -55,16 +55,17 @@ TEST(Reecd1, RegulatesTheVoltageBehindItsImpedanceOrWithDroop) {
     v["Xc"] = 0.1;
     ControlBench bench("REECD1", v, at_rated());
     ASSERT_EQ(bench.refused, "");
-    const auto held = [&](double ir, double ii) {
+    const auto compensated = [&](double ir, double ii) {
       const std::complex<double> behind =
           1.0 - std::complex<double>(0.02, 0.1) * std::complex<double>(ir, ii);
       return flag == 1.0 ? std::abs(behind) : 1.0 - 0.2 * ii;
     };
-    EXPECT_NEAR(bench.state("Vcomp"), held(0.8, -0.1), 1e-14);
+    EXPECT_NEAR(bench.state("Vcomp"), compensated(0.8, -0.1), 1e-14);
     bench.in.Ii = -0.3;
     bench.in.Q = 0.3;
     bench.run(1.0);
-    const double off = held(0.8, -0.1) - held(0.8, -0.3), seen = 1.0 - 0.1 * (1.0 - std::exp(-10.0));
+    const double off = compensated(0.8, -0.1) - compensated(0.8, -0.3),
+                 seen = 1.0 - 0.1 * (1.0 - std::exp(-10.0));
     EXPECT_NEAR(bench.out().Efd, 0.1 + 5.0 * off * seen, 1e-9);  // of the measurement behind 0.1 s
   }
 }

@@ -85,9 +85,9 @@ TEST(ExciterEsst4b, RegulatorsDoNotWindUpAndReleaseWithoutDelay) {
   EXPECT_GE(bench.state("xr") + 3.0 * 0.1, 1.5);
   EXPECT_LE(bench.state("xr") + 3.0 * 0.1, 1.502);
   EXPECT_NEAR(bench.state("Va"), 1.5, 1e-12);
-  const double held = bench.state("xm");
+  const double clamped = bench.state("xm");
   bench.run(1.0);
-  EXPECT_NEAR(bench.state("xm"), held, 1e-12);  // rounding at the band's edge
+  EXPECT_NEAR(bench.state("xm"), clamped, 1e-12);  // rounding at the band's edge
   bench.in.dVref = -0.6;
   bench.run(0.2);
   EXPECT_LT(bench.state("Va"), 0.0);  // 1.5 - 3 0.7 and falling, with TA = 0.05 s

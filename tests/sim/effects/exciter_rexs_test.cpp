@@ -95,11 +95,11 @@ class Drawn {
     const double u1 = y[2] + 1.0 * d[2];
     d[3] = (u1 - y[3]) / 0.4;
     const double u2 = y[3] + 0.1 * d[3];
-    d[4] = held((u2 - y[4]) / 0.03, y[4], -2.0, 4.5);
+    d[4] = limited_rate((u2 - y[4]) / 0.03, y[4], -2.0, 4.5);
     d[5] = (Vfe - y[5]) / 1.3;
     d[6] = (washed - y[6]) / 0.1;
-    d[7] = held((1.5 * (y[4] - 0.3 * Vfe) - y[7]) / 0.05, y[7], -3.0, 5.0);
-    d[8] = held((y[7] - Vfe) / 0.8, y[8], 0.0, 99.0);
+    d[7] = limited_rate((1.5 * (y[4] - 0.3 * Vfe) - y[7]) / 0.05, y[7], -3.0, 5.0);
+    d[8] = limited_rate((y[7] - Vfe) / 0.8, y[8], 0.0, 99.0);
     return d;
   }
   void step(double h) {
@@ -112,7 +112,7 @@ class Drawn {
   }
 
  private:
-  static double held(double rate, double at, double low, double high) {
+  static double limited_rate(double rate, double at, double low, double high) {
     return (at >= high && rate > 0) || (at <= low && rate < 0) ? 0.0 : rate;
   }
   static std::array<double, 9> plus(std::array<double, 9> y, const std::array<double, 9>& d, double h) {

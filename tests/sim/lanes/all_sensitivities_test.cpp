@@ -277,10 +277,10 @@ TEST(AllSensitivities, ThroughALimitEqualCentralDifferences) {
   const auto efd = static_cast<int>(Channel::Efd);
   int at_ceiling = 0, released = 0;
   for (int k = 0; k < dual.samples; ++k) {
-    const bool held = std::abs(dual.row(efd)[k] - 2.5) < 1e-9;
-    at_ceiling += held;
-    released += !held && at_ceiling > 0;
-    if (!held) continue;
+    const bool clamped = std::abs(dual.row(efd)[k] - 2.5) < 1e-9;
+    at_ceiling += clamped;
+    released += !clamped && at_ceiling > 0;
+    if (!clamped) continue;
     EXPECT_NEAR(dual.sensitivity(0, 0, efd)[k], 1.0, 1e-9) << k;  // Efd equals the ceiling
   }
   EXPECT_GT(at_ceiling, 5);

@@ -82,7 +82,7 @@ inline void dress(plant::Plant& plant, Draws& draws) {
   if (draws.chance(0.2)) plant.transformer = draw_block(Slot::transformer, draws);
 }
 
-inline bool holds(const plant::Plant& plant, const grid::Grid& grid) {
+inline bool has_operating_point(const plant::Plant& plant, const grid::Grid& grid) {
   try {
     (void)plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
                                  grid.network.base_mva, grid.conventions);
@@ -117,7 +117,7 @@ inline grid::Grid dressed(const grid::Grid& plain, Draws& draws) {
     for (int attempt = 0; attempt < 20; ++attempt) {
       plant::Plant next = plant;
       dress(next, draws);
-      if (!holds(next, grid)) continue;  // a limit does not admit this dispatch
+      if (!has_operating_point(next, grid)) continue;  // a limit does not admit this dispatch
       plant = std::move(next);
       break;
     }

@@ -178,17 +178,17 @@ TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
   const data::ShardStream stream = w.stream(0.0);
   const data::RowSplit split = data::leave_one_out(
       stream.labels(), {.generator = 33, .validation_share = 0.1, .seed = 1, .set_aside = 2});
-  double held = 0.0, width = 0.0;
+  double covered = 0.0, width = 0.0;
   for (const std::uint64_t row : split.test) {
     const Estimate e = saved.estimate(record_of(w.world, row, saved.info().samples), 0.0);
     ASSERT_TRUE(e.intervals[0]);
     EXPECT_FALSE(e.intervals[2]);
     const double H = stream.labels().values[row * 3];
-    held += H > e.intervals[0]->low && H < e.intervals[0]->high ? 1.0 / 30 : 0.0;
+    covered += H > e.intervals[0]->low && H < e.intervals[0]->high ? 1.0 / 30 : 0.0;
     width += (e.intervals[0]->high - e.intervals[0]->low) / 30;
   }
   const json& of_H = without["posterior"]["test"]["per_parameter"][0];
-  EXPECT_NEAR(held, of_H["coverage_90"].get<double>(), 1e-6);
+  EXPECT_NEAR(covered, of_H["coverage_90"].get<double>(), 1e-6);
   EXPECT_NEAR(width, of_H["width_90"].get<double>(), 1e-3 * width);
 }
 

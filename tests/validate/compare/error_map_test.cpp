@@ -42,14 +42,14 @@ std::vector<double> noise(double sigma, double a, unsigned seed, std::size_t n =
 TEST(ErrorMapTest, BinsContainResolvableFrequencies) {
   const auto t = times();
   const ErrorMap map = error_map(t, noise(1, 0, 1), windows(), white_noise(1));
-  const std::vector<std::vector<bool>> holds = {{false, true, true, true},
-                                                {false, false, false, true},
-                                                {false, true, true, true},
-                                                {false, true, true, true},
-                                                {true, true, true, true}};
+  const std::vector<std::vector<bool>> resolved = {{false, true, true, true},
+                                                   {false, false, false, true},
+                                                   {false, true, true, true},
+                                                   {false, true, true, true},
+                                                   {true, true, true, true}};
   for (std::size_t w = 0; w < 5; ++w)
     for (std::size_t b = 0; b < 4; ++b)
-      EXPECT_EQ(!map.rows[w].bands[b].empty(), holds[w][b]) << w << " " << b;
+      EXPECT_EQ(!map.rows[w].bands[b].empty(), resolved[w][b]) << w << " " << b;
   EXPECT_EQ(map.rows[0].all.values, 120);  // 121 samples; their mean is the start
   EXPECT_EQ(map.rows[1].all.values, 6);
   EXPECT_EQ(map.whole.values, 1200);

@@ -53,14 +53,14 @@ TEST(HeldOutEvents, FailedFitPredictsNothing) {
   example.events = example.events.only({0, 0});
   const fit::Fit whole = example.fitted({"H"}, {.iterations = 0});
   const Trial trial{example.events, 0.2, kAdequate};
-  const auto hold = [&](const fit::Fit& f) {
+  const auto test_unseen = [&](const fit::Fit& f) {
     return hold_out(trial, example.model.under_test(), example.free({"H", "EMAX"}), f);
   };
-  EXPECT_LT(hold(whole).front().cost_after, 1e6);
+  EXPECT_LT(test_unseen(whole).front().cost_after, 1e6);
   fit::Fit impossible = whole;
   for (const auto& f : example.free({"EMAX"}))
     sim::plant::parameter_value(impossible.plant, f.id) = 0.5;  // below the initial Efd
-  EXPECT_GT(hold(impossible).front().cost_after, 1e300);
+  EXPECT_GT(test_unseen(impossible).front().cost_after, 1e300);
 }
 TEST(Objection, RequiresPredictionNotOnlyImprovement) {
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 3.0, 1.5)}, 3500, kAdequate),

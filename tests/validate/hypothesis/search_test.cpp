@@ -121,9 +121,9 @@ TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
 }
 TEST_F(Exchange, KeepsSingleEffectsAmongTheHypotheses) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
-  Judgement holds = alone("CTERROR", 0.01), does_not = alone("PTERROR", 0.01);
-  holds.accepted = true;
-  const auto competitors = exchanges(base_model_, pair, {holds, does_not});
+  Judgement accepted = alone("CTERROR", 0.01), rejected = alone("PTERROR", 0.01);
+  accepted.accepted = true;
+  const auto competitors = exchanges(base_model_, pair, {accepted, rejected});
   EXPECT_THAT(names(competitors), Contains("STEPUP + CTERROR"));
   EXPECT_THAT(names(competitors), Not(Contains("STEPUP + PTERROR")));
   const auto found =

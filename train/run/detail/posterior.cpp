@@ -198,7 +198,7 @@ json maps_json(const Posterior& posterior) {
   json all = json::array();
   for (const LevelMaps& l : posterior.levels) {
     json maps = json::array();
-    for (const auto& m : l.maps) maps.push_back(m.held());
+    for (const auto& m : l.maps) maps.push_back(m.node_scores());
     all.push_back({{"level", l.level}, {"maps", maps}});
   }
   return all;
@@ -209,7 +209,7 @@ std::vector<LevelMaps> maps_of(const json& all) {
   for (const auto& item : all) {
     levels.push_back({item.at("level"), {}});
     for (const auto& m : item.at("maps"))
-      levels.back().maps.emplace_back(m.get<std::array<double, posterior::kHeldAt.size()>>());
+      levels.back().maps.emplace_back(m.get<std::array<double, posterior::kNodeProbabilities.size()>>());
   }
   return levels;
 }

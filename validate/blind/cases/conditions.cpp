@@ -84,13 +84,13 @@ std::vector<std::string> condition_names(const Conditions& c, const BlindConfig&
 void let_loads_move(BlindEvent& event, const sim::network::Network& network, const Conditions& c,
                     BlindDraw& draw) {
   if (c.ambient == 0 && c.drift == 0) return;
-  const double keeps = std::exp(-kStair / kMemory), holds = std::exp(-kStair / kSmooth);
+  const double keeps = std::exp(-kStair / kMemory), smoothing = std::exp(-kStair / kSmooth);
   const double adds = c.ambient * std::sqrt((1 - keeps * keeps) * (kMemory + kSmooth) / kMemory);
   double rough = 0, noise = 0;
   move(event, network, event.seconds, [&](int k, double t) {
     if (k == 0) rough = noise = 0;  // at rest where the run begins
     rough = keeps * rough + adds * draw.normal();
-    noise = holds * noise + (1 - holds) * rough;
+    noise = smoothing * noise + (1 - smoothing) * rough;
     return noise + c.drift * t;
   });
 }

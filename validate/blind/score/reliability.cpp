@@ -82,12 +82,13 @@ Reliability reliability(const std::vector<Forecast>& forecasts) {
     auto at = std::ranges::find(r.sets, f.group, &std::pair<std::string, Reliability::Sets>::first);
     if (at == r.sets.end()) at = r.sets.insert(at, {f.group, {}});
     const std::size_t size = set_size(f);
-    at->second.holds.count(std::any_of(f.right.begin(), f.right.begin() + static_cast<std::ptrdiff_t>(size),
-                                       [](char right) { return right != 0; }));
+    at->second.coverage.count(std::any_of(f.right.begin(),
+                                          f.right.begin() + static_cast<std::ptrdiff_t>(size),
+                                          [](char right) { return right != 0; }));
     at->second.mean_size += static_cast<double>(size);
   }
   for (auto& b : r.bins) b.mean /= std::max(1, b.right.n);
-  for (auto& [name, s] : r.sets) s.mean_size /= std::max(1, s.holds.n);
+  for (auto& [name, s] : r.sets) s.mean_size /= std::max(1, s.coverage.n);
   r.cases = static_cast<int>(firsts.size());
   if (firsts.empty()) return r;
   r.error = calibration_error(firsts);
@@ -114,9 +115,9 @@ std::string reliability_markdown(const Reliability& r) {
       "| one listed effect hidden | in the 95 % set | mean size of the set |\n|---|---|---:|\n",
       r.error, r.error_low, r.error_high, r.cases);
   for (const auto& [group, s] : r.sets)
-    text +=
-        fmt::format("| {} | {:.0f} % ({} of {}; {:.0f}–{:.0f} %) | {:.1f} |\n", group, 100 * s.holds.value(),
-                    s.holds.hits, s.holds.n, 100 * s.holds.low(), 100 * s.holds.high(), s.mean_size);
+    text += fmt::format("| {} | {:.0f} % ({} of {}; {:.0f}–{:.0f} %) | {:.1f} |\n", group,
+                        100 * s.coverage.value(), s.coverage.hits, s.coverage.n, 100 * s.coverage.low(),
+                        100 * s.coverage.high(), s.mean_size);
   return text;
 }
 
@@ -137,7 +138,7 @@ nlohmann::json reliability_json(const Reliability& r) {
                          {"mean", r.bins[b].mean},
                          {"right", rate(r.bins[b].right)}});
   for (const auto& [group, s] : r.sets)
-    j["sets"][group] = {{"holds_truth", rate(s.holds)}, {"mean_size", s.mean_size}};
+    j["sets"][group] = {{"holds_truth", rate(s.coverage)}, {"mean_size", s.mean_size}};
   return j;
 }
 

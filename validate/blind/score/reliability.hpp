@@ -27,7 +27,7 @@ struct Reliability {
     Rate right;
   };
   struct Sets {
-    Rate holds;            ///< the 95 % set contains the truth
+    Rate coverage;         ///< the 95 % set contains the truth
     double mean_size = 0;  ///< mean number of explanations in the set
   };
   std::vector<Bin> bins;  ///< between kReliabilityEdges, of all explanations of all cases

@@ -32,9 +32,9 @@ bool AtBounds::any_at_bound() const {
   });
 }
 
-bool AtBounds::hold() {
+bool AtBounds::activate() {
   if (!any_at_bound()) return false;
-  const Which before = held_.empty() ? fixed_ : held_;
+  const Which before = active_.empty() ? fixed_ : active_;
   release();
   ceres::Problem::EvaluateOptions some;
   for (const auto& of : fixed_) some.parameter_blocks.push_back(of.first);
@@ -42,20 +42,20 @@ bool AtBounds::hold() {
   if (!problem_.Evaluate(some, nullptr, nullptr, &gradient, nullptr)) return false;
   auto derivative = gradient.begin();
   for (const auto& [block, fixed] : fixed_) {
-    std::vector<int>& held = held_[block];
+    std::vector<int>& active = active_[block];
     for (int i = 0, n = problem_.ParameterBlockSize(block); i < n; ++i) {
       const bool never_moves = std::ranges::binary_search(fixed, i);
-      if (never_moves || *derivative * beyond(block, i) < 0) held.push_back(i);
+      if (never_moves || *derivative * beyond(block, i) < 0) active.push_back(i);
       if (!never_moves) ++derivative;
     }
-    apply(block, held);
+    apply(block, active);
   }
-  return held_ != before;
+  return active_ != before;
 }
 
 void AtBounds::release() {
   for (const auto& [block, fixed] : fixed_) apply(block, fixed);
-  held_.clear();
+  active_.clear();
 }
 
 }  // namespace swingbank::validate::fit::fitting

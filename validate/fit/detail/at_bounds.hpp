@@ -17,7 +17,7 @@ class AtBounds {
   void fix(double* block, std::vector<int> which);
   /// Holds the variables at a bound whose gradient points outward. Returns false if no variable is at a
   /// bound, or if the held set has not changed.
-  bool hold();
+  bool activate();
   /// Releases all held variables; fixed ones stay fixed.
   void release();
 
@@ -28,7 +28,7 @@ class AtBounds {
   void apply(double* block, const std::vector<int>& which);
 
   ceres::Problem& problem_;
-  Which fixed_, held_;
+  Which fixed_, active_;
 };
 
 }  // namespace swingbank::validate::fit::fitting

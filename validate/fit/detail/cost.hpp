@@ -78,7 +78,7 @@ class Walls : public ceres::CostFunction {
   }
   [[nodiscard]] bool empty() const { return walls_.empty(); }
   /// Returns the active ordering on the axis at z, for example "X''d > Xl"; empty: none.
-  [[nodiscard]] std::string holding(std::size_t axis, const double* z) const {
+  [[nodiscard]] std::string active_constraint(std::size_t axis, const double* z) const {
     const sim::plant::Plant plant = moved(setting_, z);
     const auto symbol = [&](int parameter) {
       return std::string(plant.machine.effect->parameters[static_cast<std::size_t>(parameter)].symbol);

@@ -96,10 +96,10 @@ void invert(Matrix& left, Matrix& inverse) {
 /// sensitivity parameters. The last row of C and D is the guard that passes zero.
 struct Linear {
   Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
-      : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), held(n, 0) {}
+      : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), clamped(n, 0) {}
   Matrix A, B, C, D;
   std::vector<std::size_t> hats;  ///< packs of B and D with non-zero hat functions
-  std::vector<char> held;         ///< states clamped at a limit; their sensitivities are the limit's
+  std::vector<char> clamped;      ///< states clamped at a limit; their sensitivities are the limit's
 };
 
 class LinearSensitivities {
@@ -166,7 +166,7 @@ class LinearSensitivities {
       else if (k > 0 && node.t > trace_.nodes[k - 1].t)
         step(node.t - trace_.nodes[k - 1].t);
       for (std::size_t i = 0; i < n_; ++i)
-        for (std::size_t p = 0; now_.held[i] && p < wide(); ++p) S_.pack(p)[i] = limits_.pack(p)[i];
+        for (std::size_t p = 0; now_.clamped[i] && p < wide(); ++p) S_.pack(p)[i] = limits_.pack(p)[i];
       if (node.kind == NodeKind::sample) record(sample++);
     }
     for (std::size_t d = 0; d < m_; ++d)
@@ -235,8 +235,8 @@ class LinearSensitivities {
   /// Finds the states at their limits, and the admissible perturbations of the others.
   void find_limits(const double* x, const double* dx) {
     for (std::size_t i = 0; i < n_; ++i) move_[i] = kNodeMove * (1 + std::abs(x[i]));
-    std::ranges::fill(now_.held, 0);
-    any_held_ = false;
+    std::ranges::fill(now_.clamped, 0);
+    any_clamped_ = false;
     const auto& equations = copies_.front().equations;
     if (!equations.of_plant().limited()) return;
     constexpr int kUp = 0, kDown = 1;
@@ -249,8 +249,8 @@ class LinearSensitivities {
       const bool high = up < kAtLimit, low = down < kAtLimit;
       if (low || (!high && up < kNodeMove * (1 - 1e-3))) move_[i] = -move_[i];  // perturb away from the limit
       if (!(high || low) || dx[i] != 0.0) continue;
-      now_.held[i] = 1;
-      any_held_ = true;
+      now_.clamped[i] = 1;
+      any_clamped_ = true;
       limit_[i] = x_[i][high ? kUp : kDown];
       outward_[i] = (high ? 1.0 : -1.0) * scale;
     }
@@ -258,13 +258,13 @@ class LinearSensitivities {
   /// Sets the states of a node; clamped states take the limit of each lane.
   void place(const PlaybackEquations<P8>& equations, const double* x) {
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
-    if (!any_held_) return;
+    if (!any_clamped_) return;
     for (std::size_t i = 0; i < n_; ++i)
-      if (now_.held[i]) x_[i] = P8(x[i] + outward_[i]);
+      if (now_.clamped[i]) x_[i] = P8(x[i] + outward_[i]);
     P8 moved(0.0);
     equations.of_plant().clamp_states(equations.c.data(), x_.data(), moved);
     for (std::size_t i = 0; i < n_; ++i)
-      if (!now_.held[i]) x_[i] = P8(x[i]);
+      if (!now_.clamped[i]) x_[i] = P8(x[i]);
   }
   /// Linearises the plant at a node into `now_`, and keeps the previous one in `before_`.
   void linearise(std::size_t k, std::size_t sample) {
@@ -283,7 +283,7 @@ class LinearSensitivities {
       if (by_state) {
         per_move = P8(1.0) / P8::load(move_.data() + pack * kLanes);
         for (std::size_t i = pack * kLanes; i < std::min(n_, (pack + 1) * kLanes); ++i)
-          if (!now_.held[i]) x_[i] = x_[i] + P8(move_[i]) * lane_[i % kLanes];
+          if (!now_.clamped[i]) x_[i] = x_[i] + P8(move_[i]) * lane_[i % kLanes];
       }
       equations.side = node.side;
       equations.evaluate_at(vr, vi, node.t, x_.data(), dx_.data());
@@ -302,8 +302,8 @@ class LinearSensitivities {
         shown[shown_] =
             (guards_[static_cast<std::size_t>(node.passed.guard)] - P8(node.passed.value)) * per_move;
       }
-      for (std::size_t i = 0; !by_state && any_held_ && i < n_; ++i)
-        if (now_.held[i]) limits_.pack(pack)[i] = (x_[i] - P8(limit_[i])) * per_move;
+      for (std::size_t i = 0; !by_state && any_clamped_ && i < n_; ++i)
+        if (now_.clamped[i]) limits_.pack(pack)[i] = (x_[i] - P8(limit_[i])) * per_move;
     }
     raise_hats(std::min(node.t, node.side.last_moment));
   }
@@ -335,8 +335,8 @@ class LinearSensitivities {
 
   /// Returns whether a state reaches its limit within the step: clamped at the end, not at the beginning.
   [[nodiscard]] bool meets_a_limit() const {
-    for (std::size_t i = 0; any_held_ && i < n_; ++i)
-      if (now_.held[i] && !before_.held[i]) return true;
+    for (std::size_t i = 0; any_clamped_ && i < n_; ++i)
+      if (now_.clamped[i] && !before_.clamped[i]) return true;
     return false;
   }
   /// Integrates the sensitivities over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0
@@ -418,7 +418,7 @@ class LinearSensitivities {
   Linear before_, now_;
   Matrix left_, inverse_, y_;
   std::vector<char> has_coefficients_;  ///< whether a pack of parameters changes any coefficient
-  bool any_held_ = false;
+  bool any_clamped_ = false;
   std::array<P8, kLanes> lane_;  ///< unit vectors: one in the lane, zero elsewhere
   std::vector<P8> x_, dx_, guards_;
   std::vector<double> move_, limit_, outward_;

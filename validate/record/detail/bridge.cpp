@@ -86,7 +86,7 @@ void smooth(std::vector<double>& y, const Gap& gap, const std::vector<std::size_
   std::ranges::copy(interpolate(y, gap, neighbours).inside,
                     y.begin() + static_cast<std::ptrdiff_t>(gap.first));
 }
-void hold(std::vector<double>& y, const Gap& gap) {
+void fill_nearest(std::vector<double>& y, const Gap& gap) {
   const std::size_t p = gap.first - 1, q = gap.last + 1;
   for (std::size_t k = gap.first; k <= gap.last; ++k) y[k] = 2 * k < p + q ? y[p] : y[q];
 }
@@ -149,7 +149,7 @@ void bridge(Record& r) {
       if (bends)
         smooth(*y, gap, neighbours);
       else if (stepped && (y == &r.V || y == &r.theta))
-        hold(*y, gap);
+        fill_nearest(*y, gap);
       else
         straight(*y, gap);
     }

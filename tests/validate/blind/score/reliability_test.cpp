@@ -34,8 +34,8 @@ TEST(Reliability, SetSumsToNinetyFivePerCent) {
   const Reliability r = reliability({forecast(0.97, true), forecast(0.97, false), forecast(0.6, false),
                                      forecast(0.6, true, false)});  // the last truth is not in the list
   ASSERT_EQ(r.sets.size(), 1U);
-  EXPECT_EQ(r.sets[0].second.holds.n, 3);
-  EXPECT_EQ(r.sets[0].second.holds.hits, 2);
+  EXPECT_EQ(r.sets[0].second.coverage.n, 3);
+  EXPECT_EQ(r.sets[0].second.coverage.hits, 2);
   EXPECT_NEAR(r.sets[0].second.mean_size, 4.0 / 3, 1e-12);
 }
 TEST(Reliability, IsEmpty_WithoutProbabilities) {

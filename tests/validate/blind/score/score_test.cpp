@@ -170,7 +170,7 @@ TEST_F(BlindScoring, ComparesProbabilitiesWithTheTruth) {
   EXPECT_THAT(right(2), testing::ElementsAre(0, 1, 0));
   EXPECT_THAT(right(3), testing::ElementsAre(1, 0, 0));
   EXPECT_EQ(s.reliability.cases, 4);
-  EXPECT_EQ(s.reliability.sets.at(0).second.holds.hits, 1);
+  EXPECT_EQ(s.reliability.sets.at(0).second.coverage.hits, 1);
   EXPECT_EQ(score_json(s)["probabilities"]["sets"]["P, Q only"]["mean_size"], 3.0);
   EXPECT_THAT(score_markdown(s), testing::HasSubstr("## Reliability of the probabilities"));
 }
