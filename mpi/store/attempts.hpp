@@ -19,7 +19,8 @@ struct Attempt {
 /// Writer of one run's lines.
 class AttemptLog {
  public:
-  /// Appends the line of a start. `properties`: properties of the run and the shards that it found.
+  /// Appends the line of a start. `properties`: host, ranks and software of the run, and the shards that it
+  /// found.
   AttemptLog(const std::filesystem::path& folder, const std::map<std::string, std::string>& properties);
   /// Appends the outcome "failed" unless end() was called.
   ~AttemptLog();

@@ -46,4 +46,4 @@ for ((i = from; i < injections; i += stride)); do
   command "$kind"
   strike $i "$error" 0 "$work/$under" "$of" 0 "${run[@]}"
 done
-tell_failures "$injections"
+report_failures "$injections"

@@ -54,4 +54,4 @@ for ((i = from; i < injections; i += stride)); do
   command "$kind" # sets `run`
   strike $i "$error" 0 "$work/$under" "$of" "$first" "${run[@]}"
 done
-tell_failures "$injections"
+report_failures "$injections"

@@ -22,8 +22,8 @@ wrong() {
   [ -n "${SWINGBANK_GO_ON:-}" ] || exit 1
 }
 
-# tell_campaign N: reports how many of N items are done (parallel shells may do the others); fails if one failed
-tell_campaign() {
+# report_campaign N: reports how many of N items are done (parallel shells may do the others); fails if one failed
+report_campaign() {
   local made wrongs
   made=$(wc -l <"$results")
   wrongs=$(awk '$2 == "wrong"' "$results" | wc -l)

@@ -63,4 +63,4 @@ done
 awk '{++n[$3]; same[$3] += $2 == "same"; early[$3] += $4 == "early"; hung += $5 == "hung"}
   END {for (k in n) printf "%s: %d of %d kills end in the same bytes, %d of them before the header stood\n", k, same[k], n[k], early[k]
     printf "runs of which something hung until it was ended: %d\n", hung}' "$results"
-tell_campaign "$kills"
+report_campaign "$kills"

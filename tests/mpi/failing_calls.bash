@@ -82,13 +82,13 @@ strike() {
   keep "$item" "$outcome" "$error" "$what"
 }
 
-# tell_failures N: prints the totals of each error
-tell_failures() {
+# report_failures N: prints the totals of each error
+report_failures() {
   local error
   for error in "${!reasons[@]}"; do
     awk -v error="$error" -v reason="${reasons[$error]}" '
       $3 == error {++n[$2]} END {printf "%s (%s): %d ended with that reason, %d were whole all the same, %d were not reached\n",
         error, reason, n["told"], n["whole"], n["missed"]}' "$results"
   done
-  tell_campaign "$1"
+  report_campaign "$1"
 }

@@ -62,4 +62,4 @@ for i in $(seq "$from" "$stride" $((injections - 1))) ${SWINGBANK_ALSO:-}; do
   if [ "$error" = memory ]; then of=${allocated[$place]}; fi
   strike $i "$error" "$rank" "$work/run" "$of" 0 "${command[@]}"
 done
-tell_failures "$injections"
+report_failures "$injections"

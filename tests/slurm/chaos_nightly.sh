@@ -117,4 +117,4 @@ for ((i = from; i < kills; i += stride)); do
   keep $i $outcome $stage $way "$at" "$went_wrong"
 done
 awk '{++n[$4]; same[$4] += $2 == "same"} END {for (w in n) printf "%s: %d of %d end in the same bytes\n", w, same[w], n[w]}' "$results"
-tell_campaign "$kills"
+report_campaign "$kills"

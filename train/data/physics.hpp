@@ -41,7 +41,7 @@ class Physics {
   [[nodiscard]] std::size_t samples() const { return bins_.back().first + bins_.back().count; }
   /// Returns the number of samples in each bin.
   [[nodiscard]] std::vector<float> bin_samples() const;
-  /// Computes the input of one row, whose channels are `stride` apart. out: channels() x cells(), then
+  /// Computes the input of one row, whose channels are `stride` apart. out: channels() x bins(), then
   /// levels().
   void apply(const float* record, std::size_t stride, float* out) const;
 

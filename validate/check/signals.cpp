@@ -20,7 +20,7 @@ constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
 /// Least-squares line through values at 0, 1, 2 …
 struct Line {
-  double middle = 0, slope = 0, standard_deviation = 0;  ///< spread: standard deviation about the line
+  double middle = 0, slope = 0, standard_deviation = 0;  ///< standard deviation about the line
 };
 Line fit_line(std::span<const double> y) {
   const auto n = static_cast<double>(y.size());

@@ -118,7 +118,7 @@ struct Adequacy {
   int bins = 0, exceeding = 0;  ///< bins of all maps and whole records; bins above their bound
   int vague = 0;                ///< bins in which noise alone may exceed the channel's nominal value
   std::string sentence;         ///< verdict, criterion and the bin nearest to its bound or furthest above it
-  thresholds::Ruling ruling;    ///< Criterion::cells
+  thresholds::Ruling ruling;    ///< Criterion::bins
 };
 /// Sets the bounds of all maps and judges the model. It is adequate if no time-frequency bin, no window over
 /// all frequencies and no whole record exceeds its noise bound, at a joint false-alarm probability of

@@ -9,7 +9,7 @@
 
 namespace swingbank::validate::event {
 
-/// Shape of voltage steps as the instrument records them: all filtered (spread), or none.
+/// Shape of voltage steps as the instrument records them: all filtered, or none.
 enum class StepShape { either, sharp, filtered };
 
 /// Options of the preparation of records for fitting.
@@ -35,7 +35,7 @@ std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, d
 constexpr double kPeakReach = 2.1;
 
 /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. Marks in
-/// `filtered_samples` each sample inside or next to such a filtered step. With StepShape::spread, the
+/// `filtered_samples` each sample inside or next to such a filtered step. With StepShape::filtered, the
 /// neighbours of sharp steps are marked too; with StepShape::sharp, a step over several intervals is taken
 /// for a swing and ignored.
 std::vector<playin::Switching> find_switchings(const record::Record& record, double threshold,

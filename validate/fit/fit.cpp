@@ -132,7 +132,7 @@ class Search {
     return std::max(1.0, chi2 / values);
   }
   /// Searches for at most `iterations` iterations; returns true if the search converged. Variables at a bound
-  /// are then held while the others continue, until the held set repeats.
+  /// are then fixed while the others continue, until the active set repeats.
   bool solve(int iterations, int& done) {
     const int before = done;
     bool converged = search(iterations, done);

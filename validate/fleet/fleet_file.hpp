@@ -12,7 +12,7 @@ struct FleetPlant {
   std::string name;                  ///< letters, digits, - and _; also the name of its folder
   std::filesystem::path model;       ///< plant file
   std::vector<std::string> records;  ///< files and globs as written; relative ones are below `Fleet::folder`
-  double prior_sd = thresholds::parameters.prior_sd;  ///< as DiagnoseOptions::spread
+  double prior_sd = thresholds::parameters.prior_sd;  ///< as DiagnoseOptions::prior_sd
   bool power_only = false;                            ///< ignore recorded speed, Efd and Ifd
 };
 struct Fleet {

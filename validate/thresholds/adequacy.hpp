@@ -51,8 +51,8 @@ Ruling judged_by_bins(int exceeding, int bins);
 
 /// Returns whether an event's reduced chi-square is within its limit.
 inline bool within_limit(double reduced_chi2, double limit) { return reduced_chi2 <= limit; }
-/// Returns an event's limit of the reduced chi-square. `standard_deviation`: its standard deviation due to
-/// noise alone; `least`: lower bound of the limit, due to the interpolation of the voltage.
+/// Returns an event's limit of the reduced chi-square. `standard_deviation`: that of the reduced chi-square
+/// due to noise alone; `least`: lower bound of the limit, due to the interpolation of the voltage.
 double event_limit(double standard_deviation, double least);
 /// Returns the ruling over events (`record`, and reduced chi-square `after` with its `limit`). Adequate if
 /// every event is within its limit. The event with the largest ratio to its limit decides.

@@ -1,5 +1,5 @@
 #pragma once
-// Active set of bounds in a Ceres problem. Variables at a bound whose gradient points outward are held while
+// Active set of bounds in a Ceres problem. Variables at a bound whose gradient points outward are fixed while
 // the others move. Ceres projects steps onto the bounds; a projected step need not reduce the cost, so a
 // search may end before the optimum.
 #include <ceres/ceres.h>
@@ -9,16 +9,16 @@
 
 namespace swingbank::validate::fit::fitting {
 
-/// Holds variables of a Ceres problem at their bounds.
+/// Fixes variables of a Ceres problem at their bounds.
 class AtBounds {
  public:
   explicit AtBounds(ceres::Problem& problem) : problem_(problem) {}
   /// Fixes these variables of a block for the whole search.
   void fix(double* block, std::vector<int> which);
-  /// Holds the variables at a bound whose gradient points outward. Returns false if no variable is at a
-  /// bound, or if the held set has not changed.
+  /// Fixes the variables at a bound whose gradient points outward. Returns false if no variable is at a
+  /// bound, or if the active set has not changed.
   bool activate();
-  /// Releases all held variables; fixed ones stay fixed.
+  /// Releases the variables of the active set; those of fix() stay fixed.
   void release();
 
  private:

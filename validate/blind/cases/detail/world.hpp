@@ -51,7 +51,7 @@ class BlindWorld {
   bool controlled_ = false, transformed_ = false;
 };
 
-/// Varies every parameter except codes and limits by up to `relative_range` (relative), until the effect's
+/// Varies every parameter except codes and limits by up to `relative_range`, until the effect's
 /// checks accept them. After 200 draws the values stay unchanged.
 void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw);
 
