@@ -13,9 +13,9 @@
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/verdict.hpp"
-#include "sim/laws/law.hpp"
+#include "sim/user_models/user_model.hpp"
 #include "validate/compare/played.hpp"
-#include "validate/plant/load_with_laws.hpp"
+#include "validate/plant/load_with_user_models.hpp"
 
 namespace swingbank::jobs {
 
@@ -108,7 +108,7 @@ struct AnalysisOptions {
     plant::PlantModel loaded = plant::load_plant_model(
         model, std::vector<std::filesystem::path>(law_files.begin(), law_files.end()));
     for (const auto& file : law_files)
-      laws.emplace_back(file, &sim::laws::load_law(std::filesystem::path(file), loaded.library));
+      laws.emplace_back(file, &sim::user_models::load_law(std::filesystem::path(file), loaded.library));
     keep_laws(loaded);
     print_warnings(loaded);
     if (!to_fit) return loaded;

@@ -20,7 +20,7 @@ constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
 
 /// Writes the user-defined model that was found. Returns its path; empty if none was found.
 std::filesystem::path write_law(const diagnose::Diagnosis& d, OutputFolder& folder) {
-  const laws::LawFinding* law = d.laws.found();
+  const user_model_search::LawFinding* law = d.laws.found();
   if (!law) return {};
   const auto file = folder.file(law->judgement.hypothesis.name + ".toml");
   write_file(file, law->toml);

@@ -13,8 +13,8 @@
 #include "jobs/command_line.hpp"
 #include "jobs/commands.hpp"
 #include "jobs/effect_coverage.hpp"
-#include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
+#include "sim/user_models/user_model.hpp"
 
 namespace {
 using namespace swingbank;
@@ -200,7 +200,7 @@ struct Shape {
 
 int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, const Shape& shape) {
   library::EffectLibrary library;
-  for (const auto& file : laws) laws::load_law(file, library);
+  for (const auto& file : laws) user_models::load_law(file, library);
   Problems problems;
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {

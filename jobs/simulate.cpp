@@ -15,15 +15,15 @@
 #include "jobs/commands.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
+#include "sim/batch/batch.hpp"
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/grid/event_choice.hpp"
 #include "sim/grid/limits.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/lanes/batch.hpp"
-#include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
 #include "sim/reference/reference.hpp"
+#include "sim/user_models/user_model.hpp"
 
 namespace {
 using namespace swingbank;
@@ -128,21 +128,21 @@ reference::ReferenceRun play(const Options& o, int finer, const grid::Grid& grid
     options.after_switching = o.after_switching;
     return reference::run_reference(grid, event, options);
   }
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = o.t_end;
   options.rate = o.rate * finer;
   options.tolerance = tolerance(o);
   options.plants = std::move(plants);
   options.channels = std::move(channels);
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   reference::ReferenceRun run;
   bool given = false;
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const lanes::Job&, const Trajectory& t) { static_cast<Trajectory&>(run) = t; });
+      [&](const batch::Job&, const Trajectory& t) { static_cast<Trajectory&>(run) = t; });
   return run;
 }
 
@@ -313,7 +313,7 @@ int simulate(const Options& o) {
   for (const auto& text : o.map_models) formats::add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
   library::EffectLibrary library;
-  for (const auto& file : o.laws) laws::load_law(file, library);
+  for (const auto& file : o.laws) user_models::load_law(file, library);
   grid::Grid grid =
       grid::load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
                       case_options(o, models));

@@ -117,7 +117,7 @@ for_avx2() {
   if grep -qw avx2 /proc/cpuinfo && ! grep -qw avx512f /proc/cpuinfo; then return; fi
   local folder=$source_folder/build/ci-x86-64-v3
   cmake --preset ci -S "$source_folder" -B "$folder" -DSWINGBANK_ARCH=x86-64-v3 >"$folder.log" &&
-    cmake --build "$folder" --target test_sim_core swingbank_sim_lanes >>"$folder.log" 2>&1 ||
+    cmake --build "$folder" --target test_sim_core swingbank_sim_batch >>"$folder.log" 2>&1 ||
     { grep -m 12 -E 'error|FAILED' "$folder.log" >&2; return 1; }
   ! grep -qw avx2 /proc/cpuinfo || "$folder/bin/test_sim_core" --gtest_brief=1
 }

@@ -9,7 +9,7 @@
 
 #include "base/config.hpp"
 #include "sim/grid/attach.hpp"
-#include "sim/laws/law.hpp"
+#include "sim/user_models/user_model.hpp"
 
 namespace swingbank::mpi::draw {
 
@@ -104,7 +104,7 @@ void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
     d.laws.push_back((c.name().parent_path() / text).lexically_normal());
     try {
-      sim::laws::load_law(d.laws.back(), d.library);
+      sim::user_models::load_law(d.laws.back(), d.library);
     } catch (const InputError& e) {
       for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
     }

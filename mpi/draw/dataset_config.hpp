@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/batch/batch.hpp"
 #include "sim/core/frequency.hpp"
 #include "sim/grid/grid.hpp"
-#include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
 

@@ -39,7 +39,7 @@ Draw Sampler::draw(std::uint64_t sample_id) {
 
 std::string Sampler::refusal(const Draw& draw) const {
   const sim::grid::Grid& grid = draw.job.grid ? *draw.job.grid : study_.grid;
-  for (const auto& [index, plant] : sim::lanes::changed_plants(study_.grid, draw.job)) {
+  for (const auto& [index, plant] : sim::batch::changed_plants(study_.grid, draw.job)) {
     if (const auto why = objection(study_.config, plant); !why.empty()) return why;
     try {
       sim::plant::operating_point(plant, grid.flow.voltage[static_cast<std::size_t>(plant.bus)],

@@ -11,7 +11,7 @@ namespace swingbank::mpi::draw {
 
 /// One draw: a simulation job, its recorded generators and their databank points.
 struct Draw {
-  sim::lanes::Job job;
+  sim::batch::Job job;
   std::vector<std::size_t> recorded;  ///< recorded generators, as indices into Study::plants
   std::vector<std::size_t> points;    ///< databank point of each recorded generator
   Redrawn redrawn;                    ///< rejected operating points of its block

@@ -45,14 +45,14 @@ ShardMaker::ShardMaker(const Study& study, const Databank& bank)
 
 /// Returns the batch of a generator. A batch records the same plants in every run, so each generator that
 /// varies alone needs its own.
-sim::lanes::Batch& ShardMaker::batch_for(std::size_t generator) {
+sim::batch::Batch& ShardMaker::batch_for(std::size_t generator) {
   auto& batch = batches_[generator];
   if (!batch) {
-    sim::lanes::BatchOptions options = batch_options(study_.config);
+    sim::batch::BatchOptions options = batch_options(study_.config);
     options.channels = simulated_;
     options.plants =
         study_.config.vary == Vary::all ? study_.plants : std::vector<int>{study_.plants[generator]};
-    batch = std::make_unique<sim::lanes::Batch>(study_.grid, options);
+    batch = std::make_unique<sim::batch::Batch>(study_.grid, options);
   }
   return *batch;
 }
@@ -85,25 +85,25 @@ store::ShardData ShardMaker::make(std::uint64_t first, std::uint64_t count,
   return made;
 }
 
-void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::lanes::Batch& batch,
+void ShardMaker::run(Slots& s, std::vector<std::uint64_t> ids, sim::batch::Batch& batch,
                      const std::function<void(std::uint64_t)>& tick) {
   std::size_t at = 0;
   std::uint64_t finished = 0;
   batch.run(
-      [&](sim::lanes::Job& job) {
+      [&](sim::batch::Job& job) {
         tick(std::exchange(finished, 0));
         if (at == ids.size()) return false;
         job = s.draws[ids[at++] - s.first].job;
         return true;
       },
-      [&](const sim::lanes::Job& job, const sim::Trajectory& t) {
+      [&](const sim::batch::Job& job, const sim::Trajectory& t) {
         keep(s, job, t);
         ++finished;
       });
   tick(finished);
 }
 
-void ShardMaker::keep(Slots& s, const sim::lanes::Job& job, const sim::Trajectory& t) const {
+void ShardMaker::keep(Slots& s, const sim::batch::Job& job, const sim::Trajectory& t) const {
   const std::size_t draw = job.id - s.first;
   s.outcome[draw] = static_cast<std::uint8_t>(t.outcome);
   s.angle_spread[draw] = t.largest_spread;
@@ -175,8 +175,8 @@ store::ShardData ShardMaker::compact(Slots& s) const {
   return d;
 }
 
-sim::lanes::BatchOptions batch_options(const DatasetConfig& config) {
-  sim::lanes::BatchOptions o;
+sim::batch::BatchOptions batch_options(const DatasetConfig& config) {
+  sim::batch::BatchOptions o;
   o.t_end = config.record.t_end;
   o.rate = config.record.rate;
   o.tolerance = config.tolerance;
@@ -185,7 +185,7 @@ sim::lanes::BatchOptions batch_options(const DatasetConfig& config) {
 }
 
 std::string kernel_variant(const Study& study) {
-  return sim::lanes::Batch(study.grid, batch_options(study.config)).variant();
+  return sim::batch::Batch(study.grid, batch_options(study.config)).variant();
 }
 
 store::ShardAttributes shard_attributes(const Study& study, const std::string& hash,

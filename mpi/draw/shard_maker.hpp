@@ -20,10 +20,10 @@ class ShardMaker {
 
  private:
   struct Slots;
-  [[nodiscard]] sim::lanes::Batch& batch_for(std::size_t generator);
-  void run(Slots& slots, std::vector<std::uint64_t> ids, sim::lanes::Batch& batch,
+  [[nodiscard]] sim::batch::Batch& batch_for(std::size_t generator);
+  void run(Slots& slots, std::vector<std::uint64_t> ids, sim::batch::Batch& batch,
            const std::function<void(std::uint64_t)>& tick);
-  void keep(Slots& slots, const sim::lanes::Job& job, const sim::Trajectory& t) const;
+  void keep(Slots& slots, const sim::batch::Job& job, const sim::Trajectory& t) const;
   void keep_row(Slots& slots, std::size_t slot, const sim::Trajectory& t, std::size_t plant) const;
   [[nodiscard]] store::ShardData compact(Slots& slots) const;
 
@@ -36,11 +36,11 @@ class ShardMaker {
   int voltage_ = -1, angle_ = -1;  ///< indices into simulated_
   bool angle_recorded_ = false;
   /// Batches by generator; a single one with key 0 if all generators vary.
-  std::map<std::size_t, std::unique_ptr<sim::lanes::Batch>> batches_;
+  std::map<std::size_t, std::unique_ptr<sim::batch::Batch>> batches_;
 };
 
 /// Returns the kernel's options for a config. The config hash covers the variant that they select.
-sim::lanes::BatchOptions batch_options(const DatasetConfig& config);
+sim::batch::BatchOptions batch_options(const DatasetConfig& config);
 /// Returns Batch::variant() for a study.
 std::string kernel_variant(const Study& study);
 /// Returns the attributes common to all shards of a dataset.

@@ -19,20 +19,20 @@ struct Worst {
   int compared = 0, beyond = 0, differ = 0;  ///< events: compared, beyond 1e-4, with another outcome
 };
 
-Trajectory reference(const grid::Grid& grid, const lanes::Job& job) {
+Trajectory reference(const grid::Grid& grid, const batch::Job& job) {
   grid::Grid changed = grid;
-  for (auto& [plant, as] : lanes::changed_plants(grid, job))
+  for (auto& [plant, as] : batch::changed_plants(grid, job))
     changed.plants[static_cast<std::size_t>(plant)] = as;
   return reference::run_reference(changed, job.event, reference::ReferenceOptions{});
 }
 
-bool near_switching(const lanes::Job& job, double t) {
+bool near_switching(const batch::Job& job, double t) {
   return std::ranges::any_of(job.event.faults, [t](const network::BusFault& f) {
     return std::abs(t - f.t_on) < 2e-3 || std::abs(t - f.t_off) < 2e-3;
   });
 }
 
-double row_error(const lanes::Job& job, const Trajectory& run, const double* a, const double* b) {
+double row_error(const batch::Job& job, const Trajectory& run, const double* a, const double* b) {
   const auto [low, high] = std::minmax_element(b, b + run.samples);
   double worst = 0.0;
   for (int k = 0; k < run.samples; ++k)
@@ -40,7 +40,7 @@ double row_error(const lanes::Job& job, const Trajectory& run, const double* a, 
   return worst / std::max(1.0, *high - *low);
 }
 
-void compare(const grid::Grid& grid, const lanes::Job& job, const Trajectory& run, Worst& worst) {
+void compare(const grid::Grid& grid, const batch::Job& job, const Trajectory& run, Worst& worst) {
   const Trajectory ida = reference(grid, job);
   if (ida.outcome != run.outcome) ++worst.differ;
   if (ida.outcome != Outcome::stable || run.outcome != Outcome::stable) return;
@@ -62,11 +62,11 @@ void report(const char* what, const grid::Grid& grid, int count, int lanes) {
   const auto list = jobs(grid, count);
   std::size_t at = 0;
   Worst worst;
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.lanes = lanes;
-  lanes::Batch batch(grid, options);
-  batch.run([&](lanes::Job& job) { return at < list.size() && (job = list[at++], true); },
-            [&](const lanes::Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
+  batch::Batch batch(grid, options);
+  batch.run([&](batch::Job& job) { return at < list.size() && (job = list[at++], true); },
+            [&](const batch::Job& job, const Trajectory& run) { compare(grid, job, run, worst); });
   std::printf("%-16s worst error %.2g (%s), %d of %d stable events beyond 1e-4, %d with another outcome\n",
               what, worst.error, worst.where.c_str(), worst.beyond, worst.compared, worst.differ);
 }

@@ -33,29 +33,29 @@ struct Case {
 };
 
 /// Adds one round's rate. The reference integrator, some hundred times slower, runs fewer events.
-void round(Case& c, const grid::Grid& grid, const std::vector<lanes::Job>& list) {
+void round(Case& c, const grid::Grid& grid, const std::vector<batch::Job>& list) {
   c.stable = c.events = 0;
   const double start = cpu_seconds();
   if (c.lanes == 0) {
     reference::ReferenceOptions options;
     for (; c.events < static_cast<int>(list.size()) && c.events < kReferenceEvents; ++c.events) {
-      const lanes::Job& job = list[static_cast<std::size_t>(c.events)];
+      const batch::Job& job = list[static_cast<std::size_t>(c.events)];
       grid::Grid changed = grid;
-      for (auto& [plant, as] : lanes::changed_plants(grid, job))
+      for (auto& [plant, as] : batch::changed_plants(grid, job))
         changed.plants[static_cast<std::size_t>(plant)] = as;
       c.stable += reference::run_reference(changed, job.event, options).outcome == Outcome::stable;
     }
   } else {
-    lanes::BatchOptions options;
+    batch::BatchOptions options;
     options.lanes = c.lanes;
     if (c.one) options.plants = {3};
 #ifdef SWINGBANK_COUNT_FLOPS
     pack_operations = 0;
 #endif
     std::size_t at = 0;
-    lanes::Batch batch(grid, options);
-    batch.run([&](lanes::Job& job) { return at < list.size() && (job = list[at++], true); },
-              [&](const lanes::Job&, const Trajectory& t) { c.stable += t.outcome == Outcome::stable; });
+    batch::Batch batch(grid, options);
+    batch.run([&](batch::Job& job) { return at < list.size() && (job = list[at++], true); },
+              [&](const batch::Job&, const Trajectory& t) { c.stable += t.outcome == Outcome::stable; });
     c.events = static_cast<int>(list.size());
 #ifdef SWINGBANK_COUNT_FLOPS
     c.operations = static_cast<double>(pack_operations) / c.events;

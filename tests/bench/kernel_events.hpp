@@ -2,17 +2,17 @@
 // Events and grids of the kernel's benchmarks.
 #include <random>
 
-#include "sim/lanes/batch.hpp"
+#include "sim/batch/batch.hpp"
 #include "sim/library/library.hpp"
 
 namespace swingbank::sim {
 
 /// Random bolted faults of 0.05-0.2 s at any bus; one random machine with parameters within 10 % of the
 /// file's.
-inline std::vector<lanes::Job> jobs(const grid::Grid& grid, int count) {
+inline std::vector<batch::Job> jobs(const grid::Grid& grid, int count) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(0.0, 1.0);
-  std::vector<lanes::Job> list(static_cast<std::size_t>(count));
+  std::vector<batch::Job> list(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < list.size(); ++i) {
     auto& job = list[i];
     job.id = i;

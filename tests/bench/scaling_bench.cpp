@@ -7,7 +7,7 @@
 #include <ctime>
 #include <vector>
 
-#include "sim/lanes/batch.hpp"
+#include "sim/batch/batch.hpp"
 #include "tests/bench/synthetic_grid.hpp"
 
 namespace {
@@ -21,20 +21,20 @@ double cpu_seconds() {
 
 /// Processor time per event of 15 s [s], and number of stable events.
 double seconds_per_event(const grid::Grid& grid, int events, int& stable) {
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.plants = {0};
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   int given = 0;
   stable = 0;
   const double start = cpu_seconds();
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         if (given == events) return false;
         job.event.faults = {{2 * (given % static_cast<int>(grid.plants.size())), 1.0, 1.06, {}}};
         ++given;
         return true;
       },
-      [&](const lanes::Job&, const Trajectory& t) { stable += t.outcome == Outcome::stable; });
+      [&](const batch::Job&, const Trajectory& t) { stable += t.outcome == Outcome::stable; });
   return (cpu_seconds() - start) / events;
 }
 }  // namespace

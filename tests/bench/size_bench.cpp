@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/lanes/batch.hpp"
+#include "sim/batch/batch.hpp"
 #include "sim/reference/reference.hpp"
 #include "tests/bench/tiled_grid.hpp"
 
@@ -62,18 +62,18 @@ void reference_run(const grid::Grid& grid, double seconds) {
 }
 
 void lanes_run(const grid::Grid& grid, double seconds) {
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = seconds;
   options.plants = {0};
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   int given = 0;
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         if (given == kEvents) return false;
         job.event = event(given++, grid);
         return true;
       },
-      [](const lanes::Job&, const Trajectory& t) {
+      [](const batch::Job&, const Trajectory& t) {
         if (t.outcome != Outcome::stable) std::exit(2);
       });
 }

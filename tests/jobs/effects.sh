@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 "$swingbank" effects --json >"$work/list.json"
 "$swingbank" effects SEXS genrou >"$work/two.txt"
 "$swingbank" effects --json SEXS GAPS >"$work/two.json"
-law=$SWINGBANK_SOURCE/configs/laws/torque_voltage_dip.toml
+law=$SWINGBANK_SOURCE/configs/user_models/torque_voltage_dip.toml
 "$swingbank" effects --law "$law" DIPTORQUE >"$work/law.txt"
 "$swingbank" effects --law "$law" >"$work/laws.txt"
 
@@ -54,7 +54,7 @@ assert "source: " in two and re.search(r"^  Efd +pu +field voltage$", two, re.M)
 
 law = (work / "law.txt").read_text()
 assert "DIPTORQUE: torque lost in a voltage dip" in law and "recovery" in law
-assert "configs/laws/torque_voltage_dip.toml" in law  # the source of the values is the file
+assert "configs/user_models/torque_voltage_dip.toml" in law  # the source of the values is the file
 assert "DIPTORQUE" in (work / "laws.txt").read_text() and "DIPTORQUE" not in listed
 PYTHON
 

@@ -44,7 +44,7 @@ PYTHON
 cat >"$work/forbidden" <<'FORBIDDEN'
 base/config.cpp sim/core/effect.hpp
 sim/core/effect.cpp validate/record/record.hpp
-sim/lanes/batch.cpp validate/fit/fit.hpp
+sim/batch/batch.cpp validate/fit/fit.hpp
 mpi/store/dataset.cpp mpi/ranks/generate.hpp
 validate/record/record.cpp validate/fit/fit.hpp
 validate/report/page.cpp validate/diagnose/diagnose.hpp

@@ -8,7 +8,7 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-tests=(test_sim_core test_sim_effects test_sim_lanes)
+tests=(test_sim_core test_sim_effects test_sim_batch)
 levels=("$@")
 if ((!${#levels[@]})); then levels=(x86-64-v2 x86-64-v3 x86-64-v4); fi
 export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1

@@ -11,9 +11,9 @@
 #include "validate/hypothesis/decide.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/hypothesis/posterior.hpp"
-#include "validate/laws/search.hpp"
 #include "validate/reduced/free_input.hpp"
 #include "validate/thresholds/adequacy.hpp"
+#include "validate/user_model_search/search.hpp"
 
 namespace swingbank::validate::diagnose {
 
@@ -44,8 +44,8 @@ struct Diagnosis {
   /// set reduces the residual to noise.
   std::optional<fit::SparseSelection> wrong;
   double wrong_evidence = 0;  ///< evidence that only these are wrong, over a refit of every parameter [chi2]
-  reduced::FreeInput torque, field;  ///< each inferred without any added effect
-  laws::LawSearch laws;              ///< user-defined models tried if no known effect explains the records
+  reduced::FreeInput torque, field;   ///< each inferred without any added effect
+  user_model_search::LawSearch laws;  ///< user-defined models tried if no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
   event::WhitenedEvents events;               ///< with the noise model of all fits
   sim::Conventions conventions;               ///< of the model

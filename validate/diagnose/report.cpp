@@ -10,7 +10,7 @@
 #include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
-#include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/fit/voltage_doubt.hpp"
 #include "validate/thresholds/list.hpp"

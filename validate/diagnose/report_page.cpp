@@ -10,7 +10,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
-#include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/diagnose/report.hpp"
 

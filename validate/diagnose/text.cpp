@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "validate/diagnose/detail/false_positives.hpp"
-#include "validate/diagnose/detail/report_laws.hpp"
+#include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/report/page.hpp"
 #include "validate/thresholds/list.hpp"
@@ -58,7 +58,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
-  const laws::LawFinding* law = named ? nullptr : d.laws.found();
+  const user_model_search::LawFinding* law = named ? nullptr : d.laws.found();
   if (!named && !law && !d.ruling.adequate) {
     text += "\nThe fitted values are not shown: the residual exceeds noise, so they are biased.\n";
     return;

@@ -6,7 +6,7 @@
 
 #include "base/input_file.hpp"
 #include "base/write_file.hpp"
-#include "sim/laws/law.hpp"
+#include "sim/user_models/user_model.hpp"
 #include "validate/plant/detail/staged.hpp"
 
 namespace swingbank::validate::plant {
@@ -162,7 +162,7 @@ void check(const PlantModel& model, const std::vector<std::string>& provenance) 
 bool same(double a, double b) { return a == b; }  // a plant contains no NaN
 
 std::string block_difference(const sim::plant::Block& a, const sim::plant::Block& b) {
-  if (!a.effect || !b.effect ? a.effect != b.effect : !sim::laws::same_effect(*a.effect, *b.effect))
+  if (!a.effect || !b.effect ? a.effect != b.effect : !sim::user_models::same_effect(*a.effect, *b.effect))
     return fmt::format("effect {} against {}", a.effect ? a.effect->name : "none",
                        b.effect ? b.effect->name : "none");
   for (std::size_t i = 0; i < a.p.size(); ++i)

@@ -7,12 +7,12 @@
 #include "base/config.hpp"
 #include "base/input_file.hpp"
 #include "base/sha256.hpp"
-#include "sim/laws/law.hpp"
 #include "sim/plant/orderings.hpp"
 #include "sim/plant/usual.hpp"
+#include "sim/user_models/user_model.hpp"
 #include "validate/plant/detail/plausible.hpp"
 #include "validate/plant/detail/staged.hpp"
-#include "validate/plant/load_with_laws.hpp"
+#include "validate/plant/load_with_user_models.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -197,7 +197,7 @@ std::vector<fs::path> read_laws(Config& config, EffectLibrary& library) {
   for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
     const fs::path file = (config.name().parent_path() / name).lexically_normal();
     try {
-      sim::laws::load_law(file, library);
+      sim::user_models::load_law(file, library);
       files.push_back(file);
     } catch (const InputError& error) {
       for (const auto& p : error.problems())
@@ -274,7 +274,7 @@ PlantModel parse_with_laws(const std::string& text, const fs::path& file, const 
                       "give the plant file (.toml) as --model, and the record as --records"});
   Config config(text, file);
   PlantModel model;
-  for (const auto& law : laws) sim::laws::load_law(law, model.library);
+  for (const auto& law : laws) sim::user_models::load_law(law, model.library);
   model.origin = file.string();
   model.sha256 = sha256(text);
   model.laws = read_laws(config, model.library);

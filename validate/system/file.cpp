@@ -10,9 +10,9 @@
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/laws/law.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/measure.hpp"
+#include "sim/user_models/user_model.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/record/formats.hpp"
 #include "validate/system/system.hpp"
@@ -71,7 +71,7 @@ void read_grid(Config& c, SystemCase& s) {
   for (const auto& name : c.optional<Texts>("laws", {}))
     attempt(c, "laws", [&] {
       const fs::path law = (c.name().parent_path() / name).lexically_normal();
-      sim::laws::load_law(law, library);
+      sim::user_models::load_law(law, library);
       s.laws.emplace_back(law, sha256_of(law));
     });
   s.raw = c.file("system.raw");

@@ -46,7 +46,7 @@ void BoxedPlant::set(const double* x) {
   for (const sim::plant::ParameterId id : boxed_) sim::plant::parameter_value(plant_, id) = *x++;
 }
 
-void BoxedPlant::put_into(sim::lanes::Job& job, int index) const {
+void BoxedPlant::put_into(sim::batch::Job& job, int index) const {
   for (const int block : changed_)
     job.parameters.push_back({index, block, sim::plant::block_at(plant_, block).p});
 }

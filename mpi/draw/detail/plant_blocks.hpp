@@ -26,7 +26,7 @@ class BoxedPlant {
   /// Sets the parameters; `x` has one value per parameter of the box.
   void set(const double* x);
   /// Adds the changed blocks to a job; `index`: index of the plant.
-  void put_into(sim::lanes::Job& job, int index) const;
+  void put_into(sim::batch::Job& job, int index) const;
 
  private:
   sim::plant::Plant plant_;

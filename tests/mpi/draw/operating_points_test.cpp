@@ -181,7 +181,7 @@ void expect_rows_are_their_grids(const DatasetConfig& config) {
   ASSERT_EQ(d.machine_base.size(), d.rows);
   OperatingPoints points(c.study);
   Sampler sampler(c.study, c.bank);
-  sim::lanes::BatchOptions options = batch_options(config);
+  sim::batch::BatchOptions options = batch_options(config);
   options.lanes = 1;
   const std::size_t p = channel(c, "P"), q = channel(c, "Q"), v = channel(c, "V");
   for (std::size_t row = 0; row < d.rows; row += 7) {
@@ -197,10 +197,10 @@ void expect_rows_are_their_grids(const DatasetConfig& config) {
     EXPECT_NEAR(first(v), std::abs(grid.flow.voltage[static_cast<std::size_t>(plant->bus)]), 1e-6);
     Draw draw = sampler.draw(d.sample_id[row]);
     draw.job.grid = {};
-    sim::lanes::Batch alone(grid, options);
+    sim::batch::Batch alone(grid, options);
     bool given = false;
-    alone.run([&](sim::lanes::Job& job) { return given ? false : (job = draw.job, given = true); },
-              [&](const sim::lanes::Job&, const sim::Trajectory& t) {
+    alone.run([&](sim::batch::Job& job) { return given ? false : (job = draw.job, given = true); },
+              [&](const sim::batch::Job&, const sim::Trajectory& t) {
                 const double* expected =
                     t.at(static_cast<int>(plant - grid.plants.begin()), static_cast<int>(sim::Channel::P));
                 for (std::size_t k = 0; k < d.samples; ++k)

@@ -57,17 +57,17 @@ TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
   const store::ShardData d = c.maker.make(0, 20, no_tick);
   ASSERT_GT(d.rows, 10u);
   Sampler sampler(c.study, c.bank);
-  sim::lanes::BatchOptions options = batch_options(c.study.config);
+  sim::batch::BatchOptions options = batch_options(c.study.config);
   options.lanes = 1;
-  sim::lanes::Batch alone(
+  sim::batch::Batch alone(
       c.study.grid,
       options);  // every plant and channel, one lane: an independent way to the same values
   const std::size_t q = channel_index(c, "Q");
   for (std::size_t row = 0; row < d.rows; row += 5) {
     const Draw draw = sampler.draw(d.sample_id[row]);
     bool given = false;
-    alone.run([&](sim::lanes::Job& job) { return given ? false : (job = draw.job, given = true); },
-              [&](const sim::lanes::Job&, const sim::Trajectory& t) {
+    alone.run([&](sim::batch::Job& job) { return given ? false : (job = draw.job, given = true); },
+              [&](const sim::batch::Job&, const sim::Trajectory& t) {
                 const double* expected =
                     t.at(c.study.plants[draw.recorded[0]], static_cast<int>(sim::Channel::Q));
                 for (std::size_t k = 0; k < d.samples; ++k)

@@ -166,13 +166,13 @@ void expect_rows_are_runs(const DatasetConfig& config) {
       for (sim::plant::Block* block : blocks)
         if (block->effect == &config.effect_of(config.box[k]))
           block->p[static_cast<std::size_t>(config.box[k].index)] = d.parameters[row * d.parameter_count + k];
-    sim::lanes::BatchOptions o = batch_options(config);
+    sim::batch::BatchOptions o = batch_options(config);
     o.lanes = 1;
-    sim::lanes::Batch alone(grid, o);
+    sim::batch::Batch alone(grid, o);
     bool given = false;
     alone.run(
-        [&](sim::lanes::Job& job) { return given ? false : (job.event = draw.job.event, given = true); },
-        [&](const sim::lanes::Job&, const sim::Trajectory& t) {
+        [&](sim::batch::Job& job) { return given ? false : (job.event = draw.job.event, given = true); },
+        [&](const sim::batch::Job&, const sim::Trajectory& t) {
           const double* q = t.at(index, static_cast<int>(sim::Channel::Q));
           // Lane widths agree to 1e-9; the record is a float of values up to 10: 1e-6.
           for (std::size_t k = 0; k < d.samples; ++k)
@@ -191,7 +191,7 @@ TEST(VariedEffects, AStepUpTransformerVariesToo) {
 }
 
 TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
-  const std::string law = (fs::path(SWINGBANK_SOURCE) / "configs/laws/sexs.toml").string();
+  const std::string law = (fs::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml").string();
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
     const DatasetConfig c =

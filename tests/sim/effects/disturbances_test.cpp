@@ -2,7 +2,7 @@
 #include <complex>
 #include <numbers>
 
-#include "sim/lanes/batch.hpp"
+#include "sim/batch/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -115,14 +115,14 @@ reference::ReferenceRun reference(const grid::Grid& grid, double t_end = 8.0) {
   return reference::run_reference(grid, {}, options);
 }
 Trajectory lanes(const grid::Grid& grid, double t_end = 8.0) {
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = t_end;
   options.plants = {1};
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   Trajectory run;
   bool given = false;
-  batch.run([&](lanes::Job&) { return !std::exchange(given, true); },
-            [&](const lanes::Job&, const Trajectory& t) { run = t; });
+  batch.run([&](batch::Job&) { return !std::exchange(given, true); },
+            [&](const batch::Job&, const Trajectory& t) { run = t; });
   return run;
 }
 /// Largest difference between a channel's deviation from its first value and `expected(t)`.

@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/batch/batch.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/load_equations.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -160,14 +160,14 @@ TEST(LoadCim5, RefusesParametersThatCannotBeIntegrated) {
 Trajectory compared(const grid::Grid& grid, const network::Event& event) {
   reference::ReferenceOptions exact;
   exact.t_end = 5.0;
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = exact.t_end;
   options.rate = exact.rate;
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   Trajectory kept;
   bool given = false;
-  batch.run([&](lanes::Job& job) { return !std::exchange(given, true) && (job.event = event, true); },
-            [&](const lanes::Job&, const Trajectory& run) {
+  batch.run([&](batch::Job& job) { return !std::exchange(given, true) && (job.event = event, true); },
+            [&](const batch::Job&, const Trajectory& run) {
               kept = run;
               EXPECT_LE(test::largest_difference(run, reference::run_reference(grid, event, exact)),
                         1e-4);  // required limit

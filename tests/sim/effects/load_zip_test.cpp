@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "sim/batch/batch.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/load_equations.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -119,14 +119,14 @@ void lanes_equal_reference(const grid::Grid& grid, const network::Event& event) 
   const reference::ReferenceRun reference = reference::run_reference(grid, event, {});
   ASSERT_EQ(reference.outcome, Outcome::stable);
   ASSERT_EQ(reference.plants.size(), grid.plants.size());
-  lanes::Batch batch(grid, lanes::BatchOptions{});
+  batch::Batch batch(grid, batch::BatchOptions{});
   bool given = false, done = false;
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const lanes::Job&, const Trajectory& run) {
+      [&](const batch::Job&, const Trajectory& run) {
         done = true;
         EXPECT_EQ(run.outcome, Outcome::stable);
         EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // required bound

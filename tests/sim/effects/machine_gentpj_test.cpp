@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "sim/batch/batch.hpp"
 #include "sim/core/effect.hpp"
-#include "sim/lanes/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -151,19 +151,19 @@ void expect_lanes_equal_the_reference(const grid::Grid& grid) {
   events[2].generator_trips = {{mine.generator, 1.0}};
   reference::ReferenceOptions exact;
   exact.t_end = 5.0;
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = exact.t_end;
   options.rate = exact.rate;
   std::size_t next = 0, done = 0;
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         if (next == events.size()) return false;
         job.id = next;
         job.event = events[next++];
         return true;
       },
-      [&](const lanes::Job& job, const Trajectory& run) {
+      [&](const batch::Job& job, const Trajectory& run) {
         ++done;
         EXPECT_EQ(run.outcome, Outcome::stable) << job.id;
         // required bound

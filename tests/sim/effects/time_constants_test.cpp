@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "sim/batch/batch.hpp"
 #include "sim/grid/attach.hpp"
-#include "sim/lanes/batch.hpp"
 #include "tests/sim/effects/control_bench.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -190,14 +190,14 @@ TEST(SwitchedOffBlocks, GiveEqualRunsInBothIntegrators) {
   ASSERT_EQ(run.outcome, Outcome::stable);
   // Two integrations at a relative tolerance of 1e-8.
   EXPECT_LE(largest_difference(run, reference::run_reference(one, event, {})), 1e-5);
-  lanes::Batch batch(zero, lanes::BatchOptions{});
+  batch::Batch batch(zero, batch::BatchOptions{});
   bool given = false, done = false;
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const lanes::Job&, const Trajectory& trajectory) {
+      [&](const batch::Job&, const Trajectory& trajectory) {
         done = true;
         EXPECT_EQ(trajectory.outcome, Outcome::stable);
         EXPECT_LE(largest_difference(trajectory, run), 1e-4);

@@ -1,5 +1,5 @@
 // Plant behind STEPUP against the same plant at its own bus behind an equal transformer branch.
-#include "sim/lanes/batch.hpp"
+#include "sim/batch/batch.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 

@@ -1,6 +1,6 @@
 // Events other than faults and line trips, in both integrators.
+#include "sim/batch/batch.hpp"
 #include "sim/grid/load_choice.hpp"
-#include "sim/lanes/batch.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
 namespace swingbank::sim::reference {
@@ -18,16 +18,16 @@ Trajectory compared(const grid::Grid& grid, const network::Event& event,
   const ReferenceRun reference = run_reference(grid, event, exact);
   EXPECT_EQ(reference.outcome, Outcome::stable);
   Trajectory kept;
-  lanes::BatchOptions options;
+  batch::BatchOptions options;
   options.t_end = t_end;
-  lanes::Batch batch(grid, options);
+  batch::Batch batch(grid, options);
   bool given = false;
   batch.run(
-      [&](lanes::Job& job) {
+      [&](batch::Job& job) {
         job.event = event;
         return !std::exchange(given, true);
       },
-      [&](const lanes::Job&, const Trajectory& run) {
+      [&](const batch::Job&, const Trajectory& run) {
         kept = run;
         EXPECT_EQ(run.outcome, Outcome::stable);
         EXPECT_LE(test::largest_difference(run, reference), 1e-4);  // required bound

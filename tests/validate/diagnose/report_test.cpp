@@ -195,9 +195,9 @@ Diagnosis with_laws() {
   Diagnosis d = example().d;
   d.laws.kind = fit::InputKind::field;
   d.laws.ranked.resize(7);
-  laws::LawFinding found;
+  user_model_search::LawFinding found;
   for (std::size_t e = 0; e < d.events.size(); ++e) {
-    laws::LawTrace trace;
+    user_model_search::LawTrace trace;
     trace.t = {0, 1, 2, 3, 4};
     for (auto& signal : trace.signal) signal = {0, 0.1, -0.2, 0.3, 0.1};
     trace.knots = {0, 2, 4};
@@ -212,7 +212,7 @@ Diagnosis with_laws() {
   found.judgement = d.ranked.front();
   found.judgement.hypothesis.name = "LAW1";
   found.judgement.accepted = true;
-  laws::LawFinding refused = found;
+  user_model_search::LawFinding refused = found;
   refused.judgement.hypothesis.name = "LAW2";
   refused.judgement.accepted = false;
   refused.judgement.why_not = "it worsens <ev3>";

@@ -109,7 +109,7 @@ TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
 }
 TEST_F(PlantFileTest, CopiesLawFilesToItsFolder) {
   PlantModel m = example();
-  const auto law = test::source("configs/laws/torque_voltage_dip.toml");
+  const auto law = test::source("configs/user_models/torque_voltage_dip.toml");
   std::filesystem::create_directories(folder_);
   std::filesystem::copy_file(law, folder_ / "law.toml");
   const std::string text = plant_text(m, {});

@@ -62,7 +62,7 @@ TEST_F(PlantModelTest, SuggestsNameForMistypedEffect) {
       ElementsAre(AllOf(HasSubstr("machine.effect = 'GENRUO' at "), HasSubstr("did you mean GENROU?"))));
 }
 TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
-  const std::string law = test::source("configs/laws/torque_voltage_dip.toml");
+  const std::string law = test::source("configs/user_models/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
   const PlantModel m = load("laws = [\"" + law + "\"]\n" + example_text() + shaft);

@@ -166,7 +166,7 @@ void refuse_all(Diagnosis& d) {
   }
 }
 
-void name_best(const laws::Unexplained& judged, Diagnosis& d) {
+void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
   const auto set = credible_set(d);
   const auto first = std::ranges::find_if(set, [](const auto& e) { return e.place >= 0; });
   const hypothesis::Judgement& best = d.ranked[static_cast<std::size_t>(first->place)];
@@ -276,7 +276,7 @@ void interrupt(Diagnosis& d) {
       d.base.reduced_chi2(), leading.empty() ? "no effect had improved the fit yet" : leading);
 }
 
-void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
+void settle(const user_model_search::Unexplained& judged, const event::Progress& progress, Diagnosis& d) {
   const auto& r = d.ranked;
   weigh(d);
   if (!r.empty() && r.front().accepted && names_an_effect(d)) return name_best(judged, d);
@@ -296,10 +296,10 @@ void settle(const laws::Unexplained& judged, const event::Progress& progress, Di
       "{:.2f}). An inferred {} gives {:.2f}; the report shows its time series.{}",
       r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
-  d.laws = laws::search_laws(judged, progress);
+  d.laws = user_model_search::search_laws(judged, progress);
   if (d.laws.found()) {
     d.side = d.laws.found()->judgement.hypothesis.side;
-    d.sentence = laws::law_sentence(d.laws, r.size());
+    d.sentence = user_model_search::law_sentence(d.laws, r.size());
   }
 }
 

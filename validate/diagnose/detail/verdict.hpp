@@ -8,7 +8,7 @@ namespace swingbank::validate::diagnose {
 /// Sets verdict, side, sentence, effects and their competitors from the fit of the given model, the inferred
 /// inputs and the judged hypotheses. Searches for a user-defined model if no known effect explains the
 /// records.
-void settle(const laws::Unexplained& judged, const event::Progress& progress, Diagnosis& d);
+void settle(const user_model_search::Unexplained& judged, const event::Progress& progress, Diagnosis& d);
 
 /// Sets the verdict of an interrupted diagnosis: completed fits are kept, and no hypothesis is judged.
 void interrupt(Diagnosis& d);

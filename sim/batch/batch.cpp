@@ -1,0 +1,137 @@
+#include "sim/batch/batch.hpp"
+
+#include <fmt/format.h>
+
+#include "sim/batch/detail/batch_kernel.hpp"
+
+namespace swingbank::sim::batch {
+
+namespace {
+constexpr std::string_view instruction_set() {
+#if defined(__AVX512F__)
+  return "avx512";
+#elif defined(__AVX2__)
+  return "avx2";
+#else
+  return "baseline";
+#endif
+}
+constexpr int widest() { return kRegisterBytes == 64 ? 8 : 4; }
+}  // namespace
+
+namespace detail {
+struct Engine {
+  virtual ~Engine() = default;
+  virtual void run(const std::function<bool(Job&)>& next,
+                   const std::function<void(const Job&, const Trajectory&)>& done) = 0;
+};
+template <class T>
+struct EngineOf final : Engine {
+  EngineOf(const grid::Grid& grid, const BatchOptions& options) : lanes(grid, options) {}
+  void run(const std::function<bool(Job&)>& next,
+           const std::function<void(const Job&, const Trajectory&)>& done) override {
+    lanes.run(next, done);
+  }
+  Lanes<T> lanes;
+};
+}  // namespace detail
+
+namespace {
+/// Refuses effects that cannot run in single precision: laws, and sources with Newton's method (algebra.hpp),
+/// whose tolerance of 1e-13 a float cannot represent.
+void refuse_in_float(const grid::Grid& grid) {
+  Problems problems;
+  const auto refuse = [&](const std::string& what, const std::string& why) {
+    problems.add(what + " in lanes of float", "option lanes", why, "choose 8 lanes, or 0");
+  };
+  for (const plant::Plant& plant : grid.plants) {
+    const Effect& machine = *plant.machine.effect;
+    if (machine.get<double>().machine.current != nullptr)
+      refuse(fmt::format("{} at {}", machine.name, plant.name),
+             "its current is no linear function of the voltage");
+    std::vector<const Effect*> effects{&machine};
+    for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
+    for (const Effect* effect : effects)
+      if (!has_float_ops(*effect))
+        refuse(fmt::format("{} at {}", effect->name, plant.name), "a law file is evaluated in double");
+  }
+  for (const plant::Consumer& load : grid.loads)
+    refuse(fmt::format("{} at {}", load.block.effect->name, load.name),
+           "its current is no linear function of the voltage");
+  problems.raise();
+}
+
+/// Refuses loads that regulate another bus, because the network is reduced to the sources' buses.
+void refuse_far_regulation(const grid::Grid& grid) {
+  Problems problems;
+  for (const plant::Consumer& load : grid.loads)
+    if (load.regulated >= 0 && load.regulated != load.bus)
+      problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
+                               grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
+                   grid.network.origin, "the lanes know the voltages at machines and modelled loads alone",
+                   "use the reference integrator, or let it regulate its own bus");
+  problems.raise();
+}
+}  // namespace
+
+struct Batch::Impl {
+  BatchOptions options;
+  std::unique_ptr<detail::Engine> engine;
+};
+
+std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job) {
+  std::map<int, plant::Plant> changed;
+  const auto plant = [&](int index) -> plant::Plant& {
+    const grid::Grid& at = job.grid ? *job.grid : grid;
+    return changed.try_emplace(index, at.plants[static_cast<std::size_t>(index)]).first->second;
+  };
+  for (const auto& [index, block, values] : job.parameters) plant::block_at(plant(index), block).p = values;
+  return changed;
+}
+
+Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
+  if (options.lanes == 0) options.lanes = options.sensitivities ? kDualLanes : widest();
+  impl_->options = options;
+  refuse_far_regulation(grid);
+  if (options.sensitivities) {
+    if (options.lanes != kDualLanes)
+      throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
+                        fmt::format("sensitivities are built for {} on this processor", kDualLanes),
+                        fmt::format("choose {}, or 0", kDualLanes)});
+    impl_->engine = std::make_unique<detail::EngineOf<DualPack>>(grid, options);
+    return;
+  }
+  switch (options.lanes) {
+    case 1:
+      impl_->engine = std::make_unique<detail::EngineOf<double>>(grid, options);
+      break;
+    case 4:
+      impl_->engine = std::make_unique<detail::EngineOf<P4>>(grid, options);
+      break;
+    case 8:
+      impl_->engine = std::make_unique<detail::EngineOf<P8>>(grid, options);
+      break;
+    case FloatPack::lanes:
+      refuse_in_float(grid);
+      impl_->engine = std::make_unique<detail::EngineOf<FloatPack>>(grid, options);
+      break;
+    default:
+      throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
+                        "the kernel is built for 1, 4, 8 and, in float, 16",
+                        "choose one of these, or 0 for the widest in double"});
+  }
+}
+Batch::~Batch() = default;
+
+void Batch::run(const std::function<bool(Job&)>& next,
+                const std::function<void(const Job&, const Trajectory&)>& done) {
+  impl_->engine->run(next, done);
+}
+
+std::string Batch::variant() const {
+  const int lanes = impl_->options.lanes;
+  return fmt::format("dp54 lanes={}{} isa={} tol={:g} angles=moved", lanes,
+                     lanes == FloatPack::lanes ? " float" : "", instruction_set(), impl_->options.tolerance);
+}
+
+}  // namespace swingbank::sim::batch

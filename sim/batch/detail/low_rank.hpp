@@ -1,0 +1,42 @@
+#pragma once
+// Low-rank updates of the reduced network's matrix, caused by a switching or by a machine's impedance.
+#include <functional>
+#include <optional>
+
+#include "sim/batch/detail/internal_network.hpp"
+
+namespace swingbank::sim::batch {
+
+/// The sum of outer products sum_k u_k w_k^T; real and imaginary parts of the vectors, one after the other.
+struct LowRank {
+  int rank = 0;
+  std::vector<double> ur, ui, wr, wi;  ///< [k][row], [k][column]
+  void add(const Complex& u, const Complex& w) {
+    ur.push_back(u.real());
+    ui.push_back(u.imag());
+    wr.push_back(w.real());
+    wi.push_back(w.imag());
+  }
+};
+
+/// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining
+/// entry is at rounding level. Returns none if this needs more than `most` products.
+std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMatrix& from, int most);
+
+struct ImpedanceChange {
+  int source;
+  Complex dz;  ///< [pu on its own base]
+};
+/// A matrix with access by rows and columns, computed on demand.
+struct ByRowsAndColumns {
+  std::function<Eigen::VectorXcd(int)> row, column;
+};
+/// Adds to `products` the update of M = matrix + products by changed impedances of the sources C (Woodbury):
+/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of
+/// machines.
+void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
+                    const std::vector<ImpedanceChange>& changes);
+void add_impedances(LowRank& products, const InternalMatrix& matrix,
+                    const std::vector<ImpedanceChange>& changes);
+
+}  // namespace swingbank::sim::batch

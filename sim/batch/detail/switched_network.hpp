@@ -1,0 +1,54 @@
+#pragma once
+// Low-rank update of the reduced network for a switching, in grids of many sources. A switching affects few
+// buses, and one factorisation of the whole network gives the response to their currents.
+#include <Eigen/SparseLU>
+
+#include "sim/batch/detail/low_rank.hpp"
+
+namespace swingbank::sim::batch {
+
+/// Connection of a plant to its bus: its admittance on the network's base and on its own base [pu].
+struct Feed {
+  int bus;
+  Complex source, own;
+};
+
+/// Factorised network of a grid, for the low-rank updates of switchings.
+class SwitchedNetwork {
+ public:
+  using Sparse = Eigen::SparseMatrix<Complex>;
+  /// r, x: impedance per plant [pu on its own base]. Every load must be a constant impedance.
+  SwitchedNetwork(const grid::Grid& grid, const std::vector<double>& r, const std::vector<double>& x);
+  /// Returns the change of the matrix relative to the unswitched network, with at most `most` products.
+  /// Returns none if a generator is tripped, if more buses are affected, or if the switched network is
+  /// ill-conditioned; InternalNetwork then computes the matrix.
+  [[nodiscard]] std::optional<LowRank> change(const network::Topology& topology, int most) const;
+
+  /// Returns true if the network could be factorised; only then row() and column() of the unswitched reduced
+  /// matrix are available.
+  [[nodiscard]] bool sound() const { return sound_; }
+  [[nodiscard]] Eigen::VectorXcd row(int plant) const;
+  [[nodiscard]] Eigen::VectorXcd column(int plant) const;
+  [[nodiscard]] const std::vector<Feed>& plants() const { return plants_; }
+  /// Returns the bus admittance matrix without switching, including the machines' admittances.
+  [[nodiscard]] const Sparse& closed() const { return closed_; }
+
+ private:
+  struct Touched {
+    std::vector<int> buses;
+    Eigen::MatrixXcd admittance;  ///< added admittance between them
+    Eigen::MatrixXcd voltage;     ///< voltages of all buses (rows) per unit current into them
+  };
+  [[nodiscard]] std::optional<Touched> touch(const network::Topology& topology, int most) const;
+  [[nodiscard]] std::optional<Eigen::MatrixXcd> currents(const Touched& touched,
+                                                         const std::vector<int>& bolted) const;
+  [[nodiscard]] Eigen::MatrixXcd unit_currents(const std::vector<int>& buses) const;
+
+  const grid::Grid& grid_;
+  Sparse own_, closed_;  ///< bus admittance matrix without and with the machines' admittances
+  Eigen::SparseLU<Sparse> factors_, transposed_;
+  std::vector<Feed> plants_;
+  bool sound_ = false;
+};
+
+}  // namespace swingbank::sim::batch

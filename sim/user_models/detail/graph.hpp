@@ -1,0 +1,114 @@
+#pragma once
+// Expression graph of a law, with common subexpressions eliminated. Values that depend only on parameters and
+// on the operating point are marked: they are evaluated once per run, not once per step.
+#include <array>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "sim/core/effect.hpp"
+#include "sim/user_models/detail/expression.hpp"
+
+namespace swingbank::sim::user_models {
+
+/// A signal that a law may read; `name` is the field of Signals.
+struct SignalRecord {
+  std::string_view name, meaning;
+  Slot made_in;  ///< slot that computes it; readable in later slots only (machine: in all)
+};
+inline constexpr std::array kSignals = {
+    SignalRecord{"Vr", "terminal voltage, real part [pu]", Slot::machine},
+    SignalRecord{"Vi", "terminal voltage, imaginary part [pu]", Slot::machine},
+    SignalRecord{"V", "terminal voltage magnitude [pu]", Slot::machine},
+    SignalRecord{"Ir", "current, real part [pu]", Slot::machine},
+    SignalRecord{"Ii", "current, imaginary part [pu]", Slot::machine},
+    SignalRecord{"P", "active power [pu]", Slot::machine},
+    SignalRecord{"Q", "reactive power [pu]", Slot::machine},
+    SignalRecord{"speed", "speed deviation [pu]", Slot::machine},
+    SignalRecord{"Te", "electrical torque [pu]", Slot::machine},
+    SignalRecord{"Ifd", "field current [pu]", Slot::machine},
+    SignalRecord{"t", "time [s]", Slot::machine},
+    SignalRecord{"Vc", "voltage the exciter regulates [pu]", Slot::compensator},
+    SignalRecord{"dVref", "move of the exciter's reference [pu]", Slot::setpoint},
+    SignalRecord{"dPref", "move of the governor's reference [pu]", Slot::setpoint},
+    SignalRecord{"Vs", "stabiliser output [pu]", Slot::stabiliser},
+    SignalRecord{"Vlimiter", "sum of the limiters [pu]", Slot::limiter},
+    SignalRecord{"Efd", "field voltage [pu]", Slot::exciter},
+    SignalRecord{"Tm", "mechanical torque or power [pu]", Slot::governor}};
+template <class T>
+inline constexpr std::array<T Signals<T>::*, kSignals.size()> kMembers = {
+    &Signals<T>::Vr,       &Signals<T>::Vi,  &Signals<T>::V,     &Signals<T>::Ir,    &Signals<T>::Ii,
+    &Signals<T>::P,        &Signals<T>::Q,   &Signals<T>::speed, &Signals<T>::Te,    &Signals<T>::Ifd,
+    &Signals<T>::t,        &Signals<T>::Vc,  &Signals<T>::dVref, &Signals<T>::dPref, &Signals<T>::Vs,
+    &Signals<T>::Vlimiter, &Signals<T>::Efd, &Signals<T>::Tm};
+/// Returns the index into kSignals, or -1 if no signal has that name.
+int signal_index(std::string_view name);
+
+/// Operation of a vertex on the values of its operands.
+enum class Act : std::uint8_t {
+  coefficient,  ///< c[index]: constant of the file, parameter, value at the operating point
+  state,        ///< x[index]
+  signal,       ///< s.*kMembers[index]
+  add,
+  subtract,
+  multiply,
+  divide,
+  minimum,
+  maximum,
+  square_root,
+  exponential,
+  logarithm,
+  sine,
+  cosine,
+  clamp,
+  limit,  ///< clamp of a state to its own limits; the steady-state solution ignores it
+  inverse,
+  select_less,        ///< a < b ? c : d
+  select_less_equal,  ///< a <= b ? c : d
+  store               ///< in programs only: writes a value
+};
+/// A vertex of the graph: an operation and its operands.
+struct Vertex {
+  Act act;
+  int index = -1;  ///< coefficient, state, signal
+  std::array<int, 4> from = {-1, -1, -1, -1};
+  bool fixed = false;       ///< depends on coefficients only
+  bool parameters = false;  ///< fixed, and independent of the operating point
+};
+
+/// Thrown when a law exceeds the maximum size.
+struct TooLarge {};
+
+/// Directed acyclic graph of a law's expressions. Methods that add a vertex return its index; an existing
+/// equal vertex is reused.
+class Graph {
+ public:
+  static constexpr std::size_t kMost = 4000;  ///< maximum number of vertices
+
+  int constant(double value);
+  /// Adds a fixed coefficient. `parameter`: independent of the operating point.
+  int coefficient(int index, bool parameter);
+  /// Adds a coefficient that steady() solves for; it is never fixed.
+  int solved(int index) { return add(Vertex{Act::coefficient, index}); }
+  int state(int index);
+  int signal(int index);
+  int make(Act act, int a, int b = -1, int c = -1, int d = -1);
+  int negate(int a) { return make(Act::subtract, constant(0.0), a); }
+  int power(int a, int exponent);
+  int dead_band(int u, int width);
+
+  [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
+  [[nodiscard]] const Vertex& operator[](int i) const { return vertices_[static_cast<std::size_t>(i)]; }
+  /// Returns the constants of the file as vertex index -> value.
+  [[nodiscard]] const std::map<int, double>& constants() const { return constants_; }
+
+ private:
+  int add(Vertex vertex);
+  std::vector<Vertex> vertices_;
+  std::map<std::tuple<Act, int, std::array<int, 4>>, int> known_;
+  std::map<double, int> by_value_;
+  std::map<int, double> constants_;
+};
+
+}  // namespace swingbank::sim::user_models

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# swingbank simulate --law and --attach: a law from a file and disturbances in both integrators; errors are reported.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+
+networks=$SWINGBANK_SOURCE/configs/networks laws=$SWINGBANK_SOURCE/configs/user_models
+simulate() {
+  "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 5 \
+    --fault 5:1:1.1 --plants 2 --channels delta,Efd,Tm "$@"
+}
+for integrator in reference lanes; do
+  simulate --integrator $integrator --law "$laws/sexs.toml" --attach 2:SEXSLAW:K=50,EMAX=4 \
+    --attach 2:FORCEDOSC:amplitude=0.02,frequency=0.7,start=2 --out "$work/law_$integrator.csv" >/dev/null
+  simulate --integrator $integrator --attach 2:SEXS:K=50,EMAX=4 \
+    --attach 2:FORCEDOSC:amplitude=0.02,frequency=0.7,start=2 --out "$work/compiled_$integrator.csv" >/dev/null
+done
+simulate --out "$work/plain.csv" >/dev/null
+/usr/bin/python3 - "$work" <<'PYTHON'
+import csv, sys
+
+def rows(name):
+    with open(f"{sys.argv[1]}/{name}.csv") as file:
+        return [[float(v) for v in row] for row in list(csv.reader(file))[1:]]
+
+def worst(a, b):
+    return max(abs(x - y) for one, other in zip(rows(a), rows(b)) for x, y in zip(one, other))
+
+assert worst("law_lanes", "compiled_lanes") < 1e-9  # the CSV has 12 significant digits
+assert worst("law_reference", "compiled_reference") < 1e-6  # two runs at rtol 1e-8
+assert worst("law_lanes", "law_reference") < 1e-4  # what the lanes promise
+assert worst("law_lanes", "plain") > 0.1  # both act
+PYTHON
+
+refuses "no law file" "no readable law file at $work/none.toml" simulate --law "$work/none.toml" --out "$work/x.csv"
+printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Vs"\naction = "add"\nvalue = "1 + nothing"\n' >"$work/bad.toml"
+refuses "a fault in a law" "unknown name nothing in value at $work/bad.toml:6:14" \
+  simulate --law "$work/bad.toml" --out "$work/x.csv"
+refuses "no such plant" "no plant 77" simulate --attach 77:SEXS --out "$work/x.csv"
+refuses "no such effect" "no effect 'SEXSLAW'" simulate --attach 2:SEXSLAW --out "$work/x.csv"
+printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Tm"\naction = "add"\nvalue = "V"\n' >"$work/moves.toml"
+refuses "a law that does not rest" "cannot hold the operating point.*it adds 1.045 pu to Tm" \
+  simulate --law "$work/moves.toml" --attach 2:L --out "$work/x.csv"
+[[ ! -e $work/x.csv ]] || fail "a refused run left a file"

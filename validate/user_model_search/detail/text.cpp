@@ -1,0 +1,79 @@
+#include "validate/user_model_search/detail/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace swingbank::validate::user_model_search {
+namespace {
+
+std::string_view kind_word(fit::InputKind kind) {
+  return kind == fit::InputKind::torque ? "torque" : "field voltage";
+}
+
+std::string in_quotes(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+std::string quantity(double value, const std::string& unit) {
+  return unit == "-" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+std::string value_words(const LawParameter& p, const std::vector<fit::FittedParameter>& fitted) {
+  const auto f = std::ranges::find(fitted, p.name, &fit::FittedParameter::name);
+  std::string text = quantity(p.value, p.unit);
+  if (f != fitted.end() && std::isfinite(f->low) && std::isfinite(f->high))
+    text += fmt::format(" ({:.4g} to {:.4g})", f->low, f->high);
+  return text;
+}
+
+}  // namespace
+
+std::string law_name(const LawCandidate& law) {
+  std::string name = law.kind == fit::InputKind::torque ? "TORQUE" : "FIELD";
+  std::string rest = law.family + " " + (law.signal.starts_with("time ") ? "triggered" : law.signal);
+  bool gap = true;
+  for (const char c : rest) {
+    if (!std::isalnum(static_cast<unsigned char>(c))) {
+      gap = true;
+      continue;
+    }
+    if (gap) name += '_';
+    gap = false;
+    name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return name;
+}
+
+std::string law_toml(const LawCandidate& law, const std::string& source) {
+  std::string text = fmt::format(
+      "name = \"{}\"\ntitle = {}\nsource = {}\noutput = \"{}\"\naction = \"add\"\nvalue = {}\n\n{}\n",
+      law_name(law), in_quotes(fmt::format("{} model of {}: {}", law.family, law.signal, law_words(law))),
+      in_quotes(source), law.kind == fit::InputKind::torque ? "Tm" : "Efd", in_quotes(law.value), law.body);
+  if (!law.requirements.empty()) text.insert(text.find("value = "), "require = [" + law.requirements + "]\n");
+  text += "[parameters]\n";
+  for (const auto& p : law.parameters)
+    text += fmt::format(
+        "{} = {{ unit = \"{}\", standard = {:.17g}, low = {:.17g}, high = {:.17g},{} meaning = {} }}\n",
+        p.name, p.unit, p.value, std::min(p.low, p.value), std::max(p.high, p.value),
+        p.gain ? " neutral = 0.0," : "", in_quotes(p.meaning));
+  return text;
+}
+
+std::string law_words(const LawCandidate& law, const std::vector<fit::FittedParameter>& fitted) {
+  std::string text = law.words;
+  for (const auto& p : law.parameters) {
+    const std::string place = "{" + p.name + "}";
+    for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
+      text.replace(at, place.size(), value_words(p, fitted));
+  }
+  return fmt::format("a {} {}{}", kind_word(law.kind),
+                     text.starts_with("a ") || text.starts_with("an ") ? "in the form of " : "of ", text);
+}
+
+}  // namespace swingbank::validate::user_model_search

@@ -1,0 +1,13 @@
+#pragma once
+// Candidates that depend on time: steps, pulses, ramps, decays and oscillations that start at a time of the
+// record or at a delay after a voltage deviation.
+#include "validate/user_model_search/regression.hpp"
+
+namespace swingbank::validate::user_model_search {
+
+/// Returns the best candidate of each shape and clock. `level`: see trigger_level(); 0: no candidates are
+/// triggered by the voltage.
+std::vector<LawCandidate> timed_candidates(fit::InputKind kind, const LawRegression& regression,
+                                           double level);
+
+}  // namespace swingbank::validate::user_model_search

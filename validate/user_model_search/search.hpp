@@ -1,0 +1,61 @@
+#pragma once
+// Search for a user-defined model of the inferred input, if no known effect explains the records. Candidates
+// are ranked on the inferred input. The leading ones are fitted to the records and judged on held-out events,
+// as every hypothesis. Only a model that predicts unseen events is offered.
+#include <memory>
+
+#include "validate/event/progress.hpp"
+#include "validate/hypothesis/judge.hpp"
+#include "validate/reduced/free_input.hpp"
+#include "validate/user_model_search/candidate.hpp"
+
+namespace swingbank::validate::user_model_search {
+
+/// A user-defined model that was fitted to the records and judged.
+struct LawFinding {
+  LawCandidate law;                           ///< with the fitted values
+  std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
+  hypothesis::Judgement judgement;            ///< its plant contains the model
+  std::string words;                          ///< description with fitted values, units and intervals
+  std::string toml;                           ///< TOML file for `swingbank add NAME --law FILE`
+};
+
+/// Result of a search for user-defined models.
+struct LawSearch {
+  fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
+  std::vector<LawTrace> traces;                ///< inferred input and signals of each event
+  /// The best candidate of each kind, by their regression on the inferred input.
+  std::vector<LawCandidate> ranked;
+  /// Fitted to the records; accepted ones first, then in descending order of evidence.
+  std::vector<LawFinding> findings;
+  double seconds = 0;  ///< processing time [s]
+  /// Returns the best finding if it was accepted, else null.
+  [[nodiscard]] const LawFinding* found() const {
+    return !findings.empty() && findings.front().judgement.accepted ? &findings.front() : nullptr;
+  }
+};
+
+/// Result of a diagnosis without an accepted effect.
+struct Unexplained {
+  const plant::PlantModel& model;                         ///< the given model
+  hypothesis::Trial trial;                                ///< events and limits of acceptance
+  const fit::Fit& base;                                   ///< fit of the given model
+  const std::vector<hypothesis::HeldOut>& held_out_base;  ///< hold-out results of the given model
+  const reduced::FreeInput &torque, &field;               ///< inferred inputs
+  int threads = 1;                                        ///< number of threads
+};
+
+/// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
+/// the first search finds none and the other input explains about as much. Returns no search if neither input
+/// explains most of the residual.
+LawSearch search_laws(const Unexplained& case_, const event::Progress& report = {});
+
+/// Returns for example "None of the 31 known effects explains it; a torque of ... does: ..."; empty without
+/// an accepted model.
+std::string law_sentence(const LawSearch& search, std::size_t hypotheses);
+
+/// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its
+/// number.
+sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
+
+}  // namespace swingbank::validate::user_model_search
