@@ -179,7 +179,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   if (a.until_adequate) {
     add::Completion c = add::add_until_adequate(model, records, a.options);
     if (!c.added.empty()) a.fitted = c.added.back().with;
-    a.of.keep_laws(c.model);
+    a.of.keep_user_models(c.model);
     std::vector<std::string> provenance = {"Command: " + a.command};
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
@@ -191,7 +191,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
   a.fitted = done.with;
-  a.of.keep_laws(done.model);
+  a.of.keep_user_models(done.model);
   const bool complete = done.adequate && done.earns;
   const auto played = play_both(a, model, done.model, records);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),

@@ -23,7 +23,7 @@ namespace swingbank::jobs {
 struct AnalysisOptions {
   explicit AnalysisOptions(std::string folder) : out(std::move(folder)) {}
   std::string model, out;
-  std::vector<std::string> records, law_files, held_out;
+  std::vector<std::string> records, user_model_files, held_out;
   bool json = false, verbose = false, measured_states = true;
   int threads = -1;  ///< 0: one per core; -1: option absent
   double step_threshold = validate::playin::kStepThreshold;
@@ -31,7 +31,7 @@ struct AnalysisOptions {
   double prior_sd = validate::thresholds::parameters.prior_sd;      ///< prior standard deviation, relative
   Reading reading;
   Judging judging;
-  std::vector<std::pair<std::string, const sim::Effect*>> laws;  ///< user-defined models, by file
+  std::vector<std::pair<std::string, const sim::Effect*>> user_models;  ///< user-defined models, by file
 
   /// Declares the options. `files`: the content of --out, for the help. Returns the options of a single
   /// plant's records and fit, which do not apply to a command on a grid or a fleet.
@@ -50,7 +50,7 @@ struct AnalysisOptions {
     for (const Option& option : reading.add_to(line)) keep(option);
     keep(line.add_flag_off("--power-only", measured_states,
                            "ignore recorded speed, Efd and Ifd: compare P and Q only"));
-    keep(line.add("--law", law_files,
+    keep(line.add("--law", user_model_files,
                   "file (.toml) of a user-defined model that the plant may use and that may be added to it; "
                   "may be repeated")
              .one_value_a_mention());
@@ -106,10 +106,11 @@ struct AnalysisOptions {
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
     plant::PlantModel loaded = plant::load_plant_model(
-        model, std::vector<std::filesystem::path>(law_files.begin(), law_files.end()));
-    for (const auto& file : law_files)
-      laws.emplace_back(file, &sim::user_models::load_law(std::filesystem::path(file), loaded.library));
-    keep_laws(loaded);
+        model, std::vector<std::filesystem::path>(user_model_files.begin(), user_model_files.end()));
+    for (const auto& file : user_model_files)
+      user_models.emplace_back(
+          file, &sim::user_models::load_user_model(std::filesystem::path(file), loaded.library));
+    keep_user_models(loaded);
     print_warnings(loaded);
     if (!to_fit) return loaded;
     if (loaded.submitted && !quiet)
@@ -117,11 +118,11 @@ struct AnalysisOptions {
     return plant::as_submitted(std::move(loaded));
   }
   /// Adds to the model the files of --law whose user-defined models it uses.
-  void keep_laws(validate::plant::PlantModel& of) const {
-    for (const auto& [file, effect] : laws)
+  void keep_user_models(validate::plant::PlantModel& of) const {
+    for (const auto& [file, effect] : user_models)
       for (const auto& block : of.plant.controls)
-        if (block.effect == effect && std::ranges::count(of.laws, std::filesystem::path(file)) == 0)
-          of.laws.emplace_back(file);
+        if (block.effect == effect && std::ranges::count(of.user_models, std::filesystem::path(file)) == 0)
+          of.user_models.emplace_back(file);
   }
   [[nodiscard]] validate::event::FitEventOptions events() const {
     validate::event::FitEventOptions options;

@@ -19,11 +19,11 @@ using namespace swingbank::validate;
 constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
 
 /// Writes the user-defined model that was found. Returns its path; empty if none was found.
-std::filesystem::path write_law(const diagnose::Diagnosis& d, OutputFolder& folder) {
-  const user_model_search::LawFinding* law = d.laws.found();
-  if (!law) return {};
-  const auto file = folder.file(law->judgement.hypothesis.name + ".toml");
-  write_file(file, law->toml);
+std::filesystem::path write_user_model(const diagnose::Diagnosis& d, OutputFolder& folder) {
+  const user_model_search::UserModelFinding* user_model = d.user_models.found();
+  if (!user_model) return {};
+  const auto file = folder.file(user_model->judgement.hypothesis.name + ".toml");
+  write_file(file, user_model->toml);
   return file;
 }
 
@@ -66,7 +66,7 @@ int run(Command& c) {
   result["fitness"] = compare::fitness_json(played);
   result["statistically_complete"] = adequate;
   const auto page = results.file(kPage);
-  const auto law_file = write_law(d, results);
+  const auto user_model_file = write_user_model(d, results);
   write_file(results.file(kResult), json_text(result, 1) + "\n");
   write_file(page, diagnose::diagnosis_html(model, d, provenance, played));
   results.finish();
@@ -75,9 +75,9 @@ int run(Command& c) {
   } else {
     fmt::print("{}{}\nreport: {}\n", compare::fitness_text(played),
                compare::complete_text(adequate, diagnose::diagnosis_text(d)), page.string());
-    if (!law_file.empty())
-      fmt::print("user-defined model: {0} (swingbank add {1} --law {0} adds it)\n", law_file.string(),
-                 law_file.stem().string());
+    if (!user_model_file.empty())
+      fmt::print("user-defined model: {0} (swingbank add {1} --law {0} adds it)\n", user_model_file.string(),
+                 user_model_file.stem().string());
   }
   c.of.judging.print(page);
   if (d.verdict == diagnose::Verdict::interrupted) return kSubmitAgain;

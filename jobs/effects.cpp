@@ -49,7 +49,7 @@ void print_list(const library::EffectLibrary& library) {
     for (const Effect* e : library.all()) {
       if (e->slot != slot) continue;
       if (!std::exchange(any, true)) fmt::print("{}: {}\n", slot_name(slot), slot_meaning(slot));
-      fmt::print("  {:<11} {}{}\n", e->name, e->title, e->law ? " (user-defined model)" : "");
+      fmt::print("  {:<11} {}{}\n", e->name, e->title, e->user_model ? " (user-defined model)" : "");
     }
   }
 }
@@ -139,7 +139,7 @@ Json as_json(const Effect& e) {
             {"slot", slot_name(e.slot)},
             {"source", e.source},
             {"description", e.description},
-            {"law_file", e.law != nullptr},
+            {"law_file", e.user_model != nullptr},
             {"parameters", Json::array()},
             {"states", Json::array()}};
   for (const Parameter& p : e.parameters)
@@ -198,9 +198,10 @@ struct Shape {
   bool json = false, toml = false;
 };
 
-int run(const std::vector<std::string>& names, const std::vector<std::string>& laws, const Shape& shape) {
+int run(const std::vector<std::string>& names, const std::vector<std::string>& user_models,
+        const Shape& shape) {
   library::EffectLibrary library;
-  for (const auto& file : laws) user_models::load_law(file, library);
+  for (const auto& file : user_models) user_models::load_user_model(file, library);
   Problems problems;
   std::vector<const Effect*> chosen;
   for (const auto& name : names) {
@@ -242,15 +243,16 @@ int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
   line.describe(
       "Lists the effects of the simulator by slot; with a NAME, its block diagram, equations, "
       "parameters, states and source.");
-  std::vector<std::string> names, laws, dyr_files;
+  std::vector<std::string> names, user_models, dyr_files;
   Shape shape;
   const jobs::Option effects = line.add("NAME", names, "effects, e.g. GENROU SEXS");
-  const jobs::Option law =
-      line.add("--law", laws, "file (.toml) of a user-defined model; may be repeated").one_value_a_mention();
+  const jobs::Option user_model =
+      line.add("--law", user_models, "file (.toml) of a user-defined model; may be repeated")
+          .one_value_a_mention();
   line.add("--coverage", dyr_files,
            "PSS/E .dyr files: how many of their records the effects cover, model by model")
       .excludes(effects)
-      .excludes(law);
+      .excludes(user_model);
   const jobs::Option json =
       line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
   line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its default values, to paste")
@@ -258,7 +260,7 @@ int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
   line.example("swingbank effects SEXS --toml");
   if (!line.parse(argc, argv)) return line.end();
   try {
-    return dyr_files.empty() ? run(names, laws, shape) : jobs::print_coverage(dyr_files, shape.json);
+    return dyr_files.empty() ? run(names, user_models, shape) : jobs::print_coverage(dyr_files, shape.json);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

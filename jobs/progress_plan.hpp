@@ -58,7 +58,7 @@ inline std::string_view phase_words(Phase phase) {
       return "second estimate of the noise";
     case Phase::unseen_events:
       return "hold-out tests of effects";
-    case Phase::laws:
+    case Phase::user_models:
       return "search for user-defined models";
     case Phase::second_screening:
       return "screening of second effects";
@@ -98,7 +98,7 @@ inline const ProgressPlan kDiagnosePlan = {
     {Phase::full_fits, 0.42, 0.84},
     {Phase::noise_again, 0.84, 0.89},
     {Phase::unseen_events, 0.89, 0.97},
-    {Phase::laws, 0.89, 0.97},
+    {Phase::user_models, 0.89, 0.97},
     {Phase::second_screening, 0.95, 0.97, true},
     {Phase::second_quick_fits, 0.95, 0.97, true},
     {Phase::second_full_fits, 0.95, 0.97, true},

@@ -25,7 +25,7 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
       "Interrupted before a verdict: best values so far, reduced chi-square {:.4g}.", reached.reduced_chi2());
   validate::plant::PlantModel model = before;
   model.plant = reached.plant;
-  of.keep_laws(model);
+  of.keep_user_models(model);
   model = validate::event::whole_model(std::move(model));
   if (command == "calibrate") model.submitted = validate::event::whole_model(before).plant;
   validate::plant::write_plant_file(

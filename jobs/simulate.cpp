@@ -32,7 +32,7 @@ using namespace swingbank::sim;
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
   grid::EventTexts event;
-  std::vector<std::string> loads, laws, attached;
+  std::vector<std::string> loads, user_models, attached;
   std::vector<std::string> out, plants, channels, measured;
   std::uint64_t measure_seed = 1;
   std::string load_model = "impedance";
@@ -205,7 +205,7 @@ void describe_run(mpi::store::h5::File& h, const Options& o, const grid::Grid& g
   h.attribute("vref_steps", joined(o.event.vref_steps));
   h.attribute("pref_steps", joined(o.event.pref_steps));
   h.attribute("loads", grid::describe_loads(grid));
-  h.attribute("laws", joined(o.laws));
+  h.attribute("laws", joined(o.user_models));
   h.attribute("attached", joined(o.attached));
   h.attribute("measured", joined(o.measured));
   h.attribute("measure_seed", std::to_string(o.measure_seed));
@@ -313,7 +313,7 @@ int simulate(const Options& o) {
   for (const auto& text : o.map_models) formats::add_model_map(models, text, "--map-model " + text, problems);
   problems.raise();
   library::EffectLibrary library;
-  for (const auto& file : o.laws) user_models::load_law(file, library);
+  for (const auto& file : o.user_models) user_models::load_user_model(file, library);
   grid::Grid grid =
       grid::load_grid(o.raw, o.dyr, o.convention == "andes" ? Conventions::andes() : Conventions::psse(),
                       case_options(o, models));
@@ -376,7 +376,8 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
       .required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
   line.add("--raw-version", o.raw_version, "version of a .raw file without a version number, 23 to 35");
-  line.add("--law", o.laws, "file (.toml) of a user-defined model that --attach may use; may be repeated");
+  line.add("--law", o.user_models,
+           "file (.toml) of a user-defined model that --attach may use; may be repeated");
   line.add("--convention", o.convention,
            "psse: governors set power; andes: torque; neither has speed in the stator voltage "
            "(configs/README.md)")

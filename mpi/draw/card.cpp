@@ -21,9 +21,9 @@ std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& c
   Config c(config.file);
   std::vector<std::pair<std::string, fs::path>> files = {{c.require<std::string>("raw"), config.raw},
                                                          {c.require<std::string>("dyr"), config.dyr}};
-  const auto laws = c.optional<std::vector<std::string>>("laws", {});
-  for (std::size_t i = 0; i < laws.size() && i < config.laws.size(); ++i)
-    files.emplace_back(laws[i], config.laws[i]);
+  const auto user_models = c.optional<std::vector<std::string>>("laws", {});
+  for (std::size_t i = 0; i < user_models.size() && i < config.user_models.size(); ++i)
+    files.emplace_back(user_models[i], config.user_models[i]);
   return files;
 }
 

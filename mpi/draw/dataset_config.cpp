@@ -99,12 +99,12 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
   for (const auto& [effect, table] : tables) read_box(c, table, *effect, effect, box);
 }
 
-/// Reads `laws` and `attach`. User-defined models come first, because they may be attached and varied.
+/// Reads `user_models` and `attach`. User-defined models come first, because they may be attached and varied.
 void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
-    d.laws.push_back((c.name().parent_path() / text).lexically_normal());
+    d.user_models.push_back((c.name().parent_path() / text).lexically_normal());
     try {
-      sim::user_models::load_law(d.laws.back(), d.library);
+      sim::user_models::load_user_model(d.user_models.back(), d.library);
     } catch (const InputError& e) {
       for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
     }

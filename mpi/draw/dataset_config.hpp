@@ -102,7 +102,7 @@ struct DatasetConfig {
   std::string model;             ///< machine model of these units
   /// Parameters of the machine in record order, then of other effects by slot, name and record.
   std::vector<Box> box;
-  std::vector<std::filesystem::path> laws;          ///< files of user-defined models
+  std::vector<std::filesystem::path> user_models;   ///< files of user-defined models
   sim::library::EffectLibrary library;              ///< owner of the user-defined models
   std::vector<sim::plant::Attachment> attachments;  ///< effects added to the .dyr
   DatabankConfig databank;

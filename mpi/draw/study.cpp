@@ -108,7 +108,7 @@ Study load_study(const DatasetConfig& config) {
 std::string config_hash(const DatasetConfig& config, const std::string& kernel) {
   std::string text = config.canonical() + kernel + "\n";
   std::vector<fs::path> files = {config.raw, config.dyr};
-  files.insert(files.end(), config.laws.begin(), config.laws.end());
+  files.insert(files.end(), config.user_models.begin(), config.user_models.end());
   for (const auto& file : files) {
     const std::string content = read_text(file);
     text += hex(XXH3_64bits(content.data(), content.size())) + "\n";

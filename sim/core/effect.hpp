@@ -201,15 +201,15 @@ struct MachineOps {
   void (*current)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;
 };
 
-/// Equations of a control: reads and writes signals, computes the derivatives of its states. `law` is the
-/// data of a user-defined model, else nullptr.
+/// Equations of a control: reads and writes signals, computes the derivatives of its states. `user_model` is
+/// the data of a user-defined model, else nullptr.
 template <class T>
 struct ControlOps {
   /// States and signals -> outputs in the signals, and derivatives dx [1/s].
-  void (*evaluate)(const void* law, const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
+  void (*evaluate)(const void* user_model, const T* c, const T* x, Signals<T>& s, T* dx) = nullptr;
   /// From all signals at the operating point: computes states and references (kept in c). Returns the reason
   /// of a failure, empty on success.
-  std::string (*steady)(const void* law, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
+  std::string (*steady)(const void* user_model, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
   /// Optional: writes outputs that are states before any control is evaluated, for controls earlier in the
   /// order.
   void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
@@ -300,19 +300,19 @@ struct Effect {
   Elsewhere elsewhere = {};  ///< parameters that select a remote measuring point
   /// Adds singular parameter values, which no equation can take, to `problems`. `where`: prefix of the
   /// messages.
-  void (*check)(const void* law, const double* p, const std::string& where, Problems& problems);
+  void (*check)(const void* user_model, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the violated ordering
   /// Returns a warning about values that ask for unmodelled behaviour, empty if there are none; nullptr: no
   /// such check.
   std::string (*remark)(const double* p) = nullptr;
   /// Returns the times at which the equations jump [s]; nullptr: never.
-  std::vector<double> (*switching_times)(const void* law, const double* p);
+  std::vector<double> (*switching_times)(const void* user_model, const double* p);
   /// Applies the instrument to the true phasors; `seed` drives its random numbers. Only for measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
   double (*memory)(const double* p);
-  OpsFor<Scalars>::type ops;                  ///< equations for every scalar type
-  std::shared_ptr<const void> law = nullptr;  ///< data of a user-defined model
+  OpsFor<Scalars>::type ops;                         ///< equations for every scalar type
+  std::shared_ptr<const void> user_model = nullptr;  ///< data of a user-defined model
   /// Returns estimates of all parameters by linear least squares from a record without noise, best first.
   /// Parameters that the record does not determine are taken from `known`. nullptr: no such method is known.
   std::vector<std::vector<double>> (*closed_form)(const Recording& record, const double* known) = nullptr;

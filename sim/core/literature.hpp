@@ -8,7 +8,7 @@ namespace swingbank::sim {
 
 struct Work;
 
-/// A work and the place in it. For `derived`, `own` and `law` the place is the reason as text.
+/// A work and the place in it. For `derived`, `own` and `user_model` the place is the reason as text.
 struct Source {
   const Work* work = nullptr;  ///< cited work; null: no source was given
   std::string_view place;      ///< place in the work, or the reason
@@ -38,7 +38,7 @@ inline constexpr Work derived{"derived", "", "", "", ""};
 /// Swingbank's own choice, for the reason given.
 inline constexpr Work own{"own choice", "", "", "", ""};
 /// The source that a user-defined model gives for its numbers.
-inline constexpr Work law{"", "", "", "", ""};
+inline constexpr Work user_model{"", "", "", "", ""};
 
 inline constexpr Work kundur{"Kundur", "P. Kundur", "1994", "Power System Stability and Control",
                              "McGraw-Hill"};

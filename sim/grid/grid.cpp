@@ -209,7 +209,7 @@ class GridMaker {
     if (!fits(effect, record, where, problems)) return;
     Problems found;
     const plant::Block block = values_of(effect, record);
-    effect.check(effect.law.get(), block.p.data(), where, found);
+    effect.check(effect.user_model.get(), block.p.data(), where, found);
     problems.add(found);
     if (!found.empty()) return;
     bool any = false;
@@ -244,7 +244,7 @@ class GridMaker {
     const std::string what = record.model + " at bus " + std::to_string(record.bus);
     if (!fits(effect, record, where, problems)) return;
     ShuntModel model{grid_.network.bus_index(record.bus), {}, values_of(effect, record), where};
-    effect.check(effect.law.get(), model.block.p.data(), where, problems);
+    effect.check(effect.user_model.get(), model.block.p.data(), where, problems);
     (void)regulated_index(grid_.network, model.block, where, problems);
     const auto is_its = [&](const network::Shunt& s) {
       return s.bus == model.bus &&

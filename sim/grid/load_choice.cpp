@@ -61,7 +61,7 @@ double fraction(double part, double total) { return part == 0.0 ? 0.0 : part / t
 
 void set_load(Grid& grid, int load, plant::Block block, const std::string& where, Problems& problems) {
   const network::Load& l = grid.network.loads[static_cast<std::size_t>(load)];
-  block.effect->check(block.effect->law.get(), block.p.data(), where, problems);
+  block.effect->check(block.effect->user_model.get(), block.p.data(), where, problems);
   plant::Consumer consumer;
   consumer.name = load_name(grid.network, static_cast<std::size_t>(load));
   consumer.bus = l.bus;

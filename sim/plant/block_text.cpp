@@ -84,7 +84,7 @@ Attachment read_attachment(const std::string& text, const library::EffectLibrary
   Block block{effect, effect->default_parameters()};
   Problems found;
   if (second != text.npos) set_parameters(block, text.substr(second + 1), where, found);
-  if (found.empty()) effect->check(effect->law.get(), block.p.data(), where, found);
+  if (found.empty()) effect->check(effect->user_model.get(), block.p.data(), where, found);
   problems.add(found);
   if (found.empty()) a.block = std::move(block);
   return a;

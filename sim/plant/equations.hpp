@@ -38,7 +38,7 @@ class PlantEquations {
     coefficients_ = joint_ + kJoint;
     for (const Block& block : plant.controls) {
       controls_.push_back(
-          {block.effect->get<T>().control, block.effect->law.get(), states_, coefficients_, guards_});
+          {block.effect->get<T>().control, block.effect->user_model.get(), states_, coefficients_, guards_});
       publishes_ = publishes_ || controls_.back().ops.publish != nullptr;
       has_afterwards_ = has_afterwards_ || controls_.back().ops.afterwards != nullptr;
       looks_far_ = looks_far_ || block.effect->elsewhere.bus >= 0;
@@ -170,7 +170,8 @@ class PlantEquations {
     if (publishes_)
       for (const Control& k : controls_)
         if (k.ops.publish) k.ops.publish(c + k.coefficient, x + k.state, s);
-    for (const Control& k : controls_) k.ops.evaluate(k.law, c + k.coefficient, x + k.state, s, dx + k.state);
+    for (const Control& k : controls_)
+      k.ops.evaluate(k.user_model, c + k.coefficient, x + k.state, s, dx + k.state);
     if (!has_afterwards_) return;
     for (const Control& k : controls_)
       if (k.ops.afterwards) k.ops.afterwards(c + k.coefficient, x + k.state, s, dx + k.state);
@@ -212,7 +213,7 @@ class PlantEquations {
  private:
   struct Control {
     ControlOps<T> ops;
-    const void* law;
+    const void* user_model;
     int state, coefficient, guard;  ///< indices of its first ones
   };
   struct Limit {

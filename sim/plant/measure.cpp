@@ -68,7 +68,7 @@ std::optional<Block> read_measurement(const std::string& text, const library::Ef
   Block block{effect, effect->default_parameters()};
   Problems found;
   if (colon != text.npos) set_parameters(block, text.substr(colon + 1), where, found);
-  if (found.empty()) effect->check(effect->law.get(), block.p.data(), where, found);
+  if (found.empty()) effect->check(effect->user_model.get(), block.p.data(), where, found);
   problems.add(found);
   if (!found.empty()) return {};
   return block;

@@ -82,7 +82,7 @@ class Initialiser {
     j[joint_x] = square_ratio * (j[joint_xm] + x);
   }
   std::string steady(const Place<T>& p) {
-    return ops(p).control.steady(p.effect->law.get(), p.p, coefficients(p), o_.s, states(p));
+    return ops(p).control.steady(p.effect->user_model.get(), p.p, coefficients(p), o_.s, states(p));
   }
   /// Initialises converter controls backwards from the current: the electrical control determines the
   /// references of the plant control. A second round passes the torque control's speed reference to the drive

@@ -8,7 +8,7 @@ std::vector<double> switching_times_of(const Plant& plant) {
   std::vector<double> all;
   for (const Block& block : plant.controls) {
     if (!block.effect->switching_times) continue;
-    const auto more = block.effect->switching_times(block.effect->law.get(), block.p.data());
+    const auto more = block.effect->switching_times(block.effect->user_model.get(), block.p.data());
     all.insert(all.end(), more.begin(), more.end());
   }
   std::ranges::sort(all);

@@ -69,8 +69,8 @@ bool Reader::surely_positive(int vertex) const {
   const Vertex& v = graph_[vertex];
   const int parameter = v.index - kFirstParameter;
   return v.act == Act::coefficient && parameter >= 0 &&
-         parameter < static_cast<int>(law_.parameters.size()) &&
-         law_.parameters[static_cast<std::size_t>(parameter)].low > 0.0;
+         parameter < static_cast<int>(user_model_.parameters.size()) &&
+         user_model_.parameters[static_cast<std::size_t>(parameter)].low > 0.0;
 }
 
 /// Applies the limits of a block's output; the limits of a state belong to the state itself (non-windup).

@@ -151,9 +151,9 @@ int Reader::look_up(const Node& n, const std::string& key) {
 
 int Reader::signal(const Node& n, const std::string& key, int index) {
   const SignalRecord& s = kSignals[static_cast<std::size_t>(index)];
-  if (s.made_in != Slot::machine && !(s.made_in < law_.slot)) {
+  if (s.made_in != Slot::machine && !(s.made_in < user_model_.slot)) {
     problem(key, n.at, "signal " + n.name,
-            fmt::format("a law that makes {} is evaluated before it is there", law_.output_name()),
+            fmt::format("a law that makes {} is evaluated before it is there", user_model_.output_name()),
             "read a signal that comes earlier, or its value at the operating point");
     return graph_.constant(0.0);
   }
@@ -163,14 +163,14 @@ int Reader::signal(const Node& n, const std::string& key, int index) {
 int Reader::operating_value(const Node& n, const std::string& key, int index, const std::string& base) {
   const SignalRecord& s = kSignals[static_cast<std::size_t>(index)];
   const bool of_machine = s.made_in == Slot::machine || base == "Efd" || base == "Tm";
-  if (!of_machine && !(s.made_in < law_.slot)) {
+  if (!of_machine && !(s.made_in < user_model_.slot)) {
     (void)signal(n, key, index);
     return graph_.constant(0.0);
   }
   const auto [at, fresh] = operating_.try_emplace(n.name, -1);
   if (fresh) {
     at->second = graph_.coefficient(coefficients_, false);
-    law_.operating.emplace_back(coefficients_++, index);
+    user_model_.operating.emplace_back(coefficients_++, index);
   }
   return at->second;
 }

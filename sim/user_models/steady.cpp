@@ -24,13 +24,13 @@ constexpr double kTolerance = 1e-9;  ///< as in operating_point: derivatives of 
 
 class Search {
  public:
-  Search(const Definition& law, double* c, const Signals<double>& s, double* x)
-      : law_(law), c_(c), s_(s), x_(x), states_(static_cast<Index>(law.states.size())) {
-    unknowns_ = states_ + static_cast<Index>(law.searched.size());
-    rows_ = states_ + (law.must_meet() ? 1 : 0);
+  Search(const Definition& user_model, double* c, const Signals<double>& s, double* x)
+      : user_model_(user_model), c_(c), s_(s), x_(x), states_(static_cast<Index>(user_model.states.size())) {
+    unknowns_ = states_ + static_cast<Index>(user_model.searched.size());
+    rows_ = states_ + (user_model.must_meet() ? 1 : 0);
     s_.t = -1.0;  // before any switching time
-    for (Index i = 0; i < states_; ++i) x_[i] = c_[law.start[static_cast<std::size_t>(i)]];
-    for (const int i : law.searched) c_[i] = 0.0;
+    for (Index i = 0; i < states_; ++i) x_[i] = c_[user_model.start[static_cast<std::size_t>(i)]];
+    for (const int i : user_model.searched) c_[i] = 0.0;
   }
 
   std::string run() {
@@ -46,13 +46,15 @@ class Search {
   /// Returns the derivatives of the unknowns for the derivative `by` of the residual, with opposite sign.
   [[nodiscard]] Vector follow(const Vector& by) { return solve(by); }
   template <class T>
-  static std::vector<T> residual_of(const Definition& law, const T* c, const T* x, const Signals<T>& s) {
-    std::vector<T> f(law.states.size(), T(0.0));
+  static std::vector<T> residual_of(const Definition& user_model, const T* c, const T* x,
+                                    const Signals<T>& s) {
+    std::vector<T> f(user_model.states.size(), T(0.0));
     Registers<T> registers;
     T output(0.0);
-    user_models::run<T, true>(law.code.loop, c, x, s, registers.data(), f.data(), output);
-    if (law.must_meet())
-      f.push_back(law.replaces ? output - s.*kMembers<T>[static_cast<std::size_t>(law.output)] : output);
+    user_models::run<T, true>(user_model.code.loop, c, x, s, registers.data(), f.data(), output);
+    if (user_model.must_meet())
+      f.push_back(user_model.replaces ? output - s.*kMembers<T>[static_cast<std::size_t>(user_model.output)]
+                                      : output);
     return f;
   }
 
@@ -67,13 +69,15 @@ class Search {
     for (Index i = 0; i < states_; ++i) x_[i] = u[i];
     for (Index i = states_; i < unknowns_; ++i) c_[searched(i)] = u[i];
   }
-  [[nodiscard]] int searched(Index i) const { return law_.searched[static_cast<std::size_t>(i - states_)]; }
+  [[nodiscard]] int searched(Index i) const {
+    return user_model_.searched[static_cast<std::size_t>(i - states_)];
+  }
   [[nodiscard]] Vector residual() const {
-    const auto f = residual_of<double>(law_, c_, x_, s_);
+    const auto f = residual_of<double>(user_model_, c_, x_, s_);
     return Eigen::Map<const Vector>(f.data(), rows_);
   }
   [[nodiscard]] Matrix jacobian() const {
-    const auto size = static_cast<std::size_t>(law_.code.coefficients);
+    const auto size = static_cast<std::size_t>(user_model_.code.coefficients);
     std::vector<D8> c(c_, c_ + size), x(x_, x_ + states_);
     Signals<D8> s;
     for (std::size_t i = 0; i < kSignals.size(); ++i) s.*kMembers<D8>[i] = D8(s_.*kMembers<double>[i]);
@@ -84,7 +88,7 @@ class Search {
     for (Index from = 0; from < unknowns_; from += kSensitivities) {
       const Index to = std::min<Index>(from + kSensitivities, unknowns_);
       for (Index i = from; i < to; ++i) unknown(i).d[static_cast<std::size_t>(i - from)] = 1.0;
-      const auto f = residual_of<D8>(law_, c.data(), x.data(), s);
+      const auto f = residual_of<D8>(user_model_, c.data(), x.data(), s);
       for (Index row = 0; row < rows_; ++row)
         for (Index i = from; i < to; ++i)
           j(row, i) = f[static_cast<std::size_t>(row)].d[static_cast<std::size_t>(i - from)];
@@ -126,48 +130,49 @@ class Search {
     for (Index i = 0; i < states_; ++i)
       if (!std::isfinite(rest[i]))
         return fmt::format("the derivative of {} is no number there",
-                           law_.states[static_cast<std::size_t>(i)].name);
-    return fmt::format("its {} is no number there", law_.output_name());
+                           user_model_.states[static_cast<std::size_t>(i)].name);
+    return fmt::format("its {} is no number there", user_model_.output_name());
   }
   /// Returns true if a limit clamps the state against its derivative.
   [[nodiscard]] bool is_clamped(std::size_t i, double dx) const {
-    const State& state = law_.states[i];
+    const State& state = user_model_.states[i];
     return (state.low >= 0 && x_[i] <= c_[state.low] && dx < 0.0) ||
            (state.high >= 0 && x_[i] >= c_[state.high] && dx > 0.0);
   }
   /// Returns the reason if the result is no steady state with active limits, or "". The caller reports states
   /// outside their limits.
   [[nodiscard]] std::string verdict() const {
-    for (std::size_t i = 0; i < law_.states.size(); ++i) {
-      const State& state = law_.states[i];
+    for (std::size_t i = 0; i < user_model_.states.size(); ++i) {
+      const State& state = user_model_.states[i];
       if ((state.low >= 0 && x_[i] < c_[state.low] - kTolerance) ||
           (state.high >= 0 && x_[i] > c_[state.high] + kTolerance))
         return {};
     }
-    std::vector<double> dx(law_.states.size(), 0.0);
+    std::vector<double> dx(user_model_.states.size(), 0.0);
     Registers<double> registers;
     double output = 0.0;
-    user_models::run<double, false>(law_.code.loop, c_, x_, s_, registers.data(), dx.data(), output);
+    user_models::run<double, false>(user_model_.code.loop, c_, x_, s_, registers.data(), dx.data(), output);
     for (std::size_t i = 0; i < dx.size(); ++i)
       if (!(std::abs(dx[i]) < kTolerance) && !is_clamped(i, dx[i]))
         return fmt::format("state {} does not come to rest: it moves at {:.4g} per second at {:.4g} {}",
-                           law_.states[i].name, dx[i], x_[i], law_.states[i].unit);
-    const double asked =
-        law_.must_meet() && law_.replaces ? s_.*kMembers<double>[static_cast<std::size_t>(law_.output)] : 0.0;
-    if (!std::isfinite(output)) return fmt::format("its {} is no number there", law_.output_name());
-    if (!law_.must_meet() || std::abs(output - asked) < kTolerance) return {};
-    if (law_.replaces)
+                           user_model_.states[i].name, dx[i], x_[i], user_model_.states[i].unit);
+    const double asked = user_model_.must_meet() && user_model_.replaces
+                             ? s_.*kMembers<double>[static_cast<std::size_t>(user_model_.output)]
+                             : 0.0;
+    if (!std::isfinite(output)) return fmt::format("its {} is no number there", user_model_.output_name());
+    if (!user_model_.must_meet() || std::abs(output - asked) < kTolerance) return {};
+    if (user_model_.replaces)
       return fmt::format(
           "it gives {} = {:.6g} pu where the machine needs {:.6g} pu (a reference = \"solve\" would "
           "meet it)",
-          law_.output_name(), output, asked);
+          user_model_.output_name(), output, asked);
     return fmt::format(
         "it adds {:.6g} pu to {} where nothing has happened yet (subtract the value at the operating "
         "point, as in V - V0)",
-        output, law_.output_name());
+        output, user_model_.output_name());
   }
 
-  const Definition& law_;
+  const Definition& user_model_;
   double* c_;
   Signals<double> s_;
   double* x_;
@@ -176,55 +181,55 @@ class Search {
 
 /// Writes the output of a law without a prescribed value, for later controls.
 template <class T>
-void put_out(const Definition& law, const T* c, const T* x, Signals<T>& s) {
-  if (law.must_meet()) return;
+void put_out(const Definition& user_model, const T* c, const T* x, Signals<T>& s) {
+  if (user_model.must_meet()) return;
   Signals<T> now = s;
   now.t = T(-1.0);
-  std::vector<T> dx(law.states.size(), T(0.0));
+  std::vector<T> dx(user_model.states.size(), T(0.0));
   Registers<T> registers;
   T output(0.0);
-  run<T, false>(law.code.loop, c, x, now, registers.data(), dx.data(), output);
-  T& to = s.*kMembers<T>[static_cast<std::size_t>(law.output)];
-  to = law.replaces ? output : to + output;
+  run<T, false>(user_model.code.loop, c, x, now, registers.data(), dx.data(), output);
+  T& to = s.*kMembers<T>[static_cast<std::size_t>(user_model.output)];
+  to = user_model.replaces ? output : to + output;
 }
 
 }  // namespace
 
-std::string steady(const Definition& law, const double* p, double* c, Signals<double>& s, double* x) {
-  fill(law, p, &s, c);
-  std::string why = Search(law, c, s, x).run();
-  if (why.empty()) put_out(law, c, x, s);
+std::string steady(const Definition& user_model, const double* p, double* c, Signals<double>& s, double* x) {
+  fill(user_model, p, &s, c);
+  std::string why = Search(user_model, c, s, x).run();
+  if (why.empty()) put_out(user_model, c, x, s);
   return why;
 }
 
 /// Computes values as for doubles and derivatives by the implicit function theorem.
-std::string steady(const Definition& law, const D8* p, D8* c, Signals<D8>& s, D8* x) {
-  const std::size_t states = law.states.size();
-  std::vector<double> pd, cd(static_cast<std::size_t>(law.code.coefficients), 0.0), xd(states);
-  for (std::size_t i = 0; i < law.parameters.size(); ++i) pd.push_back(p[i].a);
+std::string steady(const Definition& user_model, const D8* p, D8* c, Signals<D8>& s, D8* x) {
+  const std::size_t states = user_model.states.size();
+  std::vector<double> pd, cd(static_cast<std::size_t>(user_model.code.coefficients), 0.0), xd(states);
+  for (std::size_t i = 0; i < user_model.parameters.size(); ++i) pd.push_back(p[i].a);
   cd[kFrequency] = c[kFrequency].a;
   Signals<double> sd;
   for (std::size_t i = 0; i < kSignals.size(); ++i) sd.*kMembers<double>[i] = (s.*kMembers<D8>[i]).a;
-  fill(law, pd.data(), &sd, cd.data());
-  Search search(law, cd.data(), sd, xd.data());
+  fill(user_model, pd.data(), &sd, cd.data());
+  Search search(user_model, cd.data(), sd, xd.data());
   const std::string why = search.run();
   if (!why.empty()) return why;
-  fill(law, p, &s, c);
+  fill(user_model, p, &s, c);
   for (std::size_t i = 0; i < states; ++i) x[i] = D8(xd[i]);
-  for (const int i : law.searched) c[i] = D8(cd[static_cast<std::size_t>(i)]);
+  for (const int i : user_model.searched) c[i] = D8(cd[static_cast<std::size_t>(i)]);
   Signals<D8> now = s;
   now.t = D8(-1.0);
-  const auto f = Search::residual_of<D8>(law, c, x, now);
-  if (!f.empty() && states + law.searched.size() > 0)
+  const auto f = Search::residual_of<D8>(user_model, c, x, now);
+  if (!f.empty() && states + user_model.searched.size() > 0)
     for (std::size_t k = 0; k < kSensitivities; ++k) {
       Vector by(static_cast<Index>(f.size()));
       for (std::size_t i = 0; i < f.size(); ++i) by[static_cast<Index>(i)] = f[i].d[k];
       const Vector u = search.follow(by);
       for (std::size_t i = 0; i < states; ++i) x[i].d[k] = -u[static_cast<Index>(i)];
-      for (std::size_t i = 0; i < law.searched.size(); ++i)
-        c[law.searched[i]].d[k] = -u[static_cast<Index>(states + i)];
+      for (std::size_t i = 0; i < user_model.searched.size(); ++i)
+        c[user_model.searched[i]].d[k] = -u[static_cast<Index>(states + i)];
     }
-  put_out(law, c, x, s);
+  put_out(user_model, c, x, s);
   return {};
 }
 

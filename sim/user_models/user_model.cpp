@@ -14,12 +14,12 @@ const Definition& of(const void* data) { return *static_cast<const Definition*>(
 
 template <class T>
 void evaluate(const void* data, const T* c, const T* x, Signals<T>& s, T* dx) {
-  const Definition& law = of(data);
+  const Definition& user_model = of(data);
   Registers<T> registers;
   T value(0.0);
-  run<T, false>(law.code.loop, c, x, s, registers.data(), dx, value);
-  T& out = s.*kMembers<T>[static_cast<std::size_t>(law.output)];
-  out = law.replaces ? value : out + value;
+  run<T, false>(user_model.code.loop, c, x, s, registers.data(), dx, value);
+  T& out = s.*kMembers<T>[static_cast<std::size_t>(user_model.output)];
+  out = user_model.replaces ? value : out + value;
 }
 
 /// Returns one lane of a packed scalar.
@@ -52,23 +52,24 @@ constexpr int kLanesOf<Dual<Pack<N>, D>> = N;
 
 template <class T>
 std::string steady_of(const void* data, const T* p, T* c, Signals<T>& s, T* x) {
-  const Definition& law = of(data);
+  const Definition& user_model = of(data);
   if constexpr (kLanesOf<T> == 0) {
-    return steady(law, p, c, s, x);
+    return steady(user_model, p, c, s, x);
   } else {  // lane by lane
     using One = decltype(lane_of(*p, 0));
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      std::vector<One> one_p, one_c(static_cast<std::size_t>(law.code.coefficients), One(0.0)),
-          one_x(law.states.size(), One(0.0));
-      for (std::size_t i = 0; i < law.parameters.size(); ++i) one_p.push_back(lane_of(p[i], lane));
+      std::vector<One> one_p, one_c(static_cast<std::size_t>(user_model.code.coefficients), One(0.0)),
+          one_x(user_model.states.size(), One(0.0));
+      for (std::size_t i = 0; i < user_model.parameters.size(); ++i) one_p.push_back(lane_of(p[i], lane));
       one_c[kFrequency] = lane_of(c[kFrequency], lane);
       Signals<One> one_s;
       for (std::size_t i = 0; i < kSignals.size(); ++i)
         one_s.*kMembers<One>[i] = lane_of(s.*kMembers<T>[i], lane);
-      if (auto why = steady(law, one_p.data(), one_c.data(), one_s, one_x.data()); !why.empty()) return why;
+      if (auto why = steady(user_model, one_p.data(), one_c.data(), one_s, one_x.data()); !why.empty())
+        return why;
       for (std::size_t i = 0; i < one_c.size(); ++i) set_lane(c[i], lane, one_c[i]);
       for (std::size_t i = 0; i < one_x.size(); ++i) set_lane(x[i], lane, one_x[i]);
-      const auto out = static_cast<std::size_t>(law.output);
+      const auto out = static_cast<std::size_t>(user_model.output);
       set_lane(s.*kMembers<T>[out], lane, one_s.*kMembers<One>[out]);
     }
     return {};
@@ -89,42 +90,42 @@ std::tuple<Ops<T>...> all_ops(std::tuple<T...>*) {
   return {ops<T>()...};
 }
 
-std::vector<double> coefficients(const Definition& law, const double* p) {
-  std::vector<double> c(static_cast<std::size_t>(law.code.coefficients), 0.0);
+std::vector<double> coefficients(const Definition& user_model, const double* p) {
+  std::vector<double> c(static_cast<std::size_t>(user_model.code.coefficients), 0.0);
   c[kFrequency] = 60.0;  // arbitrary: the checks must not depend on the frequency
-  fill<double>(law, p, nullptr, c.data());
+  fill<double>(user_model, p, nullptr, c.data());
   return c;
 }
 
 void check(const void* data, const double* p, const std::string& where, Problems& problems) {
-  const Definition& law = of(data);
+  const Definition& user_model = of(data);
   bool numbers = true;
-  for (std::size_t i = 0; i < law.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < user_model.parameters.size(); ++i) {
     if (std::isfinite(p[i])) continue;
     numbers = false;
-    problems.add(fmt::format("{} = {}", law.parameters[i].name, p[i]), where,
+    problems.add(fmt::format("{} = {}", user_model.parameters[i].name, p[i]), where,
                  "a parameter is a finite number", "give one");
   }
   if (!numbers) return;
-  const auto c = coefficients(law, p);
+  const auto c = coefficients(user_model, p);
   const auto value = [&](int i) { return c[static_cast<std::size_t>(i)]; };
-  for (const Requirement& r : law.requirements) {
+  for (const Requirement& r : user_model.requirements) {
     const double a = value(r.left), b = value(r.right);
     if (!(r.op == Op::less ? a < b : a <= b))
       problems.add(fmt::format("{} does not hold ({:g} against {:g})", r.text, a, b), where,
-                   "law " + law.name + " requires it at " + r.where, "change the parameters");
+                   "law " + user_model.name + " requires it at " + r.where, "change the parameters");
   }
-  for (const auto& [index, text] : law.finite)
+  for (const auto& [index, text] : user_model.finite)
     if (!std::isfinite(value(index)))
       problems.add(fmt::format("{} = {} with these parameters", text, value(index)), where,
-                   "law " + law.name + " needs a finite number", "change the parameters");
+                   "law " + user_model.name + " needs a finite number", "change the parameters");
 }
 
 std::vector<double> switching_times(const void* data, const double* p) {
-  const Definition& law = of(data);
-  const auto c = coefficients(law, p);
+  const Definition& user_model = of(data);
+  const auto c = coefficients(user_model, p);
   std::vector<double> all;
-  for (const int i : law.switching_times) all.push_back(c[static_cast<std::size_t>(i)]);
+  for (const int i : user_model.switching_times) all.push_back(c[static_cast<std::size_t>(i)]);
   return all;
 }
 
@@ -132,36 +133,37 @@ std::vector<double> switching_times(const void* data, const double* p) {
 
 Effect make_effect(Definition definition) {
   const auto shared = std::make_shared<const Definition>(std::move(definition));
-  const Definition& law = *shared;
+  const Definition& user_model = *shared;
   Effect e{};
-  e.name = law.name;
-  e.title = law.title;
-  e.source = law.source;
-  e.description = law.description;
-  e.slot = law.slot;
-  e.parameters = law.parameters;
-  e.states = law.states;
+  e.name = user_model.name;
+  e.title = user_model.title;
+  e.source = user_model.source;
+  e.description = user_model.description;
+  e.slot = user_model.slot;
+  e.parameters = user_model.parameters;
+  e.states = user_model.states;
   e.raw_resistance = e.raw_reactance = -1;
-  e.coefficients = law.code.coefficients;
+  e.coefficients = user_model.code.coefficients;
   e.check = &check;
   e.unphysical = +[](const double*) { return std::string_view(); };
-  if (!law.switching_times.empty()) e.switching_times = &switching_times;
+  if (!user_model.switching_times.empty()) e.switching_times = &switching_times;
   e.ops = all_ops(static_cast<Scalars*>(nullptr));
-  e.law = shared;
+  e.user_model = shared;
   return e;
 }
 
-Effect make_law(const std::string& text, const std::filesystem::path& name) {
+Effect make_user_model(const std::string& text, const std::filesystem::path& name) {
   return user_models::make_effect(read_definition(text, name));
 }
 
 bool same_effect(const Effect& a, const Effect& b) {
-  return &a == &b || (a.law && b.law && of(a.law.get()).text == of(b.law.get()).text);
+  return &a == &b ||
+         (a.user_model && b.user_model && of(a.user_model.get()).text == of(b.user_model.get()).text);
 }
 
-const Effect& load_law(const std::string& text, const std::filesystem::path& name,
-                       library::EffectLibrary& library) {
-  Effect effect = make_law(text, name);
+const Effect& load_user_model(const std::string& text, const std::filesystem::path& name,
+                              library::EffectLibrary& library) {
+  Effect effect = make_user_model(text, name);
   const Effect* there = library.find(effect.name);
   if (there == nullptr) return library.add(std::move(effect));
   if (same_effect(*there, effect)) return *there;
@@ -169,8 +171,9 @@ const Effect& load_law(const std::string& text, const std::filesystem::path& nam
                     "a compiled effect or another law file has the name", "choose another name"});
 }
 
-const Effect& load_law(const std::filesystem::path& file, library::EffectLibrary& library) {
-  return load_law(read_input(file, "no readable law file", "give the path of a law .toml"), file, library);
+const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library) {
+  return load_user_model(read_input(file, "no readable law file", "give the path of a law .toml"), file,
+                         library);
 }
 
 }  // namespace swingbank::sim::user_models

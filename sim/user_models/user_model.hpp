@@ -13,12 +13,12 @@ namespace swingbank::sim::user_models {
 /// Reads a law and adds it to a library. Reading the same text again returns the same effect. Throws
 /// InputError with every fault of the file (file:line:column), or if another effect of the library has the
 /// name.
-const Effect& load_law(const std::filesystem::path& file, library::EffectLibrary& library);
+const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library);
 /// The same from a text; `name` replaces the file name in messages.
-const Effect& load_law(const std::string& text, const std::filesystem::path& name,
-                       library::EffectLibrary& library);
+const Effect& load_user_model(const std::string& text, const std::filesystem::path& name,
+                              library::EffectLibrary& library);
 /// The same without adding it.
-Effect make_law(const std::string& text, const std::filesystem::path& name);
+Effect make_user_model(const std::string& text, const std::filesystem::path& name);
 
 /// Returns true if two effects are the same compiled effect, or laws with the same text in any library.
 bool same_effect(const Effect& a, const Effect& b);

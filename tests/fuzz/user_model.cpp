@@ -9,14 +9,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace swingbank;
   fuzz::quiet();
   const std::string text(reinterpret_cast<const char*>(data), size);
-  sim::Effect law;
-  if (!fuzz::accepted([&] { law = sim::user_models::make_law(text, "law.toml"); })) return 0;
+  sim::Effect user_model;
+  if (!fuzz::accepted([&] { user_model = sim::user_models::make_user_model(text, "law.toml"); })) return 0;
   static const sim::Effect* const machine = sim::library::compiled().find("GENROU");
   sim::plant::Plant plant;
   plant.name = "fuzzed";
   plant.generation = {0.5, 0.1};  // [pu on 100 MVA]
   plant.machine = {machine, machine->default_parameters()};
-  plant.controls = {{&law, law.default_parameters()}};
+  plant.controls = {{&user_model, user_model.default_parameters()}};
   sim::plant::Operating point;
   if (!fuzz::accepted(
           [&] { point = sim::plant::operating_point(plant, 1.0, 100.0, sim::Conventions::psse()); }))

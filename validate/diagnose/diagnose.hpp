@@ -44,8 +44,9 @@ struct Diagnosis {
   /// set reduces the residual to noise.
   std::optional<fit::SparseSelection> wrong;
   double wrong_evidence = 0;  ///< evidence that only these are wrong, over a refit of every parameter [chi2]
-  reduced::FreeInput torque, field;   ///< each inferred without any added effect
-  user_model_search::LawSearch laws;  ///< user-defined models tried if no known effect explains the records
+  reduced::FreeInput torque, field;  ///< each inferred without any added effect
+  user_model_search::UserModelSearch
+      user_models;  ///< user-defined models tried if no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
   event::WhitenedEvents events;               ///< with the noise model of all fits
   sim::Conventions conventions;               ///< of the model

@@ -192,7 +192,7 @@ ReportFigures report_figures(const Diagnosis& d) {
   ReportFigures figures;
   const bool named = !d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty();
   const hypothesis::Judgement* best = named ? &d.ranked.front() : nullptr;
-  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
+  if (!best && d.user_models.found()) best = &d.user_models.found()->judgement;
   if (d.verdict != Verdict::adequate && best) {
     figures.after = &best->fit;
     figures.after_name = hypothesis::full_name(best->hypothesis);
@@ -258,7 +258,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
   j["wrong_parameters"] = wrong ? calibrate::wrong_json(*wrong) : nlohmann::json();
   j["missing_torque"] = input_json(d, d.torque);
   j["missing_field_voltage"] = input_json(d, d.field);
-  j["laws"] = laws_json(d);
+  j["laws"] = user_models_json(d);
   j["hypotheses"] = nlohmann::json::array();
   for (const auto& h : d.ranked) j["hypotheses"].push_back(hypothesis_json(h));
   j["events"] = nlohmann::json::array();
@@ -286,7 +286,7 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
   std::vector<compare::Played> played = {play("submitted", model.plant, model.conventions)};
   const hypothesis::Judgement* best =
       d.ranked.empty() || !d.ranked.front().accepted ? nullptr : &d.ranked.front();
-  if (!best && d.laws.found()) best = &d.laws.found()->judgement;
+  if (!best && d.user_models.found()) best = &d.user_models.found()->judgement;
   if (best && d.verdict != Verdict::adequate)
     played.push_back(play("with " + hypothesis::full_name(best->hypothesis), best->fit.plant,
                           best->hypothesis.conventions));

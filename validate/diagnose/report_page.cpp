@@ -56,7 +56,7 @@ class DiagnosisPage {
     error_maps();
     sides();
     hypotheses();
-    laws_on_page(d_, page_);
+    user_models_on_page(d_, page_);
     page_.section("Event results");
     for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
     method();

@@ -58,12 +58,12 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;
-  const user_model_search::LawFinding* law = named ? nullptr : d.laws.found();
-  if (!named && !law && !d.ruling.adequate) {
+  const user_model_search::UserModelFinding* user_model = named ? nullptr : d.user_models.found();
+  if (!named && !user_model && !d.ruling.adequate) {
     text += "\nThe fitted values are not shown: the residual exceeds noise, so they are biased.\n";
     return;
   }
-  const fit::Fit& fit = named ? d.ranked.front().fit : law ? law->judgement.fit : d.base;
+  const fit::Fit& fit = named ? d.ranked.front().fit : user_model ? user_model->judgement.fit : d.base;
   text += fmt::format("\n{:<10} {:<10} {:>12} {:>12} {:>26} {:>6}\n", "block", "parameter", "model", "fitted",
                       "95 % interval", "unit");
   for (const auto& p : fit.parameters)
@@ -82,7 +82,7 @@ std::string diagnosis_text(const Diagnosis& d) {
   if (const auto wrong = wrong_parameters(d)) text += "\n" + calibrate::wrong_text(*wrong);
   add_inputs(d, text);
   add_hypotheses(d, text);
-  text += laws_text(d);
+  text += user_models_text(d);
   add_parameters(d, text);
   text += fmt::format("\n{} events, {:.1f} s\n", d.events.size(), d.seconds);
   return text;

@@ -29,7 +29,7 @@ enum class Phase {
   full_fits,      ///< fits to convergence
   noise_again,    ///< refits after a new estimate of the noise
   unseen_events,  ///< hold-out tests
-  laws,           ///< user-defined models
+  user_models,    ///< user-defined models
   // diagnose, with a second effect beside the best one
   second_screening,    ///< screening
   second_quick_fits,   ///< short fits

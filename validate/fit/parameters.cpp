@@ -24,7 +24,8 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int b
   const sim::Effect& effect = block_effect(plant, block);
   const auto& values = block_at(plant, block).p;
   std::vector<double> switching_times;
-  if (effect.switching_times) switching_times = effect.switching_times(effect.law.get(), values.data());
+  if (effect.switching_times)
+    switching_times = effect.switching_times(effect.user_model.get(), values.data());
   std::vector<FreeParameter> free;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& p = effect.parameters[i];

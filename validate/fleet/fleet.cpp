@@ -88,8 +88,8 @@ std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   j.push_back(block_json(m.plant.transformer));
   for (const auto& b : m.plant.controls) j.push_back(block_json(b));
   for (const auto& b : m.plant.measurements) j.push_back(block_json(b));
-  for (const auto& law : m.laws) {
-    const std::string bytes = record::read_bytes(law);
+  for (const auto& user_model : m.user_models) {
+    const std::string bytes = record::read_bytes(user_model);
     j.push_back(sha256(bytes));
   }
   for (const auto& r : l.records) j.push_back({r.name, r.terminal, r.sha256});

@@ -95,12 +95,12 @@ void append_submitted(std::string& text, const PlantModel& model) {
 }
 
 std::string compose(const PlantModel& model, const std::vector<std::string>& provenance,
-                    const std::vector<std::string>& laws) {
+                    const std::vector<std::string>& user_models) {
   std::string text;
   for (const auto& line : provenance) text += comment(line);
   std::string list;
-  for (const auto& law : laws) list += (list.empty() ? "" : ", ") + in_quotes(law);
-  if (!laws.empty()) text += "laws = [" + list + "]\n";
+  for (const auto& user_model : user_models) list += (list.empty() ? "" : ", ") + in_quotes(user_model);
+  if (!user_models.empty()) text += "laws = [" + list + "]\n";
   const bool power = model.conventions.mechanical_power;
   text += fmt::format(
       "[plant]\nname = {}\nbase_mva = {}  # machine base [MVA], of all per-unit values below\n"
@@ -135,14 +135,14 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
 }
 
 /// Returns the names of the law files without folders, which must be unique.
-std::vector<std::string> law_names(const PlantModel& model) {
+std::vector<std::string> user_model_names(const PlantModel& model) {
   std::vector<std::string> names;
   Problems problems;
-  for (const auto& law : model.laws) {
-    if (std::ranges::count(names, law.filename().string()))
-      problems.add("two user-defined models in files named " + law.filename().string(), law.string(),
-                   "their copies would overwrite each other", "rename one of them");
-    names.push_back(law.filename().string());
+  for (const auto& user_model : model.user_models) {
+    if (std::ranges::count(names, user_model.filename().string()))
+      problems.add("two user-defined models in files named " + user_model.filename().string(),
+                   user_model.string(), "their copies would overwrite each other", "rename one of them");
+    names.push_back(user_model.filename().string());
   }
   problems.raise();
   return names;
@@ -150,9 +150,10 @@ std::vector<std::string> law_names(const PlantModel& model) {
 
 /// Checks that the text, with absolute paths of the law files, reads back to the same model.
 void check(const PlantModel& model, const std::vector<std::string>& provenance) {
-  std::vector<std::string> laws;
-  for (const auto& law : model.laws) laws.push_back(fs::absolute(law).string());
-  const PlantModel back = parse_plant_model(compose(model, provenance, laws), model.name + " as written");
+  std::vector<std::string> user_models;
+  for (const auto& user_model : model.user_models) user_models.push_back(fs::absolute(user_model).string());
+  const PlantModel back =
+      parse_plant_model(compose(model, provenance, user_models), model.name + " as written");
   const std::string why = difference(model, back);
   if (!why.empty())
     throw InputError({"plant file of " + model.name, "writing it", why + " does not read back",
@@ -198,19 +199,20 @@ std::string difference(const PlantModel& a, const PlantModel& b) {
 
 std::string plant_text(const PlantModel& model, const std::vector<std::string>& provenance) {
   check(model, provenance);
-  return compose(model, provenance, law_names(model));
+  return compose(model, provenance, user_model_names(model));
 }
 
 void write_plant_file(const fs::path& file, const PlantModel& model,
                       const std::vector<std::string>& provenance) {
   const std::string text = plant_text(model, provenance);
-  const auto names = law_names(model);
+  const auto names = user_model_names(model);
   for (std::size_t k = 0; k < names.size(); ++k) {
     const fs::path copy = file.parent_path() / names[k];
     std::error_code none;
-    if (!fs::equivalent(copy, model.laws[k], none))
-      write_file(copy, read_input(model.laws[k], "no readable file of a user-defined model of the plant",
-                                  "put it back where it was"));
+    if (!fs::equivalent(copy, model.user_models[k], none))
+      write_file(copy,
+                 read_input(model.user_models[k], "no readable file of a user-defined model of the plant",
+                            "put it back where it was"));
   }
   write_file(file, text);
 }

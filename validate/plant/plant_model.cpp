@@ -72,7 +72,7 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   }
   if (!sound || !config.sound()) return block;
   Problems problems;
-  block.effect->check(block.effect->law.get(), block.p.data(), config.where(section), problems);
+  block.effect->check(block.effect->user_model.get(), block.p.data(), config.where(section), problems);
   for (const auto& p : problems.list()) config.problem(section, p.what, p.why, p.remedy);
   warn_unusual(config, section, block, model);
   return block;
@@ -192,12 +192,12 @@ void read_submitted(Config& config, PlantModel& model) {
 }
 
 /// Loads the law files of the plant, and adds their effects to the library.
-std::vector<fs::path> read_laws(Config& config, EffectLibrary& library) {
+std::vector<fs::path> read_user_models(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
   for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
     const fs::path file = (config.name().parent_path() / name).lexically_normal();
     try {
-      sim::user_models::load_law(file, library);
+      sim::user_models::load_user_model(file, library);
       files.push_back(file);
     } catch (const InputError& error) {
       for (const auto& p : error.problems())
@@ -268,16 +268,17 @@ bool is_columns(std::string_view text) {
   return false;
 }
 
-PlantModel parse_with_laws(const std::string& text, const fs::path& file, const std::vector<fs::path>& laws) {
+PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
+                                  const std::vector<fs::path>& user_models) {
   if (is_columns(text))
     throw InputError({"a record", file.string(), "a plant file was asked for",
                       "give the plant file (.toml) as --model, and the record as --records"});
   Config config(text, file);
   PlantModel model;
-  for (const auto& law : laws) sim::user_models::load_law(law, model.library);
+  for (const auto& user_model : user_models) sim::user_models::load_user_model(user_model, model.library);
   model.origin = file.string();
   model.sha256 = sha256(text);
-  model.laws = read_laws(config, model.library);
+  model.user_models = read_user_models(config, model.library);
   model.name = config.require<std::string>("plant.name");
   config.optional<std::string>("plant.origin", "");
   const auto hz = config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz"});
@@ -322,14 +323,14 @@ std::string subject(const PlantModel& model) {
 }
 
 PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
-  return parse_with_laws(text, file, {});
+  return parse_with_user_models(text, file, {});
 }
 
 PlantModel load_plant_model(const fs::path& file) { return load_plant_model(file, {}); }
 
-PlantModel load_plant_model(const fs::path& file, const std::vector<fs::path>& laws) {
-  return parse_with_laws(read_input(file, "no readable plant file", "give the path of a plant .toml"), file,
-                         laws);
+PlantModel load_plant_model(const fs::path& file, const std::vector<fs::path>& user_models) {
+  return parse_with_user_models(read_input(file, "no readable plant file", "give the path of a plant .toml"),
+                                file, user_models);
 }
 
 PlantModel as_submitted(PlantModel model) {

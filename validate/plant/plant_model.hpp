@@ -16,15 +16,15 @@ namespace swingbank::validate::plant {
 
 /// Plant with its records' bases and the sources of its effects.
 struct PlantModel {
-  std::string name, origin;                      ///< origin: the file it was read from
-  std::string sha256;                            ///< of that file's bytes
-  sim::plant::Plant plant;                       ///< its generation is set from each record
-  sim::Conventions conventions;                  ///< conventions of the simulator that the parameters are for
-  record::RecordBase record_base;                ///< bases of "pu" in the records of this plant
-  record::ReadOptions reading;                   ///< columns and time range of its records
-  std::vector<std::filesystem::path> laws = {};  ///< law files that define some of its effects
-  int bus = 0;                                   ///< bus number in its case; 0: not given
-  std::string id = "1";                          ///< machine identifier in its case
+  std::string name, origin;        ///< origin: the file it was read from
+  std::string sha256;              ///< of that file's bytes
+  sim::plant::Plant plant;         ///< its generation is set from each record
+  sim::Conventions conventions;    ///< conventions of the simulator that the parameters are for
+  record::RecordBase record_base;  ///< bases of "pu" in the records of this plant
+  record::ReadOptions reading;     ///< columns and time range of its records
+  std::vector<std::filesystem::path> user_models = {};  ///< law files that define some of its effects
+  int bus = 0;                                          ///< bus number in its case; 0: not given
+  std::string id = "1";                                 ///< machine identifier in its case
   /// Output in its case; none: unknown. Used to check records, never as an initial condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
   /// Parameters ("SEXS.TE") that the file leaves at their default values (`standard = true`).
@@ -37,8 +37,8 @@ struct PlantModel {
   std::vector<std::string> warnings = {};
   /// Returns references to plant and conventions; the model must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
-  /// Compiled effects and those of `laws`. The plant's blocks point into it, so a copy of the plant must not
-  /// outlive the model and its copies.
+  /// Compiled effects and those of `user_models`. The plant's blocks point into it, so a copy of the plant
+  /// must not outlive the model and its copies.
   sim::library::EffectLibrary library = {};
 };
 

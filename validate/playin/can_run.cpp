@@ -40,7 +40,7 @@ bool are_as_ordered(const Blocks& blocks, const Blocks& given) {
 
 bool can_run(const sim::plant::Block& block) {
   Problems problems;
-  block.effect->check(block.effect->law.get(), block.p.data(), "", problems);
+  block.effect->check(block.effect->user_model.get(), block.p.data(), "", problems);
   return problems.empty();
 }
 

@@ -44,10 +44,11 @@ class Base {
       else
         table_.insert_or_assign(key, fs::absolute(file_.parent_path() / *path).lexically_normal().string());
     }
-    if (auto* laws = table_["laws"].as_array())
-      for (auto& law : *laws)
-        if (const auto path = law.value<std::string>())
-          law.ref<std::string>() = fs::absolute(file_.parent_path() / *path).lexically_normal().string();
+    if (auto* user_models = table_["laws"].as_array())
+      for (auto& user_model : *user_models)
+        if (const auto path = user_model.value<std::string>())
+          user_model.ref<std::string>() =
+              fs::absolute(file_.parent_path() / *path).lexically_normal().string();
     const auto machine = std::string(added.model.plant.machine.effect->name);
     const auto model = table_.at_path("vary.model").value_or(std::string());
     if (model != machine)
@@ -114,8 +115,8 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
     for (const auto& plant : base.plants())
       dataset["attach"].as_array()->push_back(attachment(plant, *block));
     if (!dataset["laws"].is_array()) dataset.insert_or_assign("laws", toml::array{});
-    for (const auto& law : added.model.laws)
-      dataset["laws"].as_array()->push_back(fs::absolute(law).lexically_normal().string());
+    for (const auto& user_model : added.model.user_models)
+      dataset["laws"].as_array()->push_back(fs::absolute(user_model).lexically_normal().string());
     if (dataset["laws"].as_array()->empty()) dataset.erase("laws");
   }
   const auto machine = std::string(added.model.plant.machine.effect->name);

@@ -94,7 +94,7 @@ std::string list_of(const std::vector<std::string>& items) {
 
 std::string config_text(const plant::PlantModel& model, double range) {
   const auto& plant = model.plant;
-  std::vector<std::string> attached, laws;
+  std::vector<std::string> attached, user_models;
   const auto attach = [&](const sim::plant::Block& block) {
     if (block.effect == nullptr) return;
     std::string text = "1:" + std::string(block.effect->name);
@@ -104,10 +104,11 @@ std::string config_text(const plant::PlantModel& model, double range) {
   };
   attach(plant.transformer);
   for (const auto& block : plant.controls) attach(block);
-  for (const auto& law : model.laws) laws.push_back(fs::absolute(law).lexically_normal().string());
+  for (const auto& user_model : model.user_models)
+    user_models.push_back(fs::absolute(user_model).lexically_normal().string());
   std::string text = fmt::format("raw = \"plant.raw\"\ndyr = \"plant.dyr\"\nconvention = \"{}\"\n",
                                  model.conventions.mechanical_power ? "psse" : "andes");
-  if (!laws.empty()) text += "laws = " + list_of(laws) + "\n";
+  if (!user_models.empty()) text += "laws = " + list_of(user_models) + "\n";
   if (!attached.empty()) text += "attach = " + list_of(attached) + "\n";
   text += fmt::format("\n[vary]\nwho = \"one\"\ngenerators = [1]\nmodel = \"{}\"\n\n[vary.box]\n",
                       plant.machine.effect->name);

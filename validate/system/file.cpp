@@ -70,9 +70,9 @@ void read_grid(Config& c, SystemCase& s) {
   sim::library::EffectLibrary library;
   for (const auto& name : c.optional<Texts>("laws", {}))
     attempt(c, "laws", [&] {
-      const fs::path law = (c.name().parent_path() / name).lexically_normal();
-      sim::user_models::load_law(law, library);
-      s.laws.emplace_back(law, sha256_of(law));
+      const fs::path user_model = (c.name().parent_path() / name).lexically_normal();
+      sim::user_models::load_user_model(user_model, library);
+      s.user_models.emplace_back(user_model, sha256_of(user_model));
     });
   s.raw = c.file("system.raw");
   s.dyr = c.file("system.dyr");

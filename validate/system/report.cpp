@@ -259,7 +259,7 @@ report::Provenance system_provenance(const SystemCase& s, const std::string& com
       {"network", hashed(s.raw, s.raw_sha256)},
       {"dynamics", hashed(s.dyr, s.dyr_sha256)},
       {"integrator", fmt::format("IDA on the unreduced grid, relative tolerance {:g}", s.tolerance)}};
-  for (const auto& [file, sha256] : s.laws) rows.emplace_back("law", hashed(file, sha256));
+  for (const auto& [file, sha256] : s.user_models) rows.emplace_back("law", hashed(file, sha256));
   for (const auto& t : s.terminals)
     rows.emplace_back("record of " + t.name, hashed(t.record.name, t.record.sha256));
   return rows;

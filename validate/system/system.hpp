@@ -29,7 +29,7 @@ struct SystemCase {
   std::string name;
   std::filesystem::path file, raw, dyr;
   std::string sha256, raw_sha256, dyr_sha256;  ///< hashes of the files' bytes
-  std::vector<std::pair<std::filesystem::path, std::string>> laws;
+  std::vector<std::pair<std::filesystem::path, std::string>> user_models;
   sim::grid::Grid grid;
   sim::grid::EventTexts texts;
   sim::network::Event event;  ///< with times on the records' clock

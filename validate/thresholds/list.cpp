@@ -27,7 +27,7 @@ std::vector<Threshold> all_thresholds() {
   add(adequacy, all);
   add(noise, all);
   add(search, all);
-  add(laws, all);
+  add(user_models, all);
   add(addition, all);
   add(parameters, all);
   add(dtr_test, all);

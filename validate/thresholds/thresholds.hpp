@@ -157,7 +157,7 @@ struct Search {
 inline constexpr Search search;  ///< the thresholds in use
 
 /// Search for user-defined models of the inferred input (decision 21).
-struct Laws {
+struct UserModels {
   /// Largest share of the base model's chi2 that an input may leave to justify a user-defined model [-].
   Threshold explains{"laws.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
@@ -181,7 +181,7 @@ struct Laws {
   Threshold in_proportion{"laws.in_proportion", 3, "chi2",
                           "additional evidence of a model in proportion to the initial value (decision 21)"};
 };
-inline constexpr Laws laws;  ///< the thresholds in use
+inline constexpr UserModels user_models;  ///< the thresholds in use
 
 /// `swingbank add`: the user has named the effect, so one hypothesis competes with one other. Diagnose
 /// requires four times the evidence because it selects the best of about thirty, some of which fit by chance.

@@ -13,22 +13,23 @@
 namespace swingbank::validate::user_model_search {
 
 /// A signal that a user-defined model may use, as deviation from its value at the operating point.
-struct LawSignal {
+struct UserModelSignal {
   std::string_view name, expression, words;  ///< name; expression in the TOML file; description
 };
 /// Signals that the search examines.
-inline constexpr std::array kLawSignals = {
-    LawSignal{"speed", "speed", "the speed deviation"},
-    LawSignal{"V", "V - V0", "the deviation of the terminal voltage from its value before the event"},
-    LawSignal{"P", "P - P0", "the deviation of the active power from its value before the event"},
-    LawSignal{"Q", "Q - Q0", "the deviation of the reactive power from its value before the event"},
-    LawSignal{"Ifd", "Ifd - Ifd0", "the deviation of the field current from its value before the event"}};
+inline constexpr std::array kUserModelSignals = {
+    UserModelSignal{"speed", "speed", "the speed deviation"},
+    UserModelSignal{"V", "V - V0", "the deviation of the terminal voltage from its value before the event"},
+    UserModelSignal{"P", "P - P0", "the deviation of the active power from its value before the event"},
+    UserModelSignal{"Q", "Q - Q0", "the deviation of the reactive power from its value before the event"},
+    UserModelSignal{"Ifd", "Ifd - Ifd0",
+                    "the deviation of the field current from its value before the event"}};
 
 /// Signals and inferred input of one event.
-struct LawTrace {
+struct UserModelTrace {
   std::vector<double> t;  ///< samples [s]
   /// [signal][sample] [pu on the machine's base].
-  std::array<std::vector<double>, kLawSignals.size()> signal;
+  std::array<std::vector<double>, kUserModelSignals.size()> signal;
   /// First exit of V from its band [s]; NaN: none.
   double trigger = std::numeric_limits<double>::quiet_NaN();
   double begin = 0;                  ///< start of the inferred input [s]
@@ -37,7 +38,7 @@ struct LawTrace {
 };
 
 /// A parameter of a user-defined model with its value and range.
-struct LawParameter {
+struct UserModelParameter {
   std::string name, unit;               ///< name and unit
   double value = 0, low = 0, high = 0;  ///< value and range [unit]
   bool gain = false;                    ///< the model has no output if it is zero
@@ -45,15 +46,15 @@ struct LawParameter {
 };
 
 /// A candidate: text of the user-defined model, and its parameters.
-struct LawCandidate {
+struct UserModelCandidate {
   fit::InputKind kind = fit::InputKind::torque;  ///< input that the model drives
   std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
-  std::string signal;             ///< name in kLawSignals, "time" or "time since the voltage moved"
+  std::string signal;             ///< name in kUserModelSignals, "time" or "time since the voltage moved"
   std::string words;              ///< description with {name} in place of a parameter's value
   std::string value, body;        ///< expression and tables of the TOML file
   std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes
-  std::vector<LawParameter> parameters;  ///< parameters, in the order of the TOML file
-  double explained = 0;                  ///< coefficient of determination of the inferred input
+  std::vector<UserModelParameter> parameters;  ///< parameters, in the order of the TOML file
+  double explained = 0;                        ///< coefficient of determination of the inferred input
   double score = 0;  ///< Bayesian information criterion of the regression; lower is better
   std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]
 };
@@ -65,7 +66,8 @@ double trigger_level(const event::WhitenedEvents& events);
 
 /// Returns the best candidate of each family and signal, in ascending order of score. `level`: see
 /// trigger_level().
-std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<LawTrace>& traces,
-                                         double level);
+std::vector<UserModelCandidate> user_model_candidates(fit::InputKind kind,
+                                                      const std::vector<UserModelTrace>& traces,
+                                                      double level);
 
 }  // namespace swingbank::validate::user_model_search

@@ -38,7 +38,7 @@ std::vector<double> lagged(const std::vector<double>& t, const std::vector<doubl
   }
   return y;
 }
-TimeSeries filtered(const std::vector<LawTrace>& traces, const Form& f) {
+TimeSeries filtered(const std::vector<UserModelTrace>& traces, const Form& f) {
   TimeSeries all;
   for (const auto& e : traces) {
     const auto& x = e.signal[f.signal];
@@ -97,91 +97,92 @@ double largest(const TimeSeries& time_series) {
   return most;
 }
 
-LawParameter gain_of(const std::string& name, double value, double most, const std::string& meaning) {
+UserModelParameter gain_of(const std::string& name, double value, double most, const std::string& meaning) {
   return {name, "pu", value, -most, most, true, meaning};
 }
 
 /// Describes an odd piecewise linear curve through the points (w1, u1), (w2, u2), ...
-void describe_curve(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
+void describe_curve(const Form& f, const Eigen::VectorXd& factors, UserModelCandidate& user_model) {
   const double least = 0.05 * factors.cwiseAbs().maxCoeff();
   std::string points, order;
   for (int k = 1; k <= kPoints; ++k) {
     double u = factors[k - 1];
     if (std::abs(u) < least) u = std::copysign(least, u);  // steps relative to the value could not leave zero
-    law.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
-                              fmt::format("deviation at point {}", k)});
-    law.parameters.push_back(
+    user_model.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
+                                     fmt::format("deviation at point {}", k)});
+    user_model.parameters.push_back(
         {fmt::format("u{}", k), "pu", u, -10.0, 10.0, false, fmt::format("value at point {}", k)});
     points += fmt::format("{}{{u{}}} at {{w{}}}", k == 1 ? "" : ", ", k, k);
     if (k == 1) {
-      law.value = "u1 * clamp(x / w1, -1, 1)";
+      user_model.value = "u1 * clamp(x / w1, -1, 1)";
       continue;
     }
-    law.value += fmt::format(
+    user_model.value += fmt::format(
         " + (u{0} - u{1}) * (clamp(x, -w{0}, w{0}) - clamp(x, -w{1}, w{1})) / (w{0} - w{1})", k, k - 1);
     order += fmt::format("{}\"w{} < w{}\"", k == 2 ? "" : ", ", k - 1, k);
   }
-  law.requirements = order;
-  law.words = "an odd function of {x} through " + points + ", linear in between";
+  user_model.requirements = order;
+  user_model.words = "an odd function of {x} through " + points + ", linear in between";
 }
 /// Writes the TOML expression and the description of each shape. `y`: name of the filtered signal.
-void describe_shape(const Form& f, const Eigen::VectorXd& factors, LawCandidate& law) {
+void describe_shape(const Form& f, const Eigen::VectorXd& factors, UserModelCandidate& user_model) {
   constexpr double kMostGain = 1e6, kMostLevel = 10;
   const double factor = factors[0];
   const std::string y = f.filter == Filter::none ? "x" : "filtered";
-  const LawParameter limit{"w", "pu", f.width, 1e-7, 10.0, false, "deviation at the limit"};
-  const LawParameter band{"w", "pu", f.width, 1e-7, 10.0, false, "dead band"};
+  const UserModelParameter limit{"w", "pu", f.width, 1e-7, 10.0, false, "deviation at the limit"};
+  const UserModelParameter band{"w", "pu", f.width, 1e-7, 10.0, false, "dead band"};
   switch (f.shape) {
     case Shape::straight:
-      law.value = "K * " + y;
-      law.words = "{K} × {x}";
-      law.parameters = {gain_of("K", factor, kMostGain, "gain")};
+      user_model.value = "K * " + y;
+      user_model.words = "{K} × {x}";
+      user_model.parameters = {gain_of("K", factor, kMostGain, "gain")};
       break;
     case Shape::limited:
-      law.value = "L * clamp(" + y + " / w, -1, 1)";
-      law.words = "{L} where {x} exceeds {w}, proportional below, with its sign";
-      law.parameters = {gain_of("L", factor, kMostLevel, "limit"), limit};
+      user_model.value = "L * clamp(" + y + " / w, -1, 1)";
+      user_model.words = "{L} where {x} exceeds {w}, proportional below, with its sign";
+      user_model.parameters = {gain_of("L", factor, kMostLevel, "limit"), limit};
       break;
     case Shape::dead_band:
-      law.value = "K * deadband(" + y + ", w)";
-      law.words = "{K} × {x} outside a dead band of ± {w}";
-      law.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), band};
+      user_model.value = "K * deadband(" + y + ", w)";
+      user_model.words = "{K} × {x} outside a dead band of ± {w}";
+      user_model.parameters = {gain_of("K", factor, kMostGain, "gain outside the dead band"), band};
       break;
     case Shape::signed_square:
-      law.value = "K * " + y + " * abs(" + y + ")";
-      law.words = "{K} × the square (with its sign) of {x}";
-      law.parameters = {gain_of("K", factor, kMostGain, "gain")};
+      user_model.value = "K * " + y + " * abs(" + y + ")";
+      user_model.words = "{K} × the square (with its sign) of {x}";
+      user_model.parameters = {gain_of("K", factor, kMostGain, "gain")};
       break;
     case Shape::even:
-      law.value = "K * " + y + "^2";
-      law.words = "{K} × the square of {x}";
-      law.parameters = {gain_of("K", factor, kMostGain, "gain")};
+      user_model.value = "K * " + y + "^2";
+      user_model.words = "{K} × the square of {x}";
+      user_model.parameters = {gain_of("K", factor, kMostGain, "gain")};
       break;
     case Shape::curve:
-      describe_curve(f, factors, law);
+      describe_curve(f, factors, user_model);
       break;
   }
 }
-LawCandidate candidate_of(fit::InputKind kind, const Form& f, const Eigen::VectorXd& factors) {
-  const LawSignal& s = kLawSignals[f.signal];
-  LawCandidate law;
-  law.kind = kind;
-  law.signal = s.name;
-  describe_shape(f, factors, law);
+UserModelCandidate candidate_of(fit::InputKind kind, const Form& f, const Eigen::VectorXd& factors) {
+  const UserModelSignal& s = kUserModelSignals[f.signal];
+  UserModelCandidate user_model;
+  user_model.kind = kind;
+  user_model.signal = s.name;
+  describe_shape(f, factors, user_model);
   std::string x(s.words);
   if (f.filter != Filter::none)
     x += f.filter == Filter::lag ? " (lagged by {T})" : " (washed out within {T})";
-  law.words.replace(law.words.find("{x}"), 3, x);
-  law.body = fmt::format("[signals]\nx = \"{}\"\n", s.expression);
+  user_model.words.replace(user_model.words.find("{x}"), 3, x);
+  user_model.body = fmt::format("[signals]\nx = \"{}\"\n", s.expression);
   constexpr std::array kShapes = {"static", "limited", "dead-banded", "quadratic", "even", "curved"};
-  law.family = kShapes[static_cast<std::size_t>(f.shape)];
-  if (f.filter == Filter::none) return law;
+  user_model.family = kShapes[static_cast<std::size_t>(f.shape)];
+  if (f.filter == Filter::none) return user_model;
   const bool lag = f.filter == Filter::lag;
-  law.family = (f.shape == Shape::straight ? "" : law.family + ", ") + (lag ? "lagged" : "washed out");
-  law.body +=
+  user_model.family =
+      (f.shape == Shape::straight ? "" : user_model.family + ", ") + (lag ? "lagged" : "washed out");
+  user_model.body +=
       fmt::format("\n[blocks.filtered]\nkind = \"{}\"\ninput = \"x\"\nT = \"T\"\n", lag ? "lag" : "washout");
-  law.parameters.push_back({"T", "s", f.T, 1e-3, 1000.0, false, lag ? "lag" : "washout"});
-  return law;
+  user_model.parameters.push_back({"T", "s", f.T, 1e-3, 1000.0, false, lag ? "lag" : "washout"});
+  return user_model;
 }
 
 std::vector<Form> forms_of(std::size_t signal) {
@@ -193,7 +194,7 @@ std::vector<Form> forms_of(std::size_t signal) {
 }
 
 /// Returns the traces without signals, at 20 samples per second, which resolves the knots.
-std::vector<LawTrace> thinned(std::vector<LawTrace> traces) {
+std::vector<UserModelTrace> thinned(std::vector<UserModelTrace> traces) {
   for (auto& e : traces) {
     std::vector<double> t;
     for (const double at : e.t)
@@ -224,20 +225,21 @@ double trigger_level(const event::WhitenedEvents& events) {
   return std::max({kLeastTrigger, 3 * noise, std::min(0.1, smallest / 2)});
 }
 
-std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<LawTrace>& traces,
-                                         double level) {
-  const LawRegression regression(traces);
+std::vector<UserModelCandidate> user_model_candidates(fit::InputKind kind,
+                                                      const std::vector<UserModelTrace>& traces,
+                                                      double level) {
+  const UserModelRegression regression(traces);
   struct Best {
     Form form;
-    LawRegression::Result result;
+    UserModelRegression::Result result;
   };
   std::map<std::tuple<std::size_t, Filter, Shape>, Best> best;
-  for (std::size_t s = 0; s < kLawSignals.size(); ++s)
+  for (std::size_t s = 0; s < kUserModelSignals.size(); ++s)
     for (Form form : forms_of(s)) {
       const TimeSeries base = filtered(traces, form);
       const double most = largest(base);
       if (!(most > 1e-9)) continue;
-      const auto keep = [&](LawRegression::Result result) {
+      const auto keep = [&](UserModelRegression::Result result) {
         Best& b = best[{s, form.filter, form.shape}];
         if (b.result.time_series.size() == 0 || result.score < b.result.score) b = {form, std::move(result)};
       };
@@ -263,18 +265,19 @@ std::vector<LawCandidate> law_candidates(fit::InputKind kind, const std::vector<
           keep(regression.fit(columns, kPoints));
         }
     }
-  std::vector<LawCandidate> all;
+  std::vector<UserModelCandidate> all;
   for (const auto& [key, b] : best) {
     if (b.result.factors.size() == 0 || b.result.factors.isZero(0)) continue;
-    LawCandidate law = candidate_of(kind, b.form, b.result.factors);
-    law.explained = b.result.explained;
-    law.score = b.result.score;
-    law.time_series = regression.by_event(b.result.time_series);
-    all.push_back(std::move(law));
+    UserModelCandidate user_model = candidate_of(kind, b.form, b.result.factors);
+    user_model.explained = b.result.explained;
+    user_model.score = b.result.score;
+    user_model.time_series = regression.by_event(b.result.time_series);
+    all.push_back(std::move(user_model));
   }
   const auto coarse = thinned(traces);
-  for (auto& law : timed_candidates(kind, LawRegression(coarse), level)) all.push_back(std::move(law));
-  std::ranges::stable_sort(all, {}, &LawCandidate::score);
+  for (auto& user_model : timed_candidates(kind, UserModelRegression(coarse), level))
+    all.push_back(std::move(user_model));
+  std::ranges::stable_sort(all, {}, &UserModelCandidate::score);
   return all;
 }
 

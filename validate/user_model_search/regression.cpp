@@ -5,7 +5,7 @@
 
 namespace swingbank::validate::user_model_search {
 
-LawRegression::LawRegression(const std::vector<LawTrace>& traces) : traces_(traces) {
+UserModelRegression::UserModelRegression(const std::vector<UserModelTrace>& traces) : traces_(traces) {
   Eigen::Index knots = 0;
   for (const auto& e : traces) knots += static_cast<Eigen::Index>(e.knots.size());
   target_.resize(knots);
@@ -40,7 +40,7 @@ LawRegression::LawRegression(const std::vector<LawTrace>& traces) : traces_(trac
   count_ = static_cast<double>((weight_.array() > 0).count()) / 2;
 }
 
-Eigen::VectorXd LawRegression::at_knots(const TimeSeries& time_series) const {
+Eigen::VectorXd UserModelRegression::at_knots(const TimeSeries& time_series) const {
   Eigen::VectorXd column = Eigen::VectorXd::Zero(target_.size());
   Eigen::Index first = 0;
   for (std::size_t e = 0; e < traces_.size(); ++e) {
@@ -51,7 +51,8 @@ Eigen::VectorXd LawRegression::at_knots(const TimeSeries& time_series) const {
   return column;
 }
 
-LawRegression::Result LawRegression::fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const {
+UserModelRegression::Result UserModelRegression::fit(const std::vector<Eigen::VectorXd>& columns,
+                                                     int numbers) const {
   const auto n = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd normal(n, n);
   Eigen::VectorXd right(n);
@@ -74,7 +75,7 @@ LawRegression::Result LawRegression::fit(const std::vector<Eigen::VectorXd>& col
   return a;
 }
 
-std::vector<std::vector<double>> LawRegression::by_event(const Eigen::VectorXd& all) const {
+std::vector<std::vector<double>> UserModelRegression::by_event(const Eigen::VectorXd& all) const {
   std::vector<std::vector<double>> events;
   Eigen::Index at = 0;
   for (const auto& e : traces_) {

@@ -11,10 +11,10 @@ namespace swingbank::validate::user_model_search {
 using TimeSeries = std::vector<std::vector<double>>;
 
 /// Regression of the inferred input of all events on candidate time series.
-class LawRegression {
+class UserModelRegression {
  public:
   /// Prepares the regression on the inferred inputs of all events.
-  explicit LawRegression(const std::vector<LawTrace>& traces);
+  explicit UserModelRegression(const std::vector<UserModelTrace>& traces);
 
   /// Result of a regression.
   struct Result {
@@ -41,14 +41,14 @@ class LawRegression {
   /// Splits a time series over all knots by event: [event][knot].
   [[nodiscard]] std::vector<std::vector<double>> by_event(const Eigen::VectorXd& all) const;
   /// Returns the inferred inputs.
-  [[nodiscard]] const std::vector<LawTrace>& traces() const { return traces_; }
+  [[nodiscard]] const std::vector<UserModelTrace>& traces() const { return traces_; }
 
  private:
   struct Weight {
     int knot, sample;
     double share;
   };
-  const std::vector<LawTrace>& traces_;
+  const std::vector<UserModelTrace>& traces_;
   std::vector<std::vector<Weight>> hats_;  ///< [event]
   Eigen::VectorXd target_, weight_;
   double total_ = 0, count_ = 0;

@@ -12,8 +12,8 @@
 namespace swingbank::validate::user_model_search {
 
 /// A user-defined model that was fitted to the records and judged.
-struct LawFinding {
-  LawCandidate law;                           ///< with the fitted values
+struct UserModelFinding {
+  UserModelCandidate user_model;              ///< with the fitted values
   std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
   hypothesis::Judgement judgement;            ///< its plant contains the model
   std::string words;                          ///< description with fitted values, units and intervals
@@ -21,16 +21,16 @@ struct LawFinding {
 };
 
 /// Result of a search for user-defined models.
-struct LawSearch {
+struct UserModelSearch {
   fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
-  std::vector<LawTrace> traces;                ///< inferred input and signals of each event
+  std::vector<UserModelTrace> traces;          ///< inferred input and signals of each event
   /// The best candidate of each kind, by their regression on the inferred input.
-  std::vector<LawCandidate> ranked;
+  std::vector<UserModelCandidate> ranked;
   /// Fitted to the records; accepted ones first, then in descending order of evidence.
-  std::vector<LawFinding> findings;
+  std::vector<UserModelFinding> findings;
   double seconds = 0;  ///< processing time [s]
   /// Returns the best finding if it was accepted, else null.
-  [[nodiscard]] const LawFinding* found() const {
+  [[nodiscard]] const UserModelFinding* found() const {
     return !findings.empty() && findings.front().judgement.accepted ? &findings.front() : nullptr;
   }
 };
@@ -48,14 +48,14 @@ struct Unexplained {
 /// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
 /// the first search finds none and the other input explains about as much. Returns no search if neither input
 /// explains most of the residual.
-LawSearch search_laws(const Unexplained& case_, const event::Progress& report = {});
+UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
 /// Returns for example "None of the 31 known effects explains it; a torque of ... does: ..."; empty without
 /// an accepted model.
-std::string law_sentence(const LawSearch& search, std::size_t hypotheses);
+std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
 /// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its
 /// number.
-sim::plant::Plant with_law(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
+sim::plant::Plant with_user_model(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
 
 }  // namespace swingbank::validate::user_model_search

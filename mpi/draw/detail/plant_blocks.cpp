@@ -17,7 +17,7 @@ std::string objection_to(const sim::plant::Block& block, Policy policy) {
     if (const auto why = block.effect->unphysical(block.p.data()); !why.empty())
       return "not " + std::string(why);
   Problems problems;
-  block.effect->check(block.effect->law.get(), block.p.data(), "draw", problems);
+  block.effect->check(block.effect->user_model.get(), block.p.data(), "draw", problems);
   return problems.empty() ? "" : "singular: " + problems.list().front().why;
 }
 }  // namespace

@@ -293,7 +293,7 @@ std::string fault_of(const Effect& effect, formats::DyrRecord record, const netw
   if (problems.empty() && complete(effect, record, Lacking::refused, where, problems).sound) {
     plant::Block block = values_of(effect, record);
     if (g) take_from_raw(block, *g);
-    effect.check(effect.law.get(), block.p.data(), where, problems);
+    effect.check(effect.user_model.get(), block.p.data(), where, problems);
   }
   return problems.empty() ? "" : problems.list()[0].sentence();
 }
@@ -316,7 +316,7 @@ std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& r
                   Problems& problems) {
   const Effect& effect = *block.effect;
   Problems found;
-  effect.check(effect.law.get(), block.p.data(), where, found);
+  effect.check(effect.user_model.get(), block.p.data(), where, found);
   problems.add(found);
   if (const Effect* other = in_the_way(plant, effect)) {
     problems.add("a second " + std::string(slot_name(effect.slot)) + " model, " +

@@ -55,21 +55,21 @@ Effect make_effect(Definition definition);
 /// Fills c with parameters, constants, values at the operating point (if `s` is given, else NaN), and the
 /// fixed values computed from these. c[kFrequency] is unchanged.
 template <class T>
-void fill(const Definition& law, const T* p, const Signals<T>* s, T* c) {
-  for (std::size_t i = 0; i < law.parameters.size(); ++i)
+void fill(const Definition& user_model, const T* p, const Signals<T>* s, T* c) {
+  for (std::size_t i = 0; i < user_model.parameters.size(); ++i)
     c[static_cast<std::size_t>(kFirstParameter) + i] = p[i];
-  for (const auto& [index, value] : law.code.constants) c[index] = T(value);
-  for (const auto& [index, signal] : law.operating)
+  for (const auto& [index, value] : user_model.code.constants) c[index] = T(value);
+  for (const auto& [index, signal] : user_model.operating)
     c[index] =
         s ? s->*kMembers<T>[static_cast<std::size_t>(signal)] : T(std::numeric_limits<double>::quiet_NaN());
   Registers<T> registers;
   T unused(0.0);
-  run<T, false>(law.code.fixed, c, nullptr, Signals<T>{}, registers.data(), c, unused);
+  run<T, false>(user_model.code.fixed, c, nullptr, Signals<T>{}, registers.data(), c, unused);
 }
 
 /// Computes the steady state: fills c, x and the law's output at the operating point. Returns the reason why
 /// the operating point is infeasible, or "".
-std::string steady(const Definition& law, const double* p, double* c, Signals<double>& s, double* x);
-std::string steady(const Definition& law, const D8* p, D8* c, Signals<D8>& s, D8* x);
+std::string steady(const Definition& user_model, const double* p, double* c, Signals<double>& s, double* x);
+std::string steady(const Definition& user_model, const D8* p, D8* c, Signals<D8>& s, D8* x);
 
 }  // namespace swingbank::sim::user_models

@@ -12,7 +12,7 @@ struct Output {
   std::string_view name;
   Slot replaced, added;  ///< slot if the law replaces or adds to the output; machine: not allowed
 };
-constexpr std::array kLawOutputs = {
+constexpr std::array kUserModelOutputs = {
     Output{"Vc", Slot::compensator, Slot::compensator}, Output{"dVref", Slot::machine, Slot::setpoint},
     Output{"dPref", Slot::machine, Slot::setpoint},     Output{"Vs", Slot::stabiliser, Slot::stabiliser},
     Output{"Vlimiter", Slot::machine, Slot::limiter},   Output{"Efd", Slot::exciter, Slot::exciter},
@@ -62,26 +62,26 @@ bool Reader::claim(const std::string& key, const std::string& name, const char* 
 }
 
 void Reader::read_head() {
-  law_.name = config_.require<std::string>("name");
-  if (config_.has("name") && !is_identifier(law_.name))
-    problem("name", 0, "'" + law_.name + "'", "it is used in configs and on the command line",
+  user_model_.name = config_.require<std::string>("name");
+  if (config_.has("name") && !is_identifier(user_model_.name))
+    problem("name", 0, "'" + user_model_.name + "'", "it is used in configs and on the command line",
             "use letters, digits and _, not beginning with a digit");
-  law_.title = config_.require<std::string>("title");
-  law_.source = config_.require<std::string>("source");
+  user_model_.title = config_.require<std::string>("title");
+  user_model_.source = config_.require<std::string>("source");
 }
 
 void Reader::read_entry_point() {
   std::vector<std::string> outputs;
-  for (const Output& o : kLawOutputs) outputs.emplace_back(o.name);
+  for (const Output& o : kUserModelOutputs) outputs.emplace_back(o.name);
   const std::string name = config_.choice("output", outputs);
   const bool replaces = config_.choice("action", {"replace", "add"}) == "replace";
-  const auto* at = std::ranges::find(kLawOutputs, name, &Output::name);
-  if (at == kLawOutputs.end()) at = &kLawOutputs.back();
-  law_.replaces = replaces;
-  law_.output = signal_index(at->name);
-  law_.slot = replaces ? at->replaced : at->added;
-  if (law_.slot != Slot::machine) return;
-  law_.slot = at->added;
+  const auto* at = std::ranges::find(kUserModelOutputs, name, &Output::name);
+  if (at == kUserModelOutputs.end()) at = &kUserModelOutputs.back();
+  user_model_.replaces = replaces;
+  user_model_.output = signal_index(at->name);
+  user_model_.slot = replaces ? at->replaced : at->added;
+  if (user_model_.slot != Slot::machine) return;
+  user_model_.slot = at->added;
   problem("action", 0, "'replace' for " + name, "several effects and events add to it",
           "write action = \"add\"");
 }
@@ -95,7 +95,7 @@ void Reader::read_parameters() {
     const std::string key = "parameters." + name + ".";
     if (!claim("parameters." + name, name, "parameter")) continue;
     const auto keep = [&](const std::string& text) -> std::string_view {
-      return law_.texts.emplace_back(text);
+      return user_model_.texts.emplace_back(text);
     };
     Parameter p{};
     p.name = keep(name);
@@ -109,11 +109,11 @@ void Reader::read_parameters() {
                                                 : config_.optional<double>(key + "neutral", kNoNullValue);
     p.meaning = keep(config_.require<std::string>(key + "meaning"));
     const auto source = config_.optional<std::string>(key + "source", file_);
-    p.default_from = p.bounds_from = literature::law(keep(source));
-    parameter_.emplace(name, static_cast<int>(law_.parameters.size()));
-    law_.parameters.push_back(p);
+    p.default_from = p.bounds_from = literature::user_model(keep(source));
+    parameter_.emplace(name, static_cast<int>(user_model_.parameters.size()));
+    user_model_.parameters.push_back(p);
   }
-  coefficients_ = kFirstParameter + static_cast<int>(law_.parameters.size());
+  coefficients_ = kFirstParameter + static_cast<int>(user_model_.parameters.size());
 }
 
 void Reader::read_signals() {
@@ -132,13 +132,14 @@ void Reader::read_references() {
     const std::string key = "references." + name;
     if (!claim(key, name, "reference")) continue;
     if (config_.is_text(key) && config_.require<std::string>(key) == "solve") {
-      law_.searched.push_back(coefficients_);
+      user_model_.searched.push_back(coefficients_);
       searched_.emplace(name, graph_.solved(coefficients_++));
-      if (!law_.must_meet())
-        problem(key, 0, "'solve'",
-                fmt::format("nothing asks for a certain {} at the operating point", law_.output_name()),
-                "give an expression of parameters and values at the operating point");
-      else if (law_.searched.size() > 1)
+      if (!user_model_.must_meet())
+        problem(
+            key, 0, "'solve'",
+            fmt::format("nothing asks for a certain {} at the operating point", user_model_.output_name()),
+            "give an expression of parameters and values at the operating point");
+      else if (user_model_.searched.size() > 1)
         problem(key, 0, "a second 'solve'", "one output determines one reference",
                 "give the other as an expression");
     } else if (auto e = expression(key)) {
@@ -192,7 +193,7 @@ void Reader::read_requirements() {
       if (!graph_[a].parameters || !graph_[b].parameters)
         problem(key, 0, "a requirement on more than parameters", "it is checked before the run",
                 "use parameters only");
-      law_.requirements.push_back({tree->op, -1, -1, texts[i], place(key, 0)});
+      user_model_.requirements.push_back({tree->op, -1, -1, texts[i], place(key, 0)});
       requirement_vertices_.emplace_back(a, b);
     }
   }
@@ -239,7 +240,7 @@ void Reader::read_output() {
 
 std::string Reader::describe() const {
   std::string text = "\n";
-  const std::string sign = law_.replaces ? " = " : " = ... + ";
+  const std::string sign = user_model_.replaces ? " = " : " = ... + ";
   for (const Expression& e : read_) {
     std::string left = e.key;
     if (left.starts_with("states.") && left.ends_with(".derivative"))
@@ -247,14 +248,15 @@ std::string Reader::describe() const {
     else if (left.starts_with("signals.") || left.starts_with("references."))
       left = left.substr(left.find('.') + 1);
     else if (left == "value")
-      left = law_.output_name();
+      left = user_model_.output_name();
     text += fmt::format("  {}{}{}\n", left, e.key == "value" ? sign : " = ", e.text);
   }
   for (const std::string& name : block_order_) {
     const auto block = blocks_.find(name);
     if (block != blocks_.end()) text += fmt::format("  block {}: {}\n", name, block->second.kind);
   }
-  if (!last_in_chain_.empty()) text += fmt::format("  {}{}{}\n", law_.output_name(), sign, last_in_chain_);
+  if (!last_in_chain_.empty())
+    text += fmt::format("  {}{}{}\n", user_model_.output_name(), sign, last_in_chain_);
   return text;
 }
 
@@ -263,7 +265,7 @@ bool Reader::bends() const {
   constexpr std::array kBending = {Act::minimum, Act::maximum, Act::clamp, Act::select_less,
                                    Act::select_less_equal};
   const auto limited = [](const StateEntry& s) { return s.low >= 0 || s.high >= 0; };
-  return law_.slot == Slot::exciter && std::ranges::none_of(states_, limited) &&
+  return user_model_.slot == Slot::exciter && std::ranges::none_of(states_, limited) &&
          std::ranges::any_of(graph_.vertices(), [&](const Vertex& v) {
            return !v.fixed && std::ranges::find(kBending, v.act) != kBending.end();
          });
@@ -279,36 +281,36 @@ void Reader::finish() {
   }
   for (const auto& [a, b] : requirement_vertices_) also.insert(also.end(), {a, b});
   also.insert(also.end(), switching_time_vertices_.begin(), switching_time_vertices_.end());
-  law_.code = compile(graph_, derivatives, output_, also, coefficients_);
+  user_model_.code = compile(graph_, derivatives, output_, also, coefficients_);
   const auto coefficient = [&](int vertex) {
-    return vertex < 0 ? -1 : law_.code.coefficient_of[static_cast<std::size_t>(vertex)];
+    return vertex < 0 ? -1 : user_model_.code.coefficient_of[static_cast<std::size_t>(vertex)];
   };
   for (const StateEntry& s : states_) {
     State record;
-    record.name = law_.texts.emplace_back(s.name);
-    record.unit = law_.texts.emplace_back(s.unit);
-    record.meaning = law_.texts.emplace_back(s.meaning);
+    record.name = user_model_.texts.emplace_back(s.name);
+    record.unit = user_model_.texts.emplace_back(s.unit);
+    record.meaning = user_model_.texts.emplace_back(s.meaning);
     record.weight = s.weight;
     record.low = coefficient(s.low);
     record.high = coefficient(s.high);
     record.bends = bends();
-    law_.states.push_back(record);
-    law_.start.push_back(coefficient(s.start));
+    user_model_.states.push_back(record);
+    user_model_.start.push_back(coefficient(s.start));
   }
   for (std::size_t i = 0; i < requirement_vertices_.size(); ++i) {
-    law_.requirements[i].left = coefficient(requirement_vertices_[i].first);
-    law_.requirements[i].right = coefficient(requirement_vertices_[i].second);
+    user_model_.requirements[i].left = coefficient(requirement_vertices_[i].first);
+    user_model_.requirements[i].right = coefficient(requirement_vertices_[i].second);
   }
-  for (const int v : switching_time_vertices_) law_.switching_times.push_back(coefficient(v));
+  for (const int v : switching_time_vertices_) user_model_.switching_times.push_back(coefficient(v));
   for (const auto& [key, vertex] : values_) {
     const int index = coefficient(vertex);
-    if (index >= 0 && graph_[vertex].parameters) law_.finite.emplace_back(index, key);
+    if (index >= 0 && graph_[vertex].parameters) user_model_.finite.emplace_back(index, key);
   }
   for (std::size_t v = 0; v < graph_.vertices().size(); ++v) {
     const Vertex& vertex = graph_[static_cast<int>(v)];
-    const int index = law_.code.coefficient_of[v];
+    const int index = user_model_.code.coefficient_of[v];
     if (index >= 0 && vertex.parameters && vertex.act != Act::coefficient)
-      law_.finite.emplace_back(index, "a value that follows from the parameters alone");
+      user_model_.finite.emplace_back(index, "a value that follows from the parameters alone");
   }
 }
 
@@ -318,7 +320,7 @@ Definition Reader::read() {
                       fmt::format("at most {} are read", kLargestFile), "shorten it"});
   read_head();
   read_entry_point();
-  law_.description = config_.optional<std::string>("diagram", "");
+  user_model_.description = config_.optional<std::string>("diagram", "");
   try {
     read_parameters();
     read_references();
@@ -340,14 +342,14 @@ Definition Reader::read() {
                                   Graph::kMost, kRegisters),
                       "simplify it"});
   }
-  law_.description += describe();
-  return std::move(law_);
+  user_model_.description += describe();
+  return std::move(user_model_);
 }
 
 Definition read_definition(const std::string& text, const std::filesystem::path& name) {
-  Definition law = Reader(text, name).read();
-  law.text = text;
-  return law;
+  Definition user_model = Reader(text, name).read();
+  user_model.text = text;
+  return user_model;
 }
 
 }  // namespace swingbank::sim::user_models

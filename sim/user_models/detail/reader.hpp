@@ -85,7 +85,7 @@ class Reader {
   std::string text_, file_;
   Config config_;
   Problems problems_;
-  Definition law_;
+  Definition user_model_;
   Graph graph_;
   int coefficients_ = kFirstParameter;
   std::map<std::string, std::string> taken_;         ///< name -> kind of its owner

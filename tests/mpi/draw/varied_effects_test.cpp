@@ -191,11 +191,11 @@ TEST(VariedEffects, AStepUpTransformerVariesToo) {
 }
 
 TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
-  const std::string law = (fs::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml").string();
+  const std::string user_model = (fs::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml").string();
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
     const DatasetConfig c =
-        varied_config({{"attach = [\"all:SEXS", "laws = [\"" + law + "\"]\nattach = [\"all:" + name},
+        varied_config({{"attach = [\"all:SEXS", "laws = [\"" + user_model + "\"]\nattach = [\"all:" + name},
                        {"effects.SEXS]", "effects." + name + "]"}},
                       12);
     VariedCase one(c);

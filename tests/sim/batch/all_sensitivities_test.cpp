@@ -50,9 +50,9 @@ std::vector<const Effect*> effects_of_a_plant() {
 }
 bool moves_switching_time(const Effect& e, std::vector<double> p, std::size_t i) {
   if (!e.switching_times) return false;
-  const auto before = e.switching_times(e.law.get(), p.data());
+  const auto before = e.switching_times(e.user_model.get(), p.data());
   p[i] *= 1.01;
-  return e.switching_times(e.law.get(), p.data()) != before;
+  return e.switching_times(e.user_model.get(), p.data()) != before;
 }
 
 /// Every parameter with a derivative at its default, except those that move a switching time: only the

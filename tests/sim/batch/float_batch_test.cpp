@@ -116,10 +116,10 @@ TEST(FloatLanes, RefuseUnsupportedRuns) {
   grid::Grid grid = round_rotors();
   const auto block = [](const Effect& e) { return plant::Block{&e, e.default_parameters()}; };
   grid.plants[3].machine = block(*library::compiled().find("GENTPJ"));
-  Effect law = *library::compiled().find("SEXS");
-  law.name = "OWNLAW";
-  law.law = std::make_shared<int>(0);
-  grid.plants[4].controls.push_back(block(law));
+  Effect user_model = *library::compiled().find("SEXS");
+  user_model.name = "OWNLAW";
+  user_model.user_model = std::make_shared<int>(0);
+  grid.plants[4].controls.push_back(block(user_model));
   Problems problems;
   grid::set_load(grid, 0, block(*library::compiled().find("ZIP")), "here", problems);
   problems.raise();

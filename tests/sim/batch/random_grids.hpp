@@ -57,7 +57,7 @@ inline plant::Block draw_block(Slot slot, Draws& draws) {
     for (std::size_t i = 0; i < block.p.size(); ++i)
       block.p[i] = draw_value(e.parameters[i], block.p[i], draws);
     Problems problems;
-    e.check(e.law.get(), block.p.data(), "draw", problems);
+    e.check(e.user_model.get(), block.p.data(), "draw", problems);
     if (problems.empty() && e.unphysical(block.p.data()).empty()) return block;
   }
   ADD_FAILURE() << e.name << " refuses values around its standard ones";

@@ -32,23 +32,24 @@ Trajectory lanes_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6)
   return run;
 }
 
-TEST(LawInLanes, SexsAsUserDefinedModelEqualsTheCompiledOne) {
+TEST(UserModelInBatch, SexsAsUserDefinedModelEqualsTheCompiledOne) {
   const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},   // reaches the ceiling
                                                  {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not
                                                  {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
   bool reached = false;
   for (const auto& p : sets) {
     const grid::Grid compiled = test::with_exciter(*library::compiled().find("SEXS"), p),
-                     law = test::with_exciter(test::sexs_law(), p);
+                     user_model = test::with_exciter(test::sexs_user_model(), p);
     for (const int lanes : {1, 4, 8}) {
-      const Trajectory a = lanes_run(compiled, lanes), b = lanes_run(law, lanes);
+      const Trajectory a = lanes_run(compiled, lanes), b = lanes_run(user_model, lanes);
       EXPECT_LE(test::largest_difference(a, b), 1e-10) << lanes;  // the same arithmetic in the same order
       const double* efd = a.at(0, static_cast<int>(Channel::Efd));
       reached = reached || *std::max_element(efd, efd + a.samples) == p[5];
     }
     // The compiler uses fused multiply-adds, the interpreter rounds twice. IDA then takes other steps, so its
     // tolerance is far below the compared difference.
-    EXPECT_LE(test::largest_difference(test::reference_run(compiled, 1e-12), test::reference_run(law, 1e-12)),
+    EXPECT_LE(test::largest_difference(test::reference_run(compiled, 1e-12),
+                                       test::reference_run(user_model, 1e-12)),
               1e-10);
   }
   EXPECT_TRUE(reached);
@@ -57,12 +58,13 @@ TEST(LawInLanes, SexsAsUserDefinedModelEqualsTheCompiledOne) {
 grid::Grid nonlinear_grid() {
   grid::Grid grid =
       test::with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
-  const Effect& law = user_models::load_law(test::kNonlinear, "n", grid.library);
-  grid.plants[1].controls.insert(grid.plants[1].controls.begin(), {&law, law.default_parameters()});
+  const Effect& user_model = user_models::load_user_model(test::kNonlinear, "n", grid.library);
+  grid.plants[1].controls.insert(grid.plants[1].controls.begin(),
+                                 {&user_model, user_model.default_parameters()});
   return grid;
 }
 
-TEST(LawInLanes, ANonlinearLawRunsInEveryKernel) {
+TEST(UserModelInBatch, ANonlinearLawRunsInEveryKernel) {
   const grid::Grid grid = nonlinear_grid();
   const auto at = plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
   EXPECT_NEAR(at.x[7], std::sqrt(at.s.V), 1e-12);  // six states of the machine, x, then the root
@@ -77,18 +79,18 @@ TEST(LawInLanes, ANonlinearLawRunsInEveryKernel) {
   EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // the model has an effect
 }
 
-TEST(LawInLanes, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
+TEST(UserModelInBatch, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/user_models")) {
     if (file.path().extension() != ".toml") continue;
     library::EffectLibrary library;
-    const Effect& law = user_models::load_law(file.path(), library);
+    const Effect& user_model = user_models::load_user_model(file.path(), library);
     grid::Grid grid =
         test::with_exciter(*library::compiled().find("SEXS"), {0.5, 2.0, 20.0, 0.05, -10.0, 10.0});
     auto& controls = grid.plants[1].controls;
-    if (law.slot == Slot::exciter) controls.clear();
-    controls.push_back({&law, law.default_parameters()});
+    if (user_model.slot == Slot::exciter) controls.clear();
+    controls.push_back({&user_model, user_model.default_parameters()});
     std::ranges::stable_sort(controls, {}, [](const plant::Block& b) { return b.effect->slot; });
     const Trajectory run = lanes_run(grid, 8);
     EXPECT_EQ(run.outcome, Outcome::stable) << file.path();

@@ -30,7 +30,7 @@ TEST(Literature, SourceOfAParameterPrecedesThatOfTheEffect) {
 TEST(Literature, OwnReasonIsNoPublishedWork) {
   EXPECT_TRUE(kPage.work->published());
   EXPECT_FALSE(kChosen.work->published());
-  EXPECT_EQ(as_text(literature::law("my_limiter.toml")), "my_limiter.toml");
+  EXPECT_EQ(as_text(literature::user_model("my_limiter.toml")), "my_limiter.toml");
   EXPECT_FALSE(Source{}.given());
   EXPECT_FALSE(literature::own("").given());
 }

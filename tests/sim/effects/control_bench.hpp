@@ -35,12 +35,12 @@ class ControlBench {
     p = effect_->default_parameters();
     for (const auto& [parameter, value] : changes)
       p.at(static_cast<std::size_t>(effect_->parameter_index(parameter))) = value;
-    effect_->check(effect_->law.get(), p.data(), std::string(effect.name), problems);
+    effect_->check(effect_->user_model.get(), p.data(), std::string(effect.name), problems);
     c.assign(static_cast<std::size_t>(effect_->coefficients), 0.0);
     x.assign(effect_->states.size(), 0.0);
     ops().prepare(p.data(), conventions, c.data());
     Signals<double> s = in;
-    refused = ops().control.steady(effect_->law.get(), p.data(), c.data(), s, x.data());
+    refused = ops().control.steady(effect_->user_model.get(), p.data(), c.data(), s, x.data());
     within_limits();
   }
   /// The same with a compiled effect.
@@ -131,7 +131,7 @@ class ControlBench {
   [[nodiscard]] const Ops<double>& ops() const { return effect_->get<double>(); }
   Signals<double> evaluate(const std::vector<double>& at, std::vector<double>& dx) const {
     Signals<double> s = in;
-    ops().control.evaluate(effect_->law.get(), c.data(), at.data(), s, dx.data());
+    ops().control.evaluate(effect_->user_model.get(), c.data(), at.data(), s, dx.data());
     if (ops().control.afterwards) ops().control.afterwards(c.data(), at.data(), s, dx.data());
     return s;
   }

@@ -91,10 +91,10 @@ TEST(LoadCim5, ShortCircuitTimeConstant) {
 }
 
 TEST(LoadCim5, LoadTorqueSlowsAMotorWithoutFlux) {
-  for (const auto& law :
+  for (const auto& user_model :
        {Changes{{"E", 2.0}}, Changes{{"E", 0.0}}, Changes{{"A", 0.3}, {"B", 0.2}, {"C0", 0.4}, {"D", 0.0}},
         Changes{{"A", 0.5}, {"C0", 0.2}, {"D", 0.4}, {"E", 1.5}}}) {
-    Motor m(law);
+    Motor m(user_model);
     const auto polynomial = [&](double w) {
       return m.at("A") * w * w + m.at("B") * w + m.at("C0") + m.at("D") * std::pow(w, m.at("E"));
     };

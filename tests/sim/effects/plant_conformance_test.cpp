@@ -71,7 +71,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     for (std::size_t i = 0; i < p.size(); ++i)
       if (!e.parameters[i].is_code()) p[i] *= u(random);
     Problems problems;
-    e.check(e.law.get(), p.data(), "draw", problems);
+    e.check(e.user_model.get(), p.data(), "draw", problems);
     if (problems.empty() && e.unphysical(p.data()).empty()) return p;
   }
   ADD_FAILURE() << e.name << ": standard values are refused when moved by 5 %";

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// User-defined model MINE with one parameter and `factor` in its equation and description.
-std::string law(double factor) {
+std::string user_model(double factor) {
   return fmt::format(R"law(name = "MINE"
 title = "{0} times the speed"
 source = "test"
@@ -57,8 +57,8 @@ TEST(EffectLibrary, HoldsTheCompiledEffects) {
 
 TEST(EffectLibrary, LibrariesWithEqualNamesAreIndependent) {
   EffectLibrary one, other;
-  user_models::load_law(law(2.0), "law.toml", one);
-  user_models::load_law(law(3.0), "law.toml", other);
+  user_models::load_user_model(user_model(2.0), "law.toml", one);
+  user_models::load_user_model(user_model(3.0), "law.toml", other);
   EXPECT_EQ(standard(one), 2.0);
   EXPECT_EQ(standard(other), 3.0);
   EXPECT_EQ(compiled().find("MINE"), nullptr);
@@ -71,11 +71,11 @@ TEST(EffectLibrary, CopySharesOnlyEarlierEffects) {
   const Effect* shared = nullptr;
   {
     EffectLibrary first;
-    shared = &user_models::load_law(law(2.0), "law.toml", first);
+    shared = &user_models::load_user_model(user_model(2.0), "law.toml", first);
     copy = first;
-    std::string later = law(3.0);
+    std::string later = user_model(3.0);
     later.replace(later.find("MINE"), 4, "LATER");
-    user_models::load_law(later, "later.toml", first);
+    user_models::load_user_model(later, "later.toml", first);
   }
   EXPECT_EQ(copy.find("MINE"), shared);  // outlives the library that read it
   EXPECT_EQ(shared->default_parameters(), std::vector<double>{2.0});
@@ -84,14 +84,14 @@ TEST(EffectLibrary, CopySharesOnlyEarlierEffects) {
 
 TEST(EffectLibrary, RefusesDuplicateNames) {
   EffectLibrary library;
-  library.add(user_models::make_law(law(2.0), "law.toml"));
+  library.add(user_models::make_user_model(user_model(2.0), "law.toml"));
   try {
-    library.add(user_models::make_law(law(3.0), "law.toml"));
+    library.add(user_models::make_user_model(user_model(3.0), "law.toml"));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("a second effect 'MINE'"));
   }
-  Effect compiled_name = user_models::make_law(law(3.0), "law.toml");
+  Effect compiled_name = user_models::make_user_model(user_model(3.0), "law.toml");
   compiled_name.name = "sexs";
   EXPECT_THROW(library.add(compiled_name), InputError);
   EXPECT_EQ(standard(library), 2.0);
@@ -107,7 +107,7 @@ TEST(EffectLibrary, ThreadsReadingEqualNamesGetTheirOwnEffects) {
       threads.emplace_back([t, &own] {
         for (int k = 0; k < kRounds; ++k) {
           EffectLibrary library;
-          user_models::load_law(law(1.0 + t), "law.toml", library);
+          user_models::load_user_model(user_model(1.0 + t), "law.toml", library);
           own[static_cast<std::size_t>(t)] += standard(library) == 1.0 + t;
         }
       });

@@ -85,7 +85,7 @@ TEST(Usual, RefusesNegativeTimesAndUnknownCodes) {
         auto p = e.default_parameters();
         p[i] = value;
         Problems problems;
-        e.check(e.law.get(), p.data(), "x", problems);
+        e.check(e.user_model.get(), p.data(), "x", problems);
         EXPECT_FALSE(problems.empty()) << name << " = " << value;
       }
     }

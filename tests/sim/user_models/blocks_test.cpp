@@ -7,16 +7,16 @@ namespace swingbank::sim::user_models {
 namespace {
 
 using test::kHead;
-using test::law_of;
-using test::sexs_law;
+using test::sexs_user_model;
+using test::user_model_of;
 
 std::complex<double> of_block(const std::string& block, double omega, const std::string& more = "") {
-  const Effect law = make_law(
+  const Effect user_model = make_user_model(
       fmt::format("name = \"B\"\n{}output = \"Vs\"\naction = \"replace\"\ninput = \"speed\"\nchain = "
                   "[\"b\"]\n{}\n[blocks.b]\n{}\n",
                   kHead, more, block),
       "block.toml");
-  test::ControlBench bench(law);
+  test::ControlBench bench(user_model);
   EXPECT_EQ(bench.refused, "") << block;
   if (!bench.x.empty()) return bench.response(&Signals<double>::speed, &Signals<double>::Vs, omega);
   const double before = bench.out().Vs;
@@ -24,7 +24,7 @@ std::complex<double> of_block(const std::string& block, double omega, const std:
   return (bench.out().Vs - before) / 1e-3;
 }
 
-TEST(LawBlocks, HaveTheirTransferFunctions) {
+TEST(UserModelBlocks, HaveTheirTransferFunctions) {
   const double w = 3.0;
   const std::complex<double> s(0.0, w);
   const auto same = [&](const std::string& block, std::complex<double> expected) {
@@ -50,7 +50,7 @@ TEST(LawBlocks, HaveTheirTransferFunctions) {
 }
 
 /// A lag in the forward path closes a loop: K/(1 + sT) with feedback of its own washout.
-TEST(LawBlocks, FeedbackThroughALag) {
+TEST(UserModelBlocks, FeedbackThroughALag) {
   const std::string text = fmt::format(R"law(name = "FEEDBACK"
 {}output = "Vs"
 action = "replace"
@@ -69,8 +69,8 @@ T = 1.5
 T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
 )law",
                                        kHead);
-  const Effect law = make_law(text, "feedback.toml");
-  test::ControlBench bench(law);
+  const Effect user_model = make_user_model(text, "feedback.toml");
+  test::ControlBench bench(user_model);
   ASSERT_EQ(bench.refused, "");
   const std::complex<double> s(0.0, 2.0), forward = 10.0 / (1.0 + 0.5 * s),
                                           back = 0.2 * 1.5 * s / (1.0 + 1.5 * s);
@@ -80,34 +80,36 @@ T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
 }
 
 std::string refusal(const std::string& text, Signals<double> s = test::ControlBench::rated()) {
-  const Effect law = make_law(text, "x.toml");
-  const auto p = law.default_parameters();
-  std::vector<double> c(static_cast<std::size_t>(law.coefficients)), x(law.states.size());
-  law.get<double>().prepare(p.data(), Conventions::psse(), c.data());
-  return law.get<double>().control.steady(law.law.get(), p.data(), c.data(), s, x.data());
+  const Effect user_model = make_user_model(text, "x.toml");
+  const auto p = user_model.default_parameters();
+  std::vector<double> c(static_cast<std::size_t>(user_model.coefficients)), x(user_model.states.size());
+  user_model.get<double>().prepare(p.data(), Conventions::psse(), c.data());
+  return user_model.get<double>().control.steady(user_model.user_model.get(), p.data(), c.data(), s,
+                                                 x.data());
 }
-TEST(LawOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
-  EXPECT_EQ(refusal(law_of("Efd", "replace", "value = \"3.5\"")),
+TEST(UserModelOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
+  EXPECT_EQ(refusal(user_model_of("Efd", "replace", "value = \"3.5\"")),
             "it gives Efd = 3.5 pu where the machine needs 2 pu (a reference = \"solve\" would meet it)");
-  EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"0.1 * V\"")),
+  EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"0.1 * V\"")),
             "it adds 0.1 pu to Tm where nothing has happened yet (subtract "
             "the value at the operating point, as in V - V0)");
-  EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"0.1 * (V - V0)\"")), "");
-  EXPECT_EQ(refusal(law_of("Vs", "add",
-                           "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"1\"")),
-            "state x does not come to rest: it moves at 1 per second at 0 pu");
+  EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"0.1 * (V - V0)\"")), "");
   EXPECT_EQ(
-      refusal(law_of("Vs", "add",
-                     "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"log(x)\"")),
+      refusal(user_model_of("Vs", "add",
+                            "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"1\"")),
+      "state x does not come to rest: it moves at 1 per second at 0 pu");
+  EXPECT_EQ(
+      refusal(user_model_of(
+          "Vs", "add", "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"log(x)\"")),
       "the derivative of x is no number there");
-  EXPECT_EQ(refusal(law_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
+  EXPECT_EQ(refusal(user_model_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
   // evaluated before the first switching time, independent of the later value
-  EXPECT_EQ(refusal(law_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
+  EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
 }
 
-TEST(LawOperatingPoint, NamesTheViolatedLimitAndItsValue) {
+TEST(UserModelOperatingPoint, NamesTheViolatedLimitAndItsValue) {
   grid::Grid grid = test::two_machine_grid(Conventions::psse());
-  grid.plants[1].controls = {{&sexs_law(), {0.1, 10.0, 100.0, 0.1, -4.0, 0.9}}};
+  grid.plants[1].controls = {{&sexs_user_model(), {0.1, 10.0, 100.0, 0.1, -4.0, 0.9}}};
   try {
     (void)plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
     FAIL();
@@ -117,10 +119,10 @@ TEST(LawOperatingPoint, NamesTheViolatedLimitAndItsValue) {
   }
 }
 
-TEST(LawOperatingPoint, ParametersAreChecked) {
+TEST(UserModelOperatingPoint, ParametersAreChecked) {
   const auto problems = [](std::vector<double> p) {
     Problems found;
-    sexs_law().check(sexs_law().law.get(), p.data(), "here", found);
+    sexs_user_model().check(sexs_user_model().user_model.get(), p.data(), "here", found);
     return found.list();
   };
   EXPECT_TRUE(problems({0.1, 10.0, 100.0, 0.1, -4.0, 5.0}).empty());
@@ -129,15 +131,15 @@ TEST(LawOperatingPoint, ParametersAreChecked) {
   EXPECT_NE(crossed[0].sentence().find("EMIN < EMAX does not hold (6 against 5) at here"), std::string::npos)
       << crossed[0].sentence();
   EXPECT_EQ(problems({std::nan(""), 10.0, 100.0, 0.1, -4.0, 5.0}).size(), 1u);
-  const Effect law = make_law(law_of("Vs", "add", R"law(value = "speed / T"
+  const Effect user_model = make_user_model(user_model_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
 T = { unit = "s", standard = 1, low = 0, high = 2, meaning = "divisor" })law"),
-                              "x.toml");
+                                            "x.toml");
   const double zero = 0.0;
   Problems found;
-  law.check(law.law.get(), &zero, "here", found);
+  user_model.check(user_model.user_model.get(), &zero, "here", found);
   (void)found;  // speed / T divides by zero in the loop: refused at the operating point
-  EXPECT_EQ(refusal(law_of("Vs", "add", R"law(value = "speed / T"
+  EXPECT_EQ(refusal(user_model_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
 T = { unit = "s", standard = 0, low = 0, high = 2, meaning = "divisor" })law")),
             "its Vs is no number there");

@@ -7,7 +7,7 @@ namespace swingbank::sim::user_models {
 namespace {
 
 using test::kHead;
-using test::law_of;
+using test::user_model_of;
 
 /// User-defined model with one expression, added to Vs.
 std::string one_value(const std::string& expression) {
@@ -15,19 +15,21 @@ std::string one_value(const std::string& expression) {
                      expression);
 }
 double value_of_expression(const std::string& expression) {
-  const Effect law = make_law(one_value(expression), "one.toml");
-  std::vector<double> c(static_cast<std::size_t>(law.coefficients));
+  const Effect user_model = make_user_model(one_value(expression), "one.toml");
+  std::vector<double> c(static_cast<std::size_t>(user_model.coefficients));
   Signals<double> s = test::ControlBench::rated();
   s.speed = 0.01;
-  law.get<double>().prepare(nullptr, Conventions::psse(50.0), c.data());
+  user_model.get<double>().prepare(nullptr, Conventions::psse(50.0), c.data());
   Signals<double> rest = s;
-  EXPECT_EQ(law.get<double>().control.steady(law.law.get(), nullptr, c.data(), rest, nullptr), "")
+  EXPECT_EQ(
+      user_model.get<double>().control.steady(user_model.user_model.get(), nullptr, c.data(), rest, nullptr),
+      "")
       << expression;
-  law.get<double>().control.evaluate(law.law.get(), c.data(), nullptr, s, nullptr);
+  user_model.get<double>().control.evaluate(user_model.user_model.get(), c.data(), nullptr, s, nullptr);
   return s.Vs;
 }
 
-TEST(LawExpression, ComputesAsWritten) {
+TEST(UserModelExpression, ComputesAsWritten) {
   const std::vector<std::pair<const char*, double>> cases = {{"1 + 2 * 3", 7},
                                                              {"(1 + 2) * 3", 9},
                                                              {"2 - 3 - 4", -5},
@@ -60,10 +62,10 @@ TEST(LawExpression, ComputesAsWritten) {
     EXPECT_NEAR(value_of_expression(expression), expected, 1e-13) << expression;  // rounding
 }
 
-TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
+TEST(UserModelExpression, ReportsEveryErrorWithItsPosition) {
   const auto message = [](const std::string& text) {
     try {
-      (void)make_law(text, "x.toml");
+      (void)make_user_model(text, "x.toml");
     } catch (const InputError& e) {
       return std::string(e.what());
     }
@@ -97,7 +99,7 @@ TEST(LawExpression, ReportsEveryErrorWithItsPosition) {
 }
 
 /// Complete user-defined model that contains every error.
-TEST(LawFile, ReportsAllErrorsAtOnce) {
+TEST(UserModelFile, ReportsAllErrorsAtOnce) {
   const std::string text = std::string("name = \"a b\"\n") + kHead + R"law(
 output = "Efd"
 action = "replace"
@@ -116,7 +118,7 @@ derivative = "Efd"
 V1 = "V * 2"
 )law";
   try {
-    (void)make_law(text, "bad.toml");
+    (void)make_user_model(text, "bad.toml");
     FAIL() << "accepted";
   } catch (const InputError& e) {
     const std::string said = e.what();
@@ -133,54 +135,55 @@ V1 = "V * 2"
   }
 }
 
-TEST(LawFile, UnreadableFilesAreRefused) {
+TEST(UserModelFile, UnreadableFilesAreRefused) {
   library::EffectLibrary library;
-  EXPECT_THROW(load_law("/nowhere.toml", library), InputError);
-  EXPECT_THROW(make_law("not toml at all [", "x"), InputError);
-  EXPECT_THROW(make_law("", "x"), InputError);
-  EXPECT_THROW(make_law(std::string(200000, '#'), "x"), InputError);
+  EXPECT_THROW(load_user_model("/nowhere.toml", library), InputError);
+  EXPECT_THROW(make_user_model("not toml at all [", "x"), InputError);
+  EXPECT_THROW(make_user_model("", "x"), InputError);
+  EXPECT_THROW(make_user_model(std::string(200000, '#'), "x"), InputError);
 }
 
-TEST(LawFile, EqualTextsShareAnEffectAndNamesAreUnique) {
+TEST(UserModelFile, EqualTextsShareAnEffectAndNamesAreUnique) {
   library::EffectLibrary library;
   std::string text = one_value("speed");
-  const Effect& first = load_law(text, "a.toml", library);
-  EXPECT_EQ(&load_law(text, "a.toml", library), &first);
+  const Effect& first = load_user_model(text, "a.toml", library);
+  EXPECT_EQ(&load_user_model(text, "a.toml", library), &first);
   EXPECT_EQ(library.find("one"), &first);
-  EXPECT_THROW(load_law(text + "\n", "b.toml", library), InputError);
+  EXPECT_THROW(load_user_model(text + "\n", "b.toml", library), InputError);
   text.replace(text.find("ONE"), 3, "SEXS");
-  EXPECT_THROW(load_law(text, "c.toml", library), InputError);
+  EXPECT_THROW(load_user_model(text, "c.toml", library), InputError);
 }
 
-TEST(LawFile, EqualTextsInTwoLibrariesAreOneEffect) {
+TEST(UserModelFile, EqualTextsInTwoLibrariesAreOneEffect) {
   library::EffectLibrary one, other, changed;
-  const Effect& law = load_law(one_value("speed"), "a.toml", one);
-  EXPECT_TRUE(same_effect(law, load_law(one_value("speed"), "b.toml", other)));
-  EXPECT_FALSE(same_effect(law, load_law(one_value("2 * speed"), "a.toml", changed)));
-  EXPECT_FALSE(same_effect(law, *one.find("SEXS")));
+  const Effect& user_model = load_user_model(one_value("speed"), "a.toml", one);
+  EXPECT_TRUE(same_effect(user_model, load_user_model(one_value("speed"), "b.toml", other)));
+  EXPECT_FALSE(same_effect(user_model, load_user_model(one_value("2 * speed"), "a.toml", changed)));
+  EXPECT_FALSE(same_effect(user_model, *one.find("SEXS")));
   EXPECT_TRUE(same_effect(*one.find("SEXS"), *other.find("SEXS")));
 }
 
-TEST(LawFile, SourceOfAValueIsTheParametersOrTheFile) {
-  const Effect law = make_law(law_of("Vs", "add", R"law(value = "a * b * 0"
+TEST(UserModelFile, SourceOfAValueIsTheParametersOrTheFile) {
+  const Effect user_model = make_user_model(user_model_of("Vs", "add", R"law(value = "a * b * 0"
 [parameters]
 a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
 b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law"),
-                              "plant.toml");
-  EXPECT_EQ(as_text(law.parameters[0].default_from), "a plant's data sheet");
-  EXPECT_EQ(as_text(law.parameters[0].bounds_from), "a plant's data sheet");
-  EXPECT_EQ(as_text(law.parameters[1].default_from), "plant.toml");
+                                            "plant.toml");
+  EXPECT_EQ(as_text(user_model.parameters[0].default_from), "a plant's data sheet");
+  EXPECT_EQ(as_text(user_model.parameters[0].bounds_from), "a plant's data sheet");
+  EXPECT_EQ(as_text(user_model.parameters[1].default_from), "plant.toml");
 }
 
-TEST(LawFile, SwitchingTimesComeFromParameters) {
-  const Effect law = make_law(law_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
+TEST(UserModelFile, SwitchingTimesComeFromParameters) {
+  const Effect user_model =
+      make_user_model(user_model_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
 instants = ["start", "start + 2"]
 [parameters]
 start = { unit = "s", standard = 1, low = 0, high = 20, meaning = "when" })law"),
-                              "x.toml");
+                      "x.toml");
   const double start = 3.0;
-  ASSERT_NE(law.switching_times, nullptr);
-  EXPECT_EQ(law.switching_times(law.law.get(), &start), (std::vector<double>{3.0, 5.0}));
+  ASSERT_NE(user_model.switching_times, nullptr);
+  EXPECT_EQ(user_model.switching_times(user_model.user_model.get(), &start), (std::vector<double>{3.0, 5.0}));
 }
 
 }  // namespace

@@ -12,15 +12,17 @@ namespace swingbank::sim::test {
 inline constexpr const char* kHead = "title = \"test\"\nsource = \"tests/sim/core\"\n";
 
 /// User-defined model that computes `output` by the given lines.
-inline std::string law_of(const std::string& output, const std::string& action, const std::string& rest) {
+inline std::string user_model_of(const std::string& output, const std::string& action,
+                                 const std::string& rest) {
   return fmt::format("name = \"X\"\n{}output = \"{}\"\naction = \"{}\"\n{}", kHead, output, action, rest);
 }
 
 /// Example that repeats the compiled exciter SEXS.
-inline const Effect& sexs_law() {
+inline const Effect& sexs_user_model() {
   static const library::EffectLibrary library = [] {
     library::EffectLibrary made;
-    user_models::load_law(std::filesystem::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml", made);
+    user_models::load_user_model(std::filesystem::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml",
+                                 made);
     return made;
   }();
   return *library.find("SEXSLAW");

@@ -12,7 +12,7 @@ namespace {
 
 using test::kNonlinear;
 using test::reference_run;
-using test::sexs_law;
+using test::sexs_user_model;
 using test::with_exciter;
 
 /// The same exciter by expressions: states, derivatives, an explicit reference.
@@ -68,19 +68,19 @@ K = { unit = "pu", standard = 100.0, low = 0.5, high = 2000.0, meaning = "gain" 
 TE = { unit = "s", standard = 0.1, low = 0.001, high = 5.0, meaning = "exciter" }
 )law";
 
-TEST(LawFile, ThreeWaysOfWritingAnExciterAgree) {
+TEST(UserModelFile, ThreeWaysOfWritingAnExciterAgree) {
   const std::vector<double> p = {0.5, 2.0, 20.0, 0.05, -10.0, 10.0};
   const reference::ReferenceRun compiled = reference_run(with_exciter(*library::compiled().find("SEXS"), p));
-  const Effect by_expressions = make_law(kByExpressions, "e"),
-               by_transfer_function = make_law(kByTransferFunction, "t");
+  const Effect by_expressions = make_user_model(kByExpressions, "e"),
+               by_transfer_function = make_user_model(kByTransferFunction, "t");
   // Other unknowns and other rounding: the difference of two runs at rtol 1e-8.
   EXPECT_LE(test::largest_difference(compiled, reference_run(with_exciter(by_expressions, p))), 1e-6);
   const grid::Grid tf = with_exciter(by_transfer_function, {0.5, 2.0, 20.0, 0.05});
   EXPECT_LE(test::largest_difference(compiled, reference_run(tf)), 1e-6);
 }
 
-TEST(LawFile, LimitedStatesDoNotWindUp) {
-  test::ControlBench bench(sexs_law(),
+TEST(UserModelFile, LimitedStatesDoNotWindUp) {
+  test::ControlBench bench(sexs_user_model(),
                            {{"TAoverTB", 1.0}, {"K", 10.0}, {"TE", 0.5}, {"EMAX", 3.0}, {"EMIN", 0.0}});
   ASSERT_EQ(bench.refused, "");
   EXPECT_LE(bench.largest_derivative(),
@@ -95,20 +95,21 @@ TEST(LawFile, LimitedStatesDoNotWindUp) {
 
 /// Derivatives of all states, and the output, away from the operating point, for parameters p.
 template <class T>
-std::vector<T> outputs(const Effect& law, const std::vector<T>& p, const Signals<double>& at,
+std::vector<T> outputs(const Effect& user_model, const std::vector<T>& p, const Signals<double>& at,
                        const Signals<double>& moved) {
-  std::vector<T> c(static_cast<std::size_t>(law.coefficients), T(0.0)), x(law.states.size(), T(0.0)), dx = x;
+  std::vector<T> c(static_cast<std::size_t>(user_model.coefficients), T(0.0)),
+      x(user_model.states.size(), T(0.0)), dx = x;
   Signals<T> s, now;
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     s.*kMembers<T>[i] = T(at.*kMembers<double>[i]);
     now.*kMembers<T>[i] = T(moved.*kMembers<double>[i]);
   }
-  const auto& ops = law.get<T>();
+  const auto& ops = user_model.get<T>();
   ops.prepare(p.data(), Conventions::psse(), c.data());
-  EXPECT_EQ(ops.control.steady(law.law.get(), p.data(), c.data(), s, x.data()), "");
-  ops.control.evaluate(law.law.get(), c.data(), x.data(), now, dx.data());
-  dx.push_back(now.*
-               kMembers<T>[static_cast<std::size_t>(static_cast<const Definition*>(law.law.get())->output)]);
+  EXPECT_EQ(ops.control.steady(user_model.user_model.get(), p.data(), c.data(), s, x.data()), "");
+  ops.control.evaluate(user_model.user_model.get(), c.data(), x.data(), now, dx.data());
+  dx.push_back(now.*kMembers<T>[static_cast<std::size_t>(
+                        static_cast<const Definition*>(user_model.user_model.get())->output)]);
   return dx;
 }
 Signals<double> disturbed() {
@@ -120,62 +121,65 @@ Signals<double> disturbed() {
   return s;
 }
 
-TEST(LawFile, PacksEqualDouble) {
+TEST(UserModelFile, PacksEqualDouble) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(0.8, 1.2);
-  const Effect nonlinear = make_law(kNonlinear, "n"), transfer = make_law(kByTransferFunction, "t");
-  for (const Effect* law : {&sexs_law(), &nonlinear, &transfer}) {
+  const Effect nonlinear = make_user_model(kNonlinear, "n"),
+               transfer = make_user_model(kByTransferFunction, "t");
+  for (const Effect* user_model : {&sexs_user_model(), &nonlinear, &transfer}) {
     std::vector<std::vector<double>> each;
-    std::vector<P8> packed(law->parameters.size());
+    std::vector<P8> packed(user_model->parameters.size());
     for (int lane = 0; lane < 8; ++lane) {
-      auto p = law->default_parameters();
+      auto p = user_model->default_parameters();
       for (double& v : p) v *= u(random);
       for (std::size_t i = 0; i < p.size(); ++i) packed[i].set(lane, p[i]);
-      each.push_back(outputs<double>(*law, p, test::ControlBench::rated(), disturbed()));
+      each.push_back(outputs<double>(*user_model, p, test::ControlBench::rated(), disturbed()));
     }
-    const auto together = outputs<P8>(*law, packed, test::ControlBench::rated(), disturbed());
+    const auto together = outputs<P8>(*user_model, packed, test::ControlBench::rated(), disturbed());
     for (int lane = 0; lane < 8; ++lane)
       for (std::size_t i = 0; i < together.size(); ++i) {
         const double alone = each[static_cast<std::size_t>(lane)][i];
         // fused multiply-add in one of the two only, times gains of up to 1e3
-        EXPECT_NEAR(together[i][lane], alone, 1e-12 * (1.0 + std::abs(alone))) << law->name << " " << i;
+        EXPECT_NEAR(together[i][lane], alone, 1e-12 * (1.0 + std::abs(alone)))
+            << user_model->name << " " << i;
       }
   }
 }
 
-TEST(LawFile, DualsEqualCentralDifferences) {
-  const Effect nonlinear = make_law(kNonlinear, "n"), transfer = make_law(kByTransferFunction, "t");
-  for (const Effect* law : {&sexs_law(), &nonlinear, &transfer}) {
-    const auto p = law->default_parameters();
+TEST(UserModelFile, DualsEqualCentralDifferences) {
+  const Effect nonlinear = make_user_model(kNonlinear, "n"),
+               transfer = make_user_model(kByTransferFunction, "t");
+  for (const Effect* user_model : {&sexs_user_model(), &nonlinear, &transfer}) {
+    const auto p = user_model->default_parameters();
     for (std::size_t j = 0; j < p.size(); ++j) {
       std::vector<D8> dual(p.begin(), p.end());
       dual[j].d[0] = 1.0;
       std::vector<DualPack> packed(p.begin(), p.end());
       packed[j].d[3] = Pack<kDualLanes>(1.0);
-      const auto exact = outputs<D8>(*law, dual, test::ControlBench::rated(), disturbed());
-      const auto lanes = outputs<DualPack>(*law, packed, test::ControlBench::rated(), disturbed());
+      const auto exact = outputs<D8>(*user_model, dual, test::ControlBench::rated(), disturbed());
+      const auto lanes = outputs<DualPack>(*user_model, packed, test::ControlBench::rated(), disturbed());
       const double h = 1e-6 * std::max(1e-2, std::abs(p[j]));
       auto up = p, down = p;
       up[j] += h;
       down[j] -= h;
-      const auto a = outputs<double>(*law, up, test::ControlBench::rated(), disturbed()),
-                 b = outputs<double>(*law, down, test::ControlBench::rated(), disturbed());
+      const auto a = outputs<double>(*user_model, up, test::ControlBench::rated(), disturbed()),
+                 b = outputs<double>(*user_model, down, test::ControlBench::rated(), disturbed());
       for (std::size_t i = 0; i < exact.size(); ++i) {
         const double quotient = (a[i] - b[i]) / (2 * h);
         // rounding of the quotient: 1e-16 of values up to 1e2, divided by h = 1e-8
         EXPECT_NEAR(exact[i].d[0], quotient, 1e-6 * (10.0 + std::abs(quotient)))
-            << law->name << " output " << i << " by " << law->parameters[j].name;
+            << user_model->name << " output " << i << " by " << user_model->parameters[j].name;
         EXPECT_NEAR(lanes[i].d[3][kDualLanes - 1], exact[i].d[0], 1e-12 * (1.0 + std::abs(exact[i].d[0])))
-            << law->name;
+            << user_model->name;
       }
     }
   }
 }
 
 /// A saturated integrator starts at its limit and leaves it without delay.
-TEST(LawFile, AllowsAnOperatingPointAtALimit) {
+TEST(UserModelFile, AllowsAnOperatingPointAtALimit) {
   library::EffectLibrary library;
-  test::ControlBench bench(load_law(
+  test::ControlBench bench(load_user_model(
       std::filesystem::path(SWINGBANK_SOURCE) / "configs/user_models/limiter_field_current.toml", library));
   ASSERT_EQ(bench.refused, "");
   EXPECT_EQ(bench.out().Vlimiter, 0.0);
@@ -188,17 +192,18 @@ TEST(LawFile, AllowsAnOperatingPointAtALimit) {
   EXPECT_EQ(bench.out().Vlimiter, -0.5);
 }
 
-TEST(LawFile, ExamplesPassTheChecks) {
+TEST(UserModelFile, ExamplesPassTheChecks) {
   int count = 0;
   for (const auto& file :
        std::filesystem::directory_iterator(std::string(SWINGBANK_SOURCE) + "/configs/user_models")) {
     if (file.path().extension() != ".toml") continue;
     library::EffectLibrary library;
-    const Effect& law = load_law(file.path(), library);
+    const Effect& user_model = load_user_model(file.path(), library);
     Problems problems;
-    law.check(law.law.get(), law.default_parameters().data(), file.path().string(), problems);
+    user_model.check(user_model.user_model.get(), user_model.default_parameters().data(),
+                     file.path().string(), problems);
     EXPECT_TRUE(problems.empty()) << file.path();
-    EXPECT_FALSE(law.description.empty());
+    EXPECT_FALSE(user_model.description.empty());
     ++count;
   }
   EXPECT_GE(count, 4);

@@ -191,38 +191,38 @@ TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
 
 /// The example without an accepted effect, with an accepted law for the field voltage and a rejected second
 /// one.
-Diagnosis with_laws() {
+Diagnosis with_user_models() {
   Diagnosis d = example().d;
-  d.laws.kind = fit::InputKind::field;
-  d.laws.ranked.resize(7);
-  user_model_search::LawFinding found;
+  d.user_models.kind = fit::InputKind::field;
+  d.user_models.ranked.resize(7);
+  user_model_search::UserModelFinding found;
   for (std::size_t e = 0; e < d.events.size(); ++e) {
-    user_model_search::LawTrace trace;
+    user_model_search::UserModelTrace trace;
     trace.t = {0, 1, 2, 3, 4};
     for (auto& signal : trace.signal) signal = {0, 0.1, -0.2, 0.3, 0.1};
     trace.knots = {0, 2, 4};
     trace.input = {0, 0.5, 0.25};
-    d.laws.traces.push_back(trace);
-    found.law.time_series.push_back({0, 0.375, 0.125});
+    d.user_models.traces.push_back(trace);
+    found.user_model.time_series.push_back({0, 0.375, 0.125});
   }
-  found.law.family = "lagged";
-  found.law.signal = "V";
-  found.law.explained = 0.83;
+  found.user_model.family = "lagged";
+  found.user_model.signal = "V";
+  found.user_model.explained = 0.83;
   found.words = "-20 * V < 0.5";
   found.judgement = d.ranked.front();
   found.judgement.hypothesis.name = "LAW1";
   found.judgement.accepted = true;
-  user_model_search::LawFinding refused = found;
+  user_model_search::UserModelFinding refused = found;
   refused.judgement.hypothesis.name = "LAW2";
   refused.judgement.accepted = false;
   refused.judgement.why_not = "it worsens <ev3>";
   refused.judgement.held_out.clear();
-  d.laws.findings = {found, refused};
+  d.user_models.findings = {found, refused};
   return d;
 }
 
 TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
-  const Diagnosis d = with_laws();
+  const Diagnosis d = with_user_models();
   const std::string html = diagnosis_html(example().model, d, {});
   const auto section = html.find("User-defined model");
   ASSERT_NE(section, std::string::npos);
@@ -243,8 +243,8 @@ TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
   EXPECT_EQ(written["fitted"][1]["why_not"], "it worsens <ev3>");
 }
 TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
-  Diagnosis d = with_laws();
-  d.laws.findings.erase(d.laws.findings.begin());
+  Diagnosis d = with_user_models();
+  d.user_models.findings.erase(d.user_models.findings.begin());
   const std::string html = diagnosis_html(example().model, d, {});
   EXPECT_THAT(html, HasSubstr("No user-defined model predicts held-out events; none is accepted."));
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));

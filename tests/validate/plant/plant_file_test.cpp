@@ -109,16 +109,16 @@ TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
 }
 TEST_F(PlantFileTest, CopiesLawFilesToItsFolder) {
   PlantModel m = example();
-  const auto law = test::source("configs/user_models/torque_voltage_dip.toml");
+  const auto user_model = test::source("configs/user_models/torque_voltage_dip.toml");
   std::filesystem::create_directories(folder_);
-  std::filesystem::copy_file(law, folder_ / "law.toml");
+  std::filesystem::copy_file(user_model, folder_ / "law.toml");
   const std::string text = plant_text(m, {});
-  const std::string with_law =
+  const std::string with_user_model =
       "laws = [\"law.toml\"]\n" + text +
       "\n[[shaft]]\neffect = \"DIPTORQUE\"\nloss = 0.1\nthreshold = 0.15\ndepth = 0.3\nrecovery = 4.0\n";
-  write_file(folder_ / "first.toml", with_law);
+  write_file(folder_ / "first.toml", with_user_model);
   m = load_plant_model(folder_ / "first.toml");
-  ASSERT_EQ(m.laws.size(), 1U);
+  ASSERT_EQ(m.user_models.size(), 1U);
   write_plant_file(folder_ / "other" / "model.toml", m, {});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "other" / "law.toml"));
   EXPECT_EQ(difference(m, load_plant_model(folder_ / "other" / "model.toml")), "");

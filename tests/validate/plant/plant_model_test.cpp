@@ -62,10 +62,10 @@ TEST_F(PlantModelTest, SuggestsNameForMistypedEffect) {
       ElementsAre(AllOf(HasSubstr("machine.effect = 'GENRUO' at "), HasSubstr("did you mean GENROU?"))));
 }
 TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
-  const std::string law = test::source("configs/user_models/torque_voltage_dip.toml");
+  const std::string user_model = test::source("configs/user_models/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
-  const PlantModel m = load("laws = [\"" + law + "\"]\n" + example_text() + shaft);
+  const PlantModel m = load("laws = [\"" + user_model + "\"]\n" + example_text() + shaft);
   ASSERT_EQ(m.plant.controls.size(), 1u);
   EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
   EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));

@@ -15,13 +15,15 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// V(t) = 1 + t^3/10 before 1 s, 0.5 + t^2/20 until 1.5 s, 0.9 + t/50 after, at 20/s; theta = 0.
-double law(double t) { return t <= 1 ? 1 + t * t * t / 10 : t <= 1.5 ? 0.5 + t * t / 20 : 0.9 + t / 50; }
+double user_model(double t) {
+  return t <= 1 ? 1 + t * t * t / 10 : t <= 1.5 ? 0.5 + t * t / 20 : 0.9 + t / 50;
+}
 record::Record stepped() {
   record::Record r;
   r.name = "stepped";
   for (int k = 0; k <= 60; ++k) {
     r.t.push_back(k / 20.0);
-    r.V.push_back(law(r.t.back()));
+    r.V.push_back(user_model(r.t.back()));
     r.theta.push_back(0);
   }
   return r;
@@ -43,7 +45,7 @@ TEST(VoltageCurveTest, ShortSegmentsUseLowerOrder) {
     for (int k = 21; k <= 20 + points; ++k)
       r.V[static_cast<std::size_t>(k)] = points == 1   ? 0.3
                                          : points == 2 ? 0.3 + r.t[static_cast<std::size_t>(k)]
-                                                       : law(r.t[static_cast<std::size_t>(k)]);
+                                                       : user_model(r.t[static_cast<std::size_t>(k)]);
     const VoltageCurve curve(r, {{.time = 1.0}, {.time = off}});
     const double t = 1.01;
     EXPECT_NEAR(curve(1, t).real(), points == 1 ? 0.3 : points == 2 ? 0.3 + t : 0.5 + t * t / 20, 1e-12);

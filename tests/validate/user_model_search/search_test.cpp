@@ -19,10 +19,10 @@ namespace {
 /// Two events as input of the search for laws: a decaying swing, knots as `missing_input` sets them, and an
 /// input given by a function of the speed deviation and of time.
 template <class F>
-std::vector<LawTrace> traces_with(F input) {
-  std::vector<LawTrace> all;
+std::vector<UserModelTrace> traces_with(F input) {
+  std::vector<UserModelTrace> all;
   for (const double size : {0.006, 0.003}) {
-    LawTrace e;
+    UserModelTrace e;
     e.trigger = e.begin = size > 0.004 ? 2.0 : 1.5;  // [s]; record time and time since the event differ
     e.rest = size > 0.004 ? 0.4 : 0.7;
     const auto swing = [&](double t, double hertz, double phase) {
@@ -45,32 +45,33 @@ std::vector<LawTrace> traces_with(F input) {
   }
   return all;
 }
-double value_of(const LawCandidate& law, const std::string& name) {
-  const auto p = std::ranges::find(law.parameters, name, &LawParameter::name);
-  return p == law.parameters.end() ? std::numeric_limits<double>::quiet_NaN() : p->value;
+double value_of(const UserModelCandidate& user_model, const std::string& name) {
+  const auto p = std::ranges::find(user_model.parameters, name, &UserModelParameter::name);
+  return p == user_model.parameters.end() ? std::numeric_limits<double>::quiet_NaN() : p->value;
 }
 constexpr double kLevel = 0.1;
 
-TEST(LawCandidates, LimitedSpeedLawRanksFirst) {
-  const auto traces = traces_with(
-      [](const LawTrace&, double speed, double) { return -0.02 * std::clamp(speed / 0.001, -1.0, 1.0); });
-  const auto ranked = law_candidates(fit::InputKind::torque, traces, kLevel);
+TEST(UserModelCandidates, LimitedSpeedLawRanksFirst) {
+  const auto traces = traces_with([](const UserModelTrace&, double speed, double) {
+    return -0.02 * std::clamp(speed / 0.001, -1.0, 1.0);
+  });
+  const auto ranked = user_model_candidates(fit::InputKind::torque, traces, kLevel);
   ASSERT_FALSE(ranked.empty());
-  const LawCandidate& best = ranked.front();
+  const UserModelCandidate& best = ranked.front();
   EXPECT_EQ(best.signal, "speed");
   EXPECT_THAT(best.family, testing::AnyOf("limited", "curved"));
-  const auto limited = std::ranges::find(ranked, "limited", &LawCandidate::family);
+  const auto limited = std::ranges::find(ranked, "limited", &UserModelCandidate::family);
   ASSERT_NE(limited, ranked.end());
   EXPECT_EQ(limited->signal, "speed");
   // The grid's widths are a factor of two apart; the limit itself follows from least squares.
   EXPECT_NEAR(value_of(*limited, "L"), -0.02, 0.003);
   EXPECT_NEAR(std::log2(value_of(*limited, "w") / 0.001), 0.0, 1.0);
 }
-TEST(LawCandidates, FindsOscillationWithItsFrequency) {
-  const auto traces = traces_with([](const LawTrace&, double, double t) {
+TEST(UserModelCandidates, FindsOscillationWithItsFrequency) {
+  const auto traces = traces_with([](const UserModelTrace&, double, double t) {
     return t < 4 ? 0.0 : 0.01 * std::sin(6.283185307 * 0.47 * t + 0.3);
   });
-  const auto best = law_candidates(fit::InputKind::torque, traces, kLevel).front();
+  const auto best = user_model_candidates(fit::InputKind::torque, traces, kLevel).front();
   EXPECT_EQ(best.family, "periodic");
   EXPECT_EQ(best.signal, "time");  // not since the event, whose time differs between the records
   EXPECT_NEAR(value_of(best, "f"), 0.47,
@@ -78,12 +79,12 @@ TEST(LawCandidates, FindsOscillationWithItsFrequency) {
   EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // 10 %: its start is not on the grid
   EXPECT_NEAR(value_of(best, "start"), 4.0, 0.25);  // half the grid's step
 }
-TEST(LawCandidates, PulseDelayCountsFromTheEvent) {
-  const auto traces = traces_with([](const LawTrace& e, double, double t) {
+TEST(UserModelCandidates, PulseDelayCountsFromTheEvent) {
+  const auto traces = traces_with([](const UserModelTrace& e, double, double t) {
     const double tau = t - e.trigger;
     return tau > 1.0 && tau < 2.5 ? 0.05 : 0.0;
   });
-  const auto best = law_candidates(fit::InputKind::field, traces, kLevel).front();
+  const auto best = user_model_candidates(fit::InputKind::field, traces, kLevel).front();
   EXPECT_EQ(best.family, "pulse");
   EXPECT_EQ(best.signal, "time since the voltage moved");
   // The knots are 0.1 s apart.
@@ -91,57 +92,59 @@ TEST(LawCandidates, PulseDelayCountsFromTheEvent) {
   EXPECT_NEAR(value_of(best, "length"), 1.5, 0.1);
   EXPECT_NEAR(value_of(best, "A"), 0.05, 0.005);
 }
-TEST(LawCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
-  const auto traces = traces_with([](const LawTrace&, double speed, double) { return -5 * speed; });
-  for (const auto& law : law_candidates(fit::InputKind::torque, traces, 0.0))
-    EXPECT_NE(law.signal, "time since the voltage moved") << law.family;
+TEST(UserModelCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
+  const auto traces = traces_with([](const UserModelTrace&, double speed, double) { return -5 * speed; });
+  for (const auto& user_model : user_model_candidates(fit::InputKind::torque, traces, 0.0))
+    EXPECT_NE(user_model.signal, "time since the voltage moved") << user_model.family;
 }
 
 /// Every law file can be read, rests at the operating point, and has the output that was ranked.
-TEST(LawText, EveryFileReproducesTheRankedTimeSeries) {
-  const auto traces = traces_with([](const LawTrace& e, double speed, double t) {
+TEST(UserModelText, EveryFileReproducesTheRankedTimeSeries) {
+  const auto traces = traces_with([](const UserModelTrace& e, double speed, double t) {
     return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t) : 0.0);  // a feature for every law to fit
   });
-  const LawRegression regression(traces);
+  const UserModelRegression regression(traces);
   for (const fit::InputKind kind : {fit::InputKind::torque, fit::InputKind::field}) {
-    const auto ranked = law_candidates(kind, traces, kLevel);
+    const auto ranked = user_model_candidates(kind, traces, kLevel);
     EXPECT_GE(ranked.size(), 60u);
-    for (const LawCandidate& law : ranked) {
-      SCOPED_TRACE(law_name(law));
-      const sim::Effect effect = sim::user_models::make_law(law_toml(law, "a \"test\""), law_name(law));
+    for (const UserModelCandidate& user_model : ranked) {
+      SCOPED_TRACE(user_model_name(user_model));
+      const sim::Effect effect = sim::user_models::make_user_model(user_model_toml(user_model, "a \"test\""),
+                                                                   user_model_name(user_model));
       EXPECT_EQ(effect.slot, kind == fit::InputKind::torque ? sim::Slot::shaft : sim::Slot::exciter);
-      EXPECT_EQ(law_words(law).find('{'), std::string::npos) << law_words(law);
+      EXPECT_EQ(user_model_words(user_model).find('{'), std::string::npos) << user_model_words(user_model);
       std::vector<double> values;
-      for (const auto& p : law.parameters) values.push_back(p.value);
+      for (const auto& p : user_model.parameters) values.push_back(p.value);
       EXPECT_EQ(effect.default_parameters(), values);
       const auto time_series =
-          regression.by_event(regression.at_knots(law_time_series(effect, values, kind, traces)));
+          regression.by_event(regression.at_knots(user_model_time_series(effect, values, kind, traces)));
       double difference = 0, size = 0;
       for (std::size_t e = 0; e < time_series.size(); ++e)
         for (std::size_t k = 0; k < time_series[e].size(); ++k) {
-          difference += std::pow(time_series[e][k] - law.time_series[e][k], 2);
-          size += std::pow(law.time_series[e][k], 2);
+          difference += std::pow(time_series[e][k] - user_model.time_series[e][k], 2);
+          size += std::pow(user_model.time_series[e][k], 2);
         }
       // The ranking samples at 20/s with a step at each edge of the law; a trigger acts within some 10 ms.
       // For a sawtooth above 1 Hz, whose every step is affected, most of a tenth of the mean square may
       // differ.
-      const bool wave = law.family.starts_with("periodic, ");
+      const bool wave = user_model.family.starts_with("periodic, ");
       // A law that explains next to nothing is never fitted; its amplitudes are kept away from zero.
-      if (law.explained > 0.1) {
-        EXPECT_LT(difference, (wave ? 0.3 : 0.05) * size) << law_toml(law, "test");
+      if (user_model.explained > 0.1) {
+        EXPECT_LT(difference, (wave ? 0.3 : 0.05) * size) << user_model_toml(user_model, "test");
       }
     }
   }
 }
-TEST(LawText, NumbersHaveUnitAndInterval) {
-  LawCandidate law;
-  law.words = "{K} × the speed deviation (lagged by {T})";
-  law.parameters = {{"K", "pu", -7.5, -10, 10, true, "gain"}, {"T", "s", 0.25, 0, 10, false, "lag"}};
+TEST(UserModelText, NumbersHaveUnitAndInterval) {
+  UserModelCandidate user_model;
+  user_model.words = "{K} × the speed deviation (lagged by {T})";
+  user_model.parameters = {{"K", "pu", -7.5, -10, 10, true, "gain"}, {"T", "s", 0.25, 0, 10, false, "lag"}};
   fit::FittedParameter K;
   K.name = "K";
   K.low = -8;
   K.high = -7;
-  EXPECT_EQ(law_words(law, {K}), "a torque of -7.5 pu (-8 to -7) × the speed deviation (lagged by 0.25 s)");
+  EXPECT_EQ(user_model_words(user_model, {K}),
+            "a torque of -7.5 pu (-8 to -7) × the speed deviation (lagged by 0.25 s)");
 }
 
 /// Simulated records of the example's events: the plant's parameters are 10 % off, and it has an additional
@@ -156,12 +159,12 @@ struct Case {
                           kAdequate = thresholds::adequacy.reduced_chi2;
 
   template <class Change>
-  Case(const std::vector<int>& numbers, const sim::Effect* law, Change change) {
+  Case(const std::vector<int>& numbers, const sim::Effect* user_model, Change change) {
     plant::PlantModel truth = model;
     for (const auto& f : fit::free_parameters(truth.plant, kPriorSd))
       sim::plant::parameter_value(truth.plant, f.id) *= 1 + 0.1 * std::sin(3.0 * f.id.index + 1);
     int block = 0;
-    if (law) truth.plant = with_law(truth.plant, *law, block);
+    if (user_model) truth.plant = with_user_model(truth.plant, *user_model, block);
     std::mt19937_64 generator(3);
     std::normal_distribution<double> normal;
     std::vector<record::Record> records;
@@ -192,31 +195,31 @@ struct Case {
     torque = reduced::free_input(fit::InputKind::torque, model.under_test(), events,
                                  fit::free_parameters(model.plant, kPriorSd), base, 2);
   }
-  LawSearch search(int threads = 2) {
-    return search_laws({model, {events, kPriorSd, kAdequate}, base, held_out, torque, field, threads});
+  UserModelSearch search(int threads = 2) {
+    return search_user_models({model, {events, kPriorSd, kAdequate}, base, held_out, torque, field, threads});
   }
 };
-sim::Effect torque_law(const std::string& value) {
-  return sim::user_models::make_law(
+sim::Effect torque_user_model(const std::string& value) {
+  return sim::user_models::make_user_model(
       "name = \"TRUTH\"\ntitle = \"t\"\nsource = \"s\"\noutput = \"Tm\"\naction = \"add\"\nvalue = \"" +
           value + "\"\n",
       "truth.toml");
 }
 
-TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
-  const sim::Effect law = torque_law("-0.02 * clamp(speed / 0.001, -1, 1)");
-  Case c({1, 3}, &law, [](int, playin::PlaybackRun&) {});
+TEST(UserModelSearchTest, FindsTorqueLimitedAboveASpeed) {
+  const sim::Effect user_model = torque_user_model("-0.02 * clamp(speed / 0.001, -1, 1)");
+  Case c({1, 3}, &user_model, [](int, playin::PlaybackRun&) {});
   ASSERT_GT(c.base.reduced_chi2(), 5);
   ASSERT_LT(c.torque.reduced_chi2(), 1.2);
-  const LawSearch s = c.search();
+  const UserModelSearch s = c.search();
   std::string tried;
   for (const auto& f : s.findings)
     tried +=
         fmt::format("{} leaves {:.3f}: {}\n", f.words, f.judgement.fit.reduced_chi2(), f.judgement.why_not);
   ASSERT_NE(s.found(), nullptr) << tried;
-  const LawFinding& f = *s.found();
-  EXPECT_EQ(f.law.signal, "speed");
-  EXPECT_THAT(f.law.family, testing::StartsWith("limited"));
+  const UserModelFinding& f = *s.found();
+  EXPECT_EQ(f.user_model.signal, "speed");
+  EXPECT_THAT(f.user_model.family, testing::StartsWith("limited"));
   for (const auto& h : f.judgement.held_out) {
     EXPECT_GT(h.before, 5) << h.record;
     EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value)
@@ -230,34 +233,37 @@ TEST(LawSearchTest, FindsTorqueLimitedAboveASpeed) {
       EXPECT_NEAR(p.value, 0.001, 4 * p.error);
     }
   }
-  EXPECT_THAT(law_sentence(s, 30),
+  EXPECT_THAT(user_model_sentence(s, 30),
               testing::HasSubstr("None of the 30 known effects explains the records; a torque of -0.0"));
   // The law file contains the law that was judged.
-  const sim::Effect read = sim::user_models::make_law(f.toml, "found.toml");
+  const sim::Effect read = sim::user_models::make_user_model(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)
-    EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.law.parameters[i].value) << read.parameters[i].name;
+    EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.user_model.parameters[i].value)
+        << read.parameters[i].name;
 }
 
-TEST(LawSearchFull, FindsPulseAtARecordTime) {
-  const sim::Effect law = torque_law("0.02 * (clamp((t - 3) / 0.05, 0, 1) - clamp((t - 4.5) / 0.05, 0, 1))");
-  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::PlaybackRun&) {}).search();
+TEST(UserModelSearchFull, FindsPulseAtARecordTime) {
+  const sim::Effect user_model =
+      torque_user_model("0.02 * (clamp((t - 3) / 0.05, 0, 1) - clamp((t - 4.5) / 0.05, 0, 1))");
+  const UserModelSearch s = Case({1, 2, 3}, &user_model, [](int, playin::PlaybackRun&) {}).search();
   ASSERT_NE(s.found(), nullptr);
-  EXPECT_THAT(s.found()->law.family, testing::StartsWith("pulse"));
+  EXPECT_THAT(s.found()->user_model.family, testing::StartsWith("pulse"));
   for (const auto& h : s.found()->judgement.held_out)
     EXPECT_LT(h.after, thresholds::adequacy.reduced_chi2.value) << h.record;
 }
-TEST(LawSearchFull, FindsOscillation) {
-  const sim::Effect law = torque_law("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
-  const LawSearch s = Case({1, 2, 3}, &law, [](int, playin::PlaybackRun&) {}).search();
+TEST(UserModelSearchFull, FindsOscillation) {
+  const sim::Effect user_model =
+      torque_user_model("0.02 * clamp((t - 3) / 0.05, 0, 1) * sin(2 * pi * 0.7 * t)");
+  const UserModelSearch s = Case({1, 2, 3}, &user_model, [](int, playin::PlaybackRun&) {}).search();
   ASSERT_NE(s.found(), nullptr);
-  EXPECT_EQ(s.found()->law.family, "periodic");
+  EXPECT_EQ(s.found()->user_model.family, "periodic");
   for (const auto& p : s.found()->judgement.fit.parameters)
     if (p.name == "f") {
       EXPECT_NEAR(p.value, 0.7, 4 * p.error);
     }
 }
 /// A torque that differs between events follows no law.
-TEST(LawSearchFull, RejectsRandomTorque) {
+TEST(UserModelSearchFull, RejectsRandomTorque) {
   Case c({1, 2, 3}, nullptr, [](int event, playin::PlaybackRun& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
     std::normal_distribution<double> normal;
@@ -270,10 +276,10 @@ TEST(LawSearchFull, RejectsRandomTorque) {
   });
   ASSERT_GT(c.base.reduced_chi2(), 2);
   ASSERT_LT(c.torque.reduced_chi2(), thresholds::adequacy.reduced_chi2.value);
-  const LawSearch s = c.search();
+  const UserModelSearch s = c.search();
   EXPECT_GT(s.ranked.size(), 60u);
   EXPECT_EQ(s.found(), nullptr) << s.found()->words;
-  EXPECT_EQ(law_sentence(s, 30), "");
+  EXPECT_EQ(user_model_sentence(s, 30), "");
 }
 
 }  // namespace

@@ -11,81 +11,81 @@ namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr const char* kInferred = "#7d3c98";
-constexpr const char* kLaw = "#d68910";
+constexpr const char* kUserModel = "#d68910";
 
-std::string input_name(const user_model_search::LawSearch& s) {
+std::string input_name(const user_model_search::UserModelSearch& s) {
   return s.kind == fit::InputKind::torque ? "inferred torque" : "inferred field voltage";
 }
 /// Returns the user-defined model whose time series is plotted: the one found, or null.
-const user_model_search::LawFinding* drawn(const Diagnosis& d) { return d.laws.found(); }
+const user_model_search::UserModelFinding* drawn(const Diagnosis& d) { return d.user_models.found(); }
 
 void add_scatters(const Diagnosis& d, report::Page& page) {
-  const user_model_search::LawSearch& s = d.laws;
-  const user_model_search::LawRegression regression(s.traces);
+  const user_model_search::UserModelSearch& s = d.user_models;
+  const user_model_search::UserModelRegression regression(s.traces);
   std::vector<report::Scatter> all;
-  for (std::size_t signal = 0; signal < user_model_search::kLawSignals.size(); ++signal) {
+  for (std::size_t signal = 0; signal < user_model_search::kUserModelSignals.size(); ++signal) {
     user_model_search::TimeSeries time_series;
     for (const auto& t : s.traces) time_series.push_back(t.signal[signal]);
     const auto x = regression.by_event(regression.at_knots(time_series));
-    report::Scatter plot{std::string(user_model_search::kLawSignals[signal].expression),
-                         std::string(user_model_search::kLawSignals[signal].expression) + " [pu]",
+    report::Scatter plot{std::string(user_model_search::kUserModelSignals[signal].expression),
+                         std::string(user_model_search::kUserModelSignals[signal].expression) + " [pu]",
                          input_name(s) + " [pu]",
                          {{"inferred", kInferred, {}}}};
-    if (drawn(d)) plot.groups.push_back({"law", kLaw, {}});
+    if (drawn(d)) plot.groups.push_back({"law", kUserModel, {}});
     for (std::size_t e = 0; e < s.traces.size(); ++e)
       for (std::size_t k = 0; k < x[e].size(); ++k) {
         plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
-        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->law.time_series[e][k]);
+        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->user_model.time_series[e][k]);
       }
     all.push_back(std::move(plot));
   }
   page.scatters(all);
 }
 void add_time_series(const Diagnosis& d, report::Page& page) {
-  const user_model_search::LawSearch& s = d.laws;
+  const user_model_search::UserModelSearch& s = d.user_models;
   for (std::size_t e = 0; e < s.traces.size(); ++e) {
     const std::string& name = d.events[e].record.name;
     report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " law", s.traces[e].knots, {}, {}};
     c.series.push_back({"inferred", kInferred, false, s.traces[e].input});
-    if (drawn(d)) c.series.push_back({"law", kLaw, false, drawn(d)->law.time_series[e]});
+    if (drawn(d)) c.series.push_back({"law", kUserModel, false, drawn(d)->user_model.time_series[e]});
     page.curves(c);
   }
 }
-std::string unseen_words(const user_model_search::LawFinding& f) {
+std::string unseen_words(const user_model_search::UserModelFinding& f) {
   double worst = 0;
   for (const auto& u : f.judgement.held_out) worst = std::max(worst, std::sqrt(u.after));
   return f.judgement.held_out.empty() ? "–" : fmt::format("≤ {:.2f} ×", worst);
 }
 
-nlohmann::json finding_json(const user_model_search::LawFinding& f) {
+nlohmann::json finding_json(const user_model_search::UserModelFinding& f) {
   const hypothesis::Judgement& j = f.judgement;
-  nlohmann::json law = {{"name", j.hypothesis.name},
-                        {"words", f.words},
-                        {"family", f.law.family},
-                        {"signal", f.law.signal},
-                        {"accepted", j.accepted},
-                        {"why_not", j.why_not},
-                        {"evidence", j.gain},
-                        {"normalised_rms", std::sqrt(j.fit.reduced_chi2())},
-                        {"explained_of_input", f.law.explained},
-                        {"law_file", f.toml},
-                        {"parameters", nlohmann::json::array()},
-                        {"unseen", nlohmann::json::array()}};
+  nlohmann::json user_model = {{"name", j.hypothesis.name},
+                               {"words", f.words},
+                               {"family", f.user_model.family},
+                               {"signal", f.user_model.signal},
+                               {"accepted", j.accepted},
+                               {"why_not", j.why_not},
+                               {"evidence", j.gain},
+                               {"normalised_rms", std::sqrt(j.fit.reduced_chi2())},
+                               {"explained_of_input", f.user_model.explained},
+                               {"law_file", f.toml},
+                               {"parameters", nlohmann::json::array()},
+                               {"unseen", nlohmann::json::array()}};
   for (const auto& p : j.fit.parameters)
     if (p.where.id.block == j.hypothesis.free.front().id.block)
-      law["parameters"].push_back(
+      user_model["parameters"].push_back(
           {{"name", p.name}, {"unit", p.unit}, {"value", p.value}, {"low_95", p.low}, {"high_95", p.high}});
   for (const auto& u : j.held_out)
-    law["unseen"].push_back({{"record", u.record},
-                             {"normalised_rms_before", std::sqrt(u.before)},
-                             {"normalised_rms_after", std::sqrt(u.after)}});
-  return law;
+    user_model["unseen"].push_back({{"record", u.record},
+                                    {"normalised_rms_before", std::sqrt(u.before)},
+                                    {"normalised_rms_after", std::sqrt(u.after)}});
+  return user_model;
 }
 
 }  // namespace
 
-void laws_on_page(const Diagnosis& d, report::Page& page) {
-  const user_model_search::LawSearch& s = d.laws;
+void user_models_on_page(const Diagnosis& d, report::Page& page) {
+  const user_model_search::UserModelSearch& s = d.user_models;
   if (s.kind == fit::InputKind::none) return;
   page.section("User-defined model");
   page.text(
@@ -95,7 +95,7 @@ void laws_on_page(const Diagnosis& d, report::Page& page) {
                   "time or by the voltage). The leading {} were fitted to the records. A user-defined "
                   "model is accepted only if it predicts held-out events.",
                   input_name(s), s.ranked.size(), s.findings.size()));
-  if (const user_model_search::LawFinding* f = s.found())
+  if (const user_model_search::UserModelFinding* f = s.found())
     page.note(fmt::format("Found: {}.", f->words));
   else
     page.note("No user-defined model predicts held-out events; none is accepted.");
@@ -106,15 +106,15 @@ void laws_on_page(const Diagnosis& d, report::Page& page) {
                        "judgement", "description"},
                       {}};
   for (const auto& f : s.findings)
-    table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.law.explained),
+    table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.user_model.explained),
                           fmt::format("{:.1f}", f.judgement.gain),
                           fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.reduced_chi2())), unseen_words(f),
                           f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words});
   if (!table.rows.empty()) page.table(table);
 }
 
-nlohmann::json laws_json(const Diagnosis& d) {
-  const user_model_search::LawSearch& s = d.laws;
+nlohmann::json user_models_json(const Diagnosis& d) {
+  const user_model_search::UserModelSearch& s = d.user_models;
   if (s.kind == fit::InputKind::none) return nullptr;
   nlohmann::json j = {{"input", s.kind == fit::InputKind::torque ? "torque" : "field_voltage"},
                       {"found", s.found() ? nlohmann::json(s.found()->judgement.hypothesis.name) : nullptr},
@@ -125,8 +125,8 @@ nlohmann::json laws_json(const Diagnosis& d) {
   return j;
 }
 
-std::string laws_text(const Diagnosis& d) {
-  const user_model_search::LawSearch& s = d.laws;
+std::string user_models_text(const Diagnosis& d) {
+  const user_model_search::UserModelSearch& s = d.user_models;
   if (s.kind == fit::InputKind::none) return {};
   std::string text =
       fmt::format("\nUser-defined models for the {} ({} ranked; evidence, reduced chi-square, judgement):\n",

@@ -10,9 +10,9 @@ namespace swingbank::validate::diagnose {
 
 /// Adds plots of the inferred input over time and against every signal, and a table of the models tried. Does
 /// nothing if there was no search.
-void laws_on_page(const Diagnosis& d, report::Page& page);
+void user_models_on_page(const Diagnosis& d, report::Page& page);
 /// Returns null if there was no search.
-nlohmann::json laws_json(const Diagnosis& d);
-std::string laws_text(const Diagnosis& d);
+nlohmann::json user_models_json(const Diagnosis& d);
+std::string user_models_text(const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose

@@ -229,7 +229,7 @@ std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
 std::string side_sentence(const Diagnosis& d) {
   const double t = d.torque.reduced_chi2(), f = d.field.reduced_chi2();
   const bool explains = std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
-  const bool both = std::max(t, f) <= thresholds::laws.as_much * std::min(t, f);
+  const bool both = std::max(t, f) <= thresholds::user_models.as_much * std::min(t, f);
   return fmt::format(
       "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
       "vary freely).",
@@ -296,10 +296,10 @@ void settle(const user_model_search::Unexplained& judged, const event::Progress&
       "{:.2f}). An inferred {} gives {:.2f}; the report shows its time series.{}",
       r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
-  d.laws = user_model_search::search_laws(judged, progress);
-  if (d.laws.found()) {
-    d.side = d.laws.found()->judgement.hypothesis.side;
-    d.sentence = user_model_search::law_sentence(d.laws, r.size());
+  d.user_models = user_model_search::search_user_models(judged, progress);
+  if (d.user_models.found()) {
+    d.side = d.user_models.found()->judgement.hypothesis.side;
+    d.sentence = user_model_search::user_model_sentence(d.user_models, r.size());
   }
 }
 

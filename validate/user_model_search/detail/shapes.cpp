@@ -33,13 +33,13 @@ std::vector<double> frequencies(double length) {
   for (double f = 0.08; f <= 3.0; f += std::max(0.02, 0.25 / length)) all.push_back(f);
   return all;
 }
-LawParameter time(const std::string& name, const std::string& meaning) {
+UserModelParameter time(const std::string& name, const std::string& meaning) {
   return {name, "s", 0, 1e-3, 1000, false, meaning};
 }
 const std::string kBegins = fmt::format("clamp(tau / {:g}, 0, 1)", kRise);
 const std::vector<double> kLengths = {0.2, 0.3, 0.5, 0.75, 1, 1.5, 2, 3, 4, 6, 8, 10};
 
-void add_transients(std::vector<LawShape>& all) {
+void add_transients(std::vector<UserModelShape>& all) {
   all.push_back({.family = "step",
                  .time_series = [](double tau, double) { return edge(tau); },
                  .value = kBegins,
@@ -64,17 +64,17 @@ void add_transients(std::vector<LawShape>& all) {
        .value = kBegins + " * exp(-max(tau, 0) / T)",
        .words = "a pulse of {A} that begins {begin} and decays with {T}"});
 }
-void add_oscillations(std::vector<LawShape>& all, const std::vector<double>& grid) {
-  const LawParameter f{"f", "Hz", 0, 0.01, 30, false, "frequency"};
+void add_oscillations(std::vector<UserModelShape>& all, const std::vector<double>& grid) {
+  const UserModelParameter f{"f", "Hz", 0, 0.01, 30, false, "frequency"};
   all.push_back(
-      {.kind = LawShape::Kind::sine,
+      {.kind = UserModelShape::Kind::sine,
        .family = "periodic",
        .time_series = [](double tau, double) { return edge(tau); },
        .grid = grid,
        .second = f,
        .value = kBegins + " * sin(2 * pi * f * turned + phase)",
        .words = "an oscillation of amplitude {A} at {f} that begins {begin} (phase {phase} at {centre})"});
-  all.push_back({.kind = LawShape::Kind::wave,
+  all.push_back({.kind = UserModelShape::Kind::wave,
                  .family = "periodic, sawtooth",
                  .time_series = [](double tau, double b) { return edge(tau) * sawtooth(b * tau); },
                  .grid = grid,
@@ -82,7 +82,7 @@ void add_oscillations(std::vector<LawShape>& all, const std::vector<double>& gri
                  .value = kBegins + " * wave",
                  .signals = "turn = \"pi * f * tau\"\nwave = \"" + sawtooth_series() + "\"\n",
                  .words = "a sawtooth of amplitude {A} at {f} that begins {begin}"});
-  all.push_back({.kind = LawShape::Kind::wave,
+  all.push_back({.kind = UserModelShape::Kind::wave,
                  .family = "periodic, square",
                  .time_series = [](double tau, double b) { return edge(tau) * square(b * tau); },
                  .grid = grid,
@@ -94,8 +94,8 @@ void add_oscillations(std::vector<LawShape>& all, const std::vector<double>& gri
 
 }  // namespace
 
-std::vector<LawShape> law_shapes(double length) {
-  std::vector<LawShape> all;
+std::vector<UserModelShape> user_model_shapes(double length) {
+  std::vector<UserModelShape> all;
   add_transients(all);
   add_oscillations(all, frequencies(length));
   return all;

@@ -9,20 +9,20 @@
 namespace swingbank::validate::user_model_search {
 
 /// A shape of a user-defined model of time.
-struct LawShape {
+struct UserModelShape {
   enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
   Kind kind = Kind::once;
   std::string family;
   /// Output [-] at time tau since the start; b: second parameter.
   std::function<double(double tau, double b)> time_series;
   std::vector<double> grid = {};  ///< values of b; empty: no second parameter
-  LawParameter second = {};
+  UserModelParameter second = {};
   std::string value;         ///< expression of the TOML file; tau is the time since the start
   std::string signals = "";  ///< further lines of [signals]
   std::string words;         ///< description with {A}, {begin} and the second parameter's name
 };
 
 /// Returns all shapes. `length`: duration of the inferred input [s].
-std::vector<LawShape> law_shapes(double length);
+std::vector<UserModelShape> user_model_shapes(double length);
 
 }  // namespace swingbank::validate::user_model_search

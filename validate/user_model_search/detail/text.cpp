@@ -24,7 +24,7 @@ std::string in_quotes(const std::string& text) {
 std::string quantity(double value, const std::string& unit) {
   return unit == "-" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
 }
-std::string value_words(const LawParameter& p, const std::vector<fit::FittedParameter>& fitted) {
+std::string value_words(const UserModelParameter& p, const std::vector<fit::FittedParameter>& fitted) {
   const auto f = std::ranges::find(fitted, p.name, &fit::FittedParameter::name);
   std::string text = quantity(p.value, p.unit);
   if (f != fitted.end() && std::isfinite(f->low) && std::isfinite(f->high))
@@ -34,9 +34,10 @@ std::string value_words(const LawParameter& p, const std::vector<fit::FittedPara
 
 }  // namespace
 
-std::string law_name(const LawCandidate& law) {
-  std::string name = law.kind == fit::InputKind::torque ? "TORQUE" : "FIELD";
-  std::string rest = law.family + " " + (law.signal.starts_with("time ") ? "triggered" : law.signal);
+std::string user_model_name(const UserModelCandidate& user_model) {
+  std::string name = user_model.kind == fit::InputKind::torque ? "TORQUE" : "FIELD";
+  std::string rest =
+      user_model.family + " " + (user_model.signal.starts_with("time ") ? "triggered" : user_model.signal);
   bool gap = true;
   for (const char c : rest) {
     if (!std::isalnum(static_cast<unsigned char>(c))) {
@@ -50,14 +51,18 @@ std::string law_name(const LawCandidate& law) {
   return name;
 }
 
-std::string law_toml(const LawCandidate& law, const std::string& source) {
+std::string user_model_toml(const UserModelCandidate& user_model, const std::string& source) {
   std::string text = fmt::format(
       "name = \"{}\"\ntitle = {}\nsource = {}\noutput = \"{}\"\naction = \"add\"\nvalue = {}\n\n{}\n",
-      law_name(law), in_quotes(fmt::format("{} model of {}: {}", law.family, law.signal, law_words(law))),
-      in_quotes(source), law.kind == fit::InputKind::torque ? "Tm" : "Efd", in_quotes(law.value), law.body);
-  if (!law.requirements.empty()) text.insert(text.find("value = "), "require = [" + law.requirements + "]\n");
+      user_model_name(user_model),
+      in_quotes(fmt::format("{} model of {}: {}", user_model.family, user_model.signal,
+                            user_model_words(user_model))),
+      in_quotes(source), user_model.kind == fit::InputKind::torque ? "Tm" : "Efd",
+      in_quotes(user_model.value), user_model.body);
+  if (!user_model.requirements.empty())
+    text.insert(text.find("value = "), "require = [" + user_model.requirements + "]\n");
   text += "[parameters]\n";
-  for (const auto& p : law.parameters)
+  for (const auto& p : user_model.parameters)
     text += fmt::format(
         "{} = {{ unit = \"{}\", standard = {:.17g}, low = {:.17g}, high = {:.17g},{} meaning = {} }}\n",
         p.name, p.unit, p.value, std::min(p.low, p.value), std::max(p.high, p.value),
@@ -65,14 +70,15 @@ std::string law_toml(const LawCandidate& law, const std::string& source) {
   return text;
 }
 
-std::string law_words(const LawCandidate& law, const std::vector<fit::FittedParameter>& fitted) {
-  std::string text = law.words;
-  for (const auto& p : law.parameters) {
+std::string user_model_words(const UserModelCandidate& user_model,
+                             const std::vector<fit::FittedParameter>& fitted) {
+  std::string text = user_model.words;
+  for (const auto& p : user_model.parameters) {
     const std::string place = "{" + p.name + "}";
     for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
       text.replace(at, place.size(), value_words(p, fitted));
   }
-  return fmt::format("a {} {}{}", kind_word(law.kind),
+  return fmt::format("a {} {}{}", kind_word(user_model.kind),
                      text.starts_with("a ") || text.starts_with("an ") ? "in the form of " : "of ", text);
 }
 

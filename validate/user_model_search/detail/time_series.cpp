@@ -5,7 +5,8 @@ namespace {
 
 class Runner {
  public:
-  Runner(const sim::Effect& effect, const std::vector<double>& p, fit::InputKind kind, const LawTrace& trace)
+  Runner(const sim::Effect& effect, const std::vector<double>& p, fit::InputKind kind,
+         const UserModelTrace& trace)
       : effect_(effect),
         kind_(kind),
         trace_(trace),
@@ -17,7 +18,7 @@ class Runner {
     rest.V = kRated;
     rest.P = kind == fit::InputKind::torque ? trace.rest : 0.0;
     rest.t = -1;
-    effect.get<double>().control.steady(effect.law.get(), p.data(), c_.data(), rest, x_.data());
+    effect.get<double>().control.steady(effect.user_model.get(), p.data(), c_.data(), rest, x_.data());
   }
   std::vector<double> run() {
     std::vector<double> time_series;
@@ -51,7 +52,7 @@ class Runner {
     double sim::Signals<double>::*out =
         kind_ == fit::InputKind::torque ? &sim::Signals<double>::Tm : &sim::Signals<double>::Efd;
     const double before = s.*out;
-    effect_.get<double>().control.evaluate(effect_.law.get(), c_.data(), x.data(), s,
+    effect_.get<double>().control.evaluate(effect_.user_model.get(), c_.data(), x.data(), s,
                                            dx ? dx : unused.data());
     return s.*out - before;
   }
@@ -70,16 +71,16 @@ class Runner {
 
   const sim::Effect& effect_;
   fit::InputKind kind_;
-  const LawTrace& trace_;
+  const UserModelTrace& trace_;
   std::vector<double> c_, x_;
 };
 
 }  // namespace
 
-TimeSeries law_time_series(const sim::Effect& effect, const std::vector<double>& parameters,
-                           fit::InputKind kind, const std::vector<LawTrace>& traces) {
+TimeSeries user_model_time_series(const sim::Effect& effect, const std::vector<double>& parameters,
+                                  fit::InputKind kind, const std::vector<UserModelTrace>& traces) {
   TimeSeries all;
-  for (const LawTrace& trace : traces) all.push_back(Runner(effect, parameters, kind, trace).run());
+  for (const UserModelTrace& trace : traces) all.push_back(Runner(effect, parameters, kind, trace).run());
   return all;
 }
 

@@ -11,7 +11,7 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-using Kind = LawShape::Kind;
+using Kind = UserModelShape::Kind;
 
 /// Origin and scale of a candidate.
 struct Clock {
@@ -25,7 +25,7 @@ void replace(std::string& text, const std::string& what, const std::string& with
 
 class Timed {
  public:
-  Timed(fit::InputKind kind, const LawRegression& regression, double level)
+  Timed(fit::InputKind kind, const UserModelRegression& regression, double level)
       : kind_(kind), regression_(regression), level_(level) {
     for (const auto& e : regression.traces()) {
       first_ = std::min(first_, e.begin);
@@ -33,14 +33,14 @@ class Timed {
     }
   }
 
-  std::vector<LawCandidate> run() const {
-    std::vector<LawCandidate> all;
-    for (const LawShape& shape : law_shapes(last_ - first_))
+  std::vector<UserModelCandidate> run() const {
+    std::vector<UserModelCandidate> all;
+    for (const UserModelShape& shape : user_model_shapes(last_ - first_))
       for (const bool triggered : {true, false})
         for (const bool scaled : {false, true}) {
           if ((triggered && level_ <= 0) || (scaled && shape.kind != Kind::once)) continue;
-          if (auto law = best_of(shape, {triggered, scaled}); !law.value.empty())
-            all.push_back(std::move(law));
+          if (auto user_model = best_of(shape, {triggered, scaled}); !user_model.value.empty())
+            all.push_back(std::move(user_model));
         }
     return all;
   }
@@ -48,12 +48,12 @@ class Timed {
  private:
   struct At {
     double begin, b;
-    LawRegression::Result result = {};
+    UserModelRegression::Result result = {};
   };
-  [[nodiscard]] LawRegression::Result result_of(const LawShape& shape, const Clock& clock, double begin,
-                                                double b) const {
+  [[nodiscard]] UserModelRegression::Result result_of(const UserModelShape& shape, const Clock& clock,
+                                                      double begin, double b) const {
     const auto column = [&](const auto& time_series) {
-      return regression_.at_knots_of([&](const LawTrace& e, double t) {
+      return regression_.at_knots_of([&](const UserModelTrace& e, double t) {
         const double tau = t - begin - (clock.triggered ? e.trigger : 0.0);
         if (!(tau > 0)) return 0.0;  // also if the event has no trigger (NaN)
         return (clock.scaled ? e.rest : 1.0) * time_series(tau);
@@ -71,7 +71,7 @@ class Timed {
     return regression_.fit(columns, shape.grid.empty() ? 1 : 2);
   }
 
-  [[nodiscard]] LawCandidate best_of(const LawShape& shape, const Clock& clock) const {
+  [[nodiscard]] UserModelCandidate best_of(const UserModelShape& shape, const Clock& clock) const {
     const double from = clock.triggered ? 0.0 : first_, to = clock.triggered ? last_ - first_ : last_;
     // A wave may have started up to one period before the inferred input.
     const auto least = [&](double b) {
@@ -96,7 +96,7 @@ class Timed {
     if (best.result.factors.size() == 0 || best.result.factors.isZero()) return {};
     return candidate(shape, clock, best, best.begin <= from && shape.kind == Kind::sine);
   }
-  void consider(const LawShape& shape, const Clock& clock, double begin, double b, At& best) const {
+  void consider(const UserModelShape& shape, const Clock& clock, double begin, double b, At& best) const {
     auto result = result_of(shape, clock, begin, b);
     if (best.result.factors.size() > 0 && result.score >= best.result.score) return;
     best = {begin, b, std::move(result)};
@@ -104,63 +104,67 @@ class Timed {
 
   /// Returns the candidate. `always`: it is active from the start of the inferred input, so the start time is
   /// no parameter.
-  [[nodiscard]] LawCandidate candidate(const LawShape& shape, const Clock& clock, const At& at,
-                                       bool always) const {
-    LawCandidate law;
-    law.kind = kind_;
-    law.family = shape.family + (clock.scaled ? ", in proportion" : "");
-    law.signal = clock.triggered ? "time since the voltage moved" : "time";
-    law.parameters.push_back({"A", clock.scaled ? "-" : "pu",
-                              shape.kind == Kind::sine ? at.result.factors.norm() : at.result.factors[0], -20,
-                              20, true,
-                              clock.scaled ? "amplitude relative to the steady-state value" : "amplitude"});
+  [[nodiscard]] UserModelCandidate candidate(const UserModelShape& shape, const Clock& clock, const At& at,
+                                             bool always) const {
+    UserModelCandidate user_model;
+    user_model.kind = kind_;
+    user_model.family = shape.family + (clock.scaled ? ", in proportion" : "");
+    user_model.signal = clock.triggered ? "time since the voltage moved" : "time";
+    user_model.parameters.push_back(
+        {"A", clock.scaled ? "-" : "pu",
+         shape.kind == Kind::sine ? at.result.factors.norm() : at.result.factors[0], -20, 20, true,
+         clock.scaled ? "amplitude relative to the steady-state value" : "amplitude"});
     const std::string now = clock.triggered ? "since" : "t";
-    law.words = shape.words;
-    law.body = fmt::format("[signals]\ntau = \"{} - {}\"\n", now, add_begin(clock, at, always, law));
+    user_model.words = shape.words;
+    user_model.body =
+        fmt::format("[signals]\ntau = \"{} - {}\"\n", now, add_begin(clock, at, always, user_model));
     if (!shape.grid.empty()) {
-      law.parameters.push_back(shape.second);
-      law.parameters.back().value = at.b;
+      user_model.parameters.push_back(shape.second);
+      user_model.parameters.back().value = at.b;
     }
-    if (shape.kind == Kind::sine) add_phase(clock, at, now, law);
-    law.body += shape.signals;
+    if (shape.kind == Kind::sine) add_phase(clock, at, now, user_model);
+    user_model.body += shape.signals;
     const bool torque = kind_ == fit::InputKind::torque;
-    law.value = fmt::format("A * {}{}", clock.scaled ? (torque ? "P0 * " : "Efd0 * ") : "", shape.value);
-    if (clock.triggered) law.body += trigger();
+    user_model.value =
+        fmt::format("A * {}{}", clock.scaled ? (torque ? "P0 * " : "Efd0 * ") : "", shape.value);
+    if (clock.triggered) user_model.body += trigger();
     if (clock.scaled)
-      replace(law.words, "{A}",
+      replace(user_model.words, "{A}",
               fmt::format("{{A}} × the {} before the event", torque ? "active power" : "field voltage"));
-    law.explained = at.result.explained;
-    law.score = at.result.score;
-    law.time_series = regression_.by_event(at.result.time_series);
-    return law;
+    user_model.explained = at.result.explained;
+    user_model.score = at.result.score;
+    user_model.time_series = regression_.by_event(at.result.time_series);
+    return user_model;
   }
   /// Adds the start time as a parameter, or as a constant if it is not determined.
-  std::string add_begin(const Clock& clock, const At& at, bool always, LawCandidate& law) const {
+  std::string add_begin(const Clock& clock, const At& at, bool always, UserModelCandidate& user_model) const {
     const std::string level = fmt::format("the voltage leaves a band of ± {:.3g} pu", level_);
     if (always) {
-      replace(law.words, "{begin}", clock.triggered ? "when " + level : "before the event");
+      replace(user_model.words, "{begin}", clock.triggered ? "when " + level : "before the event");
       return fmt::format("{:.4g}", clock.triggered ? 0.0 : first_ - 0.05);
     }
-    replace(law.words, "{begin}",
+    replace(user_model.words, "{begin}",
             clock.triggered ? "{delay} after " + level : std::string("at {start} of the record"));
     if (clock.triggered)  // a delay of zero could not change on a logarithmic scale
-      law.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
-                                "delay of the start after the voltage leaves its band"});
+      user_model.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
+                                       "delay of the start after the voltage leaves its band"});
     else
-      law.parameters.push_back({"start", "s", at.begin, -1e5, 1e5, false, "start time in the record"});
-    return law.parameters.back().name;
+      user_model.parameters.push_back({"start", "s", at.begin, -1e5, 1e5, false, "start time in the record"});
+    return user_model.parameters.back().name;
   }
   /// Adds the phase at the centre of the records, where it is nearly independent of the frequency.
-  void add_phase(const Clock& clock, const At& at, const std::string& now, LawCandidate& law) const {
+  void add_phase(const Clock& clock, const At& at, const std::string& now,
+                 UserModelCandidate& user_model) const {
     const double middle =
         std::round((clock.triggered ? (last_ - first_) / 2 : (first_ + last_) / 2) * 10) / 10;
     double phase =
         std::atan2(at.result.factors[1], at.result.factors[0]) + constants::turn * at.b * (middle - at.begin);
     phase -= constants::turn * std::floor(phase / constants::turn);
     if (phase < 0.3) phase += constants::turn;  // leaves room below on a logarithmic scale
-    law.parameters.push_back({"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
-    law.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
-    replace(law.words, "{centre}",
+    user_model.parameters.push_back(
+        {"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
+    user_model.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
+    replace(user_model.words, "{centre}",
             fmt::format("{:g} s {}", middle, clock.triggered ? "after that" : "of the record"));
   }
   [[nodiscard]] std::string trigger() const {
@@ -172,15 +176,15 @@ class Timed {
   }
 
   fit::InputKind kind_;
-  const LawRegression& regression_;
+  const UserModelRegression& regression_;
   double level_;
   double first_ = 1e300, last_ = -1e300;
 };
 
 }  // namespace
 
-std::vector<LawCandidate> timed_candidates(fit::InputKind kind, const LawRegression& regression,
-                                           double level) {
+std::vector<UserModelCandidate> timed_candidates(fit::InputKind kind, const UserModelRegression& regression,
+                                                 double level) {
   return Timed(kind, regression, level).run();
 }
 

@@ -7,7 +7,7 @@ namespace swingbank::validate::user_model_search {
 
 /// Returns the best candidate of each shape and clock. `level`: see trigger_level(); 0: no candidates are
 /// triggered by the voltage.
-std::vector<LawCandidate> timed_candidates(fit::InputKind kind, const LawRegression& regression,
-                                           double level);
+std::vector<UserModelCandidate> timed_candidates(fit::InputKind kind, const UserModelRegression& regression,
+                                                 double level);
 
 }  // namespace swingbank::validate::user_model_search

@@ -31,9 +31,10 @@ playin::Response play_event(const sim::plant::PlantUnderTest& tested, const even
 
 }  // namespace
 
-std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
-                                 const reduced::FreeInput& input, double level) {
-  std::vector<LawTrace> all;
+std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
+                                              const event::WhitenedEvents& events,
+                                              const reduced::FreeInput& input, double level) {
+  std::vector<UserModelTrace> all;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const event::FitEvent& e = events[i];
     const fit::EventState& state = input.fit.events[i].state;
@@ -42,7 +43,7 @@ std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::Wh
     // The signals are those of the instruments, as in the fit.
     const playin::Response r = play_event({input.fit.plant, model.conventions}, e, state);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
-    LawTrace t;
+    UserModelTrace t;
     t.t = e.record.t;
     t.knots = state.input(input.kind).t;
     t.input = state.input(input.kind).value;

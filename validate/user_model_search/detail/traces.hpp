@@ -7,7 +7,8 @@ namespace swingbank::validate::user_model_search {
 
 /// Returns one trace per event. The signals are those of the playback model with the inferred input. `level`:
 /// see trigger_level().
-std::vector<LawTrace> law_traces(const plant::PlantModel& model, const event::WhitenedEvents& events,
-                                 const reduced::FreeInput& input, double level);
+std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
+                                              const event::WhitenedEvents& events,
+                                              const reduced::FreeInput& input, double level);
 
 }  // namespace swingbank::validate::user_model_search

@@ -97,7 +97,7 @@ void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw) {
       block.p[i] = std::clamp(middle[i] * factor, record.low, record.high);
     }
     Problems problems;
-    effect.check(effect.law.get(), block.p.data(), "blind case", problems);
+    effect.check(effect.user_model.get(), block.p.data(), "blind case", problems);
     if (problems.empty() && effect.unphysical(block.p.data()).empty()) return;
   }
   block.p = middle;
@@ -116,7 +116,7 @@ bool mislead(sim::plant::Block& machine, std::pair<double, double> wrong, BlindD
           inside && machine.p[k] >= effect.parameters[k].low && machine.p[k] <= effect.parameters[k].high;
     }
     Problems problems;
-    effect.check(effect.law.get(), machine.p.data(), "blind case", problems);
+    effect.check(effect.user_model.get(), machine.p.data(), "blind case", problems);
     if (inside && problems.empty() && effect.unphysical(machine.p.data()).empty()) return true;
   }
   return false;
