@@ -32,7 +32,7 @@ struct EngineOf final : Engine {
            const std::function<void(const Job&, const Trajectory&)>& done) override {
     lanes.run(next, done);
   }
-  Lanes<T> lanes;
+  BatchKernel<T> lanes;
 };
 }  // namespace detail
 

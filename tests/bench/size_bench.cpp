@@ -61,7 +61,7 @@ void reference_run(const grid::Grid& grid, double seconds) {
   if (run.outcome != Outcome::stable) std::exit(2);
 }
 
-void lanes_run(const grid::Grid& grid, double seconds) {
+void batch_run(const grid::Grid& grid, double seconds) {
   batch::BatchOptions options;
   options.t_end = seconds;
   options.plants = {0};
@@ -99,20 +99,20 @@ int main(int argc, char** argv) {
                            Conventions::psse());
   };
   int before = 0;
-  Cost made_before, reference_before, lanes_before;
+  Cost made_before, reference_before, batch_before;
   for (const int tiles : {1, 5, 20, 40, 200}) {
     const Cost made = cost([&] { (void)make(tiles); });
     const auto beside = [&](const Cost& whole) {
       return Cost{whole.seconds - made.seconds, whole.megabytes};
     };
     const Cost reference = beside(cost([&] { reference_run(make(tiles), seconds); }));
-    const Cost lanes = beside(cost([&] { lanes_run(make(tiles), seconds); }));
+    const Cost lanes = beside(cost([&] { batch_run(make(tiles), seconds); }));
     const double grown = before > 0 ? static_cast<double>(tiles) / before : 1.0;
     std::printf("%d buses, %d machines; runs of %g s\n", 50 * tiles, 10 * tiles, seconds);
     print("grid: network, power flow, plants", made, made_before, grown);
     print("reference, one event, beside the grid", reference, reference_before, grown);
-    print(("lanes, " + std::to_string(kEvents) + " events, beside the grid").c_str(), lanes, lanes_before,
+    print(("lanes, " + std::to_string(kEvents) + " events, beside the grid").c_str(), lanes, batch_before,
           grown);
-    made_before = made, reference_before = reference, lanes_before = lanes, before = tiles;
+    made_before = made, reference_before = reference, batch_before = lanes, before = tiles;
   }
 }

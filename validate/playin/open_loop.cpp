@@ -52,9 +52,9 @@ struct Transformed {
 constexpr Transformed kFormula;
 
 /// Controls of up to eight plants in a SIMD batch.
-class BlockLanes {
+class BlockBatch {
  public:
-  BlockLanes(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
+  BlockBatch(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
              const sim::Conventions& conventions)
       : made_(made), equations_(plants.front()), ifd_(start.Ifd) {
     const double P = (start.V * std::conj(start.I)).real(), Q = (start.V * std::conj(start.I)).imag();
@@ -273,7 +273,7 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
                                                   std::numeric_limits<double>::quiet_NaN());
   for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
     const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
-    BlockLanes controls(made, some, steady_, conventions_);
+    BlockBatch controls(made, some, steady_, conventions_);
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {
       for (std::size_t lane = 0; lane < some.size(); ++lane)

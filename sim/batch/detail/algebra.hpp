@@ -9,7 +9,7 @@
 namespace swingbank::sim::batch {
 
 template <class T>
-inline const T* Lanes<T>::source_impedance(const Constants& k, int source) const {
+inline const T* BatchKernel<T>::source_impedance(const Constants& k, int source) const {
   if (source < n_) {
     const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
     return p.equations.impedance(&k.c[static_cast<std::size_t>(p.c)]);
@@ -20,14 +20,14 @@ inline const T* Lanes<T>::source_impedance(const Constants& k, int source) const
 
 /// Returns a source's impedance without its step-up transformer [pu on its own base].
 template <class T>
-inline const T* Lanes<T>::own_impedance(const Constants& k, int source) const {
+inline const T* BatchKernel<T>::own_impedance(const Constants& k, int source) const {
   if (source >= n_) return source_impedance(k, source);
   const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
   return p.equations.machine_impedance(&k.c[static_cast<std::size_t>(p.c)]);
 }
 /// Returns the ratio of a machine's step-up transformer, or nullptr if it has none.
 template <class T>
-inline const T* Lanes<T>::ratio(const Constants& k, int source) const {
+inline const T* BatchKernel<T>::ratio(const Constants& k, int source) const {
   if (source >= n_) return nullptr;
   const PlantSlice& p = plants_[static_cast<std::size_t>(source)];
   return p.equations.ratio(&k.c[static_cast<std::size_t>(p.c)]);
@@ -35,8 +35,8 @@ inline const T* Lanes<T>::ratio(const Constants& k, int source) const {
 
 /// Computes E = V + z I(V) of one nonlinear source, referred to the network.
 template <class T>
-void Lanes<T>::source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er,
-                          T& ei) {
+void BatchKernel<T>::source_emf(const Constants& k, const T* x, int source, const T& vr, const T& vi, T& er,
+                                T& ei) {
   Signals<T>& s = signals_;
   s.Vr = vr;
   s.Vi = vi;
@@ -94,7 +94,7 @@ void solve_factored(const T* a, T* b, std::size_t n) {
 /// Computes the residual of V - (E(V) - z (G + jB) E(V)) = 0 into algebra_[0 .. 2K), for K nonlinear sources.
 /// steady: currents of the linear sources.
 template <class T>
-void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
+void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   const std::size_t count = nonlinear_.size();
   T* f = algebra_.data();
   for (std::size_t j = 0; j < count; ++j) {
@@ -128,7 +128,7 @@ void Lanes<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
 /// Computes the Jacobian of that residual with respect to V into a; call after algebra_rest. dE/dV is a
 /// difference quotient, whose error only slows the convergence.
 template <class T>
-void Lanes<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
+void BatchKernel<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
   constexpr double nudge = 1e-6;  // [pu]
   const std::size_t count = nonlinear_.size(), size = 2 * count;
   T* derivative = algebra_.data() + size;  // dE/dV, four values per source
@@ -171,7 +171,8 @@ void Lanes<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
 /// Computes one Newton step into algebra_[0 .. 2K), with the stored factors of each lane, or with new ones in
 /// the lanes of `anew`. Returns the largest component of the step.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::newton_step(Constants& k, const T* x, const T* steady, unsigned anew) {
+typename BatchKernel<T>::Flat BatchKernel<T>::newton_step(Constants& k, const T* x, const T* steady,
+                                                          unsigned anew) {
   const std::size_t size = 2 * nonlinear_.size();
   T* f = algebra_.data();
   algebra_rest(k, x, steady);
@@ -218,7 +219,7 @@ struct LaneSearch {
 /// not converge. Factors are reused across searches as long as they converge fast enough: a factorisation
 /// costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
 template <class T>
-unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
+unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
   constexpr double longest = 0.3;  // [pu]: a constant-power load may cause too large first steps
   // The difference quotients still affect the derivatives after the last Newton step. Dual numbers therefore
@@ -253,7 +254,7 @@ unsigned Lanes<T>::search_voltages(Constants& k, const T* x, unsigned open) {
 
 /// Sets the initial voltage of the next search in some lanes to the same value [pu] everywhere.
 template <class T>
-void Lanes<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
+void BatchKernel<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
   const auto these = Traits::mask(lanes);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
     k.vr[i] = select(these, T(voltage), k.vr[i]);
@@ -265,7 +266,7 @@ void Lanes<T>::begin_search(Constants& k, unsigned lanes, double voltage) const 
 /// Solves for the voltages at the nonlinear sources, starting from the previous solution. If this fails it
 /// starts from zero: a prescribed current next to a fault has no other solution (decision 37).
 template <class T>
-void Lanes<T>::solve_algebra(Constants& k, const T* x) {
+void BatchKernel<T>::solve_algebra(Constants& k, const T* x) {
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
   T* steady = steady_.data();

@@ -21,7 +21,7 @@ namespace swingbank::sim::batch {
 
 /// Integrator for LaneTraits<T>::lanes events at once.
 template <class T>
-class Lanes {
+class BatchKernel {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
   static constexpr int kWaiting =
@@ -30,7 +30,7 @@ class Lanes {
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
-  Lanes(const grid::Grid& grid, const BatchOptions& options);
+  BatchKernel(const grid::Grid& grid, const BatchOptions& options);
   void run(const Next& next, const Done& done);
 
  private:
@@ -119,14 +119,16 @@ class Lanes {
   void interpolate(const T& h, const double* start, const double* tried);
   void dense(std::size_t state, const T& h, Flat* rows) const;
   /// Returns the states of the buffered samples, [pack][state][sample of the pack].
-  static Real* waiting(LaneRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
-  static const Real* waiting(const LaneRun& run) { return reinterpret_cast<const Real*>(run.waiting.data()); }
-  const T* waiting_pack(const LaneRun& run, int first, const std::vector<int>& states, T* buffer) const;
+  static Real* waiting(BatchRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
+  static const Real* waiting(const BatchRun& run) {
+    return reinterpret_cast<const Real*>(run.waiting.data());
+  }
+  const T* waiting_pack(const BatchRun& run, int first, const std::vector<int>& states, T* buffer) const;
   void evaluate_pending(int lane, int count);
-  void drop_waiting(LaneRun& run, int count);
+  void drop_waiting(BatchRun& run, int count);
   void broadcast_constants(int lane);
-  void outputs(std::size_t row_plant, const T* x, LaneRun& run, int count);
-  void repeat_last(LaneRun& run, int until) const;
+  void outputs(std::size_t row_plant, const T* x, BatchRun& run, int count);
+  void repeat_last(BatchRun& run, int until) const;
   /// Returns true if the recording of a lane computes the currents of all plants.
   [[nodiscard]] bool records_whole(int lane) const { return whole_record_ && !shared_.whole(lane); }
   T unwrapped(T angle, const T& squared, double last, int count) const;
@@ -155,7 +157,7 @@ class Lanes {
   void record_steady_start(int lane);
   int samples_until(double t) const;
   void refill(int lane, const Next& next, const Done& done);
-  void begin_record(LaneRun& run) const;
+  void begin_record(BatchRun& run) const;
   void hand_over(int lane, Outcome outcome, const Done& done);
 
   // stepping (step.hpp)
@@ -219,7 +221,7 @@ class Lanes {
   std::vector<T> rest_;          ///< initial rotor angle per plant [rad]
   std::vector<T> k_[plant::dp54::kStages];
   std::vector<T> kept_, unused_;
-  std::vector<LaneRun> lanes_;
+  std::vector<BatchRun> lanes_;
   std::vector<Due> due_;
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   std::vector<std::vector<char>> grounded_;           ///< per lane and source: 1 if its bus has V = 0

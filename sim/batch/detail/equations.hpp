@@ -5,7 +5,7 @@
 namespace swingbank::sim::batch {
 
 template <class T>
-inline void Lanes<T>::emfs(Constants& k, const T* x) {
+inline void BatchKernel<T>::emfs(Constants& k, const T* x) {
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     const PlantSlice& p = plants_[i];
     p.equations.emf(&k.c[static_cast<std::size_t>(p.c)], x + p.x, &m_[static_cast<std::size_t>(p.m)], er_[i],
@@ -17,7 +17,7 @@ inline void Lanes<T>::emfs(Constants& k, const T* x) {
 /// Computes the current of one source on its own base, row `source` of (G + jB) E, and sets the plant's
 /// inputs.
 template <class T>
-inline void Lanes<T>::current(const Constants& k, std::size_t source, Signals<T>& s) const {
+inline void BatchKernel<T>::current(const Constants& k, std::size_t source, Signals<T>& s) const {
   const T* g = &k.g[source * static_cast<std::size_t>(sources_)];
   const T* b = &k.b[source * static_cast<std::size_t>(sources_)];
   row_times(g, b, er_.data(), ei_.data(), sources_, s.Ir, s.Ii);
@@ -26,15 +26,15 @@ inline void Lanes<T>::current(const Constants& k, std::size_t source, Signals<T>
 
 /// The same if all currents have been computed; that of `plant` has index `at`.
 template <class T>
-inline void Lanes<T>::shared_current(std::size_t at, const Constants& k, std::size_t plant,
-                                     Signals<T>& s) const {
+inline void BatchKernel<T>::shared_current(std::size_t at, const Constants& k, std::size_t plant,
+                                           Signals<T>& s) const {
   s.Ir = ir_[at];
   s.Ii = ii_[at];
   inputs(k, plant, s);
 }
 
 template <class T>
-inline void Lanes<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& s) const {
+inline void BatchKernel<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& s) const {
   s.Efd = k.efd[plant];
   s.Tm = k.tm[plant];
   s.dVref = k.dvref[plant];
@@ -43,7 +43,7 @@ inline void Lanes<T>::inputs(const Constants& k, std::size_t plant, Signals<T>& 
 
 /// Evaluates the remote measurements of a plant's controls; call after voltages() of the plant.
 template <class T>
-inline void Lanes<T>::look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const {
+inline void BatchKernel<T>::look_far(const Constants& k, const FarRows& rows, Signals<T>& s) const {
   const auto row = [&](int at, T& real, T& imaginary) {
     const std::size_t first = static_cast<std::size_t>(at) * static_cast<std::size_t>(sources_);
     row_times(&k.far_g[first], &k.far_b[first], er_.data(), ei_.data(), sources_, real, imaginary);
@@ -58,7 +58,7 @@ inline void Lanes<T>::look_far(const Constants& k, const FarRows& rows, Signals<
 }
 
 template <class T>
-inline void Lanes<T>::derivative(const T* x, T* dx) {
+inline void BatchKernel<T>::derivative(const T* x, T* dx) {
   Constants& k = per_lane_;
   Signals<T>& s = signals_;
   s.t = minimum(time_, k.last_moment);

@@ -51,7 +51,7 @@ struct LaneClock {
 };
 
 /// State of one lane's run: the job, its segments and its record.
-struct LaneRun {
+struct BatchRun {
   Job job;
   std::vector<network::Segment> segments;
   std::vector<double> discontinuities;  ///< sorted times at which the plants' effects are discontinuous [s]

@@ -11,7 +11,7 @@
 namespace swingbank::sim::batch {
 
 template <class T>
-Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
+BatchKernel<T>::BatchKernel(const grid::Grid& grid, const BatchOptions& options)
     : grid_(grid), options_(options), own_(std::make_shared<OperatingState>(grid)) {
   n_ = static_cast<int>(grid.plants.size());
   sources_ = own_->network.sources();
@@ -35,7 +35,7 @@ Lanes<T>::Lanes(const grid::Grid& grid, const BatchOptions& options)
 
 /// Assigns the offsets of each source's states, coefficients and scratch.
 template <class T>
-void Lanes<T>::build_slices() {
+void BatchKernel<T>::build_slices() {
   int c = 0, m = 0;
   const std::vector<FarRows> far = far_rows(grid_, far_count_);
   const auto add_states = [&](const Effect& effect, int coefficient, bool needed) {
@@ -96,7 +96,7 @@ void Lanes<T>::build_slices() {
 }
 
 template <class T>
-void Lanes<T>::reserve() {
+void BatchKernel<T>::reserve() {
   const auto n = static_cast<std::size_t>(n_), sources = static_cast<std::size_t>(sources_),
              states = static_cast<std::size_t>(states_), free = 2 * nonlinear_.size();
   for (Constants* k : {&per_lane_, &per_sample_}) {
@@ -128,7 +128,7 @@ void Lanes<T>::reserve() {
 
 template <class T>
 template <class Value>
-void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<Value>& at) {
+void BatchKernel<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<Value>& at) {
   const PlantSlice& p = plants_[plant];
   const auto put = [lane](T& to, const Value& from) {
     Traits::set(to, lane, value_of(from));
@@ -147,7 +147,7 @@ void Lanes<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<
 }
 
 template <class T>
-void Lanes<T>::load_consumer(int lane, std::size_t load) {
+void BatchKernel<T>::load_consumer(int lane, std::size_t load) {
   const LoadSlice& l = loads_[load];
   const plant::Operating& at = state_[static_cast<std::size_t>(lane)]->loads[load];
   for (std::size_t i = 0; i < at.c.size(); ++i)
@@ -162,7 +162,7 @@ void Lanes<T>::load_consumer(int lane, std::size_t load) {
 
 /// Selects the operating point of a lane's job. Consecutive jobs mostly share one, so it is reused.
 template <class T>
-void Lanes<T>::choose_state(int lane) {
+void BatchKernel<T>::choose_state(int lane) {
   const auto& wanted = lanes_[static_cast<std::size_t>(lane)].job.grid;
   auto& state = state_[static_cast<std::size_t>(lane)];
   if (!wanted) {
@@ -176,7 +176,7 @@ void Lanes<T>::choose_state(int lane) {
 
 /// Initialises every source of the lane at its operating point, with the job's parameters.
 template <class T>
-void Lanes<T>::load(int lane) {
+void BatchKernel<T>::load(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   choose_state(lane);
   const OperatingState& state = *state_[static_cast<std::size_t>(lane)];
@@ -202,7 +202,7 @@ void Lanes<T>::load(int lane) {
 
 /// Finds the states that move in some lane; the others are constant through every step.
 template <class T>
-void Lanes<T>::find_moving() {
+void BatchKernel<T>::find_moving() {
   const auto zero = [this](int coefficient) {
     if (coefficient < 0) return true;
     const Real* v = reinterpret_cast<const Real*>(&per_lane_.c[static_cast<std::size_t>(coefficient)]);
@@ -222,7 +222,7 @@ void Lanes<T>::find_moving() {
 
 /// Determines whether some lane weights a state more than its effect's default.
 template <class T>
-void Lanes<T>::find_weights() {
+void BatchKernel<T>::find_weights() {
   weighs_ = std::ranges::any_of(weighed_, [this](const Weighed& w) {
     return any_positive(Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]) - Flat(1.0));
   });
@@ -230,7 +230,7 @@ void Lanes<T>::find_weights() {
 
 /// Loads plants with sensitivity parameters again, with the derivatives of their operating point.
 template <class T>
-void Lanes<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed) {
+void BatchKernel<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed) {
   const auto& seeds = lanes_[static_cast<std::size_t>(lane)].job.seeds;
   if (seeds.size() > static_cast<std::size_t>(Traits::sensitivities))
     throw InputError({fmt::format("{} seeds", seeds.size()), "job",
@@ -270,7 +270,7 @@ double moment_before(double switching_time) {
 
 /// Sets the matrices and setpoints of the lane's current segment and restarts the step control.
 template <class T>
-void Lanes<T>::enter_segment(int lane) {
+void BatchKernel<T>::enter_segment(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   const auto l = static_cast<std::size_t>(lane);
   const network::Segment& segment = run.segments[run.segment];
@@ -307,7 +307,7 @@ void Lanes<T>::enter_segment(int lane) {
 /// Records the samples before the first switching time without integration. The grid is in steady state until
 /// then (operating_point checks the derivatives), so these samples equal the operating point.
 template <class T>
-void Lanes<T>::record_steady_start(int lane) {
+void BatchKernel<T>::record_steady_start(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (!(run.segments[0].topology == network::Topology{}) || !run.segments[0].setpoints.empty()) return;
   if (!run.discontinuities.empty() && run.discontinuities.front() <= 0.0) return;
@@ -326,7 +326,7 @@ void Lanes<T>::record_steady_start(int lane) {
 
 /// Fills a lane's buffer with its operating point, because constant states are not interpolated.
 template <class T>
-void Lanes<T>::fill_waiting(int lane) {
+void BatchKernel<T>::fill_waiting(int lane) {
   Real* to = waiting(lanes_[static_cast<std::size_t>(lane)]);
   const Real* from = reinterpret_cast<const Real*>(y_.data()) + lane;
   for (int pack = 0; pack < kBufferSamples / kLanes; ++pack)
@@ -336,7 +336,7 @@ void Lanes<T>::fill_waiting(int lane) {
 
 /// Returns the number of samples at or before t [s].
 template <class T>
-int Lanes<T>::samples_until(double t) const {
+int BatchKernel<T>::samples_until(double t) const {
   int count = static_cast<int>(t * options_.rate) + 1;
   while (count > 0 && (count - 1) / options_.rate > t) --count;
   while (count / options_.rate <= t) ++count;
@@ -345,7 +345,7 @@ int Lanes<T>::samples_until(double t) const {
 
 /// Starts the next job in this lane. A job without switching is complete and handed over at once.
 template <class T>
-void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
+void BatchKernel<T>::refill(int lane, const Next& next, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   for (;;) {
     run.job = {};
@@ -380,7 +380,7 @@ void Lanes<T>::refill(int lane, const Next& next, const Done& done) {
 }
 
 template <class T>
-void Lanes<T>::begin_record(LaneRun& run) const {
+void BatchKernel<T>::begin_record(BatchRun& run) const {
   auto& record = run.record;
   record.rate = options_.rate;
   record.samples = samples_;
@@ -398,7 +398,7 @@ void Lanes<T>::begin_record(LaneRun& run) const {
 /// Completes a run and passes its record to `done`. A run that ended early repeats its last sample to the
 /// end.
 template <class T>
-void Lanes<T>::hand_over(int lane, Outcome outcome, const Done& done) {
+void BatchKernel<T>::hand_over(int lane, Outcome outcome, const Done& done) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   run.record.outcome = outcome;
   run.record.stopped_at = run.clock.t;

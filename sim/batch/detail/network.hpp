@@ -9,7 +9,7 @@ namespace swingbank::sim::batch {
 /// with three exceptions. With sensitivities every entry differs by lane. With nonlinear sources Newton's
 /// method reads the lanes' matrices. A single lane has nothing to share.
 template <class T>
-void Lanes<T>::share() {
+void BatchKernel<T>::share() {
   shares_ = Traits::sensitivities == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
   if (!shares_) return;
   const auto n = static_cast<std::size_t>(n_);
@@ -35,14 +35,14 @@ void Lanes<T>::share() {
 /// Returns the matrix of the unswitched grid. Its size is quadratic and its cost cubic in the number of
 /// sources. It is therefore computed only without sparse factors or after the trip of a generator.
 template <class T>
-const InternalMatrix& Lanes<T>::own_matrix() {
+const InternalMatrix& BatchKernel<T>::own_matrix() {
   if (!own_matrix_) own_matrix_ = own_->network.matrix({}, own_r_, own_x_);
   return *own_matrix_;
 }
 
 /// Sets a lane's matrix for a topology. Returns the connection status of its sources.
 template <class T>
-const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topology) {
+const Terminals& BatchKernel<T>::set_matrix(int lane, const network::Topology& topology) {
   if (shares_) return set_shared(lane, topology);
   const auto l = static_cast<std::size_t>(lane);
   const InternalMatrix& matrix = state_[l]->network.matrix(topology, lane_r_[l], lane_x_[l]);
@@ -59,7 +59,7 @@ const Terminals& Lanes<T>::set_matrix(int lane, const network::Topology& topolog
 }
 
 template <class T>
-const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topology) {
+const Terminals& BatchKernel<T>::set_shared(int lane, const network::Topology& topology) {
   const auto l = static_cast<std::size_t>(lane);
   if (const auto products = few_products(lane, topology)) {
     shared_.set(lane, *products);
@@ -79,7 +79,7 @@ const Terminals& Lanes<T>::set_shared(int lane, const network::Topology& topolog
 /// Returns the low-rank update for the lane's topology and machines, and sets terminals_. Returns none if it
 /// needs too many products, for example at another operating point, where every load changes.
 template <class T>
-std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology& topology) {
+std::optional<LowRank> BatchKernel<T>::few_products(int lane, const network::Topology& topology) {
   const auto l = static_cast<std::size_t>(lane);
   if (state_[l] != own_) return {};
   std::vector<ImpedanceChange> changes;
@@ -115,7 +115,7 @@ std::optional<LowRank> Lanes<T>::few_products(int lane, const network::Topology&
 /// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. The
 /// rows of remote measurements have their own entry k in place of M[:,k].
 template <class T>
-void Lanes<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
+void BatchKernel<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);
   for (int d = 0; d < Traits::sensitivities; ++d)
     for (std::size_t k = 0; k < plants_.size(); ++k) {

@@ -13,7 +13,7 @@ namespace swingbank::sim::batch {
 /// Computes the dense-output coefficients y0, d0 to d3 of one state, each a row of flats:
 /// y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))), theta in 0 to 1.
 template <class T>
-void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
+void BatchKernel<T>::dense(std::size_t state, const T& h, Flat* rows) const {
   const std::size_t i = state;
   T* row = reinterpret_cast<T*>(rows);
   const T delta = trial_[i] - y_[i];
@@ -30,7 +30,7 @@ void Lanes<T>::dense(std::size_t state, const T& h, Flat* rows) const {
 /// Records the samples in (start, start + tried] of every accepted lane, in several rounds if a step has more
 /// samples than the buffer.
 template <class T>
-void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
+void BatchKernel<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
   for (;;) {
     due_.clear();
     for (int l = 0; l < kLanes; ++l) {
@@ -55,7 +55,7 @@ void Lanes<T>::record_step(const T& h, unsigned accepted, const double* start, c
 /// adjacent. The buffer is ordered by pack, so that the states of a pack are written to consecutive lines.
 /// New samples that do not start at a pack boundary are split between two packs.
 template <class T>
-void Lanes<T>::interpolate(const T& h, const double* start, const double* tried) {
+void BatchKernel<T>::interpolate(const T& h, const double* start, const double* tried) {
   using Of = LaneTraits<Flat>;
   struct Pass {
     Flat a, b;  ///< theta, 1 - theta
@@ -109,7 +109,7 @@ void Lanes<T>::interpolate(const T& h, const double* start, const double* tried)
 
 /// Broadcasts one lane's constants to every lane of the recording set.
 template <class T>
-void Lanes<T>::broadcast_constants(int lane) {
+void BatchKernel<T>::broadcast_constants(int lane) {
   const auto copy = [lane](const std::vector<T>& from, std::vector<T>& to, std::size_t first,
                            std::size_t count) {
     if (count == 0) return;  // data() of an empty vector may be null
@@ -147,8 +147,8 @@ void Lanes<T>::broadcast_constants(int lane) {
 /// Returns the states of the pack of buffered samples that starts at `first`, in the buffer or copied to
 /// `buffer`.
 template <class T>
-const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector<int>& states,
-                                T* buffer) const {
+const T* BatchKernel<T>::waiting_pack(const BatchRun& run, int first, const std::vector<int>& states,
+                                      T* buffer) const {
   const std::size_t flats = y_.size() * kFlats * kLanes;
   const int offset = first % kLanes;
   const Real* from = waiting(run) + static_cast<std::size_t>(first / kLanes) * flats;
@@ -167,7 +167,7 @@ const T* Lanes<T>::waiting_pack(const LaneRun& run, int first, const std::vector
 
 /// Evaluates the first `count` buffered samples of a lane into its record and removes them from the buffer.
 template <class T>
-void Lanes<T>::evaluate_pending(int lane, int count) {
+void BatchKernel<T>::evaluate_pending(int lane, int count) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];
   if (count == 0) return;
   broadcast_constants(lane);
@@ -192,7 +192,7 @@ void Lanes<T>::evaluate_pending(int lane, int count) {
 
 /// Removes the first `count` samples from the buffer.
 template <class T>
-void Lanes<T>::drop_waiting(LaneRun& run, int count) {
+void BatchKernel<T>::drop_waiting(BatchRun& run, int count) {
   run.pending -= count;
   for (int moved = 0; moved < run.pending; moved += kLanes) {
     const T* from = waiting_pack(run, count + moved, sampled_, kept_.data());
@@ -203,7 +203,7 @@ void Lanes<T>::drop_waiting(LaneRun& run, int count) {
 
 /// Evaluates the channels of the k-th recorded plant for `count` samples, starting at run.recorded.
 template <class T>
-void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
+void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count) {
   const auto i = static_cast<std::size_t>(recorded_[k]);
   const auto lane = static_cast<std::size_t>(&run - lanes_.data());
   const PlantSlice& p = plants_[i];
@@ -285,7 +285,7 @@ void Lanes<T>::outputs(std::size_t k, const T* x, LaneRun& run, int count) {
 /// Unwraps the first `count` samples of an angle [rad]: adds the turns that minimise the step from sample to
 /// sample, from `last` on. `squared`: |V|^2 [pu]; at zero voltage the angle keeps its last value.
 template <class T>
-T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
+T BatchKernel<T>::unwrapped(T angle, const T& squared, double last, int count) const {
   constexpr double kNoAngle = 1e-9;  // below it |V| is rounding error at a bolted fault [pu]
   T turns(0.0);                      // separate from the angle, whose derivatives it must not change
   for (int l = 0; l < count; ++l) {
@@ -300,7 +300,7 @@ T Lanes<T>::unwrapped(T angle, const T& squared, double last, int count) const {
 
 /// Repeats the last sample until the record has `until` samples.
 template <class T>
-void Lanes<T>::repeat_last(LaneRun& run, int until) const {
+void BatchKernel<T>::repeat_last(BatchRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;
   for (std::size_t k = 0; k < recorded_.size(); ++k)
     for (std::size_t j = 0; j < channels_.size(); ++j) {

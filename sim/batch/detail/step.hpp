@@ -8,7 +8,7 @@ namespace swingbank::sim::batch {
 /// Evaluates the first stage of lanes that were loaded or switched; the others reuse theirs (first same as
 /// last).
 template <class T>
-void Lanes<T>::evaluate_fresh() {
+void BatchKernel<T>::evaluate_fresh() {
   if (timed_) {
     alignas(64) double now[kLanes];
     for (int l = 0; l < kLanes; ++l) now[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
@@ -26,7 +26,7 @@ void Lanes<T>::evaluate_fresh() {
 
 template <class T>
 template <int Stage>
-void Lanes<T>::stage(const T& h) {
+void BatchKernel<T>::stage(const T& h) {
   const T* y = y_.data();
   T* trial = trial_.data();
   for (const int state : moving_) {
@@ -47,7 +47,7 @@ void Lanes<T>::stage(const T& h) {
 
 /// Returns the largest weighted error over the states, in units of the tolerance.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
+typename BatchKernel<T>::Flat BatchKernel<T>::scaled_error(const Flat& h) const {
   Flat worst(0.0);
   const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // propagates NaN
   for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
@@ -70,7 +70,7 @@ typename Lanes<T>::Flat Lanes<T>::scaled_error(const Flat& h) const {
 
 /// Returns the weighted embedded error estimate of a state, divided by h.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
+typename BatchKernel<T>::Flat BatchKernel<T>::own_error(std::size_t state) const {
   T sum = T(plant::dp54::error[0]) * k_[0][state];
   for (int j = 2; j < plant::dp54::kStages; ++j) sum = sum + T(plant::dp54::error[j]) * k_[j][state];
   return Traits::magnitude(sum) * Flat(weight_[state]);
@@ -78,7 +78,7 @@ typename Lanes<T>::Flat Lanes<T>::own_error(std::size_t state) const {
 
 /// Returns 1 if a state leaves its limit within the step, else 0.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
+typename BatchKernel<T>::Flat BatchKernel<T>::leaves_limit(std::size_t state) const {
   const Flat zero(0.0), one(1.0), first = Traits::magnitude(k_[0][state]),
                                   last = Traits::magnitude(k_[plant::dp54::kStages - 1][state]);
   return select(first <= zero, select(last <= zero, zero, one), zero);
@@ -86,7 +86,7 @@ typename Lanes<T>::Flat Lanes<T>::leaves_limit(std::size_t state) const {
 
 /// Returns 1 if Vs reaches or leaves a limit within the step, else 0.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
+typename BatchKernel<T>::Flat BatchKernel<T>::has_kink(const Watch& watch) const {
   const Flat zero(0.0), one(1.0);
   const Flat moves = select(watch.same + watch.rested <= zero, zero, one);
   return select(Flat(plant::dp54::kStages - 1) <= watch.same, zero, moves);
@@ -94,7 +94,7 @@ typename Lanes<T>::Flat Lanes<T>::has_kink(const Watch& watch) const {
 
 /// Updates the watch after the evaluation of a stage.
 template <class T>
-void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
+void BatchKernel<T>::watch_stage(Watch& watch, const T& vs) {
   const Flat now = Traits::value(vs), zero(0.0), one(1.0);
   watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
   watch.same = watch.same + watch.rested_next;
@@ -103,7 +103,7 @@ void Lanes<T>::watch_stage(Watch& watch, const T& vs) {
 
 /// Returns the weighted error estimate of a state for a kink within the step, divided by h; see dp54::kink.
 template <class T>
-typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
+typename BatchKernel<T>::Flat BatchKernel<T>::kink_error(std::size_t state) const {
   Flat worst(0.0);
   for (const auto& difference : plant::dp54::kink) {
     T sum =
@@ -117,7 +117,7 @@ typename Lanes<T>::Flat Lanes<T>::kink_error(std::size_t state) const {
 
 /// Returns the largest change since the start of the angle between two rotors, over all plants [rad].
 template <class T>
-T Lanes<T>::angle_spread(const T* x) const {
+T BatchKernel<T>::angle_spread(const T* x) const {
   T low(std::numeric_limits<Real>::max()), high = -low;
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     if (!plants_[i].rotor) continue;
@@ -136,7 +136,7 @@ T Lanes<T>::angle_spread(const T* x) const {
 
 /// Returns the same for a lane with several islands: the largest value within one island [rad].
 template <class T>
-double Lanes<T>::angle_spread_within_islands(int lane) const {
+double BatchKernel<T>::angle_spread_within_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);
   const std::vector<int>& island = lanes_[l].islands;
   std::map<int, std::pair<double, double>> range;
@@ -156,7 +156,7 @@ double Lanes<T>::angle_spread_within_islands(int lane) const {
 }
 
 template <class T>
-void Lanes<T>::commit(unsigned accepted) {
+void BatchKernel<T>::commit(unsigned accepted) {
   const auto ok = Traits::mask(accepted);
   for (const int state : moving_) {
     const auto i = static_cast<std::size_t>(state);
@@ -178,7 +178,7 @@ void Lanes<T>::commit(unsigned accepted) {
 /// Clamps states that overshot a limit within the step, and marks the first stage of their lanes for
 /// re-evaluation.
 template <class T>
-void Lanes<T>::clamp_states() {
+void BatchKernel<T>::clamp_states() {
   T moved(0.0);
   for (const auto& p : plants_)
     p.equations.clamp_states(&per_lane_.c[static_cast<std::size_t>(p.c)], &y_[static_cast<std::size_t>(p.x)],
@@ -196,7 +196,7 @@ void Lanes<T>::clamp_states() {
 /// Finishes a step: hands over lanes that lost synchronism or reached their end, and switches lanes at a
 /// switching time.
 template <class T>
-void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
+void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
   LaneTraits<Flat>::store(Traits::value(angle_spread(y_.data())), angle);
   // The voltage search may succeed with a shorter step.
@@ -226,7 +226,7 @@ void Lanes<T>::settle(unsigned accepted, const Next& next, const Done& done) {
 }
 
 template <class T>
-void Lanes<T>::run(const Next& next, const Done& done) {
+void BatchKernel<T>::run(const Next& next, const Done& done) {
   active_ = 0;
   for (int l = 0; l < kLanes; ++l) refill(l, next, done);
   while (active_ != 0) {

@@ -70,9 +70,9 @@ std::vector<Case> stable_cases(const grid::Grid& grid, std::size_t count) {
   return cases;
 }
 
-class LanesAgainstReferenceFull : public ::testing::TestWithParam<const char*> {};
+class BatchAgainstReferenceFull : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(LanesAgainstReferenceFull, HundredRandomStableEvents) {
+TEST_P(BatchAgainstReferenceFull, HundredRandomStableEvents) {
   const grid::Grid grid = test::configured_grid(GetParam(), Conventions::psse());
   const std::vector<Case> cases = stable_cases(grid, 100);
   ASSERT_EQ(cases.size(), 100u);
@@ -106,11 +106,11 @@ TEST_P(LanesAgainstReferenceFull, HundredRandomStableEvents) {
 }
 
 // The thesis's ranges on the dataset's machine bases, and on the bases of the reference records.
-INSTANTIATE_TEST_SUITE_P(Grids, LanesAgainstReferenceFull,
+INSTANTIATE_TEST_SUITE_P(Grids, BatchAgainstReferenceFull,
                          ::testing::Values("ieee39_dataset_genrou", "ieee39_genrou"));
 
 /// A few events of each kind for the fast tier, other grids and other conventions included.
-TEST(LanesAgainstReference, EachKindOfEvent) {
+TEST(BatchAgainstReference, EachKindOfEvent) {
   struct Kind {
     const char* grid;
     Conventions conventions;

@@ -37,7 +37,7 @@ std::map<std::uint64_t, Trajectory> run(const std::vector<Job>& jobs, BatchOptio
   return run_jobs(ieee39(), jobs, options);
 }
 
-TEST(Lanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
+TEST(BatchKernel, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   auto jobs = random_jobs(40, 1);
   const auto forward = run(jobs, {});
   std::reverse(jobs.begin(), jobs.end());
@@ -52,7 +52,7 @@ TEST(Lanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   }
 }
 
-TEST(Lanes, EveryWidthGivesTheSameRecord) {
+TEST(BatchKernel, EveryWidthGivesTheSameRecord) {
   const auto jobs = random_jobs(24, 2);
   BatchOptions scalar, four, eight;
   scalar.lanes = 1;
@@ -74,7 +74,7 @@ TEST(Lanes, EveryWidthGivesTheSameRecord) {
   EXPECT_GT(compared, 10);
 }
 
-TEST(Lanes, StaysSteadyWithoutAnEvent) {
+TEST(BatchKernel, StaysSteadyWithoutAnEvent) {
   std::vector<Job> jobs(1);
   const auto t = run(jobs, {}).at(0);
   EXPECT_EQ(t.outcome, Outcome::stable);
@@ -87,7 +87,7 @@ TEST(Lanes, StaysSteadyWithoutAnEvent) {
   EXPECT_NEAR(p[0] * ieee39().plants[0].mva / 100.0, 2.5, 1e-9);
 }
 
-TEST(Lanes, TheSampleAtASwitchingIsTheValueJustBefore) {
+TEST(BatchKernel, TheSampleAtASwitchingIsTheValueJustBefore) {
   auto jobs = random_jobs(1, 3);
   jobs[0].event.faults[0] = {ieee39().plants[2].bus, 0.5, 0.6, {}};  // at the terminal of plant 2
   BatchOptions options;
@@ -103,7 +103,7 @@ TEST(Lanes, TheSampleAtASwitchingIsTheValueJustBefore) {
   for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta is held while V = 0";
 }
 
-TEST(Lanes, LostRunIsReportedAndKeepsItsLastSample) {
+TEST(BatchKernel, LostRunIsReportedAndKeepsItsLastSample) {
   auto jobs = random_jobs(1, 4);
   jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 1.5, {}};  // 1 s at a central bus
   const auto t = run(jobs, {}).at(0);
@@ -113,7 +113,7 @@ TEST(Lanes, LostRunIsReportedAndKeepsItsLastSample) {
   for (double v : t.packed()) ASSERT_TRUE(std::isfinite(v));
 }
 
-TEST(Lanes, AngleSpreadIsMeasuredFromTheStart) {
+TEST(BatchKernel, AngleSpreadIsMeasuredFromTheStart) {
   auto jobs = random_jobs(1, 4);
   jobs[0].event.faults[0] = {ieee39().network.bus_index(16), 0.5, 0.501, {}};  // 1 ms: hardly a swing
   BatchOptions options;
@@ -122,7 +122,7 @@ TEST(Lanes, AngleSpreadIsMeasuredFromTheStart) {
   EXPECT_EQ(run(jobs, options).at(0).outcome, Outcome::stable);
 }
 
-TEST(Lanes, AnUnknownWidthIsRefused) {
+TEST(BatchKernel, AnUnknownWidthIsRefused) {
   BatchOptions options;
   options.lanes = 3;
   EXPECT_THROW(Batch(ieee39(), options), InputError);

@@ -53,7 +53,7 @@ std::vector<Job> faults_on(const grid::Grid& grid, int count) {
   return jobs;
 }
 
-std::map<std::uint64_t, Trajectory> run_lanes(const grid::Grid& grid, const std::vector<Job>& jobs,
+std::map<std::uint64_t, Trajectory> run_batch(const grid::Grid& grid, const std::vector<Job>& jobs,
                                               int lanes) {
   BatchOptions options;
   options.t_end = 6.0;
@@ -63,7 +63,7 @@ std::map<std::uint64_t, Trajectory> run_lanes(const grid::Grid& grid, const std:
 
 /// Compares the events that both find stable; returns their number.
 int agree(const grid::Grid& grid, const std::vector<Job>& jobs) {
-  const auto doubles = run_lanes(grid, jobs, 8), floats = run_lanes(grid, jobs, 16);
+  const auto doubles = run_batch(grid, jobs, 8), floats = run_batch(grid, jobs, 16);
   int compared = 0;
   for (const Job& job : jobs) {
     const Trajectory &a = floats.at(job.id), &b = doubles.at(job.id);
@@ -76,12 +76,12 @@ int agree(const grid::Grid& grid, const std::vector<Job>& jobs) {
   return compared;
 }
 
-TEST(FloatLanes, AgreeWithDoublesOnRandomFaults) {
+TEST(FloatBatch, AgreeWithDoublesOnRandomFaults) {
   EXPECT_GT(agree(round_rotors(), faults_on(round_rotors(), 20)), 10);
   EXPECT_GT(agree(with_controls(), faults_on(with_controls(), 20)), 10);
 }
 
-TEST(FloatLanes, AgreeWithDoublesOnOtherEvents) {
+TEST(FloatBatch, AgreeWithDoublesOnOtherEvents) {
   grid::Grid grid = with_controls();
   const Effect &step = *library::compiled().find("VREFSTEP"), &ramp = *library::compiled().find("PREFRAMP");
   grid.plants[2].controls.insert(grid.plants[2].controls.begin(), {&step, step.default_parameters()});
@@ -95,24 +95,24 @@ TEST(FloatLanes, AgreeWithDoublesOnOtherEvents) {
   EXPECT_EQ(agree(grid, jobs), 4);
 }
 
-TEST(FloatLanes, AgreeWithDoublesOnASharedNetwork) {
+TEST(FloatBatch, AgreeWithDoublesOnASharedNetwork) {
   const grid::Grid grid = synthetic(41);
   EXPECT_GT(agree(grid, faults_on(grid, 16)), 8);
 }
 
-TEST(FloatLanes, ARecordDoesNotDependOnItsLaneOrNeighbours) {
+TEST(FloatBatch, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   const grid::Grid grid = with_controls();
   auto jobs = faults_on(grid, 20);
-  const auto forward = run_lanes(grid, jobs, 16);
+  const auto forward = run_batch(grid, jobs, 16);
   std::reverse(jobs.begin(), jobs.end());
-  const auto backward = run_lanes(grid, jobs, 16);
+  const auto backward = run_batch(grid, jobs, 16);
   for (const Job& job : jobs) {
     EXPECT_EQ(forward.at(job.id).packed(), backward.at(job.id).packed()) << job.id;  // to the last bit
-    EXPECT_EQ(forward.at(job.id).packed(), run_lanes(grid, {job}, 16).at(job.id).packed()) << job.id;
+    EXPECT_EQ(forward.at(job.id).packed(), run_batch(grid, {job}, 16).at(job.id).packed()) << job.id;
   }
 }
 
-TEST(FloatLanes, RefuseUnsupportedRuns) {
+TEST(FloatBatch, RefuseUnsupportedRuns) {
   grid::Grid grid = round_rotors();
   const auto block = [](const Effect& e) { return plant::Block{&e, e.default_parameters()}; };
   grid.plants[3].machine = block(*library::compiled().find("GENTPJ"));
@@ -134,7 +134,7 @@ TEST(FloatLanes, RefuseUnsupportedRuns) {
   }
 }
 
-TEST(FloatLanes, AreNamedInTheVariant) {
+TEST(FloatBatch, AreNamedInTheVariant) {
   BatchOptions options;
   options.lanes = 16;
   EXPECT_THAT(Batch(round_rotors(), options).variant(), HasSubstr("lanes=16 float"));

@@ -228,7 +228,7 @@ std::map<std::uint64_t, Trajectory> run_all(const std::vector<Job>& list, BatchO
   return run_jobs(grid(), list, options);
 }
 
-TEST(LanesOfManySources, EqualRunsWithAMatrixEach) {
+TEST(BatchOfManySources, EqualRunsWithAMatrixEach) {
   BatchOptions one, eight;
   one.lanes = 1;  // no shared network
   eight.lanes = 8;
@@ -246,7 +246,7 @@ TEST(LanesOfManySources, EqualRunsWithAMatrixEach) {
   }
 }
 
-TEST(LanesOfManySources, AgreeWithTheReference) {
+TEST(BatchOfManySources, AgreeWithTheReference) {
   std::vector<Job> list = jobs();
   std::erase_if(list, [](const Job& job) { return job.id != 5 && job.id != 10; });
   for (Job& job : list) job.parameters.clear();
@@ -260,7 +260,7 @@ TEST(LanesOfManySources, AgreeWithTheReference) {
   }
 }
 
-TEST(LanesOfManySources, ARecordDoesNotDependOnItsLaneOrNeighbours) {
+TEST(BatchOfManySources, ARecordDoesNotDependOnItsLaneOrNeighbours) {
   auto list = jobs();
   for (const int lanes : {4, 8}) {
     BatchOptions options;

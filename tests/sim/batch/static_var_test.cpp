@@ -50,7 +50,7 @@ std::vector<network::Event> events() {
   return all;
 }
 
-TEST(StaticVarLanes, FollowTheReference) {
+TEST(StaticVarBatch, FollowTheReference) {
   const Values low = {{"UV1", 0.75}, {"UVtm1", 0.1}, {"PLLdelay", 0.2}, {"UVSBmax", 0.1},
                       {"Bmax", 0.4}, {"Bshrt", 0.6}, {"Bmin", -0.3},    {"Tshrt", 0.3}};
   const Values trips = {{"UVT", 0.6}, {"UVtm2", 0.15}, {"Bmax", 0.4}, {"Bshrt", 0.6}, {"Bmin", -0.3}};
@@ -80,7 +80,7 @@ TEST(StaticVarLanes, FollowTheReference) {
   }
 }
 
-TEST(StaticVarLanes, RefuseRemoteRegulation) {
+TEST(StaticVarBatch, RefuseRemoteRegulation) {
   grid::Grid grid = with_compensator({}, 0.1);
   grid.loads[0].regulated = kShuntBus;
   EXPECT_NO_THROW(Batch(grid, {}));

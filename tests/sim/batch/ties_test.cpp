@@ -78,7 +78,7 @@ reference::ReferenceRun in_reference(const grid::Grid& grid, const network::Even
   std::iota(options.buses.begin(), options.buses.end(), 0);
   return reference::run_reference(grid, event, options);
 }
-Trajectory in_lanes(const grid::Grid& grid, const network::Event& event) {
+Trajectory in_batch(const grid::Grid& grid, const network::Event& event) {
   batch::BatchOptions options;
   options.t_end = 3.0;
   options.rate = 60.0;
@@ -143,7 +143,7 @@ TEST_P(NearZeroImpedance, BehavesLikeZero) {
     ASSERT_EQ(run.outcome, Outcome::stable) << r << " " << x;
     EXPECT_LT(apart(run, reference), same) << r << " " << x;
     EXPECT_LT(apart(run.bus_v, reference.bus_v), same) << r << " " << x;
-    EXPECT_LT(apart(in_lanes(grid, event), run), 1e-4) << r << " " << x;  // guaranteed by the SIMD kernel
+    EXPECT_LT(apart(in_batch(grid, event), run), 1e-4) << r << " " << x;  // guaranteed by the SIMD kernel
   }
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -174,7 +174,7 @@ TEST(Ties, NegativeStarLegIsKept) {
   const grid::Grid grid = grid_of(case_with("", three_windings(0.1, -0.004, 0.2), kFifth));
   EXPECT_NEAR(grid.network.branches[4].x, -0.004, 1e-15);
   const network::Event event = fault(grid, "104:1:1.1");
-  EXPECT_LT(apart(in_lanes(grid, event), in_reference(grid, event)), 1e-4);
+  EXPECT_LT(apart(in_batch(grid, event), in_reference(grid, event)), 1e-4);
 }
 
 TEST(Ties, CarryTheCurrentOfTheRestOfTheBus) {
@@ -203,7 +203,7 @@ TEST(Ties, OpenAndCloseAgain) {
   const network::Event event = trip(grid, "103:104:1:1:1.2");
   const auto run = in_reference(grid, event);
   ASSERT_EQ(run.outcome, Outcome::stable);
-  EXPECT_LT(apart(in_lanes(grid, event), run), 1e-4);
+  EXPECT_LT(apart(in_batch(grid, event), run), 1e-4);
   const double* v = run.bus_v.data() + 3 * run.samples;
   EXPECT_EQ(v[66], 0.0);
   EXPECT_GT(v[120], 0.9);
@@ -223,7 +223,7 @@ TEST(Ties, UnitBehindATieRunsLikeOneAtTheBus) {
   const grid::Grid a = grid_of(tied), b = grid_of(whole);
   const auto run = in_reference(a, fault(a, "104:1:1.1")), same = in_reference(b, fault(b, "104:1:1.1"));
   EXPECT_LT(apart(run, same), 5e-5);  // 1e-6 pu of impedance between them
-  EXPECT_LT(apart(in_lanes(a, fault(a, "104:1:1.1")), same), 1e-4);
+  EXPECT_LT(apart(in_batch(a, fault(a, "104:1:1.1")), same), 1e-4);
 }
 
 TEST(CutOffBus, LosesItsLoadWithARemark) {
@@ -231,7 +231,7 @@ TEST(CutOffBus, LosesItsLoadWithARemark) {
   const network::Event event = trip(grid, "103:104:1:1");
   const auto run = in_reference(grid, event);
   EXPECT_EQ(run.outcome, Outcome::stable);
-  EXPECT_LT(apart(in_lanes(grid, event), run), 1e-4);
+  EXPECT_LT(apart(in_batch(grid, event), run), 1e-4);
   const double* v = run.bus_v.data() + 3 * run.samples;
   EXPECT_GT(v[60], 0.9);  // the value before the switching
   EXPECT_EQ(v[61], 0.0);
@@ -255,7 +255,7 @@ TEST(CutOffBus, IsRefused_WhenNoGeneratorIsLeft) {
   texts.generator_trips = {"101:1", "102:1"};
   const network::Event event = event_of(grid, texts);
   EXPECT_THAT(formats::sentences_of([&] { in_reference(grid, event); }), HasSubstr("no generator is left"));
-  EXPECT_THAT(formats::sentences_of([&] { in_lanes(grid, event); }), HasSubstr("no generator is left"));
+  EXPECT_THAT(formats::sentences_of([&] { in_batch(grid, event); }), HasSubstr("no generator is left"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 namespace swingbank::sim::batch {
 namespace {
 
-Trajectory lanes_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6) {
+Trajectory batch_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6) {
   BatchOptions options;
   options.t_end = 5.0;
   options.lanes = lanes;
@@ -41,7 +41,7 @@ TEST(UserModelInBatch, SexsAsUserDefinedModelEqualsTheCompiledOne) {
     const grid::Grid compiled = test::with_exciter(*library::compiled().find("SEXS"), p),
                      user_model = test::with_exciter(test::sexs_user_model(), p);
     for (const int lanes : {1, 4, 8}) {
-      const Trajectory a = lanes_run(compiled, lanes), b = lanes_run(user_model, lanes);
+      const Trajectory a = batch_run(compiled, lanes), b = batch_run(user_model, lanes);
       EXPECT_LE(test::largest_difference(a, b), 1e-10) << lanes;  // the same arithmetic in the same order
       const double* efd = a.at(0, static_cast<int>(Channel::Efd));
       reached = reached || *std::max_element(efd, efd + a.samples) == p[5];
@@ -68,15 +68,15 @@ TEST(UserModelInBatch, ANonlinearLawRunsInEveryKernel) {
   const grid::Grid grid = nonlinear_grid();
   const auto at = plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
   EXPECT_NEAR(at.x[7], std::sqrt(at.s.V), 1e-12);  // six states of the machine, x, then the root
-  const Trajectory one = lanes_run(grid, 1), eight = lanes_run(grid, 8), four = lanes_run(grid, 4);
+  const Trajectory one = batch_run(grid, 1), eight = batch_run(grid, 8), four = batch_run(grid, 4);
   // Packs have their own sincos, 2 ulp off; adaptive steps propagate the difference.
   EXPECT_LE(test::largest_difference(one, eight), 1e-10);
   EXPECT_LE(test::largest_difference(one, four), 1e-10);
   // The model has kinks that no integrator locates; hence smaller steps than usual.
-  EXPECT_LE(test::largest_difference(lanes_run(grid, 8, 1e-10), test::reference_run(grid, 1e-11)), 1e-5);
+  EXPECT_LE(test::largest_difference(batch_run(grid, 8, 1e-10), test::reference_run(grid, 1e-11)), 1e-5);
   grid::Grid without = grid;
   without.plants[1].controls.erase(without.plants[1].controls.begin());
-  EXPECT_GT(test::largest_difference(one, lanes_run(without, 1)), 1e-2);  // the model has an effect
+  EXPECT_GT(test::largest_difference(one, batch_run(without, 1)), 1e-2);  // the model has an effect
 }
 
 TEST(UserModelInBatch, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
@@ -92,7 +92,7 @@ TEST(UserModelInBatch, PlantWithAnExampleStaysSteadyAndRidesThroughAFault) {
     if (user_model.slot == Slot::exciter) controls.clear();
     controls.push_back({&user_model, user_model.default_parameters()});
     std::ranges::stable_sort(controls, {}, [](const plant::Block& b) { return b.effect->slot; });
-    const Trajectory run = lanes_run(grid, 8);
+    const Trajectory run = batch_run(grid, 8);
     EXPECT_EQ(run.outcome, Outcome::stable) << file.path();
     EXPECT_LE(test::largest_difference(run, test::reference_run(grid)), 1e-4)
         << file.path();  // guaranteed by the kernel

@@ -140,7 +140,7 @@ TEST(Conformance, SteadyStateHasZeroDerivatives) {
 }
 
 template <class P>
-void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
+void batch_equals_double(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   MachineCase<P> pack;
   std::vector<MachineCase<double>> each;
@@ -211,8 +211,8 @@ TEST(Conformance, LanesEqualDouble) {
   std::mt19937_64 random(2);
   for (const Effect* e : machines())
     for (int trial = 0; trial < 50; ++trial) {
-      lanes_equal_double<P4>(*e, random);
-      lanes_equal_double<P8>(*e, random);
+      batch_equals_double<P4>(*e, random);
+      batch_equals_double<P8>(*e, random);
     }
 }
 

@@ -115,7 +115,7 @@ TEST(LoadZip, ReportsEveryErrorOfAChoice) {
   }
 }
 
-void lanes_equal_reference(const grid::Grid& grid, const network::Event& event) {
+void batch_equals_reference(const grid::Grid& grid, const network::Event& event) {
   const reference::ReferenceRun reference = reference::run_reference(grid, event, {});
   ASSERT_EQ(reference.outcome, Outcome::stable);
   ASSERT_EQ(reference.plants.size(), grid.plants.size());
@@ -142,7 +142,7 @@ TEST(LoadZip, LanesEqualTheReferenceWithAFaultAtALoadBus) {
   problems.raise();
   network::Event event;
   event.faults = {{grid.network.bus_index(8), 1.0, 1.08, {}}};
-  lanes_equal_reference(grid, event);
+  batch_equals_reference(grid, event);
 }
 
 TEST(LoadZip, ImpedanceAloneIsTheDefaultLoad) {

@@ -143,7 +143,7 @@ TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
 }
 
 /// Lanes against the reference: bolted faults at plant 3 and elsewhere, loss of plant 3.
-void expect_lanes_equal_the_reference(const grid::Grid& grid) {
+void expect_batch_equals_reference(const grid::Grid& grid) {
   const plant::Plant& mine = grid.plants[3];
   std::vector<network::Event> events(3);
   events[0].faults = {{mine.bus, 1.0, 1.06, {}}};
@@ -181,12 +181,12 @@ grid::Grid every_second() {
     grid.plants[i].machine = {&gentpj, gentpj.default_parameters()};
   return grid;
 }
-TEST(MachineGentpj, LanesEqualTheReference) { expect_lanes_equal_the_reference(every_second()); }
+TEST(MachineGentpj, LanesEqualTheReference) { expect_batch_equals_reference(every_second()); }
 TEST(MachineGentpj, LanesEqualTheReferenceBehindTransformers) {
   grid::Grid grid = every_second();
   for (const std::size_t i : {3, 4, 7})
     grid.plants[i].transformer = {library::compiled().find("STEPUP"), {0.004, 0.12, 1.04}};
-  expect_lanes_equal_the_reference(grid);
+  expect_batch_equals_reference(grid);
 }
 /// Without saturation it equals the GENROU of the test above, also behind a transformer.
 TEST(MachineGentpj, EqualsGenrouBehindATransformer_WithoutSaturation) {

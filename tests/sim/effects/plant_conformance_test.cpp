@@ -139,7 +139,7 @@ TEST(PlantConformance, StaysAtItsOperatingPoint) {
 }
 
 template <class P>
-void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
+void batch_equals_double(const Effect& e, std::mt19937_64& random) {
   plant::Plant plant = host(e);
   std::vector<std::vector<double>> alone;
   plant::OperatingOf<P> together;
@@ -171,8 +171,8 @@ void lanes_equal_double(const Effect& e, std::mt19937_64& random) {
 TEST(PlantConformance, LanesEqualDouble) {
   std::mt19937_64 random(12);
   for (const Effect* e : guests()) {
-    lanes_equal_double<P4>(*e, random);
-    lanes_equal_double<P8>(*e, random);
+    batch_equals_double<P4>(*e, random);
+    batch_equals_double<P8>(*e, random);
   }
 }
 
