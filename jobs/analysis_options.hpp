@@ -101,8 +101,9 @@ struct AnalysisOptions {
   void limit_threads() const {
     if (threads > 0) omp_set_num_threads(threads);
   }
-  /// Returns the plant model with the user-defined models of --law in its library. With `to_fit`, a
-  /// calibrated model is reset to its values before the calibration. Throws InputError if a file is invalid.
+  /// Returns the plant model with the user-defined models of --user-defined model in its library. With
+  /// `to_fit`, a calibrated model is reset to its values before the calibration. Throws InputError if a file
+  /// is invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
     plant::PlantModel loaded = plant::load_plant_model(
@@ -117,7 +118,7 @@ struct AnalysisOptions {
       fmt::print(stderr, "note: started from the values before that calibration\n");
     return plant::as_submitted(std::move(loaded));
   }
-  /// Adds to the model the files of --law whose user-defined models it uses.
+  /// Adds to the model the files of --user-defined model whose user-defined models it uses.
   void keep_user_models(validate::plant::PlantModel& of) const {
     for (const auto& [file, effect] : user_models)
       for (const auto& block : of.plant.controls)

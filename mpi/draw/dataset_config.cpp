@@ -80,7 +80,7 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
     const auto known = [&](const auto& t) { return t.first == effect; };
     std::string why;
     if (effect == nullptr)
-      why = "there is no such effect; law files stand under `laws`";
+      why = "there is no such effect; files of user-defined models are listed under `laws`";
     else if (effect->slot == sim::Slot::machine)
       why = "it is a machine, whose parameters stand in [vary.box]";
     else if (effect->slot != sim::Slot::transformer && !sim::is_control(effect->slot))

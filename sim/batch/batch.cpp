@@ -37,8 +37,8 @@ struct EngineOf final : Engine {
 }  // namespace detail
 
 namespace {
-/// Refuses effects that cannot run in single precision: laws, and sources with Newton's method (algebra.hpp),
-/// whose tolerance of 1e-13 a float cannot represent.
+/// Refuses effects that cannot run in single precision: user-defined models, and sources with Newton's method
+/// (algebra.hpp), whose tolerance of 1e-13 a float cannot represent.
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {
@@ -53,7 +53,8 @@ void refuse_in_float(const grid::Grid& grid) {
     for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
     for (const Effect* effect : effects)
       if (!has_float_ops(*effect))
-        refuse(fmt::format("{} at {}", effect->name, plant.name), "a law file is evaluated in double");
+        refuse(fmt::format("{} at {}", effect->name, plant.name),
+               "a user-defined model is evaluated in double");
   }
   for (const plant::Consumer& load : grid.loads)
     refuse(fmt::format("{} at {}", load.block.effect->name, load.name),

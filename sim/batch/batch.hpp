@@ -59,7 +59,7 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 class Batch {
  public:
   /// Throws InputError if the number of lanes is not available, if a load model regulates a bus other than
-  /// its own, or if sources or laws of the grid cannot run in the requested single precision.
+  /// its own, or if sources or user-defined models of the grid cannot run in the requested single precision.
   Batch(const grid::Grid& grid, BatchOptions options);
   ~Batch();
   /// Runs jobs until `next` returns false. Calls `done` once per job, in the order of completion; the

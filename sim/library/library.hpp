@@ -1,6 +1,6 @@
 #pragma once
-// Look-up of effects by name: those compiled from sim/effects and those read from law files (user-defined
-// models).
+// Look-up of effects by name: those compiled from sim/effects and those read from files
+// (user-defined models).
 #include <memory>
 #include <span>
 #include <string>

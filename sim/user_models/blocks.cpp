@@ -1,4 +1,5 @@
-// Reader of a law file's blocks: each becomes states and an output value, with the arithmetic of blocks.hpp.
+// Reader of a user-defined model file's blocks: each becomes states and an output value, with the arithmetic
+// of blocks.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>

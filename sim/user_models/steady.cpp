@@ -1,6 +1,6 @@
-// Steady state of a law: states and unknown references for which all derivatives vanish and the output has
-// its prescribed value. Newton's method with a Jacobian from dual numbers; the first step solves a linear
-// law. Undetermined unknowns keep their initial values (minimum-norm step).
+// Steady state of a user-defined model: states and unknown references for which all derivatives vanish and
+// the output has its prescribed value. Newton's method with a Jacobian from dual numbers; the first step
+// solves a linear user-defined model. Undetermined unknowns keep their initial values (minimum-norm step).
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -179,7 +179,7 @@ class Search {
   Index states_, unknowns_ = 0, rows_ = 0;
 };
 
-/// Writes the output of a law without a prescribed value, for later controls.
+/// Writes the output of a user-defined model without a prescribed value, for later controls.
 template <class T>
 void put_out(const Definition& user_model, const T* c, const T* x, Signals<T>& s) {
   if (user_model.must_meet()) return;

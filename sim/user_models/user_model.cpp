@@ -113,12 +113,14 @@ void check(const void* data, const double* p, const std::string& where, Problems
     const double a = value(r.left), b = value(r.right);
     if (!(r.op == Op::less ? a < b : a <= b))
       problems.add(fmt::format("{} does not hold ({:g} against {:g})", r.text, a, b), where,
-                   "law " + user_model.name + " requires it at " + r.where, "change the parameters");
+                   "user-defined model " + user_model.name + " requires it at " + r.where,
+                   "change the parameters");
   }
   for (const auto& [index, text] : user_model.finite)
     if (!std::isfinite(value(index)))
       problems.add(fmt::format("{} = {} with these parameters", text, value(index)), where,
-                   "law " + user_model.name + " needs a finite number", "change the parameters");
+                   "user-defined model " + user_model.name + " needs a finite number",
+                   "change the parameters");
 }
 
 std::vector<double> switching_times(const void* data, const double* p) {
@@ -168,12 +170,12 @@ const Effect& load_user_model(const std::string& text, const std::filesystem::pa
   if (there == nullptr) return library.add(std::move(effect));
   if (same_effect(*there, effect)) return *there;
   throw InputError({"a second effect " + std::string(effect.name), name.string(),
-                    "a compiled effect or another law file has the name", "choose another name"});
+                    "a compiled effect or another user-defined model has the name", "choose another name"});
 }
 
 const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library) {
-  return load_user_model(read_input(file, "no readable law file", "give the path of a law .toml"), file,
-                         library);
+  return load_user_model(read_input(file, "no readable user-defined model", "give the path of its .toml"),
+                         file, library);
 }
 
 }  // namespace swingbank::sim::user_models

@@ -1,7 +1,8 @@
 #pragma once
-// Law files: user-defined models that are read from text, not compiled. See docs/how-to/add-an-effect.md for
-// the format and configs/user_models/ for examples. A law runs wherever a compiled effect does: in the
-// reference integrator, in the lanes kernel and with dual numbers.
+// User-defined models: effects that are read from text, not compiled. See
+// docs/how-to/add-an-effect.md for the format and configs/user_models/ for examples. A user-defined model
+// runs wherever a compiled effect does: in the reference integrator, in the batched kernel and with dual
+// numbers.
 #include <filesystem>
 #include <string>
 
@@ -10,9 +11,9 @@
 
 namespace swingbank::sim::user_models {
 
-/// Reads a law and adds it to a library. Reading the same text again returns the same effect. Throws
-/// InputError with every fault of the file (file:line:column), or if another effect of the library has the
-/// name.
+/// Reads a user-defined model and adds it to a library. Reading the same text again returns the same effect.
+/// Throws InputError with every fault of the file (file:line:column), or if another effect of the library has
+/// the name.
 const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library);
 /// The same from a text; `name` replaces the file name in messages.
 const Effect& load_user_model(const std::string& text, const std::filesystem::path& name,
@@ -20,7 +21,8 @@ const Effect& load_user_model(const std::string& text, const std::filesystem::pa
 /// The same without adding it.
 Effect make_user_model(const std::string& text, const std::filesystem::path& name);
 
-/// Returns true if two effects are the same compiled effect, or laws with the same text in any library.
+/// Returns true if two effects are the same compiled effect, or user-defined models with the same text in any
+/// library.
 bool same_effect(const Effect& a, const Effect& b);
 
 }  // namespace swingbank::sim::user_models

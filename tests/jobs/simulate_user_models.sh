@@ -30,7 +30,7 @@ assert worst("law_lanes", "law_reference") < 1e-4  # what the lanes promise
 assert worst("law_lanes", "plain") > 0.1  # both act
 PYTHON
 
-refuses "no law file" "no readable law file at $work/none.toml" simulate --law "$work/none.toml" --out "$work/x.csv"
+refuses "no file" "no readable user-defined model at $work/none.toml" simulate --law "$work/none.toml" --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Vs"\naction = "add"\nvalue = "1 + nothing"\n' >"$work/bad.toml"
 refuses "a fault in a law" "unknown name nothing in value at $work/bad.toml:6:14" \
   simulate --law "$work/bad.toml" --out "$work/x.csv"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Words that have a standard term (docs/glossary.md, CONTRIBUTING.md) appear in no heading of a document and in no new identifier.
-# tests/modules/words_known.txt lists the identifiers that still contain one; it may only become shorter.
+# tests/modules/words_kept.txt lists identifiers in which such a word has its standard meaning, with the meaning.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
-/usr/bin/python3 - "$@" <<'PYTHON'
+/usr/bin/python3 - <<'PYTHON'
 import pathlib
 import re
 import subprocess
@@ -12,7 +12,7 @@ import sys
 WORDS = {  # word in an identifier or heading -> standard term
     "answer": "response", "basin": "local optimum", "belief": "prior", "bent": "biased", "course": "time series, plan",
     "direction": "sensitivity parameter", "drive": "playback", "driven": "playback", "fewest": "least number, sparse selection",
-    "instant": "switching time", "jump": "step", "lane": "batch", "law": "user-defined model", "misfit": "reduced chi-square",
+    "instant": "switching time", "jump": "step", "law": "user-defined model", "misfit": "reduced chi-square",
     "neutral": "null value", "night": "nightly", "odd": "unlisted", "rival": "competitor", "room": "module",
     "slope": "sensitivity", "smear": "filter", "smeared": "filtered", "tell": "report", "told": "given",
 }
@@ -42,18 +42,16 @@ for name in files:
             identifier = match["id"]
             if identifier and identifier not in identifiers and listed(parts(identifier)):
                 identifiers[identifier] = f"{name}:{text.count(chr(10), 0, match.start()) + 1}"
-known_file = pathlib.Path("tests/modules/words_known.txt")
-if sys.argv[1:] == ["--write"]:
-    known_file.write_text("".join(f"{i}\n" for i in sorted(identifiers)))
-known = set(known_file.read_text().split())
+kept_file = pathlib.Path("tests/modules/words_kept.txt")
+kept = {line.split()[0] for line in kept_file.read_text().splitlines() if line and not line.startswith("#")}
 failed = False
-for identifier in sorted(set(identifiers) - known):
+for identifier in sorted(set(identifiers) - kept):
     words = listed(parts(identifier))
     terms = "; ".join(f"{w}: {WORDS[w]}" for w in sorted(words))
     print(f"home-made word in {identifier} at {identifiers[identifier]} ({terms}): use the standard term", file=sys.stderr)
     failed = True
-for identifier in sorted(known - set(identifiers)):
-    print(f"unused entry {identifier} at {known_file} (no file has it): run bash tests/modules/words.sh --write", file=sys.stderr)
+for identifier in sorted(kept - set(identifiers)):
+    print(f"unused entry {identifier} at {kept_file} (no file contains it): remove the line", file=sys.stderr)
     failed = True
 for name in files:
     if name.endswith(".md") and not name.startswith(("docs/log/", "docs/tables/")):

@@ -1,5 +1,5 @@
 #pragma once
-// Reader of a plant file with user-defined models (law files) that it may use without naming their files.
+// Reader of a plant file with user-defined models that it may use without naming their files.
 #include "validate/plant/plant_model.hpp"
 
 namespace swingbank::validate::plant {

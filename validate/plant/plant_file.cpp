@@ -134,7 +134,7 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   return text;
 }
 
-/// Returns the names of the law files without folders, which must be unique.
+/// Returns the names of the files of user-defined models without folders, which must be unique.
 std::vector<std::string> user_model_names(const PlantModel& model) {
   std::vector<std::string> names;
   Problems problems;
@@ -148,7 +148,8 @@ std::vector<std::string> user_model_names(const PlantModel& model) {
   return names;
 }
 
-/// Checks that the text, with absolute paths of the law files, reads back to the same model.
+/// Checks that the text, with absolute paths of the files of user-defined models, reads back to the same
+/// model.
 void check(const PlantModel& model, const std::vector<std::string>& provenance) {
   std::vector<std::string> user_models;
   for (const auto& user_model : model.user_models) user_models.push_back(fs::absolute(user_model).string());

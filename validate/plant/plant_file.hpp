@@ -9,12 +9,13 @@
 
 namespace swingbank::validate::plant {
 
-/// Returns the text of a plant file; `provenance` becomes its head comment, line by line. Law files are named
-/// without folders. Throws InputError if the text would not be read as the same values (a parameter outside
-/// its bounds, which a .dyr may contain).
+/// Returns the text of a plant file; `provenance` becomes its head comment, line by line. User-defined model
+/// files are named without folders. Throws InputError if the text would not be read as the same values (a
+/// parameter outside its bounds, which a .dyr may contain).
 std::string plant_text(const PlantModel& model, const std::vector<std::string>& provenance);
 
-/// Writes a plant file and copies of the law files beside it. Throws InputError as plant_text and write_file.
+/// Writes a plant file and copies of the files of user-defined models beside it. Throws InputError as
+/// plant_text and write_file.
 void write_plant_file(const std::filesystem::path& file, const PlantModel& model,
                       const std::vector<std::string>& provenance);
 

@@ -191,7 +191,7 @@ void read_submitted(Config& config, PlantModel& model) {
                   config.name().string()));
 }
 
-/// Loads the law files of the plant, and adds their effects to the library.
+/// Loads the files of user-defined models of the plant, and adds their effects to the library.
 std::vector<fs::path> read_user_models(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
   for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {

@@ -22,9 +22,10 @@ struct PlantModel {
   sim::Conventions conventions;    ///< conventions of the simulator that the parameters are for
   record::RecordBase record_base;  ///< bases of "pu" in the records of this plant
   record::ReadOptions reading;     ///< columns and time range of its records
-  std::vector<std::filesystem::path> user_models = {};  ///< law files that define some of its effects
-  int bus = 0;                                          ///< bus number in its case; 0: not given
-  std::string id = "1";                                 ///< machine identifier in its case
+  std::vector<std::filesystem::path> user_models =
+      {};                ///< files of user-defined models that define some of its effects
+  int bus = 0;           ///< bus number in its case; 0: not given
+  std::string id = "1";  ///< machine identifier in its case
   /// Output in its case; none: unknown. Used to check records, never as an initial condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
   /// Parameters ("SEXS.TE") that the file leaves at their default values (`standard = true`).

@@ -1,5 +1,5 @@
 #pragma once
-// Definition of a law after reading: its metadata and its compiled program.
+// Definition of a user-defined model after reading: its metadata and its compiled program.
 #include <deque>
 #include <filesystem>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace swingbank::sim::user_models {
 
-/// Coefficients of a law: [0] system frequency, then the parameters, values at the operating point, unknowns
-/// of steady(), constants, and fixed values computed from these.
+/// Coefficients of a user-defined model: [0] system frequency, then the parameters, values at the operating
+/// point, unknowns of steady(), constants, and fixed values computed from these.
 constexpr int kFrequency = 0, kFirstParameter = 1;
 
 /// A condition on the parameters, checked by Effect::check.
@@ -40,14 +40,14 @@ struct Definition {
   Compiled code;
 
   /// Returns true if the operating point prescribes the output. It is the machine's Efd or Tm, and zero for
-  /// dVref, dPref and a law that adds to Efd or Tm.
+  /// dVref, dPref and a user-defined model that adds to Efd or Tm.
   [[nodiscard]] bool must_meet() const;
   [[nodiscard]] std::string_view output_name() const {
     return kSignals[static_cast<std::size_t>(output)].name;
   }
 };
 
-/// Reads a law file. Throws InputError with all its faults.
+/// Reads a user-defined model file. Throws InputError with all its faults.
 Definition read_definition(const std::string& text, const std::filesystem::path& name);
 /// Returns the effect that runs the definition.
 Effect make_effect(Definition definition);
@@ -67,8 +67,8 @@ void fill(const Definition& user_model, const T* p, const Signals<T>* s, T* c) {
   run<T, false>(user_model.code.fixed, c, nullptr, Signals<T>{}, registers.data(), c, unused);
 }
 
-/// Computes the steady state: fills c, x and the law's output at the operating point. Returns the reason why
-/// the operating point is infeasible, or "".
+/// Computes the steady state: fills c, x and the user-defined model's output at the operating point. Returns
+/// the reason why the operating point is infeasible, or "".
 std::string steady(const Definition& user_model, const double* p, double* c, Signals<double>& s, double* x);
 std::string steady(const Definition& user_model, const D8* p, D8* c, Signals<D8>& s, D8* x);
 

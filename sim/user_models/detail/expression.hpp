@@ -1,5 +1,5 @@
 #pragma once
-// Expressions of a law file: grammar and syntax tree.
+// Expressions of a user-defined model file: grammar and syntax tree.
 //   precedence, lowest first:  < > <= >=   + -   * /   unary -   ^ (whole exponent 0 ... 16)
 //   functions:                 min max abs sqrt exp log sin cos clamp deadband select
 // A comparison may occur only as the first argument of select, or as a whole condition.

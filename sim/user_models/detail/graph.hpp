@@ -1,6 +1,6 @@
 #pragma once
-// Expression graph of a law, with common subexpressions eliminated. Values that depend only on parameters and
-// on the operating point are marked: they are evaluated once per run, not once per step.
+// Expression graph of a user-defined model, with common subexpressions eliminated. Values that depend only on
+// parameters and on the operating point are marked: they are evaluated once per run, not once per step.
 #include <array>
 #include <map>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace swingbank::sim::user_models {
 
-/// A signal that a law may read; `name` is the field of Signals.
+/// A signal that a user-defined model may read; `name` is the field of Signals.
 struct SignalRecord {
   std::string_view name, meaning;
   Slot made_in;  ///< slot that computes it; readable in later slots only (machine: in all)
@@ -77,11 +77,11 @@ struct Vertex {
   bool parameters = false;  ///< fixed, and independent of the operating point
 };
 
-/// Thrown when a law exceeds the maximum size.
+/// Thrown when a user-defined model exceeds the maximum size.
 struct TooLarge {};
 
-/// Directed acyclic graph of a law's expressions. Methods that add a vertex return its index; an existing
-/// equal vertex is reused.
+/// Directed acyclic graph of a user-defined model's expressions. Methods that add a vertex return its index;
+/// an existing equal vertex is reused.
 class Graph {
  public:
   static constexpr std::size_t kMost = 4000;  ///< maximum number of vertices

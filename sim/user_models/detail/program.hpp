@@ -1,6 +1,7 @@
 #pragma once
-// Register program of a law's graph: one instruction list fills the coefficients once per run, the other
-// evaluates the derivatives. No branch depends on a value of type T, and execution allocates no memory.
+// Register program of a user-defined model's graph: one instruction list fills the coefficients once per run,
+// the other evaluates the derivatives. No branch depends on a value of type T, and execution allocates no
+// memory.
 #include <cstdint>
 #include <vector>
 

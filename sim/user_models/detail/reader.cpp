@@ -10,7 +10,8 @@ namespace {
 
 struct Output {
   std::string_view name;
-  Slot replaced, added;  ///< slot if the law replaces or adds to the output; machine: not allowed
+  Slot replaced,
+      added;  ///< slot if the user-defined model replaces or adds to the output; machine: not allowed
 };
 constexpr std::array kUserModelOutputs = {
     Output{"Vc", Slot::compensator, Slot::compensator}, Output{"dVref", Slot::machine, Slot::setpoint},
@@ -49,7 +50,8 @@ bool Reader::claim(const std::string& key, const std::string& name, const char* 
   if (signal_index(name) >= 0) why = "a signal of the plant has the name";
   if (at_rest) why = "it means the signal's value at the operating point";
   if (is_function(name)) why = "a function has the name";
-  if (name == "pi" || name == "frequency" || name == "input") why = "it is a word of law files";
+  if (name == "pi" || name == "frequency" || name == "input")
+    why = "it is reserved in files of user-defined models";
   if (const auto other = taken_.find(name); other != taken_.end())
     why = "a " + other->second + " has the name";
   if (why.empty()) {
@@ -90,7 +92,7 @@ void Reader::read_parameters() {
   const auto names = in_file_order("parameters");
   if (names.size() > kMostParameters)
     problems_.add(fmt::format("{} parameters", names.size()), config_.where("parameters"),
-                  fmt::format("at most {} are read", kMostParameters), "split the law");
+                  fmt::format("at most {} are read", kMostParameters), "split the model");
   for (const std::string& name : names) {
     const std::string key = "parameters." + name + ".";
     if (!claim("parameters." + name, name, "parameter")) continue;
@@ -235,7 +237,7 @@ void Reader::read_output() {
                       "use parameters and values at the operating point, or clamp the output");
   if (states_.size() > kMostStates)
     problems_.add(fmt::format("{} states", states_.size()), config_.name().string(),
-                  fmt::format("at most {} are read", kMostStates), "split the law");
+                  fmt::format("at most {} are read", kMostStates), "split the model");
 }
 
 std::string Reader::describe() const {
@@ -316,7 +318,7 @@ void Reader::finish() {
 
 Definition Reader::read() {
   if (text_.size() > kLargestFile)
-    throw InputError({fmt::format("a law of {} bytes", text_.size()), config_.name().string(),
+    throw InputError({fmt::format("a user-defined model of {} bytes", text_.size()), config_.name().string(),
                       fmt::format("at most {} are read", kLargestFile), "shorten it"});
   read_head();
   read_entry_point();
@@ -337,7 +339,7 @@ Definition Reader::read() {
     problems_.raise();
     finish();
   } catch (const TooLarge&) {
-    throw InputError({"a law too large", config_.name().string(),
+    throw InputError({"user-defined model too large", config_.name().string(),
                       fmt::format("its expressions have at most {} values, {} of them in use at once",
                                   Graph::kMost, kRegisters),
                       "simplify it"});

@@ -1,5 +1,6 @@
 #pragma once
-// Reader of law files: resolves names, adds expressions to the graph and converts blocks to states.
+// Reader of files of user-defined models: resolves names, adds expressions to the graph and converts blocks
+// to states.
 #include <map>
 #include <optional>
 #include <set>
@@ -15,7 +16,7 @@ struct Expression {
   Tree tree;
 };
 
-/// Reads one law file.
+/// Reads one user-defined model file.
 class Reader {
  public:
   Reader(const std::string& text, const std::filesystem::path& name);

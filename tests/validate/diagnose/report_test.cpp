@@ -189,8 +189,8 @@ TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
   EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict bad"));
 }
 
-/// The example without an accepted effect, with an accepted law for the field voltage and a rejected second
-/// one.
+/// The example without an accepted effect, with an accepted user-defined model for the field voltage and a
+/// rejected second one.
 Diagnosis with_user_models() {
   Diagnosis d = example().d;
   d.user_models.kind = fit::InputKind::field;

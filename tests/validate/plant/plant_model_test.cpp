@@ -70,9 +70,9 @@ TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
   EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
   EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
   EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example_text()),
-              ElementsAre(AllOf(HasSubstr("no readable law file"), HasSubstr("none.toml"))));
+              ElementsAre(AllOf(HasSubstr("no readable user-defined model"), HasSubstr("none.toml"))));
 }
-/// Plants in different folders, each with a law of the same file name and effect name.
+/// Plants in different folders, each with a user-defined model of the same file name and effect name.
 TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedLaws) {
   const auto folder = file_.parent_path() / file_.stem();
   const auto read = [&](const std::string& depth) {

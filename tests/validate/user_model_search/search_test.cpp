@@ -1,5 +1,5 @@
-// Laws for an input that no known effect explains: ranked by its time series, written as law files, found in
-// records, and accepted only if they predict events outside the fit.
+// User-defined models for an input that no known effect explains: ranked by its time series, written as files
+// of user-defined models, found in records, and accepted only if they predict events outside the fit.
 #include "validate/user_model_search/search.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +16,8 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-/// Two events as input of the search for laws: a decaying swing, knots as `missing_input` sets them, and an
-/// input given by a function of the speed deviation and of time.
+/// Two events as input of the search for user-defined models: a decaying swing, knots as `missing_input` sets
+/// them, and an input given by a function of the speed deviation and of time.
 template <class F>
 std::vector<UserModelTrace> traces_with(F input) {
   std::vector<UserModelTrace> all;
@@ -98,10 +98,12 @@ TEST(UserModelCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
     EXPECT_NE(user_model.signal, "time since the voltage moved") << user_model.family;
 }
 
-/// Every law file can be read, rests at the operating point, and has the output that was ranked.
+/// Every user-defined model file can be read, rests at the operating point, and has the output that was
+/// ranked.
 TEST(UserModelText, EveryFileReproducesTheRankedTimeSeries) {
   const auto traces = traces_with([](const UserModelTrace& e, double speed, double t) {
-    return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t) : 0.0);  // a feature for every law to fit
+    return -3 * speed + (t > e.begin + 3 ? 0.02 * std::sin(2.3 * t)
+                                         : 0.0);  // a feature for every user-defined model to fit
   });
   const UserModelRegression regression(traces);
   for (const fit::InputKind kind : {fit::InputKind::torque, fit::InputKind::field}) {
@@ -124,11 +126,12 @@ TEST(UserModelText, EveryFileReproducesTheRankedTimeSeries) {
           difference += std::pow(time_series[e][k] - user_model.time_series[e][k], 2);
           size += std::pow(user_model.time_series[e][k], 2);
         }
-      // The ranking samples at 20/s with a step at each edge of the law; a trigger acts within some 10 ms.
-      // For a sawtooth above 1 Hz, whose every step is affected, most of a tenth of the mean square may
-      // differ.
+      // The ranking samples at 20/s with a step at each edge of the user-defined model; a trigger acts within
+      // some 10 ms. For a sawtooth above 1 Hz, whose every step is affected, most of a tenth of the mean
+      // square may differ.
       const bool wave = user_model.family.starts_with("periodic, ");
-      // A law that explains next to nothing is never fitted; its amplitudes are kept away from zero.
+      // A user-defined model that explains next to nothing is never fitted; its amplitudes are kept away from
+      // zero.
       if (user_model.explained > 0.1) {
         EXPECT_LT(difference, (wave ? 0.3 : 0.05) * size) << user_model_toml(user_model, "test");
       }
@@ -235,7 +238,7 @@ TEST(UserModelSearchTest, FindsTorqueLimitedAboveASpeed) {
   }
   EXPECT_THAT(user_model_sentence(s, 30),
               testing::HasSubstr("None of the 30 known effects explains the records; a torque of -0.0"));
-  // The law file contains the law that was judged.
+  // The file contains the user-defined model that was judged.
   const sim::Effect read = sim::user_models::make_user_model(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)
     EXPECT_DOUBLE_EQ(read.parameters[i].default_value, f.user_model.parameters[i].value)

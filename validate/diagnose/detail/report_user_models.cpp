@@ -45,7 +45,8 @@ void add_time_series(const Diagnosis& d, report::Page& page) {
   const user_model_search::UserModelSearch& s = d.user_models;
   for (std::size_t e = 0; e < s.traces.size(); ++e) {
     const std::string& name = d.events[e].record.name;
-    report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " law", s.traces[e].knots, {}, {}};
+    report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " user-defined model",
+                     s.traces[e].knots,           {},      {}};
     c.series.push_back({"inferred", kInferred, false, s.traces[e].input});
     if (drawn(d)) c.series.push_back({"law", kUserModel, false, drawn(d)->user_model.time_series[e]});
     page.curves(c);

@@ -274,8 +274,8 @@ class LinearSensitivities {
     const P8 vr(trace_.v[k].real()), vi(trace_.v[k].imag());
     const bool is_sample = node.kind == NodeKind::sample, at_guard = node.passed.guard >= 0;
     // a perturbed copy may lie on the other side of the discontinuity
-    const bool jumps = at_guard || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
-    if (jumps) now_ = before_;
+    const bool discontinuous = at_guard || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
+    if (discontinuous) now_ = before_;
     find_limits(x, dx);
     for (auto& [equations, by_state, pack] : copies_) {
       place(equations, x);
@@ -288,7 +288,7 @@ class LinearSensitivities {
       equations.side = node.side;
       equations.evaluate_at(vr, vi, node.t, x_.data(), dx_.data());
       P8* const by = (by_state ? now_.A : now_.B).pack(pack);
-      for (std::size_t i = 0; !jumps && i < n_; ++i) by[i] = (dx_[i] - P8(dx[i])) * per_move;
+      for (std::size_t i = 0; !discontinuous && i < n_; ++i) by[i] = (dx_[i] - P8(dx[i])) * per_move;
       P8* const shown = (by_state ? now_.C : now_.D).pack(pack);
       if (is_sample) {
         const auto y = equations.outputs(x_.data());
