@@ -30,7 +30,7 @@ endfunction()
 # To be called after all modules are declared.
 function(swingbank_install_package)
   swingbank_export_group(simulation "^swingbank_(base|sim_.*)$")
-  swingbank_export_group(validation "^swingbank_(base|sim_(core|library|laws|plant|grid)|validate_.*)$")
+  swingbank_export_group(validation "^swingbank_(base|sim_(core|library|user_models|plant|grid)|validate_.*)$")
   swingbank_export_group(datasets "^swingbank_(base|mpi_store)$")
   foreach(target options hot cold)
     set_target_properties(swingbank_${target} PROPERTIES EXPORT_NAME ${target})

@@ -53,24 +53,35 @@ add_library(swingbank_train INTERFACE)
 target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
 target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
-# swingbank_program(name [KIND train]): bin/<name>, one program with several commands (jobs/run_command.cpp).
+# swingbank_own_headers(folder): an include root modules/<folder>/own with the headers of a folder of commands.
+function(swingbank_own_headers folder)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${folder}/own)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/modules/${folder}/own/${folder} SYMBOLIC)
+endfunction()
+
+# swingbank_program(name [KIND train] [INSTALL]): bin/<name>, one program with several commands (jobs/run_command.cpp) of this
+# folder, which declares them in commands.hpp.
 function(swingbank_program name)
-  cmake_parse_arguments(A "" "KIND" "" ${ARGN})
-  add_executable(${name} run_command.cpp)
+  cmake_parse_arguments(A "INSTALL" "KIND" "" ${ARGN})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME folder)
+  add_executable(${name} ${PROJECT_SOURCE_DIR}/jobs/run_command.cpp)
   target_link_libraries(${name} PRIVATE swingbank_cold swingbank_command_line)
-  target_compile_definitions(${name} PRIVATE SWINGBANK_VERSION="${PROJECT_VERSION}")
-  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  target_compile_definitions(${name} PRIVATE SWINGBANK_VERSION="${PROJECT_VERSION}" SWINGBANK_COMMANDS="${folder}/commands.hpp")
+  target_include_directories(${name} PRIVATE ${PROJECT_BINARY_DIR}/modules/${folder}/own ${PROJECT_BINARY_DIR}/commands/${name})
   # Each command names its helpers as it likes.
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF SWINGBANK_NAMESPACE swingbank::${folder})
   if(NOT A_KIND STREQUAL "train")
     swingbank_precompile(${name} cold)
   endif()
-  set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS ${name})
+  if(A_INSTALL)
+    set_property(GLOBAL APPEND PROPERTY SWINGBANK_PROGRAMS ${name})
+    set_target_properties(${name} PROPERTIES SWINGBANK_INSTALL ON)
+  endif()
   set_property(GLOBAL APPEND PROPERTY SWINGBANK_MULTI_COMMAND_PROGRAMS ${name})
 endfunction()
 
 # swingbank_command(name IN program SUMMARY "one line" GROUP "heading" USES modules... [SOURCES files...]):
-# jobs/<name>.cpp becomes a command of the program, started as bin/swingbank-<name>. `swingbank --help` lists the summary
+# <name>.cpp becomes a command of the program, started as bin/swingbank-<name>. `swingbank --help` lists the summary
 # under the heading. The target swingbank-<name> builds the program.
 function(swingbank_command name)
   cmake_parse_arguments(A "" "IN;SUMMARY;GROUP" "USES;SOURCES" ${ARGN})
@@ -82,18 +93,22 @@ function(swingbank_command name)
   add_custom_target(swingbank-${name} DEPENDS ${A_IN})
   file(MAKE_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
   file(CREATE_LINK ${A_IN} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name} SYMBOLIC)
-  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", ${file}_command},\n")
+  get_target_property(namespace ${A_IN} SWINGBANK_NAMESPACE)
+  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", ${namespace}::${file}_command},\n")
   set_property(GLOBAL APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", \"${A_GROUP}\"},\n")
-  set_property(GLOBAL APPEND PROPERTY SWINGBANK_COMMAND_LINKS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name})
+  get_target_property(installed ${A_IN} SWINGBANK_INSTALL)
+  if(installed)
+    set_property(GLOBAL APPEND PROPERTY SWINGBANK_COMMAND_LINKS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name})
+  endif()
 endfunction()
 
 # Writes the tables of the commands, in the order of their declaration: all for the dispatcher, and those of each program.
 function(swingbank_command_tables)
   get_property(table GLOBAL PROPERTY SWINGBANK_COMMANDS)
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/commands.inc CONTENT "${table}" @ONLY)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/commands.inc CONTENT "${table}" @ONLY)
   get_property(programs GLOBAL PROPERTY SWINGBANK_MULTI_COMMAND_PROGRAMS)
   foreach(program ${programs})
     get_target_property(table ${program} SWINGBANK_COMMANDS)
-    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${program}/commands_of_program.inc CONTENT "${table}" @ONLY)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/${program}/commands_of_program.inc CONTENT "${table}" @ONLY)
   endforeach()
 endfunction()

@@ -13,14 +13,14 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-COLOURS = {"base": "#e8e8e8", "sim": "#dbe9f6", "mpi": "#fdebd0", "train": "#e3f1dc", "validate": "#f3e1f0", "jobs": "#fff"}
+COLOURS = {"base": "#e8e8e8", "sim": "#dbe9f6", "mpi": "#fdebd0", "train": "#e3f1dc", "validate": "#f3e1f0", "research": "#fdf6d8", "jobs": "#fff"}
 WIDTH, BOX, STEP, GAP, MARGIN = 900, 26, 66, 14, 16  # px; a layer is STEP high
 
 
 def read_modules():
     """Module -> the modules it uses, those that only its sources use included."""
     modules = {}
-    for folder in ("base", "sim", "mpi", "train", "validate"):
+    for folder in ("base", "sim", "mpi", "train", "validate", "research"):
         text = re.sub(r"#.*", "", (ROOT / folder / "CMakeLists.txt").read_text())
         for words in re.findall(r"^swingbank_module\(([^)]*)\)", text, re.M):
             module, *rest = words.split()

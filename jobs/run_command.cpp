@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "jobs/commands.hpp"
+#include "jobs/command_line.hpp"
+#include SWINGBANK_COMMANDS
 
 namespace {
 

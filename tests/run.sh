@@ -4,7 +4,7 @@
 #     --fast          the fast tier only (under 2 minutes once built)
 #     --nightly       only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
 #                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
-#                     per night: more than an hour (jobs/nightly.sh runs it)
+#                     per night: more than an hour (research/nightly.sh runs it)
 #     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)

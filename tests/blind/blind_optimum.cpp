@@ -8,8 +8,8 @@
 
 #include "base/durable.hpp"
 #include "base/json.hpp"
-#include "validate/blind/cases/plan.hpp"
-#include "validate/blind/score/judge.hpp"
+#include "research/blind/cases/plan.hpp"
+#include "research/blind/score/judge.hpp"
 #include "validate/calibrate/side_by_side.hpp"
 
 namespace {

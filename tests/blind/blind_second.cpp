@@ -8,9 +8,9 @@
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
 #include "tests/blind/second/disturbances.hpp"
-#include "validate/blind/cases/detail/effects.hpp"
-#include "validate/blind/cases/detail/world.hpp"
-#include "validate/blind/cases/plan.hpp"
+#include "research/blind/cases/detail/effects.hpp"
+#include "research/blind/cases/detail/world.hpp"
+#include "research/blind/cases/plan.hpp"
 
 namespace {
 using namespace swingbank;

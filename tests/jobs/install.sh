@@ -9,10 +9,10 @@ built >"$work/before"
 cmake --install "$build" --prefix "$prefix" >"$work/log" 2>&1 || fail "cmake --install: $(tail -n 5 "$work/log")"
 built | cmp - "$work/before" || fail "cmake --install built a program again"
 
-# Every command, but no tests or benchmarks.
-programs() { (cd "$1" && find . -maxdepth 1 -name 'swingbank*' -printf '%f\n' | sort); }
+# Every command, but no tests and none of research/.
+programs() { (cd "$1" && find . -maxdepth 1 -name 'swingbank*' ! -name 'swingbank_research*' ! -lname 'swingbank_research*' -printf '%f\n' | sort); }
 cmp <(programs "$SWINGBANK_BIN") <(programs "$prefix/bin") || fail "the installed programs are not those that were built"
-others=$(find "$prefix/bin" -not -name 'swingbank*' -type f)
+others=$(find "$prefix/bin" \( -not -name 'swingbank*' -o -name 'swingbank_research*' \) -type f)
 [[ -z $others ]] || fail "no commands, but installed: $others"
 cmp <(cd "$SWINGBANK_SOURCE/configs" && find . -type f | sort) <(cd "$prefix/share/swingbank/configs" && find . -type f | sort) ||
   fail "the installed configs are not those of the source tree"

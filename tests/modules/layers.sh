@@ -48,7 +48,7 @@ sim/batch/batch.cpp validate/fit/fit.hpp
 mpi/store/dataset.cpp mpi/ranks/generate.hpp
 validate/record/record.cpp validate/fit/fit.hpp
 validate/report/page.cpp validate/diagnose/diagnose.hpp
-validate/diagnose/diagnose.cpp validate/blind/score/score.hpp
+validate/diagnose/diagnose.cpp research/blind/score/score.hpp
 validate/calibrate/calibrate.cpp validate/fit/detail/cost.hpp
 FORBIDDEN
 cat >"$work/allowed" <<'ALLOWED'

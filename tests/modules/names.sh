@@ -4,7 +4,7 @@
 # source. JSON is read through base/json.hpp, which alone includes the library.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
-sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp')
+sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp' 'research/*.?pp')
 failed=0
 
 # module_of FILE: sets `module`, the module of the file
@@ -16,7 +16,7 @@ module_of() {
 while read -r file; do
   module_of "$file"
   case $module in
-    sim | mpi | train | validate | validate/blind)
+    sim | mpi | train | validate | research/blind)
       echo "$file stands in $module, which holds modules: put it into one of them" >&2
       failed=1 ;;
   esac

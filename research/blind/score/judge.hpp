@@ -1,0 +1,24 @@
+#pragma once
+// Swingbank's diagnosis as the judge of a blind test.
+#include <filesystem>
+#include <vector>
+
+#include "research/blind/score/verdict.hpp"
+#include "validate/diagnose/diagnose.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/record/record.hpp"
+
+namespace swingbank::research::blind::score {
+
+/// Input of a judge: the owner's model and the records of its events.
+struct SeenCase {
+  validate::plant::PlantModel model;
+  std::vector<validate::record::Record> records;
+};
+/// Reads model.toml, point.toml if there, and every *.csv of a case folder. Throws InputError.
+SeenCase read_seen_case(const std::filesystem::path& folder);
+
+/// Judge that diagnoses a case folder. If the diagnosis throws InputError, the verdict is `refused`.
+BlindJudge diagnosis_judge(const validate::diagnose::DiagnoseOptions& options = {});
+
+}  // namespace swingbank::research::blind::score

@@ -1,0 +1,256 @@
+#!/usr/bin/env bash
+# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier nights.
+#   bash research/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
+#                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
+#     --hours      of the whole night on this machine, default 2: the preset `nightly` is scaled so that the tables
+#                  take two thirds of them; the nightly tests, the blind test and the fuzz targets share the remaining
+#                  time
+#     --out        default out/nightly; one folder per night in it, `latest` points to the last one
+#     --date       default today; an interrupted night continues when started again on its date, in its original
+#                  sizes
+#     --preset     this preset without scaling, however long it takes
+#     --seed       of the training; default ten times the day's number, so that every night has other seeds: the
+#                  nights then show the random variation of a result
+#     --seeds      trains with that many seeds, from --seed on; default 3 if the night has 4 hours or more, else 1
+#     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
+#     --tests      1 runs the nightly tier of the tests (tests/run.sh --nightly), 0 skips it; default 1 if 70 % of the
+#                  remaining time suffices by the last night's measurement (without one: an hour and a half)
+#     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
+#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time permits;
+#                  0 skips it
+#     EXPERIMENT   default every file of configs/experiments
+# Exit codes: 0 done, 1 failed, 2 saved on a signal.
+set -euo pipefail
+
+source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
+tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
+hours_of_seeds=4                             # from which on a cell has a spread
+table_share=0.67                             # of the hours
+tests_take=5400                              # [s] of two cores, their builds in it, where no night before tells
+blind_share=0.6                              # of what the tables leave
+blind_case=80                                # [s] of two cores; docs/reference/blind-test-results.md
+fuzz_build=300 fuzz_least=10                 # [s]; docs/reference/performance.md
+while (($#)); do
+  case $1 in
+    --hours) hours=${2:?--hours needs a number}; shift 2 ;;
+    --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
+    --date) date=${2:?--date needs a day}; shift 2 ;;
+    --preset) preset=${2:?--preset needs a name}; shift 2 ;;
+    --seed) seed=${2:?--seed needs a number}; shift 2 ;;
+    --seeds) seeds=${2:?--seeds needs a number}; shift 2 ;;
+    --keep-data) keep_data=1; shift ;;
+    --tests) tests=${2:?--tests needs 0 or 1}; shift 2 ;;
+    --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
+    --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
+    -h | --help) sed -n '2,23p' "$0"; exit 0 ;;
+    -*) echo "unknown option at '$1' (research/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
+    *) experiments+=("$(realpath -m "$1")"); shift ;;
+  esac
+done
+if [[ ! $date =~ ^[0-9]{4}-[0-9]{2}-[0-9]{2}$ ]] || ! day=$(date -u -d "$date" +%s 2>/dev/null); then
+  echo "no date at --date $date (it must be YYYY-MM-DD): give one like $(date +%F)" >&2
+  exit 1
+fi
+if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; then
+  echo "no hours at --hours $hours (it must be a number above 0): give one like 2 or 0.5" >&2
+  exit 1
+fi
+seeds=${seeds:-$(awk "BEGIN {print ($hours >= $hours_of_seeds ? 3 : 1)}")}
+if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
+  echo "no number of seeds at --seeds $seeds (the next run's seeds start ten higher): give 1 to 10" >&2
+  exit 1
+fi
+((${#experiments[@]})) || experiments=("$source_folder"/configs/experiments/*.toml)
+seed=${seed:-$((day / 86400 * 10))}
+build=${SWINGBANK_BUILD:-$source_folder/build/release}
+swingbank=$build/bin/swingbank
+night=$out/$date
+
+mkdir -p "$night"
+exec 9>"$out/.lock"
+if ! flock -n 9; then
+  echo "nightly run refused at $out (another one is running there): wait for it, or give another --out" >&2
+  exit 1
+fi
+
+# shellcheck source=jobs/run_saving.bash
+source "$source_folder/jobs/run_saving.bash"
+
+# with_tries COMMAND...: repeats a command that failed by accident (a killed rank, a full disk that was cleared); it
+# continues where it stopped
+with_tries() {
+  local try status
+  for ((try = 1; try <= tries; try++)); do
+    status=0
+    run_saving "$@" || status=$?
+    ((status == 0 || status == 2)) && return "$status"
+    echo "try $try of $tries failed with exit code $status" >&2
+    ((try == tries)) || sleep "$pause"
+  done
+  return 1
+}
+
+# part NAME COMMAND...: prints and records its time, also that of an interrupted part.
+part() {
+  local name=$1 begin=$SECONDS status=0
+  shift
+  "$@" || status=$?
+  printf '%s\t%d\n' "$name" $((SECONDS - begin)) >>"$night/parts.tsv"
+  printf '\n== %s: %d s\n' "$name" $((SECONDS - begin))
+  return "$status"
+}
+used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
+# left SHARE: remaining seconds of the budget, times SHARE
+left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
+
+# Time of the nightly tests when they last ran to the end [s].
+tests_took() {
+  local folder took=$tests_take
+  for folder in "$out"/????-??-??; do # in the order of their dates
+    if grep -qsE '^== (all passed|failed)' "$folder/tests.txt"; then
+      took=$(awk -F'\t' '$1 == "tests of the night" {sum += $2} END {print sum + 0}' "$folder/parts.tsv")
+    fi
+  done
+  echo "$took"
+}
+
+# keep NAME...: saves these variables for the night
+keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
+
+# The night's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
+settle() {
+  if [[ -s $night/sizes.conf ]]; then
+    local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
+    # shellcheck source=/dev/null
+    source "$night/sizes.conf"
+    tests=${asked_tests:-$tests} blind=${asked_blind:-$blind} fuzz=${asked_fuzz:-$fuzz}
+    return
+  fi
+  local name=$preset table_hours i
+  rm -rf "$night/experiments"
+  mkdir -p "$night/experiments"
+  if [[ -z $preset ]]; then
+    name=nightly-${hours/./_}h # a dot would divide a key
+    table_hours=$(awk "BEGIN {print $hours * $table_share}")
+    "$swingbank" night-plan "${experiments[@]}" --preset nightly --hours "$table_hours" --cores "$(nproc)" --seeds "$seeds" \
+      --rates "$source_folder/research/rates.toml" --name "$name" --out "$night/experiments" >"$night/plan.md" || return 1
+    for i in "${!experiments[@]}"; do experiments[i]=$night/experiments/$(basename "${experiments[i]}"); done
+    cat "$night/plan.md"
+  fi
+  preset=$name
+  keep hours preset seed seeds experiments
+}
+
+# run_stage STAGE SEED EXPERIMENT
+run_stage() {
+  with_tries bash "$source_folder/jobs/run_experiment.sh" --experiment "$3" --preset "$preset" --seed "$2" \
+    --out "$night/$(basename "$3" .toml)" --stage "$1"
+}
+
+run_tables() {
+  local experiment name k folders=()
+  for experiment in "${experiments[@]}"; do
+    name=$(basename "$experiment" .toml)
+    if [[ ! -e $night/$name/trained ]]; then # its events may be gone
+      part "$name: events" run_stage generate "$seed" "$experiment" || return $?
+      for ((k = 0; k < seeds; ++k)); do
+        part "$name: training, seed $((seed + k))" run_stage train $((seed + k)) "$experiment" || return $?
+      done
+      touch "$night/$name/trained"
+    fi
+    ((keep_data)) || rm -rf "$night/$name/data" "$night/$name/training-data"
+    folders+=("$night/$name/results")
+  done
+  part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
+}
+
+# A part of the blind test (docs/reference/blind-test-results.md); finished cases and verdicts stay after an
+# interruption.
+blind_test() {
+  local configs=$source_folder/configs/blind run=$night/blind
+  run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
+    run_saving "$swingbank" blind-test --out "$run" --diagnose &&
+    run_saving "$swingbank" blind-test --out "$run" --score --targets "$configs/targets.toml"
+}
+night_tests() {
+  local status=0
+  run_saving bash "$source_folder/tests/run.sh" --nightly >"$night/tests.txt" 2>&1 || status=$?
+  tail -n 40 "$night/tests.txt"
+  return "$status"
+}
+fuzz_targets() {
+  local status=0
+  run_saving bash "$source_folder/tests/fuzz/run.bash" "$fuzz" >"$night/fuzz.txt" 2>&1 || status=$?
+  cat "$night/fuzz.txt"
+  return "$status"
+}
+fuzz_seconds() { # of each target, two at a time, from what is left
+  local targets=("$source_folder"/tests/fuzz/*.cpp) budget
+  budget=$(left 1)
+  if [[ ! -d $source_folder/build/fuzz/bin ]]; then budget=$((budget - fuzz_build)); fi
+  budget=$((budget / ((${#targets[@]} + 1) / 2)))
+  echo $((budget < fuzz_least ? 0 : budget))
+}
+
+# report: the night's results so far; written again after each part
+report() {
+  {
+    "$swingbank" nightly-compare "$out" --night "$date" || return 1
+    printf '\n## Time\n\n%s of %s requested hours, on %d cores, preset %s, seed %d (%d of them).\n\n' \
+      "$(awk -v s="$(used)" 'BEGIN {printf "%.2f", s / 3600}')" "$hours" "$(nproc)" "$preset" "$seed" "$seeds"
+    printf '| part | time [s] |\n|---|---:|\n'
+    awk -F'\t' '!($1 in sum) {order[++n] = $1} {sum[$1] += $2} END {for (i = 1; i <= n; ++i) print "| " order[i] " | " sum[order[i]] " |"}' \
+      "$night/parts.tsv"
+    if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of research/rates.toml:\n\n' && cat "$night/plan.md"; fi
+    printf '\n'
+    sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # pictures lie beside it
+    if [[ -s $night/blind/score.md ]]; then
+      printf '\n## Blind test, seed %s\n\n' "$seed"
+      sed '1,2d;s/^## /### /' "$night/blind/score.md"
+    elif [[ $blind == 0 ]]; then
+      printf '\n## Blind test\n\nNot run.\n'
+    fi
+    if [[ -s $night/tests.txt ]]; then
+      printf '\n## Nightly tests\n\n'
+      sed -n '/tests passed/,$p' "$night/tests.txt" | sed 's/^/    /'
+    elif [[ $tests == 0 ]]; then
+      printf '\n## Nightly tests\n\nNot run.\n'
+    fi
+    if [[ -s $night/fuzz.txt ]]; then
+      printf '\n## Fuzz targets\n\n'
+      sed 's/^/- /' "$night/fuzz.txt"
+    elif [[ $fuzz == 0 ]]; then
+      printf '\n## Fuzz targets\n\nNot run.\n'
+    fi
+  } >"$night/report.md.part" || return 1
+  mv "$night/report.md.part" "$night/report.md"
+}
+# stopped STATUS: ends the night if a signal or failure prevents its continuation
+stopped() {
+  echo "nightly run of $date stopped (exit code $1) after $(used) s; log: $night/log.txt" >&2
+  exit "$1"
+}
+
+touch "$night/parts.tsv"
+exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
+build_all() { bash "$source_folder/jobs/setup.sh" 9>&-; }
+if [[ -z ${SWINGBANK_BUILD:-} ]]; then part build build_all || stopped $?; fi
+settle || stopped $?
+status=0
+run_tables || stopped $?
+report || stopped 1
+ln -sfn "$date" "$out/latest"
+
+if [[ -z $tests ]]; then tests=$(($(left 0.7) >= $(tests_took))) && keep tests; fi
+if [[ $tests != 0 ]]; then part "tests of the night" night_tests || status=$?; fi
+((status != 2)) || stopped 2
+if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)) && keep blind; fi
+if [[ $blind != 0 ]]; then part "blind test, $blind cases" blind_test || status=$?; fi
+((status != 2)) || stopped 2
+if [[ -z $fuzz ]]; then fuzz=$(fuzz_seconds) && keep fuzz; fi
+if [[ $fuzz != 0 ]]; then part "fuzz targets, $fuzz s each" fuzz_targets || status=1; fi
+report || status=1
+cat "$night/report.md"
+echo "report: $night/report.md; $(used) s of $hours h"
+exit "$status"
