@@ -8,13 +8,13 @@
 namespace swingbank::train::posterior {
 namespace {
 
-constexpr std::size_t kNodes = kNodeProbabilities.size();
-using NodeScores = std::array<double, kNodes>;
+constexpr std::size_t kNodeCount = kNodeProbabilities.size();
+using NodeScores = std::array<double, kNodeCount>;
 
 const NodeScores& standard() {
   static const NodeScores scores = [] {
     NodeScores all{};
-    for (std::size_t i = 0; i < kNodes; ++i) all[i] = normal_quantile(kNodeProbabilities[i]);
+    for (std::size_t i = 0; i < kNodeCount; ++i) all[i] = normal_quantile(kNodeProbabilities[i]);
     return all;
   }();
   return scores;
@@ -24,7 +24,7 @@ const NodeScores& standard() {
 double along(const NodeScores& from, const NodeScores& to, double x) {
   const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
   if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);
-  if (x >= from.back()) return to.back() + (x - from.back()) * slope(kNodes - 3, kNodes - 1);
+  if (x >= from.back()) return to.back() + (x - from.back()) * slope(kNodeCount - 3, kNodeCount - 1);
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(from, x) - from.begin());
   return to[after - 1] + (x - from[after - 1]) * slope(after - 1, after);
 }
@@ -40,7 +40,7 @@ Recalibration Recalibration::fit(std::span<const double> scores) {
   if (scores.size() < kMinRows) return r;
   std::vector<double> sorted(scores.begin(), scores.end());
   std::ranges::sort(sorted);
-  for (std::size_t i = 0; i < kNodes; ++i) {
+  for (std::size_t i = 0; i < kNodeCount; ++i) {
     const double at = kNodeProbabilities[i] * static_cast<double>(sorted.size() - 1);
     const auto left = std::min(static_cast<std::size_t>(at), sorted.size() - 2);
     r.node_scores_[i] = std::lerp(sorted[left], sorted[left + 1], at - static_cast<double>(left));
@@ -54,7 +54,7 @@ double Recalibration::wrong(double right) const { return along(standard(), node_
 
 Recalibration Recalibration::between(const Recalibration& a, const Recalibration& b, double share) {
   Recalibration r;
-  for (std::size_t i = 0; i < kNodes; ++i)
+  for (std::size_t i = 0; i < kNodeCount; ++i)
     r.node_scores_[i] = std::lerp(a.node_scores_[i], b.node_scores_[i], share);
   return r;
 }

@@ -55,7 +55,7 @@ struct Posterior {
   Threshold set{"posterior.set", 0.95, "probability", "total probability of the credible set (decision 41)"};
   /// Probability above which the verdict names the first explanation of the set [-].
   Threshold named{
-      "posterior.told", 0.5, "probability",
+      "posterior.named", 0.5, "probability",
       "least probability at which the verdict names the first explanation of the set (decision 41)"};
   /// Probability relative to the leading explanation below which a fit is not continued [-].
   Threshold negligible{"posterior.negligible", 1e-4, "probability relative to the leading one",
@@ -87,7 +87,7 @@ struct HeldOut {
                   "an effect acts in one event only if that event has a larger share; other events then "
                   "cannot predict it"};
   /// Share of such an event's chi2 that must remain when the fit excludes it [-].
-  Threshold unpredicted{"held_out.foretold", 0.5, "share of that event's chi2",
+  Threshold unpredicted{"held_out.unpredicted", 0.5, "share of that event's chi2",
                         "and if a larger share of its chi2 remains when the fit excludes it"};
 };
 inline constexpr HeldOut held_out;  ///< the thresholds in use
@@ -201,7 +201,7 @@ inline constexpr Addition addition;  ///< the thresholds in use
 struct Parameters {
   /// Prior standard deviation of a model's parameters, relative [-].
   Threshold prior_sd{
-      "parameters.spread", 0.2, "relative",
+      "parameters.prior_sd", 0.2, "relative",
       "prior standard deviation of a model's parameters, unless --spread is given (decision 15)"};
   /// Share decided by the records below which a parameter is not identified [-].
   Threshold identified{"parameters.identified", 0.5, "share determined by the records",
