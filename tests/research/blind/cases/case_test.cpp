@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-BlindConfig tiny() { return load_blind_config(test::source("configs/blind/tiny.toml")); }
+BlindConfig tiny() { return load_blind_config(validate::test::source("configs/blind/tiny.toml")); }
 
 BlindCase make(const BlindConfig& config, const char* kind, double size = 5) {
   BlindSpec spec{11, 1, {}, size};
@@ -154,11 +154,11 @@ TEST(BlindConditions, OtherMachineTakesValuesByParameterName) {
 }
 TEST(BlindConditions, RefusesShareWithoutItsValues) {
   const fs::path file = fs::path(testing::TempDir()) / ("conditions_" + std::to_string(::getpid()) + ".toml");
-  std::ifstream in(test::source("configs/blind/tiny.toml"));
+  std::ifstream in(validate::test::source("configs/blind/tiny.toml"));
   std::string text((std::istreambuf_iterator<char>(in)), {});
   const std::string relative = "\"../networks";
   for (auto at = text.find(relative); at != text.npos; at = text.find(relative))
-    text.replace(at, relative.size(), "\"" + test::source("configs/networks").string());
+    text.replace(at, relative.size(), "\"" + validate::test::source("configs/networks").string());
   const auto load = [&](const std::string& conditions) {
     std::ofstream(file) << text << conditions;
     return load_blind_config(file);
@@ -193,7 +193,7 @@ double value(const sim::plant::Plant& plant, const std::string& effect, const ch
   return 0;
 }
 TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
-  BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
+  BlindConfig config = load_blind_config(validate::test::source("configs/blind/converter.toml"));
   config.conditions.rates = {60.0};
   config.faults = config.frequency_events = 1;
   const BlindCase turned = make(config, "QFLAG"), wrong = make(config, "Ki");
@@ -212,7 +212,7 @@ TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
 }
 /// A plant that injects a current has no voltage of its own next to a bolted fault.
 TEST(BlindConverter, FaultVoltageKeepsAnAngle) {
-  const BlindConfig config = load_blind_config(test::source("configs/blind/converter.toml"));
+  const BlindConfig config = load_blind_config(validate::test::source("configs/blind/converter.toml"));
   const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
   for (const validate::record::Record& record : made.records)
     EXPECT_GT(*std::ranges::min_element(record.V), 0.02 - 1e-3);  // ten times the noise
@@ -325,7 +325,7 @@ TEST(BlindEffects, UnlistedEffectsAreInNoList) {
 }
 
 TEST(BlindPlan, HasTheMixtureOfTheConfigInRandomOrder) {
-  const BlindConfig config = load_blind_config(test::source("configs/blind/cases.toml"));
+  const BlindConfig config = load_blind_config(validate::test::source("configs/blind/cases.toml"));
   const BlindPlan plan = plan_blind(config, {}, 500, 4, 0);
   int none = 0, listed = 0, unlisted = 0, pairs = 0, first_none = 0;
   std::set<std::string> kinds;
@@ -349,7 +349,7 @@ TEST(BlindPlan, HasTheMixtureOfTheConfigInRandomOrder) {
 
 TEST(BlindPlan, ReportsAllUnknownKindsTogether) {
   const BlindConfig config = tiny();
-  const auto all = test::messages([&] { plan_blind(config, {"SEX", "FORCED"}, 2, 1, 0); });
+  const auto all = validate::test::messages([&] { plan_blind(config, {"SEX", "FORCED"}, 2, 1, 0); });
   ASSERT_EQ(all.size(), 2U);
   EXPECT_THAT(all[0], testing::HasSubstr("no kind 'SEX'"));
   EXPECT_THAT(all[1], testing::HasSubstr("FORCEDOSC"));

@@ -23,7 +23,7 @@ double left_by(const cases::BlindCase& made, const fs::path& folder) {
 }
 
 TEST(SeenCase, SubtractsTheSecondRecordedUnit) {
-  cases::BlindConfig config = cases::load_blind_config(test::source("configs/blind/tiny.toml"));
+  cases::BlindConfig config = cases::load_blind_config(validate::test::source("configs/blind/tiny.toml"));
   config.conditions.second_unit_share = 1.0;
   config.channels_share = 0.0;
   const cases::BlindCase made = cases::make_blind_case(config, {.seed = 11, .index = 1});

@@ -46,7 +46,7 @@ class BlindScoring : public testing::Test {
     fs::create_directories(run_ / "cases" / name);
   }
   [[nodiscard]] BlindScore score() const {
-    return score_blind(run_, test::source("configs/blind/targets.toml"));
+    return score_blind(run_, validate::test::source("configs/blind/targets.toml"));
   }
 
   fs::path run_ = fs::path(testing::TempDir()) / ("blind_score_" + std::to_string(::getpid()));
@@ -178,7 +178,7 @@ TEST_F(BlindScoring, RefusesUnorderedProbabilities) {
   BlindVerdict v{"missing", {"SEXS"}, {}, "excitation", 1};
   v.probabilities = {{"none of these", 0.1}, {"SEXS", 0.9}};
   add({{"SEXS", "excitation", "SEXS", 5}}, v);
-  const auto all = test::messages([&] { (void)score(); });
+  const auto all = validate::test::messages([&] { (void)score(); });
   ASSERT_EQ(all.size(), 1U);
   EXPECT_THAT(all[0], testing::HasSubstr("the most probable first"));
 }
@@ -201,7 +201,7 @@ TEST_F(BlindScoring, TableMarksMissedTargets) {
 TEST_F(BlindScoring, ReportsEveryInvalidVerdict) {
   add({}, {"perhaps", {}, {}, "none", 1});
   add({}, {"adequate", {}, {}, "north", 1});
-  const auto all = test::messages([&] { (void)score(); });
+  const auto all = validate::test::messages([&] { (void)score(); });
   ASSERT_EQ(all.size(), 2U);
   EXPECT_THAT(all[0], testing::HasSubstr("'perhaps'"));
   EXPECT_THAT(all[1], testing::HasSubstr("'north'"));
