@@ -34,9 +34,9 @@ std::string remedy_for(int error) {
       return "choose a folder you may write to, or mend its permissions";
     case ENOTDIR:
     case EEXIST:
-      return "choose another folder: a file stands in its place";
+      return "choose another folder: a file has this name";
     case EISDIR:
-      return "choose another name: a folder stands in its place";
+      return "choose another name: a folder has this name";
     case ENOENT:
       return "check the path";
     default:

@@ -25,10 +25,10 @@ set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
-hours_of_seeds=4                             # from which on a cell has a spread
+hours_of_seeds=4                             # [h]; from this duration on, three seeds are used
 table_share=0.67                             # of the hours
-tests_take=5400                              # [s] of two cores, their builds in it, where no night before tells
-blind_share=0.6                              # of what the tables leave
+tests_take=5400                              # [s] of two cores with builds; default before the first measurement
+blind_share=0.6                              # of the time that remains after the tables
 blind_case=80                                # [s] of two cores; docs/reference/blind-test-results.md
 fuzz_build=300 fuzz_least=10                 # [s]; docs/reference/performance.md
 while (($#)); do
@@ -185,7 +185,7 @@ fuzz_targets() {
   cat "$night/fuzz.txt"
   return "$status"
 }
-fuzz_seconds() { # of each target, two at a time, from what is left
+fuzz_seconds() { # [s] of each target, two at a time, from the remaining time
   local targets=("$source_folder"/tests/fuzz/*.cpp) budget
   budget=$(left 1)
   if [[ ! -d $source_folder/build/fuzz/bin ]]; then budget=$((budget - fuzz_build)); fi
@@ -204,7 +204,7 @@ report() {
       "$night/parts.tsv"
     if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of research/rates.toml:\n\n' && cat "$night/plan.md"; fi
     printf '\n'
-    sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # pictures lie beside it
+    sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # the pictures are in the same folder
     if [[ -s $night/blind/score.md ]]; then
       printf '\n## Blind test, seed %s\n\n' "$seed"
       sed '1,2d;s/^## /### /' "$night/blind/score.md"

@@ -80,9 +80,9 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
     const auto known = [&](const auto& t) { return t.first == effect; };
     std::string why;
     if (effect == nullptr)
-      why = "there is no such effect; files of user-defined models are listed under `laws`";
+      why = "there is no such effect; user-defined models are listed under `laws`";
     else if (effect->slot == sim::Slot::machine)
-      why = "it is a machine, whose parameters stand in [vary.box]";
+      why = "it is a machine, whose parameters are given in [vary.box]";
     else if (effect->slot != sim::Slot::transformer && !sim::is_control(effect->slot))
       why = "it is a " + std::string(sim::slot_name(effect->slot)) + ", no part of a plant's equations";
     else if (std::ranges::any_of(tables, known))
@@ -116,7 +116,7 @@ void read_effects(Config& c, DatasetConfig& d) {
     const sim::Effect* effect = d.attachments.back().block.effect;
     if (effect != nullptr && effect->slot == sim::Slot::measurement)
       problems.add(std::string(effect->name), "attach = '" + text + "'",
-                   "a dataset holds what the plant does, not what an instrument makes of it", "leave it out");
+                   "a dataset contains the plant's response, not an instrument's error", "leave it out");
   }
   for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
 }
@@ -387,7 +387,7 @@ void require_in_range(const Overrides& o) {
   within(o.shard_megabytes, "--shard-megabytes", kShardSize);
   within(o.rate, "--rate", kRate);
   if (o.shard_megabytes && o.draws_per_shard)
-    problems.add("two sizes of a shard", "--shard-megabytes", "--draws-per-shard says another", "give one");
+    problems.add("two sizes of a shard", "--shard-megabytes", "--draws-per-shard gives another", "give one");
   problems.raise();
 }
 }  // namespace
@@ -400,7 +400,7 @@ std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
   if (c.has("draws_per_shard")) {
     d.draws_per_shard = static_cast<std::uint64_t>(c.require<std::int64_t>("draws_per_shard", kShardDraws));
     if (!c.has("shard_megabytes")) return std::nullopt;
-    c.problem("shard_megabytes", "two sizes of a shard", "draws_per_shard says another", "leave one out");
+    c.problem("shard_megabytes", "two sizes of a shard", "draws_per_shard gives another", "leave one out");
   }
   return c.optional<double>("shard_megabytes", kUsualShard, kShardSize);
 }

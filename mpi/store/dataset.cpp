@@ -130,7 +130,7 @@ std::optional<Problem> fault_of_length(const fs::path& file, std::uint64_t bytes
   if (error) return Problem{"missing shard", file.string(), error.message(), kRepairDataset};
   if (size == bytes) return std::nullopt;
   return Problem{"truncated or changed shard", file.string(),
-                 "it has " + std::to_string(size) + " bytes, the journal says " + std::to_string(bytes),
+                 "it has " + std::to_string(size) + " bytes, the journal records " + std::to_string(bytes),
                  kRepairDataset};
 }
 
@@ -285,18 +285,18 @@ ShardData read_checked(const ShardInfo& s) {
   require_length(s);
   // Before HDF5 opens the file, because HDF5 1.10 may crash on a damaged one.
   if (const std::string bytes = hash_of_file(s.path); bytes != s.file_hash)
-    fail("changed shard", "the hash of its bytes is " + bytes + ", the journal says " + s.file_hash);
+    fail("changed shard", "the hash of its bytes is " + bytes + ", the journal records " + s.file_hash);
   ShardData data = read_shard(s.path, {}, &s.shape);
   if (data.attributes.config_hash != s.config_hash)
     fail("a shard of another config",
          "its config hash is " + data.attributes.config_hash + ", the dataset's " + s.config_hash);
   if (const auto draws = data.draw_sample_id.size(); draws != s.draws)
     fail("another number of draws",
-         "it has " + std::to_string(draws) + ", the journal says " + std::to_string(s.draws));
+         "it has " + std::to_string(draws) + ", the journal records " + std::to_string(s.draws));
   if (const auto outcomes = count_outcomes(data.draw_outcome, s.path); outcomes != s.outcomes)
-    fail("other outcomes", "it has " + text_of(outcomes) + ", the journal says " + text_of(s.outcomes));
+    fail("other outcomes", "it has " + text_of(outcomes) + ", the journal records " + text_of(s.outcomes));
   if (const auto found = hex(shard_hash(data)); found != s.hash)
-    fail("changed shard", "its hash is " + found + ", the journal says " + s.hash);
+    fail("changed shard", "its hash is " + found + ", the journal records " + s.hash);
   return data;
 }
 

@@ -85,7 +85,7 @@ std::string read_asked(const std::filesystem::path& path, const std::vector<std:
 Contents Contents::parse(std::string_view bytes, const std::filesystem::path& file) {
   const auto astray = [&](const std::string& why) {
     throw InputError({"a file that cannot be read", file.string(),
-                      "what its reader says of it is no answer: " + why,
+                      "the reply of its reader is invalid: " + why,
                       "get the file again from where it came from, or make it again"});
   };
   Contents contents;

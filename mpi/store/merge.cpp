@@ -47,7 +47,7 @@ void copy_shard(const fs::path& from, const JournalLine& line, const fs::path& t
   if (const std::string found = hash_of_file(temporary); found != line.file_hash) {
     fs::remove(temporary, error);
     throw InputError({"changed shard", from.string(),
-                      "the hash of its bytes is " + found + ", its journal says " + line.file_hash,
+                      "the hash of its bytes is " + found + ", its journal records " + line.file_hash,
                       kRepairDataset});
   }
   publish(to);

@@ -57,7 +57,7 @@ void end_reader(Reader& r) {
   const int status = wait_for_child(r.process);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   throw InputError({"the reading of shards broke off", "process " + std::to_string(r.process),
-                    WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "its reason stands above",
+                    WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "its reason is reported above",
                     "run the command again, with fewer --processes if memory is short"});
 }
 

@@ -69,7 +69,7 @@ void refuse_far_regulation(const grid::Grid& grid) {
     if (load.regulated >= 0 && load.regulated != load.bus)
       problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
                                grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
-                   grid.network.origin, "the lanes know the voltages at machines and modelled loads alone",
+                   grid.network.origin, "the batch computes voltages only at machines and modelled loads",
                    "use the reference integrator, or let it regulate its own bus");
   problems.raise();
 }

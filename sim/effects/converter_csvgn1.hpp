@@ -23,7 +23,7 @@ struct Model : shared::ControlledCurrent<Model> {
          B: [RMIN/MBASE, 1] non-windup, the reactor's susceptance on MBASE
   Q = (CBASE/MBASE - B) |V|^2         P/|V|^2: a conductance, that of the operating point
   speed: frequency of the terminal voltage, measured with the lag Tfreq
-  It takes no commands: beside it stands no control of a converter.
+  It takes no commands: no converter control may accompany it.
 )";
   enum P { K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE, Tfreq };
   static constexpr Source defaults_from = literature::psid("CSVGN1, in its test 49");
@@ -87,7 +87,7 @@ struct Model : shared::ControlledCurrent<Model> {
     for (const int i : {T1, T2, T3, T4, CBASE})
       if (!(p[i] >= 0)) problems.add(says(i), where, "a time or a rating", "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
-      problems.add(says(VMAX) + " with " + says(VMIN), where, "the regulator must have room to move",
+      problems.add(says(VMAX) + " with " + says(VMIN), where, "the range of the regulator must not be empty",
                    "give VMAX > VMIN");
   }
 

@@ -44,7 +44,7 @@ struct Model : shared::ControlledCurrent<Model> {
   I = (Ip - j Iq) V/|V|, below |V| = 0.01 pu in proportion to |V|
   Beside a bolted fault there is no voltage along which the grid takes the whole of Ip: |V| falls below 0.01 pu.
   Vref0 = 0: the voltage at the operating point.
-  It takes no commands: beside it stands no control of a converter. What is added to Tm and Efd is added to the
+  It takes no commands: no converter control may accompany it. What is added to Tm and Efd is added to the
   commands.
 )";
   enum P {
@@ -400,7 +400,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   for (const int i : {Trf, Tg, Imax, rrpwr})
     if (!(p[i] > 0))
       problems.add(Core::value(parameters, p, i), where,
-                   "the equations divide by it or stand still without it", "give a value > 0");
+                   "the equations divide by it, or are constant without it", "give a value > 0");
   if (!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1))
     problems.add(Core::value(parameters, p, Vrfrac), where, "it is a share", "give 0 to 1");
   if (p[vtripFlag] == 0) return;

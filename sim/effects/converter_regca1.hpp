@@ -198,7 +198,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   };
   bad(p[Lvplsw] != 0 && p[Lvplsw] != 1, value(Lvplsw), "it is a switch", "give 0 or 1");
   for (const int i : {Tg, Tfreq, Rrpwr})
-    bad(!(p[i] > 0), value(i), "the equations divide by it or stand still without it", "give a value > 0");
+    bad(!(p[i] > 0), value(i), "the equations divide by it, or are constant without it", "give a value > 0");
   bad(!(p[Tfltr] >= 0), value(Tfltr), "it is a time", "give 0 for none, or more");
   bad(!(p[Brkpt] > p[Zerox]), value(Brkpt) + " with " + value(Zerox), "LVPL must rise with the voltage",
       "give Brkpt > Zerox");

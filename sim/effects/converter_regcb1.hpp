@@ -27,7 +27,7 @@ struct Model : shared::BehindImpedance<Model> {
       What the leading current leaves of Imax to the other does not fall below 0.025 Imax, so that the current has a
       slope where the leading one takes all.
   speed: frequency of the terminal voltage, measured with the lag Tfreq
-  Re and Xe stand in the .raw: ZSORCE.
+  Re and Xe are given in the .raw: ZSORCE.
 )";
   enum P { rateFlag, pqFlag, Tg, Tfltr, Iqrmax, Iqrmin, rrpwr, Te, Imax, Re, Xe, Tfreq };
   static constexpr Parameter parameters[] = {

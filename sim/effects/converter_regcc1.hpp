@@ -35,7 +35,7 @@ struct Model : shared::BehindImpedance<Model> {
       What the leading current leaves of Imax to the other does not fall below 0.025 Imax, as REGCB1's.
       Te 0: the currents are up and uq, without a loop to be solved: (Kip Ip + integral)/(1 + Kip), within Imax.
   speed: frequency of the terminal voltage, measured with the lag Tfreq
-  Re and Xe stand in the .raw: ZSORCE. The order of the .dyr is GridPACK's: REGCB1's columns, then Kip to wmin.
+  Re and Xe are given in the .raw: ZSORCE. The order of the .dyr is GridPACK's: REGCB1's columns, then Kip to wmin.
       PSS/E's own order is not public; Vpllfrz has no column and is given in plant files.
   WECC's model has no Tg: PowerWorld takes four of its steps there (so GridPACK, whose Tg it is).
   The current settles as Te s^2 + (1 + Kip) s + Kii: with the standard values in 20 ms, damped by 0.7, as fast
@@ -92,7 +92,7 @@ struct Model : shared::BehindImpedance<Model> {
       kXe,
       kTfreq,
       {"Vpllfrz", "Vpllfrz", "pu", 0.0, 0.0, 0.9, 0.0,
-       "voltage below which the phase-locked loop stands still (0: never)",
+       "voltage below which the phase-locked loop is frozen (0: never)",
        literature::own("no column of the .dyr; Dynawo gives 0.1 to 0.5 as typical")}};
   static constexpr int dyr_columns[] = {rateFlag, pqFlag, Tg,  Tfltr, Iqrmax, Iqrmin, rrpwr, Te,
                                         Imax,     Kip,    Kii, Kppll, Kipll,  wmax,   wmin};

@@ -148,13 +148,13 @@ struct Model {
     std::copy(Core::states.begin(), Core::states.end(), all.begin());
     all[after] = {.name = "after",
                   .unit = "s",
-                  .meaning = "time left of Thld",
+                  .meaning = "remaining time of Thld",
                   .weight = 0.1,
                   .low = none,
                   .bends = true};
     all[after_p] = {.name = "after_p",
                     .unit = "s",
-                    .meaning = "time left of Thld2",
+                    .meaning = "remaining time of Thld2",
                     .weight = 0.1,
                     .low = none,
                     .bends = true};

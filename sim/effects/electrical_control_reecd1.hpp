@@ -180,9 +180,9 @@ struct Model {
     constexpr auto left = [](std::string_view name, std::string_view meaning) {
       return State{.name = name, .unit = "s", .meaning = meaning, .low = none, .bends = true};
     };
-    all[after] = left("after", "time left of Thld");
-    all[after_p] = left("after_p", "time left of Thld2");
-    all[blocked] = left("blocked", "time left of Tblk");
+    all[after] = left("after", "remaining time of Thld");
+    all[after_p] = left("after_p", "remaining time of Thld2");
+    all[blocked] = left("blocked", "remaining time of Tblk");
     all[kept_q] = {"kept_q", "pu", "Iqcmd in the last dip"};
     all[kept_p] = {"kept_p", "pu", "Ipcmd in the last dip"};
     all[kept_most] = {"kept_most", "pu", "limit of Ipcmd in the last dip"};

@@ -49,7 +49,7 @@ struct Model : shared::AlternatorRectifier<Model> {
     AlternatorRectifier::check(p, where, problems);
     if (!(p[VRMAX] > p[VRMIN]))
       problems.add(fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]), where,
-                   "the alternator's field must have room to move", "give VRMAX > VRMIN");
+                   "the range of the alternator's field must not be empty", "give VRMAX > VRMIN");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

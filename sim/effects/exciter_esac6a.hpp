@@ -136,7 +136,8 @@ struct Model : shared::Alternator<Model> {
     for (int i : {KH, VHMAX})
       bad(!(p[i] >= 0), says(i), "it can only take from the exciter's voltage", "give a value >= 0");
     for (const auto& [most, least] : {std::pair{VAMAX, VAMIN}, {VRMAX, VRMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
+      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
+          "the range must not be empty",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
 

@@ -129,7 +129,8 @@ struct Model {
         "the rate feedback would act on itself", "give TA > 0, or KF = 0");
     bad(!(p[KLR] >= 0), says(KLR), "it would raise the field current", "give KLR >= 0");
     for (const auto& [most, least] : {std::pair{VIMAX, VIMIN}, {VAMAX, VAMIN}, {VRMAX, VRMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
+      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
+          "the range must not be empty",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
   static std::string_view unphysical(const double*) { return ""; }

@@ -124,7 +124,7 @@ struct Model {
         "the source delivers nothing", "give KP > 0 or KI > 0");
     bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source delivers nothing", "give VBMAX > 0");
     for (const auto& [high, low] : {std::pair{VIMAX, VIMIN}, {VRMAX, VRMIN}, {VMMAX, VMMIN}})
-      bad(!(p[high] > p[low]), says(high) + " pu with " + says(low) + " pu", "there must be room to move",
+      bad(!(p[high] > p[low]), says(high) + " pu with " + says(low) + " pu", "the range must not be empty",
           fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));
   }
   static std::string_view unphysical(const double*) { return ""; }

@@ -109,7 +109,7 @@ struct Model {
     bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source delivers nothing", "give VBMAX > 0");
     for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VMMAX, VMMIN}})
       bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the regulator must have room to move", "give a range");
+          "the range of the regulator must not be empty", "give a range");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

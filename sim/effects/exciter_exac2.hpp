@@ -89,10 +89,10 @@ struct Model : shared::AlternatorRectifier<Model> {
     };
     if (!(p[VRMAX] > p[VRMIN]))
       problems.add(says(VRMAX) + " pu with " + says(VRMIN) + " pu", where,
-                   "the alternator's field must have room to move", "give VRMAX > VRMIN");
+                   "the range of the alternator's field must not be empty", "give VRMAX > VRMIN");
     if (!(p[KB] > 0)) problems.add(says(KB), where, "no gain, no exciter", "give KB > 0");
     if (!(p[KL] > 0))
-      problems.add(says(KL), where, "the limiter's gate would stand at zero for ever",
+      problems.add(says(KL), where, "the limiter's gate would stay at zero",
                    "give KL > 0, and a large VLR for no limiter");
     if (!(p[KH] >= 0)) problems.add(says(KH), where, "the inner loop would be unstable", "give KH >= 0");
   }

@@ -261,7 +261,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
       "the regulator's output would feed itself without a lag",
       "give TF1 and TF2 > 0, or lags TA2, TA4 without a lead");
   for (const auto& [high, low] : {std::pair{VR1, VR2}, {VRMAX, VRMIN}, {EFDMAX, EFDMIN}})
-    bad(!(p[high] > p[low]), says(high) + " with " + says(low), "there must be room to move",
+    bad(!(p[high] > p[low]), says(high) + " with " + says(low), "the range must not be empty",
         fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));
 }
 

@@ -65,9 +65,9 @@ struct Model {
       bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
           "give a value >= 0");
     bad(!(p[VIMAX] > p[VIMIN]), fmt::format("VIMAX = {:g} pu with VIMIN = {:g} pu", p[VIMAX], p[VIMIN]),
-        "the error must have room to move", "give VIMAX > VIMIN");
+        "the range of the error must not be empty", "give VIMAX > VIMIN");
     bad(!(p[VRMAX] > p[VRMIN]), fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]),
-        "Efd must have room to move", "give VRMAX > VRMIN");
+        "the range of Efd must not be empty", "give VRMAX > VRMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

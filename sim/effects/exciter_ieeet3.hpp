@@ -89,7 +89,7 @@ struct Model {
       bad(!(p[i] > 0), says(i), "there would be no exciter", "give a value > 0");
     for (const int i : {TR, TA, KF, KI, KE}) bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
     bad(!(p[KP] > 0), says(KP), "the terminal's voltage feeds the exciter", "give KP > 0");
-    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " with " + says(VRMIN), "Vr must have room to move",
+    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " with " + says(VRMIN), "the range of Vr must not be empty",
         "give VRMAX > VRMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }

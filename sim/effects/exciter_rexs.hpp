@@ -203,7 +203,8 @@ struct Model : shared::Alternator<Model> {
     bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF), "0 is for fixed limits, 1 for limits as V",
         "give a value from 0 to 1");
     for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VFMAX, VFMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu", "there must be room to move",
+      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
+          "the range must not be empty",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
   /// Returns a remark on PSS/E's REXSYS: OpenIPSL scales its limits by the field at 1 pu voltage, PowerWorld

@@ -89,8 +89,8 @@ struct Model {
     for (const int i : {TR, TC1, TB1, TC2, TB2, T1})
       bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
     bad(!(p[KC] >= 0), says(KC), "a rectifier's drop", "give KC >= 0");
-    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " pu with " + says(VRMIN) + " pu", "there must be room to move",
-        "give VRMAX > VRMIN");
+    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " pu with " + says(VRMIN) + " pu",
+        "the range must not be empty", "give VRMAX > VRMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

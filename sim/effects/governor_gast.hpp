@@ -59,7 +59,7 @@ struct Model {
                      "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
       problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
-                   "the valve must have room to move", "give VMAX > VMIN");
+                   "the range of the valve must not be empty", "give VMAX > VMIN");
     if (!(p[KT] >= 0))
       problems.add(fmt::format("KT = {:g} pu", p[KT]), where, "a hotter exhaust must lower the limit",
                    "give KT >= 0");

@@ -327,7 +327,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
                       Trate, db, Tsa, Tsb})
     bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
   bad(!(p[minerr] <= 0), value(minerr), "the lower limit of an error", "give a value <= 0");
-  bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the valve must have room to move",
+  bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the range of the valve must not be empty",
       "give Vmax > Vmin");
   bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output ends at 1 pu", "give Vmin < 1");
   shared::check_time_constant(name, "Tdgov", p[Tdgov], p[Kdgov] > 0, "Kdgov = 0", where, problems);

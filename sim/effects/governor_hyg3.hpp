@@ -303,12 +303,12 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   for (const int i : {RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE})
     bad(!(p[i] >= 0), says(i), "a gain, a time or a width", "give a value >= 0");
   for (const int i : {KG, H0, AT})
-    bad(!(p[i] > 0), says(i), "HYG3 divides by it or stands still", "give a value > 0");
+    bad(!(p[i] > 0), says(i), "HYG3 divides by it, or is constant without it", "give a value > 0");
   Pid::check(says(K2), p[FLAG] == 0 ? 0.0 : p[K2], says(KI), p[KI], says(K1),
              p[FLAG] == 0 ? p[K1] + p[K2] : p[K1], says(TF), p[TF], where, problems);
   bad(!(p[VELOPEN] > 0 && p[VELCLOSE] < 0), says(VELOPEN) + " with " + says(VELCLOSE),
       "the gate must be able to open and to close", "give VELopen > 0 and VELclose < 0");
-  bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the gate must have room to move",
+  bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
       "give Pmax > Pmin");
   if (p[GV1] < 0)
     bad(true, says(GV1), "it stands for a curve built into PSLF", "give the curve's points");

@@ -62,7 +62,7 @@ struct Model {
                      "HYGOV divides by it or cannot move without it", "give a value > 0");
     if (!(p[GMAX] > p[GMIN] && p[GMIN] >= 0))
       problems.add(fmt::format("GMAX = {:g} pu with GMIN = {:g} pu", p[GMAX], p[GMIN]), where,
-                   "the gate must have room to move and cannot open backwards", "give GMAX > GMIN >= 0");
+                   "the range of the gate must not be empty or negative", "give GMAX > GMIN >= 0");
     if (!(p[db] >= 0))
       problems.add(fmt::format("db = {:g} pu", p[db]), where, "half the width of a band", "give db >= 0");
   }

@@ -176,7 +176,7 @@ inline void Model::check_as(std::string_view model, const double* p, const std::
     problems.add(text(UO) + " with " + text(UC), where, "the valve must be able to open and to close",
                  "give UO > 0 and UC < 0");
   if (!(p[PMAX] > p[PMIN]))
-    problems.add(text(PMAX) + " with " + text(PMIN), where, "the valve must have room to move",
+    problems.add(text(PMAX) + " with " + text(PMIN), where, "the range of the valve must not be empty",
                  "give PMAX > PMIN");
   if (!(p[K1] + p[K3] + p[K5] + p[K7] > 0))
     problems.add(text(K1) + ", " + text(K3) + ", " + text(K5) + ", " + text(K7), where,

@@ -56,7 +56,7 @@ struct Model {
     for (const int i : {K, T1, T2, T3, T4})
       if (!(p[i] >= 0)) problems.add(says(i), where, "a gain or a time", "give a value >= 0");
     if (!(p[PMAX] > p[PMIN]))
-      problems.add(says(PMAX) + " with " + says(PMIN), where, "the gate must have room to move",
+      problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of the gate must not be empty",
                    "give PMAX > PMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }

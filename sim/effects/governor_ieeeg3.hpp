@@ -79,7 +79,7 @@ struct Model {
       bad(!(p[i] >= 0), says(i), "a droop or a time", "give a value >= 0");
     bad(!(p[UO] > 0 && p[UC] < 0), says(UO) + " with " + says(UC),
         "the gate must be able to open and to close", "give UO > 0 and UC < 0");
-    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the gate must have room to move",
+    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
         "give PMAX > PMIN");
     bad(!(p[A11] >= 0) || (p[TW] > 0 && p[A11] == 0 && p[A13] * p[A21] != 0),
         says(A11) + " with " + says(A13) + ", " + says(A21), "the water column would lead without a lag",

@@ -69,7 +69,7 @@ struct Model {
       if (!(p[i] >= 0)) problems.add(says(i), where, "a time constant", "give a value >= 0");
     if (!(p[K1] >= 0)) problems.add(says(K1), where, "power would rise with the speed", "give K1 >= 0");
     if (!(p[PMAX] > p[PMIN]))
-      problems.add(says(PMAX) + " with " + says(PMIN), where, "power must have room to move",
+      problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of power must not be empty",
                    "give PMAX > PMIN");
     if (!(p[db] >= 0)) problems.add(says(db), where, "half the width of a band", "give db >= 0");
   }

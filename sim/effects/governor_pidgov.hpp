@@ -132,7 +132,7 @@ struct Model {
       bad(!(p[i] >= 0), says(i), "a gain or a time", "give a value >= 0");
     bad(!(p[KI] > 0) && !(p[KP] > 0 && p[RPERM] > 0), says(KI) + " with " + says(KP) + ", " + says(RPERM),
         "no gate could be held", "give Ki > 0, or Kp and Rperm > 0");
-    bad(!(p[GMAX] > p[GMIN]), says(GMAX) + " with " + says(GMIN), "the gate must have room to move",
+    bad(!(p[GMAX] > p[GMIN]), says(GMAX) + " with " + says(GMIN), "the range of the gate must not be empty",
         "give Gmax > Gmin");
     bad(!(p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && 0.0 < p[P1] && p[P1] < p[P2] && p[P2] < p[P3]),
         says(G0) + ", " + says(G1) + ", " + says(G2) + " with " + says(P1) + ", " + says(P2) + ", " +

@@ -51,7 +51,7 @@ struct Model {
                      "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
       problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
-                   "the valve must have room to move", "give VMAX > VMIN");
+                   "the range of the valve must not be empty", "give VMAX > VMIN");
     if (!(p[db] >= 0))
       problems.add(fmt::format("db = {:g} pu", p[db]), where, "half the width of a band", "give db >= 0");
   }

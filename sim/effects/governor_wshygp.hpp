@@ -155,7 +155,7 @@ struct Model {
     Pid::check(says(KP), p[KP], says(KI), p[KI], says(KD), p[KD], says(TF), p[TF], where, problems);
     bad(!(p[VELOPEN] > 0) || p[VELCLOSE] == 0.0, says(VELOPEN) + " with " + says(VELCLOSE),
         "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");
-    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the gate must have room to move",
+    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
         "give PMAX > PMIN");
     bad(p[TTURB] > 0 && p[BTURB] == 0.0 && p[ATURB] != 0.0, says(BTURB) + " with " + says(ATURB),
         "the water column would lead without a lag", "give Bturb > 0, or Tturb = 0 for no water column");

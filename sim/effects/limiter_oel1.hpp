@@ -120,7 +120,7 @@ struct Model {
     const double now = value_of(of_voltage ? s.Efd : s.Ifd), most = value_of(p[Ifdset]);
     if (now <= most) return {};
     return fmt::format(
-        "{} = {:.4f} pu stands above the pickup Ifdset = {:.4f} pu: OEL1's timer would run from the start",
+        "{} = {:.4f} pu is above the pickup Ifdset = {:.4f} pu: OEL1's timer would run from the start",
         of_voltage ? "Efd" : "Ifd", now, most);
   }
 };

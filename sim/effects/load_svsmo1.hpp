@@ -308,7 +308,7 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
   x[B] = x[PI] = (s.Vi * s.Ir - s.Vr * s.Ii) / square_2;
   const double b = value_of(x[B]), v = value_of(V);
   if (b < value_of(p[Bmin]) || b > value_of(p[Bmax]))
-    return fmt::format("it would stand at B = {:.4f} pu, and Bmin, Bmax are {:g}, {:g} pu", b,
+    return fmt::format("it would start at B = {:.4f} pu, and Bmin, Bmax are {:g}, {:g} pu", b,
                        value_of(p[Bmin]), value_of(p[Bmax]));
   if (v < std::max(value_of(p[UV1]), value_of(p[UVT])) || v > std::min(value_of(p[OV1]), value_of(p[OV2])))
     return fmt::format(
@@ -352,7 +352,7 @@ inline std::string Model::remark(const double* p) {
   };
   add(p[Flag1] == 1.0, "Flag1 = 1: mechanically switched shunts stay as they are");
   add(p[Flag2] == 1.0, "Flag2 = 1: the slope is Xc1 everywhere");
-  add(p[Kps] != 0.0 || p[Kis] != 0.0, "the slow susceptance regulator (Kps, Kis) stands still");
+  add(p[Kps] != 0.0 || p[Kis] != 0.0, "the slow susceptance regulator (Kps, Kis) is not modelled");
   add(p[UV2] > 0.0, fmt::format("below UV2 = {:g} pu nothing happens at once", p[UV2]));
   return text;
 }

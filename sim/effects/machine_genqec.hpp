@@ -83,7 +83,7 @@ struct Model {
                     1.0,
                     1.0,
                     kNoNullValue,
-                    "law of saturation: 1 scaled quadratic",
+                    "saturation function: 1 scaled quadratic",
                     literature::own("WECC's usual choice"),
                     shared::kCode};
     return all;
@@ -238,7 +238,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     bad(p[i] != 0, says(i), "GENQEC's own compensation is not modelled",
         "give 0, and an IEEEVC record with it");
   bad(p[SatFunc] != 1, says(SatFunc),
-      "of GENQEC's laws of saturation only the scaled quadratic (1) is modelled",
+      "of GENQEC's saturation functions only the scaled quadratic (1) is modelled",
       "give 1, or S1.0 = 0 with 1 for no saturation");
   bad(p[S10] > 0 && !(1.2 * p[S12] > p[S10]), says(S10) + " with " + says(S12),
       "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");

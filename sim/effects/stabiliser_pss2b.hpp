@@ -190,7 +190,7 @@ struct Model {
       bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
     for (const auto& [most, least] : {std::pair{VS1MAX, VS1MIN}, {VS2MAX, VS2MIN}})
       bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the input must have room to move", "give a range; +-100 pu limits nothing");
+          "the range of the input must not be empty", "give a range; +-100 pu limits nothing");
     bad(!(p[VSTMAX] >= p[VSTMIN]), fmt::format("{} pu with {} pu", says(VSTMAX), says(VSTMIN)),
         "the limits cross", "give VSTMAX >= VSTMIN");
   }
@@ -275,7 +275,7 @@ struct Model {
     for (const auto& [state, most, least] : {std::tuple{w1, VS1MAX, VS1MIN}, {w3, VS2MAX, VS2MIN}}) {
       const double now = value_of(x[state]);
       if (now > value_of(p[most]) || now < value_of(p[least]))
-        return fmt::format("an input of {:.4f} pu stands outside {}, {} = {:g}, {:g} pu", now,
+        return fmt::format("an input of {:.4f} pu is outside {}, {} = {:g}, {:g} pu", now,
                            parameters[least].symbol, parameters[most].symbol, value_of(p[least]),
                            value_of(p[most]));
     }

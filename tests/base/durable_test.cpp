@@ -160,7 +160,7 @@ TEST_F(DurableFile, CreatesMissingFolders) {
   write_file(folder.path / "deep" / "a.txt", "one");
   EXPECT_EQ(read_text(folder.path / "deep" / "a.txt"), "one");
   EXPECT_THAT(refusal([&] { write_file(folder.path / "deep" / "a.txt" / "c", "x"); }),
-              HasSubstr("a file stands in its place"));
+              HasSubstr("a file has this name"));
 }
 
 }  // namespace

@@ -118,7 +118,8 @@ void AlternatorRectifier<Model>::check(const double* p, const std::string& where
     bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant", "give a value >= 0");
   bad(!(p[UPPER] > p[LOWER]),
       fmt::format("{} = {:g} pu with {} = {:g} pu", symbol(UPPER), p[UPPER], symbol(LOWER), p[LOWER]),
-      "the regulator must have room to move", fmt::format("give {} > {}", symbol(UPPER), symbol(LOWER)));
+      "the range of the regulator must not be empty",
+      fmt::format("give {} > {}", symbol(UPPER), symbol(LOWER)));
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -62,7 +62,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     for (const int i : {Model::Tg, Model::rrpwr, Model::Imax, Model::Xe, Model::Tfreq})
       if (!(p[i] > 0))
         problems.add(Core::value(Model::parameters, p, i), where,
-                     "the equations divide by it or stand still without it", "give a value > 0");
+                     "the equations divide by it, or are constant without it", "give a value > 0");
   }
   template <class T>
   static void prepare_common(const T* p, const Conventions& conventions, T* c) {

@@ -66,8 +66,8 @@ struct Diesel {
       problems.add(says(M::T1) + " with " + says(M::T2) + " and " + says(M::T3), where,
                    "the control box is then bypassed", "give T2 = T3 = 0 with T1 = 0");
     if (!(p[M::TMAX] > p[M::TMIN]))
-      problems.add(says(M::TMAX) + " with " + says(M::TMIN), where, "the throttle must have room to move",
-                   "give TMAX > TMIN");
+      problems.add(says(M::TMAX) + " with " + says(M::TMIN), where,
+                   "the range of the throttle must not be empty", "give TMAX > TMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -132,7 +132,7 @@ struct InverseTime {
     const double most = value_of(p[efd1]) * value_of(p[rated]);
     if (now <= most) return {};
     return fmt::format(
-        "{} = {:.4f} pu stands above the pickup EFD1 EFDRATED = {:.4f} pu: {}'s timer would run from the "
+        "{} = {:.4f} pu is above the pickup EFD1 EFDRATED = {:.4f} pu: {}'s timer would run from the "
         "start",
         limited, now, most, model);
   }

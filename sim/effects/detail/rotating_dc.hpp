@@ -126,7 +126,7 @@ void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const do
       "give VRMAX, or saturation");
   bad(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]),
       fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[M::VRMAX], p[M::VRMIN]),
-      "Vr must have room to move", "give VRMAX > VRMIN");
+      "the range of Vr must not be empty", "give VRMAX > VRMIN");
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -36,7 +36,8 @@ struct SimplifiedExciter {
                      "give a value >= 0");
     if (!(p[EMAX] > p[EMIN]))
       problems.add(fmt::format("EMAX = {:g} pu with EMIN = {:g} pu", p[EMAX], p[EMIN]), where,
-                   fmt::format("{} must have room to move", Model::states[output].name), "give EMAX > EMIN");
+                   fmt::format("the range of {} must not be empty", Model::states[output].name),
+                   "give EMAX > EMIN");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -78,12 +78,12 @@ TEST(Measure, ReadsAChainAndReportsErrors) {
   EXPECT_EQ(plant::memory(std::vector<plant::Block>{block("SKEW:skew=-0.01"), block("CTERROR:gain=0.1"),
                                                     block("SKEW:skew=0.02")}),
             0.03);
-  for (const auto& [text, expected] : std::vector<std::pair<const char*, const char*>>{
-           {"GENROU", "no measurement effect 'GENROU'"},
-           {"", "no measurement effect ''"},
-           {"CTERROR:gian=1", "CTERROR has gain, phase"},
-           {"CTERROR:gain=x", "its value is no number"},
-           {"CTERROR:gain=-2", "nothing of the current would be left"}}) {
+  for (const auto& [text, expected] :
+       std::vector<std::pair<const char*, const char*>>{{"GENROU", "no measurement effect 'GENROU'"},
+                                                        {"", "no measurement effect ''"},
+                                                        {"CTERROR:gian=1", "CTERROR has gain, phase"},
+                                                        {"CTERROR:gain=x", "its value is no number"},
+                                                        {"CTERROR:gain=-2", "the current would be zero"}}) {
     Problems problems;
     EXPECT_FALSE(plant::read_measurement(text, library::compiled(), "--measure", problems)) << text;
     ASSERT_EQ(problems.list().size(), 1u) << text;
