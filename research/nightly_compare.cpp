@@ -201,7 +201,8 @@ int swingbank::research::nightly_compare_command(jobs::CommandLine& line, int ar
     const NightlyRuns runs = read_runs(folder);
     if (runs.empty() || (!date.empty() && !runs.contains(date))) {
       throw InputError(Problem{"no results of the nightly benchmark '" + date + "'", folder,
-                               "no <date>/<experiment>/results/*.json there", "run research/nightly.sh first"});
+                               "no <date>/<experiment>/results/*.json there",
+                               "run research/nightly.sh first"});
     }
     if (date.empty()) date = runs.rbegin()->first;
     print_report(date, changes_of(date, runs));

@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "sim/library/library.hpp"
-#include "sim/plant/block_text.hpp"
-#include "tests/blind/second/disturbances.hpp"
 #include "research/blind/cases/detail/effects.hpp"
 #include "research/blind/cases/detail/world.hpp"
 #include "research/blind/cases/plan.hpp"
+#include "sim/library/library.hpp"
+#include "sim/plant/block_text.hpp"
+#include "tests/blind/second/disturbances.hpp"
 
 namespace {
 using namespace swingbank;

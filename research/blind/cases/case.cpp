@@ -97,8 +97,8 @@ class Maker {
     return fine;
   }
   /// Returns the records of the target, and of `beside` together with it, without noise.
-  [[nodiscard]] std::vector<validate::record::Record> records(const sim::grid::Grid& grid,
-                                                    const sim::plant::Plant* beside = nullptr) const {
+  [[nodiscard]] std::vector<validate::record::Record> records(
+      const sim::grid::Grid& grid, const sim::plant::Plant* beside = nullptr) const {
     std::vector<validate::record::Record> all;
     for (std::size_t e = 0; e < made_.events.size(); ++e)
       all.push_back(measured(run(grid, made_.events[e]), target(grid), made_.events[e], conditions_,

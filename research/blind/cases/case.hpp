@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/json.hpp"
-#include "sim/network/event.hpp"
 #include "research/blind/cases/config.hpp"
+#include "sim/network/event.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "base/config.hpp"
-#include "sim/plant/block_text.hpp"
 #include "research/blind/cases/detail/effects.hpp"
+#include "sim/plant/block_text.hpp"
 
 namespace swingbank::research::blind::cases {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "base/constants.hpp"
-#include "sim/library/library.hpp"
 #include "research/blind/cases/detail/world.hpp"
+#include "sim/library/library.hpp"
 
 namespace swingbank::research::blind::cases {
 namespace {
@@ -85,8 +85,8 @@ sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const st
 }
 
 validate::record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
-                        const BlindEvent& event, const Conditions& conditions, double frequency,
-                        std::uint64_t seed, const sim::plant::Plant* other) {
+                                  const BlindEvent& event, const Conditions& conditions, double frequency,
+                                  std::uint64_t seed, const sim::plant::Plant* other) {
   std::vector<double> mva = {plant.mva};
   if (other) mva.push_back(other->mva);
   sim::Phasors p = phasors(fine, mva, frequency);

@@ -30,7 +30,8 @@ Eigen::VectorXd interleaved(const validate::event::FitEvent& e, const std::vecto
 
 /// Marks samples next to a switching. A current with 1 ms of delay affects one of these only, where a
 /// diagnosis cannot distinguish it from a shifted switching time.
-std::vector<char> beside_switchings(const validate::record::Record& record, const std::vector<double>& switchings) {
+std::vector<char> beside_switchings(const validate::record::Record& record,
+                                    const std::vector<double>& switchings) {
   std::vector<char> beside;
   for (const double t : record.t)
     beside.push_back(std::ranges::any_of(
@@ -49,23 +50,23 @@ validate::event::FitEvent prepared(const validate::record::Record& record, const
 }
 
 /// Returns the noise of an event for these standard deviations of P and Q, and of V and theta.
-validate::event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested, const validate::event::FitEvent& e, double power,
-                           double voltage) {
+validate::event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested,
+                                     const validate::event::FitEvent& e, double power, double voltage) {
   const validate::playin::VoltageCurve curve(e.record, e.switchings);
   const validate::playin::LinearPlant linear = validate::playin::linearise({.plant = &tested.plant,
-                                                        .conventions = tested.conventions,
-                                                        .record = &e.record,
-                                                        .curve = &curve,
-                                                        .start = e.start});
+                                                                            .conventions = tested.conventions,
+                                                                            .record = &e.record,
+                                                                            .curve = &curve,
+                                                                            .start = e.start});
   const Eigen::Vector2d variance(std::pow(voltage / std::abs(e.start.voltage), 2), voltage * voltage);
   const Eigen::Matrix2d at_once =
       linear.D.topRows(2) * variance.asDiagonal() * linear.D.topRows(2).transpose();
   const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
   validate::event::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
-                          .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
+                                    .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
   noise.memory = std::make_shared<validate::event::Innovations>(
-      validate::fit::slow_noise(linear, {e, noise}, {.variance = {variance[0], variance[1], 0.0}}), e.record.samples(),
-      e.left_out);
+      validate::fit::slow_noise(linear, {e, noise}, {.variance = {variance[0], variance[1], 0.0}}),
+      e.record.samples(), e.left_out);
   return noise;
 }
 
@@ -96,12 +97,14 @@ Eigen::Index BlindSize::first_row(std::size_t event) const {
   return row;
 }
 
-validate::playin::Response BlindSize::response(std::size_t event, const validate::record::Record& record,
-                                     const std::vector<validate::playin::SensitivityParameter>& along) const {
+validate::playin::Response BlindSize::response(
+    std::size_t event, const validate::record::Record& record,
+    const std::vector<validate::playin::SensitivityParameter>& along) const {
   validate::event::FitEvent played = prepared_[event];
   played.record = record;
   played.start = validate::playin::pre_event_point(record, played.switchings, 1.0);
-  return validate::event::play({plant_, conventions_}, played, {}, along, {.tolerance = kRunTolerance, .hasty = false});
+  return validate::event::play({plant_, conventions_}, played, {}, along,
+                               {.tolerance = kRunTolerance, .hasty = false});
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const validate::record::Record& record) const {
@@ -126,7 +129,8 @@ void BlindSize::add_columns(std::size_t event) {
 
   auto first = static_cast<Eigen::Index>(shared);  // first column of this event
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
-  validate::event::RowMatrix own = validate::event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
+  validate::event::RowMatrix own =
+      validate::event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {
     const auto& sensitivity = r.sensitivities[d].value;
     const auto at = static_cast<Eigen::Index>(d);
@@ -148,7 +152,8 @@ double BlindSize::visible(const std::vector<validate::record::Record>& with) con
   return std::sqrt(sum);
 }
 
-double BlindSize::left(const std::vector<validate::record::Record>& with, std::span<const BlindPath> but) const {
+double BlindSize::left(const std::vector<validate::record::Record>& with,
+                       std::span<const BlindPath> but) const {
   Eigen::VectorXd all(columns_.rows());
   for (std::size_t e = 0; e < with.size(); ++e) {
     validate::event::RowMatrix r = residual(e, with[e]);

@@ -72,10 +72,12 @@ BlindVerdict verdict_of(const validate::diagnose::Diagnosis& d) {
 SeenCase read_seen_case(const fs::path& folder) {
   SeenCase e{validate::plant::load_plant_model(folder / "model.toml"), {}};
   std::optional<validate::event::MeasuredPoint> point;
-  if (const fs::path file = folder / "point.toml"; fs::exists(file)) point = validate::event::load_point(file, e.model);
+  if (const fs::path file = folder / "point.toml"; fs::exists(file))
+    point = validate::event::load_point(file, e.model);
   for (const auto& file : event_files(folder)) {
     validate::record::Record record = validate::record::read_record(file, e.model.record_base);
-    e.records.push_back(point ? validate::event::of_tried_unit(*point, std::move(record)) : std::move(record));
+    e.records.push_back(point ? validate::event::of_tried_unit(*point, std::move(record))
+                              : std::move(record));
   }
   return e;
 }

@@ -82,7 +82,7 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
               AllOf(HasSubstr("unknown parameter Ka at "), HasSubstr("use one of: TAoverTB, TB, K")));
   EXPECT_THAT(refusal("K = [20.0, 300.0]", "K = [20.0, 3000.0]"), HasSubstr("it must be 0.5 to 2000 pu"));
   EXPECT_THAT(refusal("effects.SEXS]", "effects.SEXES]"), HasSubstr("effect SEXES at "));
-  EXPECT_THAT(refusal("effects.SEXS]\nK", "effects.GENROU]\nH"), HasSubstr("stand in [vary.box]"));
+  EXPECT_THAT(refusal("effects.SEXS]\nK", "effects.GENROU]\nH"), HasSubstr("given in [vary.box]"));
   EXPECT_THAT(refusal("effects.SEXS]\nK = [20.0, 300.0]", "effects.ZIP]\np = [0.1, 0.2]"),
               HasSubstr("it is a load, no part of a plant's equations"));
   EXPECT_THAT(refusal("effects.SEXS]\nK = [20.0, 300.0]", "effects.IEEET1]\nSwitch = [0.0, 1.0]"),

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "research/blind/cases/detail/effects.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
-#include "research/blind/cases/detail/effects.hpp"
 
 namespace swingbank::research::blind::cases {
 namespace {

@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "sim/grid/grid.hpp"
-#include "sim/reference/reference.hpp"
 #include "research/blind/cases/case.hpp"
 #include "research/blind/cases/detail/conditions.hpp"
 #include "research/blind/cases/detail/random.hpp"
+#include "sim/grid/grid.hpp"
+#include "sim/reference/reference.hpp"
 #include "validate/event/event.hpp"
 
 namespace swingbank::research::blind::cases {
@@ -72,8 +72,8 @@ sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const st
 /// fine rate; then every n-th sample is taken. P and Q are on kRecordMva and include those of `other`, the
 /// run's second plant, if there is one.
 validate::record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
-                        const BlindEvent& event, const Conditions& conditions, double frequency,
-                        std::uint64_t seed, const sim::plant::Plant* other = nullptr);
+                                  const BlindEvent& event, const Conditions& conditions, double frequency,
+                                  std::uint64_t seed, const sim::plant::Plant* other = nullptr);
 /// Standard deviations of white noise: `power` as a share of `mva` for P and Q and in pu for Ifd, `voltage`
 /// for V [pu] and theta [rad], `speed` [pu].
 struct RecordNoise {
@@ -99,8 +99,9 @@ class BlindSize {
                             std::span<const BlindPath> but = {}) const;
 
  private:
-  [[nodiscard]] validate::playin::Response response(std::size_t event, const validate::record::Record& record,
-                                          const std::vector<validate::playin::SensitivityParameter>& along) const;
+  [[nodiscard]] validate::playin::Response response(
+      std::size_t event, const validate::record::Record& record,
+      const std::vector<validate::playin::SensitivityParameter>& along) const;
   [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const validate::record::Record& record) const;
   void add_columns(std::size_t event);
   /// Number of sensitivity parameters of one event: its switching times and its start.
@@ -113,9 +114,10 @@ class BlindSize {
   std::vector<BlindEvent> events_;
   std::vector<validate::record::Record> plain_;
   std::vector<validate::event::FitEvent> prepared_;
-  std::vector<validate::event::EventNoise> noise_;         ///< of each event
-  std::vector<Eigen::VectorXd> plain_residual_;  ///< [event][sample * 2 + channel] [pu]
-  validate::event::RowMatrix columns_;  ///< whitened sensitivities for the refit: [event, sample, channel][parameter]
+  std::vector<validate::event::EventNoise> noise_;  ///< of each event
+  std::vector<Eigen::VectorXd> plain_residual_;     ///< [event][sample * 2 + channel] [pu]
+  validate::event::RowMatrix
+      columns_;  ///< whitened sensitivities for the refit: [event, sample, channel][parameter]
 };
 
 }  // namespace swingbank::research::blind::cases

@@ -7,11 +7,11 @@
 #include <fstream>
 #include <set>
 
-#include "sim/library/library.hpp"
-#include "tests/validate/playin/support.hpp"
 #include "research/blind/cases/detail/effects.hpp"
 #include "research/blind/cases/detail/world.hpp"
 #include "research/blind/cases/plan.hpp"
+#include "sim/library/library.hpp"
+#include "tests/validate/playin/support.hpp"
 #include "validate/plant/plant_model.hpp"
 
 namespace swingbank::research::blind::cases {
@@ -240,7 +240,8 @@ TEST(BlindCase, FolderDoesNotRevealTheTruth) {
   EXPECT_THAT(names, testing::ElementsAre("event1.csv", "event2.csv", "event3.csv", "model.toml"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "cases"), {}), 1);  // no partial output
 
-  const validate::plant::PlantModel model = validate::plant::load_plant_model(folder / "cases" / "c0001" / "model.toml");
+  const validate::plant::PlantModel model =
+      validate::plant::load_plant_model(folder / "cases" / "c0001" / "model.toml");
   EXPECT_EQ(model.plant.machine.p, made.model.machine.p);  // exactly
   const validate::record::Record record =
       validate::record::read_record(folder / "cases" / "c0001" / "event1.csv", model.record_base);

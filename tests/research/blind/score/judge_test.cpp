@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "tests/validate/playin/support.hpp"
 #include "research/blind/cases/case.hpp"
+#include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
 #include "validate/fit/fit.hpp"
 
@@ -19,7 +19,8 @@ double left_by(const cases::BlindCase& made, const fs::path& folder) {
   SeenCase seen = read_seen_case(folder);
   seen.model.plant.machine.p = made.truth.machine.p;
   const validate::event::WhitenedEvents events = validate::event::prepare_events(seen.model, seen.records);
-  return validate::fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false}).reduced_chi2();
+  return validate::fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false})
+      .reduced_chi2();
 }
 
 TEST(SeenCase, SubtractsTheSecondRecordedUnit) {
