@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier nights.
+# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier runs.
 #   bash research/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
 #                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
-#     --hours      of the whole night on this machine, default 2: the preset `nightly` is scaled so that the tables
+#     --hours      of the whole run on this machine, default 2: the preset `nightly` is scaled so that the tables
 #                  take two thirds of them; the nightly tests, the blind test and the fuzz targets share the remaining
 #                  time
-#     --out        default out/nightly; one folder per night in it, `latest` points to the last one
-#     --date       default today; an interrupted night continues when started again on its date, in its original
+#     --out        default out/nightly; one folder per nightly run in it, `latest` points to the last one
+#     --date       default today; an interrupted run continues when started again on its date, in its original
 #                  sizes
 #     --preset     this preset without scaling, however long it takes
-#     --seed       of the training; default ten times the day's number, so that every night has other seeds: the
-#                  nights then show the random variation of a result
-#     --seeds      trains with that many seeds, from --seed on; default 3 if the night has 4 hours or more, else 1
+#     --seed       of the training; default ten times the day's number, so that every nightly run has other seeds: the
+#                  nightly runs then show the random variation of a result
+#     --seeds      trains with that many seeds, from --seed on; default 3 if the nightly run has 4 hours or more, else 1
 #     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
 #     --tests      1 runs the nightly tier of the tests (tests/run.sh --nightly), 0 skips it; default 1 if 70 % of the
-#                  remaining time suffices by the last night's measurement (without one: an hour and a half)
+#                  remaining time suffices by the last nightly run's measurement (without one: an hour and a half)
 #     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
-#     --blind      cases of a blind test of the diagnosis with the night's seed; default as many as time permits;
+#     --blind      cases of a blind test of the diagnosis with the nightly run's seed; default as many as time permits;
 #                  0 skips it
 #     EXPERIMENT   default every file of configs/experiments
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
@@ -115,10 +115,10 @@ tests_took() {
   echo "$took"
 }
 
-# keep NAME...: saves these variables for the night
+# keep NAME...: saves these variables for the nightly run
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# The night's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
+# The nightly run's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
@@ -193,7 +193,7 @@ fuzz_seconds() { # [s] of each target, two at a time, from the remaining time
   echo $((budget < fuzz_least ? 0 : budget))
 }
 
-# report: the night's results so far; written again after each part
+# report: the nightly run's results so far; written again after each part
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
@@ -226,7 +226,7 @@ report() {
   } >"$night/report.md.part" || return 1
   mv "$night/report.md.part" "$night/report.md"
 }
-# stopped STATUS: ends the night if a signal or failure prevents its continuation
+# stopped STATUS: ends the nightly run if a signal or failure prevents its continuation
 stopped() {
   echo "nightly run of $date stopped (exit code $1) after $(used) s; log: $night/log.txt" >&2
   exit "$1"
