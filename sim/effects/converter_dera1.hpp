@@ -11,6 +11,7 @@
 #include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 #include "sim/effects/detail/lasting.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::converter_dera1 {
@@ -158,11 +159,7 @@ struct Model : shared::ControlledCurrent<Model> {
       {"Vpr", "Vpr", "pu", 0.8, 0.0, 1.0, kNoNullValue, "voltage below which frequency trips none"},
       {"Iqh1", "Iqh1", "pu", 1.0, 0.0, 99.0, kNoNullValue, "highest reactive current of the voltage error"},
       {"Iql1", "Iql1", "pu", -1.0, -99.0, 0.0, kNoNullValue, "lowest reactive current of the voltage error"}};
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   static constexpr double kRateLag = 0.01;        ///< time constant of the reference's rate limiter [s]
   static constexpr double kFrequencyBand = 1e-5;  ///< width beyond fl and fh over which a trip sets in [pu]
   /// The first coefficients are the parameters themselves; Vref0 becomes the reference.

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reeca1 {
 
-struct Model {
+struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::Orders<28> {
   static constexpr std::string_view name = "REECA1",
                                     title = "electrical control of a wind or photovoltaic plant, type A",
                                     source =
@@ -39,96 +41,37 @@ struct Model {
     QFLAG,
     PFLAG,
     PQFLAG,
-    Vdip,
-    Vup,
-    Trv,
-    dbd1,
-    dbd2,
-    Kqv,
-    Iqh1,
-    Iql1,
-    Vref0,
-    Iqfrz,
+    Iqfrz = Vref0 + 1,
     Thld,
     Thld2,
-    Tp,
-    Qmax,
-    Qmin,
-    Vmax,
-    Vmin,
-    Kqp,
-    Kqi,
-    Kvp,
-    Kvi,
-    Vbias,
-    Tiq,
-    dPmax,
-    dPmin,
-    Pmax,
-    Pmin,
-    Imax,
-    Tpord,
-    Vq1,
-    Iq1,
-    Vq2,
-    Iq2,
-    Vq3,
-    Iq3,
-    Vq4,
-    Iq4,
-    Vp1,
-    Ip1,
-    Vp2,
-    Ip2,
-    Vp3,
-    Ip3,
-    Vp4,
-    Ip4
+    Vbias = Kvi + 1,
+    Vq1 = Tpord + 1,
+    Vp1 = Vq1 + 8,
+    Ip4 = Vp1 + 7
   };
+  static_assert(PQFLAG + 1 == Vdip && Thld2 + 1 == Tp && Vbias + 1 == Tiq);
   static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr std::array kBefore = {
-      renewable::record::RemoteBus,
-      renewable::record::PFFLAG,
-      renewable::record::VFLAG,
-      renewable::record::QFLAG,
-      renewable::record::PFLAG,
-      renewable::record::PQFLAG,
-      renewable::record::Vdip,
-      renewable::record::Vup,
-      renewable::record::Trv,
-      renewable::record::dbd1,
-      renewable::record::dbd2,
-      renewable::record::Kqv,
-      renewable::record::Iqh1,
-      renewable::record::Iql1,
-      renewable::record::Vref0,
-      renewable::record::Iqfrz,
-      renewable::record::Thld,
-      renewable::record::Thld2,
-      renewable::record::Tp,
-      shared::renamed(renewable::record::Qmax, "QMax"),
-      shared::renamed(renewable::record::Qmin, "QMin"),
-      shared::renamed(renewable::record::Vmax, "VMAX"),
-      shared::renamed(renewable::record::Vmin, "VMIN"),
-      renewable::record::Kqp,
-      renewable::record::Kqi,
-      renewable::record::Kvp,
-      renewable::record::Kvi,
-      Parameter{"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"},
-      renewable::record::Tiq,
-      renewable::record::dPmax,
-      renewable::record::dPmin,
-      shared::renamed(renewable::record::Pmax, "PMAX"),
-      shared::renamed(renewable::record::Pmin, "PMIN"),
-      renewable::record::Imax,
-      renewable::record::Tpord};
-  static constexpr auto parameters = renewable::joined(kBefore, renewable::limit_points<4>(1.45, 1.11));
-  static constexpr int dyr_columns[] = {
-      RemoteBus, PFFLAG, VFLAG, QFLAG, PFLAG, PQFLAG, Vdip, Vup,  Trv,   dbd1, dbd2, Kqv, Iqh1,
-      Iql1,      Vref0,  Iqfrz, Thld,  Thld2, Tp,     Qmax, Qmin, Vmax,  Vmin, Kqp,  Kqi, Kvp,
-      Kvi,       Vbias,  Tiq,   dPmax, dPmin, Pmax,   Pmin, Imax, Tpord, Vq1,  Iq1,  Vq2, Iq2,
-      Vq3,       Iq3,    Vq4,   Iq4,   Vp1,   Ip1,    Vp2,  Ip2,  Vp3,   Ip3,  Vp4,  Ip4};
+  static constexpr std::array kCodes = {renewable::record::RemoteBus, renewable::record::PFFLAG,
+                                        renewable::record::VFLAG,     renewable::record::QFLAG,
+                                        renewable::record::PFLAG,     renewable::record::PQFLAG};
+  static constexpr std::array kAfterDip = {renewable::record::Iqfrz, renewable::record::Thld,
+                                           renewable::record::Thld2};
+  static constexpr std::array kBias = {
+      Parameter{"Vbias", "Vbias", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"}};
+  static constexpr auto parameters = [] {
+    auto all = renewable::joined(kCodes, ride_through, kAfterDip, regulators, kBias, orders,
+                                 renewable::limit_points<4>(1.45, 1.11));
+    for (const auto& [i, guide] : {std::pair<int, std::string_view>{Qmax, "QMax"},
+                                   {Qmin, "QMin"},
+                                   {Vmax, "VMAX"},
+                                   {Vmin, "VMIN"},
+                                   {Pmax, "PMAX"},
+                                   {Pmin, "PMIN"}})
+      all[static_cast<std::size_t>(i)] = shared::renamed(all[static_cast<std::size_t>(i)], guide);
+    return all;
+  }();
+  static constexpr auto dyr_columns = shared::columns_to<Ip4>();
   using Core = renewable::ElectricalControl;
   enum C {
     of_q = Core::coefficients,

@@ -4,10 +4,11 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reecb1 {
 
-struct Model {
+struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::Orders<23> {
   static constexpr std::string_view
       name = "REECB1",
       title = "electrical control of a photovoltaic plant, type B",
@@ -27,54 +28,15 @@ struct Model {
   |Ipcmd + j Iqcmd| <= Imax; the one that yields: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
-  enum P {
-    RemoteBus,
-    PFFLAG,
-    VFLAG,
-    QFLAG,
-    PQFLAG,
-    Vdip,
-    Vup,
-    Trv,
-    dbd1,
-    dbd2,
-    Kqv,
-    Iqh1,
-    Iql1,
-    Vref0,
-    Tp,
-    Qmax,
-    Qmin,
-    Vmax,
-    Vmin,
-    Kqp,
-    Kqi,
-    Kvp,
-    Kvi,
-    Tiq,
-    dPmax,
-    dPmin,
-    Pmax,
-    Pmin,
-    Imax,
-    Tpord
-  };
+  enum P { RemoteBus, PFFLAG, VFLAG, QFLAG, PQFLAG };
+  static_assert(PQFLAG + 1 == Vdip && Vref0 + 1 == Tp && Kvi + 1 == Tiq);
   static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr Parameter parameters[] = {
-      renewable::record::RemoteBus, renewable::record::PFFLAG, renewable::record::VFLAG,
-      renewable::record::QFLAG,     renewable::record::PQFLAG, renewable::record::Vdip,
-      renewable::record::Vup,       renewable::record::Trv,    renewable::record::dbd1,
-      renewable::record::dbd2,      renewable::record::Kqv,    renewable::record::Iqh1,
-      renewable::record::Iql1,      renewable::record::Vref0,  renewable::record::Tp,
-      renewable::record::Qmax,      renewable::record::Qmin,   renewable::record::Vmax,
-      renewable::record::Vmin,      renewable::record::Kqp,    renewable::record::Kqi,
-      renewable::record::Kvp,       renewable::record::Kvi,    renewable::record::Tiq,
-      renewable::record::dPmax,     renewable::record::dPmin,  renewable::record::Pmax,
-      renewable::record::Pmin,      renewable::record::Imax,   renewable::record::Tpord};
-  static constexpr int dyr_columns[] = {
-      RemoteBus, PFFLAG, VFLAG, QFLAG, PQFLAG, Vdip, Vup, Trv, dbd1, dbd2,  Kqv,   Iqh1, Iql1, Vref0, Tp,
-      Qmax,      Qmin,   Vmax,  Vmin,  Kqp,    Kqi,  Kvp, Kvi, Tiq,  dPmax, dPmin, Pmax, Pmin, Imax,  Tpord};
+  static constexpr std::array kCodes = {renewable::record::RemoteBus, renewable::record::PFFLAG,
+                                        renewable::record::VFLAG, renewable::record::QFLAG,
+                                        renewable::record::PQFLAG};
+  static constexpr auto parameters = renewable::joined(kCodes, ride_through, regulators, orders);
+  static constexpr auto dyr_columns = shared::columns_to<Tpord>();
   using Core = renewable::ElectricalControl;
   static constexpr int coefficients = Core::coefficients;
   static constexpr auto states = Core::states;

@@ -4,10 +4,11 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reecc1 {
 
-struct Model {
+struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::Orders<23> {
   static constexpr std::string_view
       name = "REECC1",
       title = "electrical control of a battery, type C",
@@ -34,70 +35,19 @@ struct Model {
     VFLAG,
     QFLAG,
     PQFLAG,
-    Vdip,
-    Vup,
-    Trv,
-    dbd1,
-    dbd2,
-    Kqv,
-    Iqh1,
-    Iql1,
-    Vref0,
-    Tp,
-    Qmax,
-    Qmin,
-    Vmax,
-    Vmin,
-    Kqp,
-    Kqi,
-    Kvp,
-    Kvi,
-    Tiq,
-    dPmax,
-    dPmin,
-    Pmax,
-    Pmin,
-    Imax,
-    Tpord,
-    Vq1,
-    Iq1,
-    Vq2,
-    Iq2,
-    Vq3,
-    Iq3,
-    Vq4,
-    Iq4,
-    Vp1,
-    Ip1,
-    Vp2,
-    Ip2,
-    Vp3,
-    Ip3,
-    Vp4,
-    Ip4,
-    T,
+    Vq1 = Tpord + 1,
+    Vp1 = Vq1 + 8,
+    T = Vp1 + 8,
     SOCini,
     SOCmax,
     SOCmin
   };
+  static_assert(PQFLAG + 1 == Vdip && Vref0 + 1 == Tp && Kvi + 1 == Tiq);
   static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr std::array kBefore = {
-      renewable::record::RemoteBus, renewable::record::PFFLAG,
-      renewable::record::VFLAG,     renewable::record::QFLAG,
-      renewable::record::PQFLAG,    renewable::record::Vdip,
-      renewable::record::Vup,       renewable::record::Trv,
-      renewable::record::dbd1,      renewable::record::dbd2,
-      renewable::record::Kqv,       renewable::record::Iqh1,
-      renewable::record::Iql1,      renewable::record::Vref0,
-      renewable::record::Tp,        renewable::record::Qmax,
-      renewable::record::Qmin,      renewable::record::Vmax,
-      renewable::record::Vmin,      renewable::record::Kqp,
-      renewable::record::Kqi,       renewable::record::Kvp,
-      renewable::record::Kvi,       renewable::record::Tiq,
-      renewable::record::dPmax,     renewable::record::dPmin,
-      renewable::record::Pmax,      shared::with(renewable::record::Pmin, -1.0),
-      renewable::record::Imax,      renewable::record::Tpord};
+  static constexpr std::array kCodes = {renewable::record::RemoteBus, renewable::record::PFFLAG,
+                                        renewable::record::VFLAG, renewable::record::QFLAG,
+                                        renewable::record::PQFLAG};
   static constexpr std::array kBehind = {
       Parameter{"T", "T", "s", 14400.0, 1.0, 1e6, kNoNullValue,
                 "time in which rated power empties it: longer than any run",
@@ -110,13 +60,13 @@ struct Model {
       Parameter{"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNullValue, "smallest state of charge",
                 literature::own("WECC's typical range, 0 to 0.2"),
                 literature::derived("a part of the whole")}};
-  static constexpr auto parameters =
-      renewable::joined(kBefore, renewable::limit_points<4>(1.11, 1.11), kBehind);
-  static constexpr int dyr_columns[] = {
-      RemoteBus, PFFLAG, VFLAG, QFLAG, PQFLAG, Vdip, Vup, Trv, dbd1,   dbd2,   Kqv,   Iqh1,  Iql1,
-      Vref0,     Tp,     Qmax,  Qmin,  Vmax,   Vmin, Kqp, Kqi, Kvp,    Kvi,    Tiq,   dPmax, dPmin,
-      Pmax,      Pmin,   Imax,  Tpord, Vq1,    Iq1,  Vq2, Iq2, Vq3,    Iq3,    Vq4,   Iq4,   Vp1,
-      Ip1,       Vp2,    Ip2,   Vp3,   Ip3,    Vp4,  Ip4, T,   SOCini, SOCmax, SOCmin};
+  static constexpr auto parameters = [] {
+    auto all = renewable::joined(kCodes, ride_through, regulators, orders,
+                                 renewable::limit_points<4>(1.11, 1.11), kBehind);
+    all[Pmin] = shared::with(all[Pmin], -1.0);
+    return all;
+  }();
+  static constexpr auto dyr_columns = shared::columns_to<SOCmin>();
   using Core = renewable::ElectricalControl;
   enum C {
     of_q = Core::coefficients,

@@ -8,10 +8,11 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reecd1 {
 
-struct Model {
+struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::Orders<28> {
   static constexpr std::string_view
       name = "REECD1",
       title = "electrical control of a wind, photovoltaic or battery plant, type D",
@@ -46,36 +47,11 @@ struct Model {
     PFLAG,
     PQFLAG,
     VCMPFLAG,
-    Vdip,
-    Vup,
-    Trv,
-    dbd1,
-    dbd2,
-    Kqv,
-    Iqh1,
-    Iql1,
-    Vref0,
-    Iqfrz,
+    Iqfrz = Vref0 + 1,
     Thld,
     Thld2,
-    Tp,
-    Qmax,
-    Qmin,
-    Vmax,
-    Vmin,
-    Kqp,
-    Kqi,
-    Kvp,
-    Kvi,
-    Vref1,
-    Tiq,
-    dPmax,
-    dPmin,
-    Pmax,
-    Pmin,
-    Imax,
-    Tpord,
-    Vq1,
+    Vref1 = Kvi + 1,
+    Vq1 = Tpord + 1,
     Vp1 = Vq1 + 2 * kTablePoints,
     Rc = Vp1 + 2 * kTablePoints,
     Xc,
@@ -87,47 +63,25 @@ struct Model {
     Tblk,
     parameter_count
   };
+  static_assert(VCMPFLAG + 1 == Vdip && Thld2 + 1 == Tp && Vref1 + 1 == Tiq);
   static constexpr Source defaults_from = literature::psid("FourBus_multigen.dyr");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Source kOff = literature::own("off, as in REECA1");
-  static constexpr std::array kBefore = {
+  static constexpr std::array kCodes = {
       renewable::record::PFFLAG,
       renewable::record::VFLAG,
       renewable::record::QFLAG,
       renewable::record::PFLAG,
       renewable::record::PQFLAG,
       Parameter{"VCMPFLAG", "VCMPFLAG", "code", 1.0, 0.0, 1.0, kNoNullValue,
-                "1: the voltage behind Rc + jXc is held, 0: V + Kc Q", kOff, renewable::kFlag},
-      renewable::record::Vdip,
-      renewable::record::Vup,
-      renewable::record::Trv,
-      renewable::record::dbd1,
-      renewable::record::dbd2,
-      renewable::record::Kqv,
-      renewable::record::Iqh1,
-      renewable::record::Iql1,
-      renewable::record::Vref0,
+                "1: the voltage behind Rc + jXc is held, 0: V + Kc Q", kOff, renewable::kFlag}};
+  static constexpr std::array kAfterDip = {
       Parameter{"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip, where Thld < 0"},
       Parameter{"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0,
                 "how long after a dip Iqcmd stays (> 0) or is Iqfrz (< 0)"},
-      Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip Ipcmd and its limit stay"},
-      renewable::record::Tp,
-      renewable::record::Qmax,
-      renewable::record::Qmin,
-      renewable::record::Vmax,
-      renewable::record::Vmin,
-      renewable::record::Kqp,
-      renewable::record::Kqi,
-      renewable::record::Kvp,
-      renewable::record::Kvi,
-      Parameter{"Vref1", "Vref1", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"},
-      renewable::record::Tiq,
-      renewable::record::dPmax,
-      renewable::record::dPmin,
-      renewable::record::Pmax,
-      renewable::record::Pmin,
-      renewable::record::Imax,
-      renewable::record::Tpord};
+      Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip Ipcmd and its limit stay"}};
+  static constexpr std::array kBias = {
+      Parameter{"Vref1", "Vref1", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"}};
   static constexpr std::array kBehind = {
       Parameter{"Rc", "Rc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating resistance", kOff},
       Parameter{"Xc", "Xc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating reactance", kOff},
@@ -143,12 +97,9 @@ struct Model {
                 kOff},
       Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "how long after that it stays blocked", kOff}};
   static constexpr auto parameters =
-      renewable::joined(kBefore, renewable::limit_points<kTablePoints>(1.11, 1.11), kBehind);
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+      renewable::joined(kCodes, ride_through, kAfterDip, regulators, kBias, orders,
+                        renewable::limit_points<kTablePoints>(1.11, 1.11), kBehind);
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   using Core = renewable::ElectricalControl;
   enum C {
     of_q = Core::coefficients,

@@ -7,6 +7,7 @@
 #include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
@@ -111,9 +112,7 @@ struct Model : shared::Alternator<Model> {
       {"E2", "E2", "pu", 4.0, 0.0, 50.0, kNoNullValue, "second point of saturation"},
       {"SE2", "SE(E2)", "-", 0.001, 0.0, 2.0, 0.0, "saturation there"},
       {"FLIMF", "FLIMF", "-", 0.0, 0.0, 1.0, 0.0, "how far the limits follow V", kAsEffect, shared::kShare}};
-  static constexpr int dyr_columns[] = {TR, KVP, KVI, VIMAX, TA,  TB1, TC1, TB2, TC2,   VRMAX, VRMIN,
-                                        KF, TF,  TF1, TF2,   FBF, KIP, KII, TP,  VFMAX, VFMIN, KH,
-                                        KE, TE,  KC,  KD,    E1,  SE1, E2,  SE2, FLIMF};
+  static constexpr auto dyr_columns = shared::columns_to<FLIMF>();
   enum C {
     iTR,
     kvp,

@@ -9,6 +9,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
@@ -117,10 +118,7 @@ struct Model {
       {"Tsb", "Tsb", "s", 5.0, 0.0, 50.0, kNoNullValue, "exhaust temperature, lag (0: none)"},
       {"Rup", "Rup", "pu/s", 99.0, 0.0, 99.0, kNoNullValue, "load limit's fastest rise"},
       {"Rdown", "Rdown", "pu/s", -99.0, -99.0, 0.0, kNoNullValue, "load limit's fastest fall"}};
-  static constexpr int dyr_columns[] = {Rselect, Flag,   R,      Tpelec, maxerr, minerr, Kpgov,  Kigov, Kdgov,
-                                        Tdgov,   Vmax,   Vmin,   Tact,   Kturb,  Wfnl,   Tb,     Tc,    Teng,
-                                        Tfload,  Kpload, Kiload, Ldref,  Dm,     Ropen,  Rclose, Kimw,  Aset,
-                                        Ka,      Ta,     Trate,  db,     Tsa,    Tsb,    Rup,    Rdown};
+  static constexpr auto dyr_columns = shared::columns_to<Rdown>();
   static constexpr double kAbove = 0.002;   ///< [pu of stroke]
   static constexpr double kFollow = 0.002;  ///< [s]
   static constexpr double kFullLoad = 1.0;  ///< upper limit of the load limiter's output [pu of stroke]

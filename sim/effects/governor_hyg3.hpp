@@ -133,11 +133,7 @@ struct Model {
       {"DBH", "dbH", "Hz", 0.0, 0.0, 1.2, 0.0, "upper edge of the speed's dead-band", kAsEffect, kBandHz},
       {"EPS", "eps", "Hz", 0.0, 0.0, 1.2, 0.0, "hysteresis at the band's edges: 0 only", kAsEffect, kBandHz},
       {"DBL", "dbL", "Hz", 0.0, -1.2, 0.0, 0.0, "lower edge of the speed's dead-band", kAsEffect, kBandHz}};
-  static constexpr auto dyr_columns = [] {
-    std::array<int, DBL + 1> list{};
-    for (int i = 0; i <= DBL; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<DBL>();
   enum C {
     pid = Pid::coefficients,  ///< flag
     by_gate,

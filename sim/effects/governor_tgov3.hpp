@@ -1,5 +1,6 @@
 #pragma once
 // TGOV3: IEEEG1's governor with a reheater whose pressure has an upper limit.
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/governor_ieeeg1.hpp"
 
 namespace swingbank::sim::effects::governor_tgov3 {
@@ -51,11 +52,7 @@ struct Model {
                   literature::own("a fifth above rated")};
     return all;
   }();
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   enum C { most = B::coefficients, coefficients };
   static constexpr auto states = [] {
     std::array<State, std::size(B::states)> all{};

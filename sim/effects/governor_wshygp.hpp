@@ -7,6 +7,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/gate_power.hpp"
 #include "sim/effects/detail/hydro_pid.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::governor_wshygp {
@@ -105,9 +106,7 @@ struct Model {
       {"BTURB", "Bturb", "-", 0.5, 0.0, 10.0, kNoNullValue, "turbine's lag over Tturb"},
       {"TTURB", "Tturb", "s", 0.8, 0.0, 30.0, 0.0, "turbine time constant (0: none)"},
       {"TRATE", "TRATE", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)"}};
-  static constexpr int dyr_columns[] = {DB1, ERR,     TD,       KI,   TF,   KD,   KP,    R,     TT,    KG,
-                                        TP,  VELOPEN, VELCLOSE, PMAX, PMIN, DB2,  GV1,   PGV1,  GV2,   PGV2,
-                                        GV3, PGV3,    GV4,      PGV4, GV5,  PGV5, ATURB, BTURB, TTURB, TRATE};
+  static constexpr auto dyr_columns = shared::columns_to<TRATE>();
   enum C {
     droop = Pid::coefficients,
     by_power,

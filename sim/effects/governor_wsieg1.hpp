@@ -1,6 +1,7 @@
 #pragma once
 // WSIEG1: IEEEG1 with a valve curve, a backlash and limits set at the operating point.
 #include "sim/effects/detail/gate_power.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/governor_ieeeg1.hpp"
 
 namespace swingbank::sim::effects::governor_wsieg1 {
@@ -99,11 +100,7 @@ struct Model {
                    shared::kCode};
     return all;
   }();
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   enum C { play = B::coefficients, follow, curve, coefficients = curve + Curve::size };
   enum X { gate = B::last + 1 };
   static constexpr auto states = [] {

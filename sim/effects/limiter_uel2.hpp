@@ -9,6 +9,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/gate_power.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/under_excitation.hpp"
@@ -109,11 +110,7 @@ struct Model {
       {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
       {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output"},
       {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)"}};
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> all{};
-    for (int i = 0; i < parameter_count; ++i) all[static_cast<std::size_t>(i)] = i;
-    return all;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   enum C {
     none_1,  ///< voltage exponent of P: 1 if K1 = 0; next two: 1 if K1 = 1, if K1 = 2
     linear_1,

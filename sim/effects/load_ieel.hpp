@@ -8,18 +8,18 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/static_load.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_ieel {
 
-struct Model {
+struct Model : shared::StaticLoad<Model> {
   static constexpr std::string_view name = "IEEL",
                                     title = "three powers of the voltage; frequency dependence",
                                     source =
                                         "PSS/E IEELBL; IEEE Task Force, Standard load models, IEEE Trans. "
                                         "Power Syst. 10 (1995) 1302; thresholds: PSS/E, PQBRAK",
                                     dyr_name = "IEELBL";
-  static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   P = PL (a1 V^n1 + a2 V^n2 + a3 V^n3)(1 + a7 df)    Q = QL (a4 V^n4 + a5 V^n5 + a6 V^n6)(1 + a8 df)
   PL and QL such that P and Q are the load's at the voltage of the power flow
@@ -54,10 +54,6 @@ struct Model {
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
-  enum X { xr, xi };
-  /// The gain from an error of x to P is a7/(2 pi f0 Tf), about 0.1.
-  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
-                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C {
     part,                ///< six components, first P then Q, as conductance and susceptance at 1 pu
     power = part + 6,    ///< six exponents minus 2
@@ -71,21 +67,13 @@ struct Model {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     shared::check_time_constant(name, "Tf", p[Tf], p[a7] != 0 || p[a8] != 0, "a7 = a8 = 0", where, problems);
-    if (!std::isfinite(p[Tf]))
-      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
-    for (const int i : {Vp, Vi})
-      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "IEEL divides by it", "give a value > 0");
+    check_divisors(p, where, problems);
     for (int i = n1; i <= n6; ++i)
       if (!(p[i] >= 0.0))
         problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where,
                      "a load that grows as its voltage falls has no solution near V = 0",
                      "give an exponent >= 0");
-    for (int i = a1; i <= a8; ++i)
-      if (!std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where, "it must be finite",
-                     "give a number");
+    check_finite(p, a1, a8, where, problems);
   }
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -108,7 +96,6 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
-  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
@@ -121,13 +108,7 @@ struct Model {
     }
     const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T g = y[0] * (T(1.0) + c[kp] * df), b = y[1] * (T(1.0) + c[kq] * df);
-    s.Ir = T(0.0) - g * s.Vr - b * s.Vi;
-    s.Ii = b * s.Vr - g * s.Vi;
-  }
-  template <class T>
-  static void derivative(const T* c, const T* x, const Signals<T>& s, T* dx) {
-    dx[xr] = (s.Vr - x[xr]) * c[iTf];
-    dx[xi] = (s.Vi - x[xi]) * c[iTf];
+    draw(g, b, s);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {

@@ -1,8 +1,6 @@
 #pragma once
 // LDFR: load with components of constant power, current and impedance; powers of the frequency scale the
 // first two.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "sim/core/blocks.hpp"
@@ -10,16 +8,16 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/static_load.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_ldfr {
 
-struct Model {
+struct Model : shared::LoadOfParts<Model> {
   static constexpr std::string_view name = "LDFR",
                                     title = "constant power, current, impedance; powers of the frequency",
                                     source = "PSS/E LDFRBL; low voltage: PSS/E, PQBRAK; OpenIPSL, Loads.PSSE",
                                     dyr_name = "LDFRBL";
-  static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   v = V/V0, f = 1 + df, with P0, Q0, V0 those of the power flow
   P = P0 ((1 - Pi - Pp) v^2 + Pi v f^r + Pp f^m)
@@ -51,10 +49,6 @@ struct Model {
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {m, n, r, s};
-  enum X { xr, xi };
-  /// The gain from an error of x to P is m/(2 pi f0 Tf), about 0.1.
-  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
-                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -62,21 +56,8 @@ struct Model {
                                 (p[m] != 0 && p[Pp] != 0) || (p[n] != 0 && p[Qp] != 0) ||
                                     (p[r] != 0 && p[Pi] != 0) || (p[s] != 0 && p[Qi] != 0),
                                 "m = n = r = s = 0", where, problems);
-    if (!std::isfinite(p[Tf]))
-      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
-    for (const int i : {Vp, Vi})
-      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "LDFR divides by it", "give a value > 0");
-    for (int i = m; i <= Qp; ++i)
-      if (!std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where, "it must be finite",
-                     "give a number");
-  }
-  static std::string_view unphysical(const double* p) {
-    if (!(p[Pi] + p[Pp] <= 1.0)) return "Pi + Pp <= 1";
-    if (!(p[Qi] + p[Qp] <= 1.0)) return "Qi + Qp <= 1";
-    return "";
+    check_divisors(p, where, problems);
+    check_finite(p, m, Qp, where, problems);
   }
 
   template <class T>
@@ -90,7 +71,6 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
-  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& signal) {
     using std::exp;
@@ -104,25 +84,13 @@ struct Model {
     const T f = log(select(df > least - T(1.0), T(1.0) + df, least));
     const T g = c[g0] + c[gi] * amps * exp(c[er] * f) + c[gp] * power * exp(c[em] * f);
     const T b = c[b0] + c[bi] * amps * exp(c[es] * f) + c[bp] * power * exp(c[en] * f);
-    signal.Ir = T(0.0) - g * signal.Vr - b * signal.Vi;
-    signal.Ii = b * signal.Vr - g * signal.Vi;
-  }
-  template <class T>
-  static void derivative(const T* c, const T* x, const Signals<T>& signal, T* dx) {
-    dx[xr] = (signal.Vr - x[xr]) * c[iTf];
-    dx[xi] = (signal.Vi - x[xi]) * c[iTf];
+    draw(g, b, signal);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& signal, T* x) {
     using std::sqrt;
     const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi, v = sqrt(squared);
-    const auto needs = [&](int one, int other, int threshold) {
-      return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
-    };
-    if (needs(Pp, Qp, Vp))
-      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Vp]));
-    if (needs(Pi, Qi, Vi))
-      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Vi]));
+    if (auto why = reduced(p, v); !why.empty()) return why;
     const T P0 = T(0.0) - signal.Vr * signal.Ir - signal.Vi * signal.Ii,
             Q0 = signal.Vr * signal.Ii - signal.Vi * signal.Ir, one(1.0);
     c[g0] = P0 * (one - p[Pi] - p[Pp]) / squared;

@@ -14,6 +14,7 @@
 #include "sim/effects/detail/lasting.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
 
@@ -181,11 +182,7 @@ struct Model {
        kAsEffect, kUnread},
       {"Vrefmax", "Vrefmax", "pu", 1.2, 0.0, 99.0, kNoNullValue, "highest reference of the slow regulator",
        kAsEffect, kUnread}};
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   /// The first coefficients are the parameters themselves.
   enum C {
     iTb1 = parameter_count,

@@ -1,7 +1,5 @@
 #pragma once
 // ZIP: a load of constant impedance, current and power, with a dependence on frequency.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "sim/core/blocks.hpp"
@@ -9,18 +7,18 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/static_load.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_zip {
 
-struct Model {
+struct Model : shared::LoadOfParts<Model> {
   static constexpr std::string_view
       name = "ZIP",
       title = "constant impedance, current and power; frequency dependence",
       source =
           "IEEE Task Force, Load representation for dynamic performance analysis, IEEE Trans. Power "
           "Syst. 8 (1993) 472; Kundur (1994), 7.1.1; low voltage: PSS/E, PQBRAK; OpenIPSL, Loads.PSSE";
-  static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   v = V/V0, with P0, Q0, V0 those of the power flow
   P = P0 ((1 - Pi - Pp) v^2 + Pi v + Pp) (1 + Kpf df)
@@ -48,30 +46,14 @@ struct Model {
        literature::own("ten per cent of load for each of frequency")},
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
        shared::kThreeCycles, shared::kFrequencyLag}};
-  enum X { xr, xi };
-  /// The gain from an error of x to P is Kpf/(2 pi f0 Tf), about 0.1.
-  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
-                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
   enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     shared::check_time_constant(name, "Tf", p[Tf], p[Kpf] != 0 || p[Kqf] != 0, "Kpf = Kqf = 0", where,
                                 problems);
-    if (!std::isfinite(p[Tf]))
-      problems.add(fmt::format("Tf = {:g} s", p[Tf]), where, "it must be finite", "give a number");
-    for (const int i : {Vp, Vi})
-      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "ZIP divides by it", "give a value > 0");
-    for (const int i : {Pi, Pp, Qi, Qp, Kpf, Kqf})
-      if (!std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where, "it must be finite",
-                     "give a number");
-  }
-  static std::string_view unphysical(const double* p) {
-    if (!(p[Pi] + p[Pp] <= 1.0)) return "Pi + Pp <= 1";
-    if (!(p[Qi] + p[Qp] <= 1.0)) return "Qi + Qp <= 1";
-    return "";
+    check_divisors(p, where, problems);
+    check_finite(p, Pi, Qp, where, problems);
+    check_finite(p, Kpf, Kqf, where, problems);
   }
 
   template <class T>
@@ -83,7 +65,6 @@ struct Model {
     c[iTf] = inverse(p[Tf]);
     c[per_angle] = frequency_per_angle(c[iTf], conventions.frequency);
   }
-  /// Computes the current as an admittance, which avoids a division by V.
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
@@ -94,25 +75,13 @@ struct Model {
     const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T g = c[P0] * (c[pz] + c[pi] * amps + c[pp] * power) * (T(1.0) + c[kp] * df);
     const T b = c[Q0] * (c[qz] + c[qi] * amps + c[qp] * power) * (T(1.0) + c[kq] * df);
-    s.Ir = T(0.0) - g * s.Vr - b * s.Vi;
-    s.Ii = b * s.Vr - g * s.Vi;
-  }
-  template <class T>
-  static void derivative(const T* c, const T* x, const Signals<T>& s, T* dx) {
-    dx[xr] = (s.Vr - x[xr]) * c[iTf];
-    dx[xi] = (s.Vi - x[xi]) * c[iTf];
+    draw(g, b, s);
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     using std::sqrt;
     const T squared = s.Vr * s.Vr + s.Vi * s.Vi, v = sqrt(squared);
-    const auto needs = [&](int one, int other, int threshold) {
-      return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
-    };
-    if (needs(Pp, Qp, Vp))
-      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Vp]));
-    if (needs(Pi, Qi, Vi))
-      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Vi]));
+    if (auto why = reduced(p, v); !why.empty()) return why;
     c[P0] = T(0.0) - s.Vr * s.Ir - s.Vi * s.Ii;
     c[Q0] = s.Vr * s.Ii - s.Vi * s.Ir;
     c[pz] = (T(1.0) - p[Pi] - p[Pp]) / squared;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/machine_gentpj.hpp"
 
 namespace swingbank::sim::effects::machine_genqec {
@@ -88,11 +89,7 @@ struct Model {
                     shared::kCode};
     return all;
   }();
-  static constexpr auto dyr_columns = [] {
-    std::array<int, parameter_count> list{};
-    for (int i = 0; i < parameter_count; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
+  static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
                                      {"speed", "pu", "speed deviation", 100.0},

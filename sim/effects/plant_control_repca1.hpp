@@ -4,6 +4,7 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/record.hpp"
 
 namespace swingbank::sim::effects::plant_control_repca1 {
 
@@ -105,10 +106,7 @@ struct Model {
       {"Tg", "Tg", "s", 0.1, 0.0, 30.0, kNoNullValue, "lag of Pext (0: none)"},
       {"Ddn", "Ddn", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency above the reference"},
       {"Dup", "Dup", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency below the reference"}};
-  static constexpr int dyr_columns[] = {
-      RemoteBus, FromBus, ToBus, Circuit, VCFlag, RefFlag, FrqFlag, Tfltr, Kp,   Ki,   Tft, Tfv,
-      Vfrz,      Rc,      Xc,    Kc,      emax,   emin,    dbd1,    dbd2,  Qmax, Qmin, Kpg, Kig,
-      Tp,        fdbd1,   fdbd2, femax,   femin,  Pmax,    Pmin,    Tg,    Ddn,  Dup};
+  static constexpr auto dyr_columns = shared::columns_to<Dup>();
   static constexpr Elsewhere elsewhere = {.bus = RemoteBus, .from = FromBus, .to = ToBus, .circuit = Circuit};
   enum C {
     at_bus,  ///< flags: 1 or 0

@@ -6,6 +6,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/time_constant.hpp"
 
@@ -105,9 +106,7 @@ struct Model {
       {"VS2MIN", "VS2MIN", "pu", -2.0, -100.0, 0.0, kNoNullValue, "lower limit of the second input"},
       {"VSTMAX", "VSTMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs"},
       {"VSTMIN", "VSTMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs"}};
-  static constexpr int dyr_columns[] = {IC1, REM1, IC2, REM2,   M,      N,      TW1,    TW2,    T6,    TW3,
-                                        TW4, T7,   KS2, KS3,    T8,     T9,     KS1,    T1,     T2,    T3,
-                                        T4,  T10,  T11, VS1MAX, VS1MIN, VS2MAX, VS2MIN, VSTMAX, VSTMIN};
+  static constexpr auto dyr_columns = shared::columns_to<VSTMIN>();
   static constexpr int kRampLags = 8;  ///< maximum number of first-order lags of the ramp-tracking filter
   enum C {
     a1,  // weights of speed, P, Tm - P, V in the first input

@@ -74,6 +74,32 @@ inline constexpr Parameter
 
 }  // namespace record
 
+// Groups of parameters with the same order in every electrical control, from index `first` on.
+
+/// Voltage dip, measured voltage and ride-through current Iqv.
+template <int first>
+struct RideThrough {
+  enum { Vdip = first, Vup, Trv, dbd1, dbd2, Kqv, Iqh1, Iql1, Vref0 };
+  static constexpr std::array ride_through = {record::Vdip, record::Vup,  record::Trv,
+                                              record::dbd1, record::dbd2, record::Kqv,
+                                              record::Iqh1, record::Iql1, record::Vref0};
+};
+/// Measured power, limits and regulators of Q and V.
+template <int first>
+struct Regulators {
+  enum { Tp = first, Qmax, Qmin, Vmax, Vmin, Kqp, Kqi, Kvp, Kvi };
+  static constexpr std::array regulators = {record::Tp,   record::Qmax, record::Qmin,
+                                            record::Vmax, record::Vmin, record::Kqp,
+                                            record::Kqi,  record::Kvp,  record::Kvi};
+};
+/// Lag of the reactive current, ordered power and largest current.
+template <int first>
+struct Orders {
+  enum { Tiq = first, dPmax, dPmin, Pmax, Pmin, Imax, Tpord };
+  static constexpr std::array orders = {record::Tiq,  record::dPmax, record::dPmin, record::Pmax,
+                                        record::Pmin, record::Imax,  record::Tpord};
+};
+
 inline constexpr int kMostPoints = 10;
 inline constexpr std::string_view kReactivePoints[] = {"Vq1", "Iq1", "Vq2", "Iq2", "Vq3",  "Iq3", "Vq4",
                                                        "Iq4", "Vq5", "Iq5", "Vq6", "Iq6",  "Vq7", "Iq7",

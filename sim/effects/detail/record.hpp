@@ -1,5 +1,9 @@
 #pragma once
-// Variants of a parameter's record in several effects: another name or another default.
+// Variants of a parameter's record in several effects: another name or another default. Columns of a .dyr
+// record in the order of the parameters.
+#include <array>
+#include <cstddef>
+#include <numeric>
 #include <string_view>
 
 #include "sim/core/effect.hpp"
@@ -16,6 +20,13 @@ constexpr Parameter with(Parameter record, double standard, Source from = kAsEff
   record.default_value = standard;
   record.default_from = from;
   return record;
+}
+/// Returns the columns of a .dyr record that gives the parameters 0 to `last` in their order.
+template <int last>
+constexpr auto columns_to() {
+  std::array<int, static_cast<std::size_t>(last) + 1> columns{};
+  std::iota(columns.begin(), columns.end(), 0);
+  return columns;
 }
 
 }  // namespace swingbank::sim::effects::shared

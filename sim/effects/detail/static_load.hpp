@@ -1,0 +1,74 @@
+#pragma once
+// Common part of the static loads ZIP, LDFR and IEEL: voltage behind the lag that measures the frequency,
+// current of an admittance, checks. Of ZIP and LDFR also the parts at constant current and power.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "sim/core/effect.hpp"
+
+namespace swingbank::sim::effects::shared {
+
+/// A Model has the parameters Vp, Vi and Tf and the coefficient iTf.
+template <class Model>
+struct StaticLoad {
+  static constexpr Slot slot = Slot::load;
+  enum X { xr, xi };
+  /// The gain from an error of x to P is the exponent or slope of the frequency over 2 pi f0 Tf, about 0.1.
+  static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
+                                     {"xi", "pu", "lagged voltage, imaginary", 0.1}};
+
+  static void check_divisors(const double* p, const std::string& where, Problems& problems) {
+    if (!std::isfinite(p[Model::Tf]))
+      problems.add(fmt::format("Tf = {:g} s", p[Model::Tf]), where, "it must be finite", "give a number");
+    for (const int i : {Model::Vp, Model::Vi})
+      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
+        problems.add(
+            fmt::format("{} = {:g} {}", Model::parameters[i].symbol, p[i], Model::parameters[i].unit), where,
+            fmt::format("{} divides by it", Model::name), "give a value > 0");
+  }
+  static void check_finite(const double* p, int first, int last, const std::string& where,
+                           Problems& problems) {
+    for (int i = first; i <= last; ++i)
+      if (!std::isfinite(p[i]))
+        problems.add(fmt::format("{} = {:g}", Model::parameters[i].symbol, p[i]), where, "it must be finite",
+                     "give a number");
+  }
+  /// Computes the current of the admittance g + jb [pu], which avoids a division by V.
+  template <class T>
+  static void draw(const T& g, const T& b, Signals<T>& signal) {
+    signal.Ir = T(0.0) - g * signal.Vr - b * signal.Vi;
+    signal.Ii = b * signal.Vr - g * signal.Vi;
+  }
+  template <class T>
+  static void derivative(const T* c, const T* x, const Signals<T>& signal, T* dx) {
+    dx[xr] = (signal.Vr - x[xr]) * c[Model::iTf];
+    dx[xi] = (signal.Vi - x[xi]) * c[Model::iTf];
+  }
+};
+
+/// Load with the parts Pi, Qi at constant current and Pp, Qp at constant power.
+template <class Model>
+struct LoadOfParts : StaticLoad<Model> {
+  static std::string_view unphysical(const double* p) {
+    if (!(p[Model::Pi] + p[Model::Pp] <= 1.0)) return "Pi + Pp <= 1";
+    if (!(p[Model::Qi] + p[Model::Qp] <= 1.0)) return "Qi + Qp <= 1";
+    return "";
+  }
+  /// Returns why the operating point is infeasible: low voltage reduces a part there; empty if none. `v`: |V|
+  /// [pu].
+  template <class T>
+  static std::string reduced(const T* p, const T& v) {
+    const auto needs = [&](int one, int other, int threshold) {
+      return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
+    };
+    if (needs(Model::Pp, Model::Qp, Model::Vp))
+      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Model::Vp]));
+    if (needs(Model::Pi, Model::Qi, Model::Vi))
+      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Model::Vi]));
+    return {};
+  }
+};
+
+}  // namespace swingbank::sim::effects::shared
