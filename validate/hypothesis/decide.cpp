@@ -255,14 +255,12 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
 std::string decide_sentence(const Decision& decision) {
   if (decision.next.empty()) return "";
   const NextRecord& best = decision.next.front();
-  std::string what = best.what;
-  what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
   if (best.expected > decision.now - 0.5)
     return fmt::format(
-        "No simulated measurement separates the candidates: {} leaves {:.1f} of {:.0f} on average.",
+        "No simulated measurement separates the candidates: after {}, {:.1f} of {:.0f} remain on average.",
         best.what, best.expected, decision.now);
-  return fmt::format("Next measurement: {} (candidates: {:.0f} -> {:.1f} on average).", what, decision.now,
-                     best.expected);
+  return fmt::format("Next measurement: {} (candidates: {:.0f} -> {:.1f} on average).", best.what,
+                     decision.now, best.expected);
 }
 
 }  // namespace swingbank::validate::hypothesis
