@@ -27,12 +27,12 @@ struct Engine {
 };
 template <class T>
 struct EngineOf final : Engine {
-  EngineOf(const grid::Grid& grid, const BatchOptions& options) : lanes(grid, options) {}
+  EngineOf(const grid::Grid& grid, const BatchOptions& options) : kernel(grid, options) {}
   void run(const std::function<bool(Job&)>& next,
            const std::function<void(const Job&, const Trajectory&)>& done) override {
-    lanes.run(next, done);
+    kernel.run(next, done);
   }
-  BatchKernel<T> lanes;
+  BatchKernel<T> kernel;
 };
 }  // namespace detail
 

@@ -106,13 +106,13 @@ int main(int argc, char** argv) {
       return Cost{whole.seconds - made.seconds, whole.megabytes};
     };
     const Cost reference = beside(cost([&] { reference_run(make(tiles), seconds); }));
-    const Cost lanes = beside(cost([&] { batch_run(make(tiles), seconds); }));
+    const Cost batch_cost = beside(cost([&] { batch_run(make(tiles), seconds); }));
     const double grown = before > 0 ? static_cast<double>(tiles) / before : 1.0;
     std::printf("%d buses, %d machines; runs of %g s\n", 50 * tiles, 10 * tiles, seconds);
     print("grid: network, power flow, plants", made, made_before, grown);
     print("reference, one event, beside the grid", reference, reference_before, grown);
-    print(("lanes, " + std::to_string(kEvents) + " events, beside the grid").c_str(), lanes, batch_before,
-          grown);
-    made_before = made, reference_before = reference, batch_before = lanes, before = tiles;
+    print(("lanes, " + std::to_string(kEvents) + " events, beside the grid").c_str(), batch_cost,
+          batch_before, grown);
+    made_before = made, reference_before = reference, batch_before = batch_cost, before = tiles;
   }
 }

@@ -114,7 +114,7 @@ reference::ReferenceRun reference(const grid::Grid& grid, double t_end = 8.0) {
   options.plants = {1};
   return reference::run_reference(grid, {}, options);
 }
-Trajectory lanes(const grid::Grid& grid, double t_end = 8.0) {
+Trajectory batch_run(const grid::Grid& grid, double t_end = 8.0) {
   batch::BatchOptions options;
   options.t_end = t_end;
   options.plants = {1};
@@ -139,14 +139,14 @@ double lagged_ramp(double tau, double T) { return tau <= 0.0 ? 0.0 : tau - T * l
 
 // Tolerances per step: IDA 1e-8, the SIMD batch 1e-6; exponential decay forgets old errors. The infinite
 // bus's impedance of 1e-6 pu amplifies the rounding of its voltage, which limits the tolerance.
-constexpr double kReference = 1e-6, kLanes = 1e-5;
+constexpr double kReferenceTolerance = 1e-6, kBatchTolerance = 1e-5;
 
 TEST(Disturbances, VrefStepIsLaggedByTheExciter) {
   grid::Grid grid = two_infinite_buses();
   add(grid.plants[1], "VREFSTEP", {0.01, 2.0, 5.0});
   const auto expected = [](double t) { return 20.0 * 0.01 * (lagged(t - 2.0, 0.5) - lagged(t - 5.0, 0.5)); };
-  EXPECT_LE(worst(reference(grid), Channel::Efd, expected), kReference);
-  EXPECT_LE(worst(lanes(grid), Channel::Efd, expected), kLanes);
+  EXPECT_LE(worst(reference(grid), Channel::Efd, expected), kReferenceTolerance);
+  EXPECT_LE(worst(batch_run(grid), Channel::Efd, expected), kBatchTolerance);
 }
 
 TEST(Disturbances, PrefRampIsLaggedByTheGovernor) {
@@ -155,8 +155,8 @@ TEST(Disturbances, PrefRampIsLaggedByTheGovernor) {
   const auto expected = [](double t) {
     return 0.1 / 3.0 * (lagged_ramp(t - 1.0, 0.4) - lagged_ramp(t - 4.0, 0.4));
   };
-  EXPECT_LE(worst(reference(grid), Channel::Tm, expected), kReference);
-  EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), kLanes);
+  EXPECT_LE(worst(reference(grid), Channel::Tm, expected), kReferenceTolerance);
+  EXPECT_LE(worst(batch_run(grid), Channel::Tm, expected), kBatchTolerance);
 }
 
 TEST(Disturbances, AgcMovesAreLaggedByTheGovernor) {
@@ -168,8 +168,8 @@ TEST(Disturbances, AgcMovesAreLaggedByTheGovernor) {
       sum += move * (lagged_ramp(t - start, 0.4) - lagged_ramp(t - start - 1.0, 0.4));
     return sum;
   };
-  EXPECT_LE(worst(reference(grid), Channel::Tm, expected), kReference);
-  EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), kLanes);
+  EXPECT_LE(worst(reference(grid), Channel::Tm, expected), kReferenceTolerance);
+  EXPECT_LE(worst(batch_run(grid), Channel::Tm, expected), kBatchTolerance);
 }
 
 TEST(Disturbances, FastValvingActsAfterTheGovernor) {
@@ -182,7 +182,7 @@ TEST(Disturbances, FastValvingActsAfterTheGovernor) {
   };
   // No state in between; a sample at a kink is the torque 1e-9 s before it, at up to 4 pu/s.
   EXPECT_LE(worst(reference(grid), Channel::Tm, expected), 1e-8);
-  EXPECT_LE(worst(lanes(grid), Channel::Tm, expected), 1e-8);
+  EXPECT_LE(worst(batch_run(grid), Channel::Tm, expected), 1e-8);
 }
 
 /// A classical machine swings linearly for a small torque: speed = A s / (2 H s^2 + D s + w0 Ks).
