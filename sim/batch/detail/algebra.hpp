@@ -1,9 +1,10 @@
 #pragma once
-// Lanes: sources whose current is a nonlinear function of the voltage (loads with a dynamic model, machines
-// with saliency, converters). Each is represented by E = V + z I(V) behind its constant impedance z, so that
-// the network equation remains I = (G + jB) E. Newton's method solves for the voltages V at these sources.
-// Each lane stops at its own convergence, so that its bits do not depend on other lanes. V is the machine's
-// own terminal voltage: with a step-up transformer of ratio n the network has n E, and the machine n I.
+// Batch kernel: sources whose current is a nonlinear function of the voltage (loads with a dynamic model,
+// machines with saliency, converters). Each is represented by E = V + z I(V) behind its constant impedance z,
+// so that the network equation remains I = (G + jB) E. Newton's method solves for the voltages V at these
+// sources. Each lane stops at its own convergence, so that its bits do not depend on other lanes. V is the
+// machine's own terminal voltage: with a step-up transformer of ratio n the network has n E, and the machine
+// n I.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {

@@ -1,5 +1,5 @@
 #pragma once
-// Lanes: evaluation of the grid's equations.
+// Batch kernel: evaluation of the grid's equations.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {

@@ -1,5 +1,5 @@
 #pragma once
-// Traits of a scalar type for the lanes kernel: number of lanes, access to one lane, masks.
+// Traits of a scalar type for the batch kernel: number of lanes, access to one lane, masks.
 #include <cstdint>
 #ifdef __AVX__
 #include <immintrin.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Lanes: construction, loading of jobs, entry of segments, completion of runs.
+// Batch kernel: construction, loading of jobs, entry of segments, completion of runs.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
-// Lanes: network matrices. Grids of few sources have a matrix per lane; grids of many sources have one for
-// all lanes and a low-rank update per lane.
+// Batch kernel: network matrices. Grids of few sources have a matrix per lane; grids of many sources have one
+// for all lanes and a low-rank update per lane.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {

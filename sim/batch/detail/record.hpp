@@ -1,7 +1,8 @@
 #pragma once
-// Lanes: recording. The states at the sample times are interpolated lane by lane and buffered. The outputs
-// are evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one event. This
-// occupies every lane, independent of the step sizes, and writes each channel in whole cache lines.
+// Batch kernel: recording. The states at the sample times are interpolated lane by lane and buffered. The
+// outputs are evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one
+// event. This occupies every lane, independent of the step sizes, and writes each channel in whole cache
+// lines.
 #include <algorithm>
 #include <array>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Lanes: the integration loop. Every pack step advances each lane by its own step size. Acceptance, switching
-// and refill are independent per lane.
+// Batch kernel: the integration loop. Every pack step advances each lane by its own step size. Acceptance,
+// switching and refill are independent per lane.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {

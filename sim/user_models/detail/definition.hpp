@@ -20,7 +20,7 @@ struct Requirement {
   std::string text, where;
 };
 
-/// Metadata and program of a law.
+/// Metadata and program of a user-defined model.
 struct Definition {
   std::string text;  ///< unmodified text of the file
   std::string name, title, source, description;

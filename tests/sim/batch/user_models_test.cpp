@@ -64,7 +64,7 @@ grid::Grid nonlinear_grid() {
   return grid;
 }
 
-TEST(UserModelInBatch, ANonlinearLawRunsInEveryKernel) {
+TEST(UserModelInBatch, NonlinearModelRunsInEveryKernel) {
   const grid::Grid grid = nonlinear_grid();
   const auto at = plant::operating_point(grid.plants[1], grid.flow.voltage[2], 100.0, grid.conventions);
   EXPECT_NEAR(at.x[7], std::sqrt(at.s.V), 1e-12);  // six states of the machine, x, then the root

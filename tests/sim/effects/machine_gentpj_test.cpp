@@ -142,7 +142,7 @@ TEST(MachineGentpj, CurrentIsConsistentWithItsSaturation) {
       }
 }
 
-/// Lanes against the reference: bolted faults at plant 3 and elsewhere, loss of plant 3.
+/// SIMD batch against the reference: bolted faults at plant 3 and elsewhere, loss of plant 3.
 void expect_batch_equals_reference(const grid::Grid& grid) {
   const plant::Plant& mine = grid.plants[3];
   std::vector<network::Event> events(3);

@@ -221,7 +221,7 @@ Diagnosis with_user_models() {
   return d;
 }
 
-TEST(DiagnosisReportTest, PageShowsTheLawsOfTheJson) {
+TEST(DiagnosisReportTest, PageShowsTheUserModelsOfTheJson) {
   const Diagnosis d = with_user_models();
   const std::string html = diagnosis_html(example().model, d, {});
   const auto section = html.find("User-defined model");
@@ -250,7 +250,7 @@ TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
   EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
 }
-TEST(DiagnosisReportTest, PageOmitsLaws_WithoutASearch) {
+TEST(DiagnosisReportTest, PageOmitsUserModels_WithoutASearch) {
   EXPECT_THAT(page(), testing::Not(HasSubstr("User-defined model")));
   EXPECT_TRUE(figures()["laws"].is_null());
 }

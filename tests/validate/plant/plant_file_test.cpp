@@ -107,7 +107,7 @@ TEST_F(PlantFileTest, KeepsTheColumnsOfItsRecords) {
   m.reading.columns = {{"V", "NORTH.BUS1.VPM [kV]"}, {"P", "-LINE \"1\" [MW]"}};
   EXPECT_EQ(again(m).reading.columns, m.reading.columns);
 }
-TEST_F(PlantFileTest, CopiesLawFilesToItsFolder) {
+TEST_F(PlantFileTest, CopiesUserModelsToItsFolder) {
   PlantModel m = example();
   const auto user_model = test::source("configs/user_models/torque_voltage_dip.toml");
   std::filesystem::create_directories(folder_);

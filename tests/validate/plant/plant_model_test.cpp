@@ -61,7 +61,7 @@ TEST_F(PlantModelTest, SuggestsNameForMistypedEffect) {
       faults(replaced(example_text(), "\"GENROU\"", "\"GENRUO\"")),
       ElementsAre(AllOf(HasSubstr("machine.effect = 'GENRUO' at "), HasSubstr("did you mean GENROU?"))));
 }
-TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
+TEST_F(PlantModelTest, ReadsUserModelsOfItsFolder) {
   const std::string user_model = test::source("configs/user_models/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
@@ -73,7 +73,7 @@ TEST_F(PlantModelTest, ReadsLawFilesOfItsFolder) {
               ElementsAre(AllOf(HasSubstr("no readable user-defined model"), HasSubstr("none.toml"))));
 }
 /// Plants in different folders, each with a user-defined model of the same file name and effect name.
-TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedLaws) {
+TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedUserModels) {
   const auto folder = file_.parent_path() / file_.stem();
   const auto read = [&](const std::string& depth) {
     const auto own = folder / depth;

@@ -51,7 +51,7 @@ double value_of(const UserModelCandidate& user_model, const std::string& name) {
 }
 constexpr double kLevel = 0.1;
 
-TEST(UserModelCandidates, LimitedSpeedLawRanksFirst) {
+TEST(UserModelCandidates, LimitedSpeedModelRanksFirst) {
   const auto traces = traces_with([](const UserModelTrace&, double speed, double) {
     return -0.02 * std::clamp(speed / 0.001, -1.0, 1.0);
   });
@@ -265,7 +265,7 @@ TEST(UserModelSearchFull, FindsOscillation) {
       EXPECT_NEAR(p.value, 0.7, 4 * p.error);
     }
 }
-/// A torque that differs between events follows no law.
+/// A torque that differs between events follows no user-defined model.
 TEST(UserModelSearchFull, RejectsRandomTorque) {
   Case c({1, 2, 3}, nullptr, [](int event, playin::PlaybackRun& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
