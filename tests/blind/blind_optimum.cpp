@@ -14,6 +14,7 @@
 
 namespace {
 using namespace swingbank;
+using namespace swingbank::research;
 using namespace swingbank::validate;
 namespace fs = std::filesystem;
 

@@ -24,15 +24,15 @@ std::size_t place_of(std::size_t signals, std::size_t of, std::size_t a, std::si
 }
 
 TEST(Regressions, FindConstantRelationsAtAnyOffsetAndScale) {
-  constexpr std::size_t kSignals = 4, kSamples = 90;
-  std::vector<float> weights(kSamples), series(kSignals * kSamples), found(regression_count(kSignals));
+  constexpr std::size_t kSignals = 4, kPoints = 90;
+  std::vector<float> weights(kPoints), series(kSignals * kPoints), found(regression_count(kSignals));
   for (const float size : {1.0f, 1e-3f}) {
-    for (std::size_t k = 0; k < kSamples; ++k) {
+    for (std::size_t k = 0; k < kPoints; ++k) {
       const double t = 0.1 * static_cast<double>(k);
       weights[k] = k < 30 ? 1.0f : 4.0f;
       const double a = std::sin(t) + 7.0, b = std::exp(-0.3 * t) * std::cos(2.0 * t) - 2.0;
       const double all[] = {a, b, 2.0 * a - 0.5 * b + 11.0, t * t};
-      for (std::size_t c = 0; c < kSignals; ++c) series[c * kSamples + k] = size * static_cast<float>(all[c]);
+      for (std::size_t c = 0; c < kSignals; ++c) series[c * kPoints + k] = size * static_cast<float>(all[c]);
     }
     regress(series.data(), kSignals, weights, found.data());
     const std::size_t at = place_of(kSignals, 2, 0, 1);
