@@ -48,7 +48,7 @@ swingbank compare ${example[@]} --out report >"$work/compare" 2>&1 || status=$?
 
 # A man page of every command that --help lists, with every option. read-hdf5 is internal.
 man1=$prefix/share/man/man1
-for program in $(programs "$SWINGBANK_BIN" | grep -v -e -read-hdf5); do
+for program in $(programs "$SWINGBANK_BIN" | grep -v -e -read-hdf5 -e swingbank_); do
   [[ -s $man1/$program.1 ]] || fail "no man page of $program"
 done
 for command in compare effects; do

@@ -16,7 +16,7 @@ interrupted() {
   "$@" >stdout 2>stderr &
   pid=$!
   for _ in $(seq 6000); do
-    if [[ $(readlink "/proc/$pid/exe") == *swingbank-* ]] && grep -q "SigCgt:.*[2367abef]$" "/proc/$pid/status" 2>/dev/null &&
+    if [[ $(readlink "/proc/$pid/exe") == */swingbank_* ]] && grep -q "SigCgt:.*[2367abef]$" "/proc/$pid/status" 2>/dev/null &&
       { [[ -z $words ]] || grep -q -- "$words" stderr; }; then break; fi
     sleep 0.01
   done

@@ -74,7 +74,7 @@ TEST(ComponentRecordTest, NeedsNoBaseForUnusedColumns) {
   const ReadOptions options{.component = Component::exciter, .needed = {{"V"}, {"Efd"}}};
   const Record r = parse_record(table("V_pu,Efd_pu,Ifd_A", "1,2,900"), "x.csv", {}, options);
   EXPECT_TRUE(r.Ifd.empty());
-  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("'Ifd_A' was left out"), HasSubstr("ifd_base"))));
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("'Ifd_A' was not read"), HasSubstr("ifd_base"))));
 }
 
 TEST(ComponentRecordTest, GovernorNeedsNoVoltage) {
