@@ -53,7 +53,7 @@ short 5 || fail "the night that goes on: $(tail "$work/short.log")"
 printf '%s="0"\n' tests blind fuzz >>"$work/sizes.before"
 cmp "$work/sizes.before" "$work/short/2026-02-05/sizes.conf" || fail "the sizes changed"
 for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^| short: training, seed 204891 |' \
-  '^[0-9.]* of 0.01 hours' '^| V | events that only train |' '^### Table V'; do
+  '^[0-9.]* of 0.01 requested hours' '^| V | events that only train |' '^### Table V'; do
   grep -q "$wanted" "$work/short/2026-02-05/report.md" || fail "no '$wanted' in: $(cat "$work/short/2026-02-05/report.md")"
 done
 
