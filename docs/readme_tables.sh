@@ -24,7 +24,7 @@ awk 'FNR == 1 { text = "" }
   /^swingbank_module\(/ { text = " " }
   text != "" { sub(/#.*/, ""); text = text " " $0 }
   text ~ /\)/ { gsub(/swingbank_module\(|\)/, "", text); $0 = text; $1 = $1; print; text = "" }' \
-  base/CMakeLists.txt {sim,mpi,train,validate}/CMakeLists.txt >"$work/modules"
+  base/CMakeLists.txt {sim,mpi,train,validate,research}/CMakeLists.txt >"$work/modules"
 
 # uses MODULE: the modules it names, as links.
 uses() {

@@ -8,11 +8,11 @@ bash docs/readme_tables.sh --check
 python3 docs/architecture.py --check
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate | tar -xf - -C "$copy"
+tar -cf - --exclude='*.cpp' docs/readme_tables.sh docs/architecture.py base sim mpi train validate research | tar -xf - -C "$copy"
 # Two modules are sufficient for the test.
-for folder in mpi sim train validate; do mv "$copy/$folder/CMakeLists.txt" "$copy/$folder.all"; done
+for folder in mpi sim train validate research; do mv "$copy/$folder/CMakeLists.txt" "$copy/$folder.all"; done
 grep '^swingbank_module(sim/formats ' "$copy/sim.all" >"$copy/sim/CMakeLists.txt"
-touch "$copy"/{mpi,train,validate}/CMakeLists.txt
+touch "$copy"/{mpi,train,validate,research}/CMakeLists.txt
 # Without the sources, as in this copy, the tables are out of date.
 if bash "$copy/docs/readme_tables.sh" --check 2>"$copy/said"; then
   echo "vanished sources went unnoticed" >&2
@@ -31,7 +31,7 @@ if [[ $last != '| `clock` | A clock (see J. Harrison, 1759) |' ]]; then
   echo "the row of a new header is: $last" >&2
   exit 1
 fi
-for folder in mpi sim train validate; do mv "$copy/$folder.all" "$copy/$folder/CMakeLists.txt"; done
+for folder in mpi sim train validate research; do mv "$copy/$folder.all" "$copy/$folder/CMakeLists.txt"; done
 sed -i 's/^swingbank_module(sim\/core USES base)/swingbank_module(sim\/core USES base validate\/fleet)/' "$copy/sim/CMakeLists.txt"
 if python3 "$copy/docs/architecture.py" --check 2>"$copy/said"; then
   echo "a circle of modules went unnoticed" >&2
