@@ -13,7 +13,7 @@ import collections, pathlib, re, sys
 root = pathlib.Path(sys.argv[1])
 arithmetic = r"(?:double|float|long double|int|unsigned|char|std::size_t|std::u?int\d+_t|Eigen::Index)"
 literals = re.compile(r"(?<![\d.])(?:3\.1415|6\.283|1\.9599|1\.96(?!\d)|2\.575|57\.29)")
-files = [f for module in ("base", "sim", "mpi", "train", "validate", "jobs") for f in sorted((root / module).rglob("*.?pp"))]
+files = [f for module in ("base", "sim", "mpi", "train", "validate", "research", "jobs") for f in sorted((root / module).rglob("*.?pp"))]
 
 def parts(text):
     """The declarators of one declaration, cut at the commas outside brackets."""
@@ -62,7 +62,7 @@ PYTHON
 
 # violations planted in a copy, which the check must refuse
 plant() {
-  rm -rf "$work/tree" && mkdir "$work/tree" && cp -r base sim mpi train validate jobs "$work/tree"
+  rm -rf "$work/tree" && mkdir "$work/tree" && cp -r base sim mpi train validate research jobs "$work/tree"
   printf '%s\n' "$2" >"$work/tree/$1"
   if python3 "$work/check.py" "$work/tree" >"$work/said"; then
     echo "the check does not see '$2'" >&2
