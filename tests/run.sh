@@ -4,7 +4,7 @@
 #     --fast          the fast tier only (under 2 minutes once built)
 #     --nightly       only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
 #                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
-#                     per night: more than an hour (research/nightly.sh runs it)
+#                     per run: more than an hour (research/nightly.sh runs it)
 #     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)
@@ -179,7 +179,7 @@ if ((nightly)); then
   # One instruction set per nightly run: without ccache its build takes some ten minutes of two cores.
   levels=(x86-64-v2 x86-64-v3 x86-64-v4)
   level=${levels[10#$(date +%j) % ${#levels[@]}]}
-  phase "lanes under the sanitizers, $level"
+  phase "SIMD batches under the sanitizers, $level"
   bash "$source_folder/tests/sim/sanitized.bash" "$level" || failed+=(sanitized)
   tier nightly
 else
