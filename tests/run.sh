@@ -4,13 +4,12 @@
 #     --fast          the fast tier only (under 2 minutes once built)
 #     --nightly       only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
 #                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
-#                     per run: more than an hour (research/nightly.sh runs it)
+#                     per run: more than an hour (research/nightly.sh runs it, and the fuzz targets after it)
 #     --without-psse  skips the tests that read PSS/E's and other external records, which are not part of this repository
 #     --sanitize      also the fast tier's unit tests under the address and undefined-behaviour sanitizers (their build
 #                     takes longer than everything else: Eigen's sparse solvers are slow to compile with checks)
 #     --ci            as on the integration machine: warnings are errors, scripts and formatting are checked, SIMD code is
-#                     compiled for AVX2 on any processor, and the fuzz targets of the text formats run for 5 s each; the
-#                     benchmarks are not built
+#                     compiled for AVX2 on any processor; the benchmarks are not built
 # PSS/E's records are read from $SWINGBANK_REFERENCE, else from ../shared/reference beside the repository.
 set -euo pipefail
 
@@ -24,7 +23,7 @@ while (($#)); do
     --without-psse) with_psse=0 ;;
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
-    -h | --help) sed -n '2,14p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
@@ -148,10 +147,8 @@ if ((ci)); then
   check_format || failed+=(clang-format)
 fi
 if ((ci)); then
-  phase "packs for AVX2"
+  phase "SIMD code for AVX2"
   for_avx2 || failed+=(avx2)
-  phase "fuzz targets of the text formats"
-  bash "$source_folder/tests/fuzz/run.bash" 5 raw matpower epc dyd sealed || failed+=(fuzz)
 fi
 if ((sanitize)); then
   phase "fast tier under the sanitizers"
@@ -190,7 +187,6 @@ end_phase
 printf '\n== time of each phase\n'
 printf '%s\n' "${phases[@]}"
 if ((${#failed[@]})); then
-  cat "$source_folder"/build/fuzz/found/*/summary.txt 2>/dev/null || true
   say "failed: ${failed[*]}"
   exit 1
 fi
