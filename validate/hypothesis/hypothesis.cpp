@@ -401,9 +401,9 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
 }
 
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
-                                               double within) {
-  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count, 2,
-               within);
+                                               double within, int round) {
+  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count,
+               2 + static_cast<unsigned>(round), within);
 }
 
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }

@@ -50,10 +50,10 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
 /// group. `fitted` is the plant of a fit of `h`: further starts have its values, and random draws of the
 /// freed parameters. Empty if the starts of `h` are not random draws.
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
-/// Returns `count` further random draws of the hypothesis's first `own` free parameters. The longest time
-/// constant of a draw is about `within` [s] at most.
+/// Returns `count` further random draws of the hypothesis's first `own` free parameters, others for each
+/// `round`. The longest time constant of a draw is about `within` [s] at most.
 std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
-                                               double within);
+                                               double within, int round = 0);
 /// Returns the name with that of the effect added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
 /// Returns the hypothesis's plant with `start` as values of its free parameters.

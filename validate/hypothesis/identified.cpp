@@ -19,7 +19,7 @@ using event::InputKind;
 constexpr std::size_t kLeading = 3;
 /// Maximum number of linearisations about a leader: a second one if the leader changes.
 constexpr int kLinearPoints = 2;
-/// Number of draws specific to the block, in addition to those of the identification.
+/// Number of draws per round that are specific to the block, in addition to those of the identification.
 constexpr std::size_t kSuitedDraws = 80;
 /// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
@@ -33,6 +33,12 @@ std::uint64_t stream_of(const std::string& name) {  // FNV-1a
   return sum;
 }
 
+/// Returns the length of the first record [s].
+double length(const BaseModel& base_model) {
+  const auto& t = base_model.events.front().record.t;
+  return t.back() - t.front();
+}
+
 class Identifying {
  public:
   Identifying(const BaseModel& base_model, const event::Progress& report)
@@ -44,8 +50,10 @@ class Identifying {
   std::vector<Judgement> run(std::vector<Hypothesis> all, const std::function<double(double)>& fit_others) {
     for (Hypothesis& h : all) {
       reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h))};
-      const auto& t = base_model_.events.front().record.t;
-      if (h.drawn) trial.draws = further_draws(h, h.free.size(), kSuitedDraws, t.back() - t.front());
+      if (h.drawn)
+        trial.draws = [h, within = length(base_model_)](int round) {
+          return further_draws(h, h.free.size(), kSuitedDraws, within, round);
+        };
       tried_.push_back({std::move(h), std::move(trial)});
     }
     begin();
@@ -167,7 +175,6 @@ class Identifying {
     if (first) std::ranges::copy(h.hypothesis.further, std::back_inserter(known));
     if (const fit::Fit* best = h.best()) known.push_back(fit::values_of(best->plant, h.trial.free));
     h.optima = reduced::identify(*side, h.input(), h.trial, {}, known);
-    std::erase_if(h.optima, [](const reduced::Optimum& o) { return o.series.isZero(); });
     h.optima.resize(std::min(h.optima.size(), kOptima));
     h.cost = h.optima.empty() ? std::numeric_limits<double>::infinity() : h.optima.front().cost;
   }

@@ -1,7 +1,6 @@
 #include "validate/reduced/identify.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,11 +19,20 @@ constexpr double kDrawWidth = 1.2;    ///< standard deviation of the draws, in p
 /// A quarter of the values are drawn log-uniformly between the start value and a hundredth of it. A limit
 /// acts only if it is as low as its signal.
 constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
-/// Number of rounds of draws about the optima found, one after each optimisation. Widths are between
-/// `kWidestNearby` prior standard deviations and a tenth of that. Such draws find optima that gradient steps
-/// miss: the time at which a limiter picks up.
-constexpr int kRoundsNearby = 3, kWidthsNearby = 8;
-constexpr double kWidestNearby = 0.5;
+/// Maximum number of rounds of draws until enough draws act, and of tries per draw until its parameters are
+/// consistent.
+constexpr int kRoundsOfDraws = 20, kRepeats = 20;
+/// Share of acting draws below which they are evolved.
+constexpr double kRare = 0.1;
+/// Differential evolution: number of generations without a lower cost that end it, and minimum number of
+/// starts.
+constexpr int kStagnant = 50;
+constexpr std::size_t kFewestToEvolve = 8;
+/// Moves lead toward this share of the starts, the best, change this share of the parameters, and have a
+/// random length of at least `kShortestMove` (Zhang and Sanderson 2009).
+constexpr double kShareOfBest = 0.15, kShareMoved = 0.9, kShortestMove = 0.4;
+/// First stream of the random numbers of the evolution, beyond those of the draws.
+constexpr std::uint32_t kStreamsOfEvolution = 1u << 20;
 constexpr double kShortestTime = 0.2;   ///< of a time constant, in sampling intervals
 constexpr double kStartSettled = 0.02;  ///< cost reduction of a step below which a start has converged
 constexpr double kGivenUp = 1e6;        ///< damping factor at which a start is given up
@@ -64,11 +72,6 @@ class Identifying {
     if (!without_.allFinite()) return {};
     begin(options, known);
     optimise(options.steps);
-    if (options.draws > 0)
-      for (int round = 0; round < kRoundsNearby && !starts_.empty(); ++round) {
-        add_nearby(round, options);
-        optimise(options.steps);
-      }
     return optima();
   }
 
@@ -76,6 +79,7 @@ class Identifying {
   struct Start {
     VectorXd z;
     double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
+    std::size_t from = 0;  ///< number of its point
     bool done = false;
   };
   /// Optimises the starts by successive halving: every start takes `steps` steps, then the better half takes
@@ -91,35 +95,13 @@ class Identifying {
       starts_.resize((starts_.size() + 1) / 2);
     }
   }
-  /// Adds the best draws about the present optima; the widths of the draws cycle from wide to narrow.
-  void add_nearby(int round, const IdentifyOptions& options) {
-    std::vector<VectorXd> points;
-    for (int draw = 0; draw < options.draws; ++draw) {
-      VectorXd z = starts_[static_cast<std::size_t>(draw) % starts_.size()].z;
-      const double width =
-          kWidestNearby * std::pow(10.0, -static_cast<double>(draw % kWidthsNearby) / kWidthsNearby);
-      for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const auto stream =
-            static_cast<std::uint32_t>(2 * axes_.size() + static_cast<std::size_t>(round) * axes_.size() + i);
-        z[static_cast<Index>(i)] +=
-            width * axes_[i].prior_sd() *
-            sim::normal_pair(trial_.stream, stream, static_cast<std::uint64_t>(draw))[0];
-      }
-      points.push_back(within(std::move(z)));
-    }
-    std::vector<Start> some = starts_at(points, series(points));
-    std::ranges::stable_sort(some, {}, &Start::cost);
-    some.resize(std::min(some.size(), static_cast<std::size_t>(options.kept)));
-    std::ranges::move(some, std::back_inserter(starts_));
-  }
-  /// Returns the points that can be simulated, with their costs.
-  [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points,
-                                             const MatrixXd& made) const {
-    const VectorXd cost = costs(made, points, VectorXd::Zero(static_cast<Index>(points.size())));
+  /// Returns the points with a finite cost.
+  [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points) const {
+    const VectorXd cost = costs(series(points), points, VectorXd::Zero(static_cast<Index>(points.size())));
     std::vector<Start> all;
     for (std::size_t k = 0; k < points.size(); ++k)
       if (std::isfinite(cost[static_cast<Index>(k)]))
-        all.push_back({points[k], 0, cost[static_cast<Index>(k)]});
+        all.push_back({.z = points[k], .cost = cost[static_cast<Index>(k)], .from = k});
     return all;
   }
   /// Returns the trial with the plant's other parameters at the values of the inference.
@@ -151,13 +133,14 @@ class Identifying {
         cost += std::pow(z[static_cast<Index>(i)] / prior_sd, 2);
     return cost;
   }
-  /// Returns the costs; infinite for a trial that cannot be simulated.
+  /// Returns the costs; infinite for a trial that cannot be simulated, and for an idle one, which adds
+  /// nothing to the input: its cost has no gradient, and as a start it would displace starts that act.
   [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
                                const VectorXd& gains) const {
     VectorXd cost = reduced_.costs(made, gains);
     for (Index k = 0; k < cost.size(); ++k) {
       cost[k] += prior_cost(all[static_cast<std::size_t>(k)]);
-      if (!std::isfinite(cost[k]) || !runs(all[static_cast<std::size_t>(k)]))
+      if (!std::isfinite(cost[k]) || made.col(k).isZero() || !runs(all[static_cast<std::size_t>(k)]))
         cost[k] = std::numeric_limits<double>::infinity();
     }
     return cost;
@@ -175,11 +158,17 @@ class Identifying {
     for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
     return within(z);
   }
+  /// Returns a random draw. A draw whose parameters contradict each other is repeated.
   [[nodiscard]] VectorXd drawn(int draw) const {
+    VectorXd z = drawn_once(draw, 0);
+    for (int repeat = 1; repeat < kRepeats && !runs(z); ++repeat) z = drawn_once(draw, repeat);
+    return z;
+  }
+  [[nodiscard]] VectorXd drawn_once(int draw, int repeat) const {
     VectorXd z(static_cast<Index>(axes_.size()));
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const auto number = static_cast<std::uint32_t>(i);
-      const auto sample = static_cast<std::uint64_t>(draw);
+      const auto sample = static_cast<std::uint64_t>(repeat) << 32 | static_cast<std::uint64_t>(draw);
       const auto [which, where] = sim::uniform_pair(trial_.stream, 2 * number, sample);
       const double factor = std::pow(10.0, -kDecadesBelow * where);
       z[static_cast<Index>(i)] =
@@ -190,62 +179,67 @@ class Identifying {
     }
     return within(z);
   }
+  /// Draws until enough draws act, and keeps the best. Most exciters act with every draw. A limiter acts only
+  /// if its pickup level lies between the steady value and the peak of its signal; the few draws that meet
+  /// this are evolved.
   void begin(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
-    std::vector<VectorXd> all{VectorXd::Zero(static_cast<Index>(axes_.size()))};
-    for (const auto& values : known) all.push_back(point_of(values));
-    const std::size_t given = all.size();
-    if (options.draws > 0)
-      for (const auto& values : trial_.draws) all.push_back(point_of(values));
-    for (int draw = 1; draw < options.draws && !axes_.empty(); ++draw) all.push_back(drawn(draw));
-    MatrixXd made = series(all);
-    if (auto more = between_failing_and_idle(all, made, options.kept); !more.empty()) {
-      std::ranges::move(more, std::back_inserter(all));
-      made = series(all);
+    std::vector<VectorXd> points{VectorXd::Zero(static_cast<Index>(axes_.size()))};
+    for (const auto& values : known) points.push_back(point_of(values));
+    const std::vector<Start> given = starts_at(points);
+    starts_ = given;
+    std::size_t tried = 0;
+    for (int round = 0; round < kRoundsOfDraws && std::ssize(starts_) < options.draws && !axes_.empty();
+         ++round) {
+      points.clear();
+      if (trial_.draws)
+        for (const auto& values : trial_.draws(round)) points.push_back(point_of(values));
+      for (int draw = 0; draw < options.draws; ++draw) points.push_back(drawn(round * options.draws + draw));
+      std::ranges::move(starts_at(points), std::back_inserter(starts_));
+      tried += points.size();
     }
-    if (!(made.array().abs() > 0).any()) return;  // the block has no effect
-    starts_ = starts_at(all, made);
+    if (static_cast<double>(starts_.size()) < kRare * static_cast<double>(tried)) evolve();
     std::ranges::stable_sort(starts_, {}, &Start::cost);
     starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
-    all.resize(given);  // given starts are always optimised
-    std::ranges::move(starts_at(all, made.leftCols(static_cast<Index>(given))), std::back_inserter(starts_));
+    std::ranges::copy(given, std::back_inserter(starts_));  // given starts are always optimised
   }
-  /// Returns further draws if fewer than `enough` draws have an effect. A limiter that has picked up before
-  /// the event cannot be simulated; one whose pickup level is far above its signal has no effect. On the line
-  /// from a draw of the first kind to one of the second, bisection finds the first point that can be
-  /// simulated. The returned points lie shortly beyond it.
-  [[nodiscard]] std::vector<VectorXd> between_failing_and_idle(const std::vector<VectorXd>& all,
-                                                               const MatrixXd& made, int enough) const {
-    constexpr std::size_t kPairs = 64;
-    constexpr int kBisections = 6;
-    constexpr std::array kFurther = {0.02, 0.05, 0.1, 0.2};  // of the rest of the way
-    std::vector<std::size_t> failing, idle;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const auto response = made.col(static_cast<Index>(k));
-      if (!response.allFinite())
-        failing.push_back(k);
-      else if (response.isZero())
-        idle.push_back(k);
-    }
-    const std::size_t acting = all.size() - failing.size() - idle.size();
-    if (acting >= static_cast<std::size_t>(enough) || failing.empty() || idle.empty()) return {};
-    std::array<double, kPairs> fails{}, simulated;
-    simulated.fill(1.0);
-    const auto points_at = [&](auto share_of) {
-      std::vector<VectorXd> points;
-      for (std::size_t k = 0; k < kPairs; ++k) {
-        const VectorXd &from = all[failing[k % failing.size()]], &to = all[idle[k % idle.size()]];
-        points.push_back(from + share_of(k) * (to - from));
+  /// Improves the starts by differential evolution (Storn and Price 1997): each start moves toward one of the
+  /// best and by the difference of two others, and keeps the move if its cost falls. Unlike gradient steps it
+  /// crosses the discontinuities at which another event makes a limiter pick up.
+  void evolve() {
+    if (starts_.size() < kFewestToEvolve) return;
+    double least = std::numeric_limits<double>::infinity();
+    for (int generation = 0, since = 0; since < kStagnant; ++generation) {
+      interruption_point();
+      std::ranges::stable_sort(starts_, {}, &Start::cost);
+      ++since;
+      if (starts_.front().cost < least - kSameOptimum) {
+        least = starts_.front().cost;
+        since = 0;
       }
-      return points;
-    };
-    for (int step = 0; step < kBisections; ++step) {
-      const auto middle = [&](std::size_t k) { return 0.5 * (fails[k] + simulated[k]); };
-      const MatrixXd there = series(points_at(middle));
-      for (std::size_t k = 0; k < kPairs; ++k)
-        (there.col(static_cast<Index>(k)).allFinite() ? simulated : fails)[k] = middle(k);
+      std::vector<VectorXd> points;
+      for (std::size_t k = 0; k < starts_.size(); ++k) points.push_back(moved(k, generation));
+      const std::vector<Start> there = starts_at(points);
+      for (const Start& s : there)
+        if (Start& here = starts_[s.from]; s.cost < here.cost) here = s;
     }
-    return points_at(
-        [&](std::size_t k) { return simulated[k] + kFurther[k % kFurther.size()] * (1 - simulated[k]); });
+  }
+  /// Returns the point to which start `k` may move.
+  [[nodiscard]] VectorXd moved(std::size_t k, int generation) const {
+    std::uint32_t stream = kStreamsOfEvolution;
+    const auto uniform = [&] {
+      return sim::uniform_pair(trial_.stream, stream++, static_cast<std::uint64_t>(generation) << 32 | k)[0];
+    };
+    const auto one_of = [&](double share) -> const VectorXd& {
+      const auto count = static_cast<double>(starts_.size());
+      return starts_[std::min(starts_.size() - 1, static_cast<std::size_t>(uniform() * share * count))].z;
+    };
+    const VectorXd &here = starts_[k].z, &best = one_of(kShareOfBest), &one = one_of(1), &other = one_of(1);
+    const double length = kShortestMove + (1 - kShortestMove) * uniform();
+    const VectorXd to = here + length * (best - here + one - other);
+    VectorXd z = here;
+    for (Index i = 0; i < z.size(); ++i)
+      if (uniform() < kShareMoved) z[i] = to[i];
+    return within(std::move(z));
   }
   [[nodiscard]] bool runs(const VectorXd& z) const {
     const sim::plant::Plant plant = plant_at(z);

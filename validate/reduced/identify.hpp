@@ -3,6 +3,7 @@
 // starts at once, and the plant's parameters are eliminated in closed form (reduce.hpp). No trial simulates
 // the plant.
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "validate/reduced/reduce.hpp"
@@ -14,9 +15,9 @@ struct Trial {
   sim::plant::Plant plant;               ///< plant with the block
   std::vector<fit::FreeParameter> free;  ///< free parameters of the block, with their priors
   std::uint64_t stream = 0;              ///< stream of the random draws, which depend on nothing else
-  /// Further draws specific to the block: ordered pickup levels of a limiter, times within the record's
-  /// length.
-  std::vector<std::vector<double>> draws = {};
+  /// Returns further draws specific to the block for a round of draws: ordered pickup levels of a limiter,
+  /// times within the record's length. Empty: none.
+  std::function<std::vector<std::vector<double>>(int round)> draws = {};
 };
 
 /// A local minimum of the cost.
@@ -30,14 +31,14 @@ struct Optimum {
 
 /// Effort of an identification.
 struct IdentifyOptions {
-  int draws = 96;  ///< number of draws that are evaluated
+  int draws = 96;  ///< number of draws that must act, and of draws per round
   int kept = 6;    ///< number of best draws that are optimised
   /// Steps of each start; the better half then takes twice as many, and so on (successive halving).
   int steps = 5;
   std::vector<Eigen::Index> freed = {};  ///< changes (add_changes) that are free with the block
 };
 
-/// Returns the distinct local minima in ascending order of cost; empty if no draw can be simulated. `known`:
+/// Returns the distinct local minima in ascending order of cost; empty if no draw acts. `known`:
 /// further start values of the trial's free parameters.
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
                               const IdentifyOptions& options = {},

@@ -32,6 +32,15 @@ class Reduced : public ::testing::Test {
     delete events_;
     delete model_;
   }
+  static hypothesis::Hypothesis true_exciter() {
+    auto all = hypothesis::all_hypotheses(model_->under_test(), model_->library);
+    auto h = *std::ranges::find(all, "SEXS", &hypothesis::Hypothesis::name);
+    for (const auto& [name, value] : {std::pair("K", 100.0), {"TAoverTB", 0.1}, {"TB", 10.0}, {"TE", 0.05}}) {
+      sim::plant::Block& exciter = h.plant.controls.back();
+      exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index(name))] = value;
+    }
+    return h;
+  }
   static plant::PlantModel* model_;
   static event::WhitenedEvents* events_;
   static Reduction* reduction_;
@@ -65,12 +74,7 @@ TEST_F(Reduced, MissingInputHasTheEvidence) {
 
 /// With the true exciter in the model, noise alone gives no evidence for an input.
 TEST_F(Reduced, UnneededInputHasNoEvidence) {
-  auto all = hypothesis::all_hypotheses(model_->under_test(), model_->library);
-  auto h = *std::ranges::find(all, "SEXS", &hypothesis::Hypothesis::name);
-  for (const auto& [name, value] : {std::pair("K", 100.0), {"TAoverTB", 0.1}, {"TB", 10.0}, {"TE", 0.05}}) {
-    sim::plant::Block& exciter = h.plant.controls.back();
-    exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index(name))] = value;
-  }
+  const hypothesis::Hypothesis h = true_exciter();
   const auto free = fit::free_parameters(h.plant, 0.3);
   const fit::Fit fitted = fit::fit(h.under_test(), *events_, free, {});
   ASSERT_LT(fitted.reduced_chi2(), 1.05);
@@ -185,6 +189,24 @@ TEST_F(Reduced, TrueExciterRanksFirst) {
   }
   ASSERT_EQ(costs.size(), 3U);
   EXPECT_EQ(std::ranges::min(costs).second, "SEXS");
+}
+
+/// The default pickup level of an over-excitation limiter lies above the field current, and few draws act. An
+/// idle limiter costs less than most that act, and is no optimum.
+TEST_F(Reduced, OptimaOfALimiterAct) {
+  const hypothesis::Hypothesis exciter = true_exciter();
+  const auto with_exciter = exciter.under_test();
+  const auto all = hypothesis::all_hypotheses(with_exciter, model_->library);
+  const auto& limiter = *std::ranges::find(all, "MAXEX2", &hypothesis::Hypothesis::name);
+  const auto free = fit::free_parameters(with_exciter.plant, 0.3);
+  const fit::Fit fitted = fit::fit(with_exciter, *events_, free, {});
+  std::vector<event::EventState> states;
+  for (const auto& e : fitted.events) states.push_back(e.state);
+  const Reduction about(linear_about(fitted.plant, with_exciter, *events_, free, states, {.field = true}, 1),
+                        *events_, model_->conventions);
+  const auto found = identify(about, event::InputKind::field, {limiter.plant, limiter.free, 1});
+  ASSERT_FALSE(found.empty());
+  for (const Optimum& optimum : found) EXPECT_FALSE(optimum.series.isZero()) << optimum.cost;
 }
 
 }  // namespace
