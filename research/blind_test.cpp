@@ -132,7 +132,7 @@ std::string judge_one(const fs::path& run, const blind::score::BlindJudge& asked
   } catch (const std::exception& error) {
     return packed(Fate::failed, error.what());
   }
-  return said.empty() ? packed(Fate::was_there, "was judged already") : packed(Fate::done, said);
+  return said.empty() ? packed(Fate::was_there, "has a verdict already") : packed(Fate::done, said);
 }
 
 int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
@@ -142,7 +142,8 @@ int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
     if (fs::is_directory(run / "cases"))
       count = count_cases(run);
     else
-      throw InputError({"no run", o.out, "it has no folder cases", "make cases first, with --make"});
+      throw InputError({"no cases of a blind test", o.out, "the folder has no subfolder cases",
+                        "make cases first, with --make"});
   });
   diagnose::DiagnoseOptions options;
   options.threads = o.threads >= 0 ? o.threads : ranks.on_this_machine() > 1 ? 1 : 0;
@@ -157,8 +158,8 @@ int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
 
 int score(const Options& o) {
   if (o.targets.empty())
-    throw InputError(
-        {"no targets", "--targets", "a score is compared with them", "give configs/blind/targets.toml"});
+    throw InputError({"no targets", "--targets", "--score compares the rates with target rates",
+                      "give configs/blind/targets.toml"});
   const blind::score::BlindScore result = blind::score::score_blind(o.out, o.targets);
   const std::string text = blind::score::score_markdown(result);
   write_file(fs::path(o.out) / "score.md", text);
@@ -169,12 +170,14 @@ int score(const Options& o) {
 
 void check(const Options& o) {
   if (o.diagnose && !o.judge.empty())
-    throw InputError({"two judges", "--diagnose and --judge", "a run has one", "give one of them"});
+    throw InputError({"two sources of verdicts", "--diagnose and --judge", "each case has one verdict",
+                      "give one of them"});
   if (o.make <= 0 && !o.diagnose && o.judge.empty() && !o.score)
     throw InputError({"nothing to do", "blind-test", "none of --make, --diagnose, --judge, --score was given",
-                      "give one of them, or several"});
+                      "give at least one of them"});
   if (o.make > 0 && o.config.empty())
-    throw InputError({"no config", "--config", "cases are drawn from one", "give configs/blind/cases.toml"});
+    throw InputError({"no config", "--config", "it defines the distribution of the cases",
+                      "give configs/blind/cases.toml"});
 }
 
 int blind_test(const mpi::ranks::Ranks& ranks, const Options& o) {
@@ -207,7 +210,7 @@ int swingbank::research::blind_test_command(jobs::CommandLine& line, int argc, c
   Options o;
   line.add("--config", o.config, "distribution of the cases of --make: configs/blind/cases.toml, tiny.toml");
   line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();
-  line.add("--make", o.make, "make that many cases; existing ones are kept");
+  line.add("--make", o.make, "number of cases to make; existing ones are kept");
   line.add("--seed", o.seed, "seed of the run").shows_default();
   line.add("--kinds", o.kinds,
            "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
@@ -219,7 +222,7 @@ int swingbank::research::blind_test_command(jobs::CommandLine& line, int argc, c
   line.add("--judge", o.judge,
            "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
   line.add_flag("--score", o.score, "compare the verdicts with the truth: score.md, score.json");
-  line.add("--targets", o.targets, "rates asked for, configs/blind/targets.toml");
+  line.add("--targets", o.targets, "target rates, for example configs/blind/targets.toml");
   line.add("--case-timeout", o.limit, "a case that takes longer [s] ends the run (default 7200; 0: never)")
       .not_negative();
   line.add("--threads", o.threads,

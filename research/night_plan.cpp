@@ -78,11 +78,11 @@ double print(const Plan& plan, const std::string& preset, const Scale& to) {
 
 void run(const Options& o) {
   if (!o.out.empty() && (o.hours <= 0 || o.name.empty()))
-    throw InputError(
-        {"no size", "--out", "the experiments need a duration and a name", "give --hours and --name"});
+    throw InputError({"no size of the preset", "--out", "the written preset needs a duration and a name",
+                      "give --hours and --name"});
   if (!std::ranges::all_of(o.name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }))
-    throw InputError({fmt::format("no preset can be called '{}'", o.name), "--name",
-                      "it becomes a key of a file", "use letters, digits, - and _"});
+    throw InputError({fmt::format("invalid preset name '{}'", o.name), "--name",
+                      "it becomes a key of a TOML file", "use letters, digits, - and _"});
   Plan plan;
   plan.rates = read_rates(o.rates);
   plan.seeds = o.seeds;
@@ -94,7 +94,8 @@ void run(const Options& o) {
   fmt::print("\nPreset {} with {:.3g} times its work: {:.1f} core-hours, {} on {} cores.\n", o.preset,
              to.work, sum / 3600.0, shown(sum / o.cores), o.cores);
   if (o.hours > 0 && sum > 1.1 * o.hours * 3600.0 * o.cores)
-    fmt::print("That is more than the requested {}: no run can be smaller.\n", shown(o.hours * 3600.0));
+    fmt::print("That exceeds the requested {}: the preset is at its smallest size.\n",
+               shown(o.hours * 3600.0));
   if (o.out.empty()) return;
   for (const auto& e : plan.experiments)
     write_scaled(e, o.preset, to, std::filesystem::path(o.out) / e.file.filename());
@@ -107,11 +108,11 @@ int swingbank::research::night_plan_command(jobs::CommandLine& line, int argc, c
   line.add("experiments", o.experiments, "files of configs/experiments").required();
   line.add("--preset", o.preset, "preset of the experiments").shows_default();
   line.add("--rates", o.rates, "measured rates, research/rates.toml").required();
-  line.add("--hours", o.hours, "make the preset as large as that many hours allow (default: as it is)");
-  line.add("--cores", o.cores, "that share the work").shows_default().between(1, 100000);
-  line.add("--seeds", o.seeds, "that every network is trained with").shows_default().between(1, 1000);
-  line.add("--name", o.name, "of the preset that is written");
-  line.add("--out", o.out, "folder for the experiments with that preset");
+  line.add("--hours", o.hours, "scale the preset to this duration [h] (default: not scaled)");
+  line.add("--cores", o.cores, "number of cores that share the work").shows_default().between(1, 100000);
+  line.add("--seeds", o.seeds, "number of seeds for each network").shows_default().between(1, 1000);
+  line.add("--name", o.name, "name of the written preset");
+  line.add("--out", o.out, "folder of the experiments with the scaled preset");
   if (!line.parse(argc, argv)) return line.end();
   try {
     run(o);

@@ -99,7 +99,7 @@ void read_result(const fs::path& file, NightlyRun& run, Problems& problems) {
 
 NightlyRuns read_runs(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
-    throw InputError(Problem{"no nightly benchmarks", folder.string(), "there is no such folder",
+    throw InputError(Problem{"no folder of nightly benchmarks", folder.string(), "there is no such folder",
                              "give the --out of research/nightly.sh"});
   }
   NightlyRuns runs;
@@ -157,8 +157,8 @@ std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * 
 
 std::string verdict(const Change& c) {
   if (c.runs == 0) return "new";
-  const char* word = c.other_maker ? ", with other software or kernels than the night before" : "";
-  if (!c.judged()) return fmt::format("no verdict before {} nights{}", kRunsNeeded, word);
+  const char* word = c.other_maker ? "; software or kernels differ from the previous run" : "";
+  if (!c.judged()) return fmt::format("no verdict before {} runs{}", kRunsNeeded, word);
   if (!c.moved()) return fmt::format("within noise{}", word);
   return fmt::format("**{}**{}", c.latest > c.before ? "worse" : "better", word);
 }
@@ -173,11 +173,11 @@ void print_report(const std::string& date, std::vector<Change> changes) {
       "results in all)\n\n",
       date, moved, judged, changes.size());
   fmt::print(
-      "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the nights "
+      "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the runs "
       "before.\n\n");
   fmt::print(
-      "| table | network | noise level | generator | preset | tonight [-] | median before [-] | change | noise | nights | "
-      "verdict |\n");
+      "| table | network | noise level | generator | preset | this run [-] | median before [-] | change | noise | "
+      "runs | verdict |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& c : changes) {
     const bool known = c.runs > 0;
@@ -194,8 +194,8 @@ void print_report(const std::string& date, std::vector<Change> changes) {
 int swingbank::research::nightly_compare_command(jobs::CommandLine& line, int argc, char** argv) {
   std::string folder, date;
   line.add("folder", folder, "folder of nightly benchmarks, as research/nightly.sh writes it").required();
-  line.add("--night", date, "YYYY-MM-DD (default: the last one)");
-  line.example("swingbank nightly-compare nights");
+  line.add("--night", date, "date of the run, YYYY-MM-DD (default: the latest)");
+  line.example("swingbank nightly-compare out/nightly");
   if (!line.parse(argc, argv)) return line.end();
   try {
     const NightlyRuns runs = read_runs(folder);

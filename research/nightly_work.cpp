@@ -205,8 +205,8 @@ void write_scaled(const train::loop::Experiment& experiment, const std::string& 
            there.judging.at(network).test_rows == wanted.judging.at(network).test_rows;
   if (!same)
     throw InputError(
-        {"sizes not understood", experiment.file.string(),
-         fmt::format("preset {} cannot be made larger or smaller line by line", from),
+        {"preset cannot be scaled", experiment.file.string(),
+         fmt::format("the sizes of preset {} cannot be scaled line by line", from),
          "write draws, epochs, patience and test_rows on lines of their own, in [preset.NAME] or "
          "[preset.NAME.NETWORK]"});
 }

@@ -43,6 +43,6 @@ refused 'another run' "${tiny[@]}" --size 3
 refused 'nothing to do' --out "$run"
 refused 'no kind' --config "$source/configs/blind/tiny.toml" --out "$folder/other" --kinds AVR --make 1
 refused 'a part is K/N' "${tiny[@]}" --part 3/2
-refused 'no run' --out "$folder/nothing" --score --targets "$source/configs/blind/targets.toml"
+refused 'no cases of a blind test' --out "$folder/nothing" --score --targets "$source/configs/blind/targets.toml"
 rm "$run/verdicts/c0001.json"
 refused 'code 127' --out "$run" --judge "$folder/nobody"

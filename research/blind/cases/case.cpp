@@ -218,7 +218,7 @@ class Maker {
 }  // namespace
 
 BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
-  std::string last = "the grid lost synchronism or a speed left 2 %";
+  std::string last = "the grid lost synchronism or a speed deviated by more than 2 %";
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     BlindDraw draw(spec.seed, spec.index, static_cast<std::uint64_t>(attempt));
     try {

@@ -70,7 +70,7 @@ std::vector<std::string> condition_names(const Conditions& c, const BlindConfig&
   std::vector<std::string> all;
   if (!config.conditions.rates.empty()) all.push_back(fmt::format("{:g}/s", c.rate));
   if (!config.conditions.voltage_noise.empty())
-    all.push_back(fmt::format("noise of V {:g} of that of P", c.voltage_noise));
+    all.push_back(fmt::format("noise of V {:g} times that of P", c.voltage_noise));
   if (c.filter != Filter::none) all.emplace_back(c.filter == Filter::class_m ? "class M" : "class P");
   if (std::isfinite(c.lead)) all.push_back(fmt::format("begins {:g} s before the event", c.lead));
   if (c.ambient > 0) all.emplace_back("ambient noise of the loads");

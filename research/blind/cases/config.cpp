@@ -69,7 +69,7 @@ void check_controls(Config& config, const BlindConditions& c) {
       if (!control || !source) continue;
       if (const std::string why = sim::slot_conflict(*source, *control); !why.empty())
         config.problem("conditions.controls", fmt::format("'{}' beside {}", text, source->name), why,
-                       "choose controls that go with every one of conditions.machines");
+                       "choose controls that fit every machine of conditions.machines");
     }
 }
 
@@ -113,7 +113,7 @@ BlindKind read_kind(Config& config, const std::string& name) {
   kind.accepted_names = config.optional<std::vector<std::string>>(at + "answers", kind.accepted_names);
   if (kind.value && !kind.hidden.empty())
     config.problem(at + "value", "value = true beside hidden effects",
-                   "where a value is wrong nothing is missing", "leave out hidden, or value");
+                   "a case with a wrong value lacks no effect", "leave out hidden, or value");
   return kind;
 }
 
@@ -139,7 +139,7 @@ BlindConditions read_conditions(Config& config) {
   c.class_m_rates = numbers("class_m_rates", {10.0, 120.0, "1/s"});
   if (c.class_m_share > 0 && c.class_m_rates.empty())
     config.problem("conditions.class_m_share", fmt::format("class_m_share = {:g}", c.class_m_share),
-                   "class_m_rates names no rate at which there is such a filter",
+                   "class_m_rates lists no rate at which the filter is defined",
                    "give class_m_rates, or a share of 0");
   c.short_share = share("short_share");
   c.lead = config.optional<double>("conditions.lead", c.lead, {0.05, 1.5, "s"});
@@ -197,13 +197,13 @@ BlindConfig load_blind_config(const std::filesystem::path& file) {
                        config.require<std::vector<std::int64_t>>("grid." + name + ".buses", {1.0})});
   for (const auto& name : config.keys("kind")) b.kinds.push_back(read_kind(config, name));
   if (b.grids.empty())
-    config.problem("grid", "no [grid.NAME]", "cases are simulated on a grid", "give one grid at least");
+    config.problem("grid", "no [grid.NAME]", "cases are simulated on a grid", "give at least one grid");
   std::vector<double> rates = b.conditions.rates;
   rates.push_back(b.rate);
   for (const double rate : rates)
     if (std::abs(b.fine_rate / rate - std::round(b.fine_rate / rate)) > 1e-9)
       config.problem("record.fine_rate", fmt::format("fine_rate = {:g} 1/s", b.fine_rate),
-                     fmt::format("it is no multiple of rate = {:g} 1/s", rate), "make it one");
+                     fmt::format("it is not a multiple of rate = {:g} 1/s", rate), "choose a multiple");
   config.raise();
   return b;
 }

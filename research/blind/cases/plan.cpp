@@ -50,7 +50,7 @@ class Dealer {
   template <class T>
   static T turn(const std::vector<T>& list, std::size_t& count, const std::string& word) {
     if (list.empty())
-      throw InputError({"no kind for '" + word + "'", "--kinds", "the config has none of that class",
+      throw InputError({"no kind for '" + word + "'", "--kinds", "the config has no kind of that class",
                         "add some, or choose other kinds"});
     return list[count++ % list.size()];
   }
@@ -132,8 +132,9 @@ void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::fi
   std::ostringstream there;
   there << std::ifstream(file, std::ios::binary).rdbuf();
   if (there.str() != text)
-    throw InputError({"another run", file.string(), "its seed, number of cases, kinds or config differ",
-                      "give another --out, or the options that made it"});
+    throw InputError({"cases of another run", file.string(),
+                      "its seed, number of cases, kinds or config differ",
+                      "give another --out, or the options of that run"});
 }
 
 std::string case_name(std::size_t index) { return fmt::format("c{:04}", index + 1); }

@@ -53,7 +53,7 @@ struct RandomWalk : Unlisted {
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { A, step, start, number, coefficients };
   static constexpr sim::Parameter parameters[] = {
-      {"A", "A", "pu", 0.005, 0.0, 1.0, 0.0, "largest change from knot to knot"},
+      {"A", "A", "pu", 0.005, 0.0, 1.0, 0.0, "largest change between knots"},
       {"step", "dt", "s", 0.4, 0.01, 60.0, sim::kNoNullValue, "time between knots"},
       {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "when it begins"},
       {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "which walk"}};
@@ -90,8 +90,8 @@ struct Backlash : Unlisted {
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { width, coefficients };
   static constexpr sim::Parameter parameters[] = {
-      {"width", "b", "pu", 0.01, 0.0, 1.0, 0.0, "half width of the play"}};
-  static constexpr sim::State states[] = {{"valve", "pu", "torque behind the play"}};
+      {"width", "b", "pu", 0.01, 0.0, 1.0, 0.0, "half width of the backlash"}};
+  static constexpr sim::State states[] = {{"valve", "pu", "torque after the backlash"}};
   template <class T>
   static void evaluate(const T* c, const T* x, sim::Signals<T>& s, T* dx) {
     const T gap = s.Tm - x[0];
@@ -112,9 +112,9 @@ struct LimitCycle : Unlisted {
   static constexpr sim::Slot slot = sim::Slot::exciter;
   enum P { A, f, growth, V0, coefficients };
   static constexpr sim::Parameter parameters[] = {
-      {"A", "A", "pu", 0.1, 0.0, 5.0, 0.0, "half its amplitude"},
+      {"A", "A", "pu", 0.1, 0.0, 5.0, 0.0, "half the amplitude"},
       {"f", "f", "Hz", 0.55, 0.01, 20.0, sim::kNoNullValue, "frequency"},
-      {"growth", "mu", "-", 1.0, 0.01, 10.0, sim::kNoNullValue, "how far from a sine"}};
+      {"growth", "mu", "-", 1.0, 0.01, 10.0, sim::kNoNullValue, "deviation from a sine"}};
   static constexpr sim::State states[] = {{"a", "-", "cycle"}, {"b", "-", "its rate"}};
   template <class T>
   static void evaluate(const T* c, const T* x, sim::Signals<T>& s, T* dx) {
@@ -157,8 +157,8 @@ struct StickSlip : Unlisted {
   static constexpr sim::Slot slot = sim::Slot::shaft;
   enum P { A, speed, coefficients };
   static constexpr sim::Parameter parameters[] = {
-      {"A", "A", "pu", 0.01, 0.0, 1.0, 0.0, "friction while it slips; twice that while it sticks"},
-      {"speed", "ws", "pu", 0.001, 1e-5, 0.1, sim::kNoNullValue, "speed deviation at which it comes loose"}};
+      {"A", "A", "pu", 0.01, 0.0, 1.0, 0.0, "friction torque while slipping; twice that while sticking"},
+      {"speed", "ws", "pu", 0.001, 1e-5, 0.1, sim::kNoNullValue, "speed deviation at which slipping begins"}};
   static constexpr std::array<sim::State, 0> states{};
   template <class T>
   static void evaluate(const T* c, const T*, sim::Signals<T>& s, T*) {

@@ -58,7 +58,8 @@ ScoredCase read_truth(const fs::path& file) {
     }
     return c;
   } catch (const json::exception& error) {
-    throw InputError({"no truth of a blind case", file.string(), error.what(), "make the case again"});
+    throw InputError(
+        {"truth of a blind case cannot be read", file.string(), error.what(), "make the case again"});
   }
 }
 
@@ -202,7 +203,8 @@ BlindScore score_blind(const fs::path& run, const fs::path& targets) {
   score.targets = read_targets(targets);
   std::vector<fs::path> files;
   if (!fs::is_directory(run / "truth"))
-    throw InputError({"no run", run.string(), "it has no folder truth", "make cases first, with --make"});
+    throw InputError({"no cases of a blind test", run.string(), "the folder has no subfolder truth",
+                      "make cases first, with --make"});
   for (const auto& entry : fs::directory_iterator(run / "truth"))
     if (entry.path().extension() == ".json" && fs::exists(run / "cases" / entry.path().stem()))
       files.push_back(entry.path());

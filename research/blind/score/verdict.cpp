@@ -47,8 +47,8 @@ std::vector<std::string> names(const json& j, const char* key, const fs::path& f
       if (name.is_string()) list.push_back(name.get<std::string>());
     }
   if (!sound)
-    problems.add("no list of names", file.string() + ", key " + key, "a verdict has one, if empty",
-                 "write it like [\"SEXS\"]");
+    problems.add("no list of names", file.string() + ", key " + key,
+                 "a verdict requires one, which may be empty", "write it like [\"SEXS\"]");
   return list;
 }
 
@@ -89,7 +89,7 @@ BlindVerdict read_verdict(const fs::path& file) {
   std::ifstream in(file);
   const json j = json::parse(in, nullptr, false);
   if (!j.is_object())
-    throw InputError({"no verdict", file.string(), "it is no JSON object",
+    throw InputError({"no verdict", file.string(), "it is not a JSON object",
                       "write the keys verdict, effects, "
                       "set, side, seconds"});
   Problems problems;
@@ -104,7 +104,7 @@ BlindVerdict read_verdict(const fs::path& file) {
     v.seconds = seconds->get<double>();
   else
     problems.add("no wall time", file.string() + ", key seconds", "it must be a number of seconds, 0 or more",
-                 "write how long it took");
+                 "write the duration of the diagnosis");
   if (const auto why = j.find("why"); why != j.end() && why->is_string()) v.why = why->get<std::string>();
   v.probabilities = probabilities(j, file, problems);
   if (const auto basis = j.find("basis"); basis != j.end()) v.basis = *basis;
