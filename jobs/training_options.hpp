@@ -112,7 +112,7 @@ struct TrainingOptions {
   /// other rows would otherwise have the same name as the correct one.
   void check_training_rows(bool wanted, const std::string& of) const {
     if (wanted == !training_rows.empty()) return;
-    throw InputError({wanted ? "no rows that only train" : "rows that only train", "--training-rows",
+    throw InputError({wanted ? "no training-only rows" : "training-only rows", "--training-rows",
                       fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
                                   wanted ? "trains on" : "does not train on"),
                       wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});

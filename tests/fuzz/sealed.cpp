@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   nlohmann::json header;
   const auto start = [&](const nlohmann::json& h, std::size_t count) {
     header = h;
-    if (count > size) throw Unusable{"it holds another number of arrays"};
+    if (count > size) throw Unusable{"its number of arrays differs"};
     arrays.resize(count);
   };
   const auto place = [&](std::size_t i, std::size_t n) -> std::span<float> {

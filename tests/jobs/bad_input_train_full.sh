@@ -16,7 +16,7 @@ refuses "unknown network" 'network' validate "$data" "$experiment" --network tra
 refuses_at_once "the other command" 'cross-validate' "$swingbank" train "$data" --experiment "$experiment" --out "$out"
 refuses_at_once "rows that only train, unasked" '--training-rows' validate "$data" "$experiment" --training-rows "$data"
 sed -e '1i training_dataset = "tiny_data.toml"' -e 's/^networks = .*/&\ntraining_rows = true\ntraining_draws = 1/' "$experiment" >"$work/rows.toml"
-refuses_at_once "no rows that only train" '--training-rows' validate "$data" "$work/rows.toml"
+refuses_at_once "no training-only rows" '--training-rows' validate "$data" "$work/rows.toml"
 edit type 's/^epochs = .*/epochs = "many"/'
 refuses "wrong type" 'type.toml:[0-9]+' validate "$data" "$work/type.toml"
 edit channel 's/^channels = .*/channels = ["P", "Efd"]/'

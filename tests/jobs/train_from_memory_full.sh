@@ -58,7 +58,7 @@ done
 sed 's/^networks = .*/networks = ["closed-form"]/' "$work/split.toml" >"$work/direct.toml"
 refuses "a method that reads records" "network closed-form at --simulate" "$swingbank" train --experiment "$work/direct.toml" \
   --simulate "$work/tiny_data.toml" --out "$work/direct"
-refuses "no room" "no room for the rows of tiny_data at shard" "$swingbank" train --experiment "$work/split.toml" \
+refuses "no room" "too little memory for the rows of tiny_data at shard" "$swingbank" train --experiment "$work/split.toml" \
   --simulate "$work/tiny_data.toml" --memory-limit 0.00001 --out "$work/room"
 refuses "two datasets" "two datasets at --simulate" "$swingbank" train "$work/float32/data" --experiment "$work/split.toml" \
   --simulate "$work/tiny_data.toml" --out "$work/two"

@@ -48,8 +48,8 @@ double shown_reactance(const mpi::store::DatasetHeader& d) {
 Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
   const auto event = mpi::store::config_numbers(d, "fault.start");
   if (event.size() != 1)
-    throw InputError({"no instant of the fault", "form",
-                      "the dataset's config has no line fault.start, and what is steady lies before it",
+    throw InputError({"no fault time", "form",
+                      "the dataset's config has no fault.start, and the steady state is measured before it",
                       "choose another form, or generate the dataset anew"});
   std::vector<std::string> names = d.channel_names;  // channels that are not requested are ignored
   for (auto& name : names)
@@ -77,10 +77,11 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
   }
   const double length = static_cast<double>(dataset.samples) / dataset.rate;
   if (recipe.slice < 1)
-    problems.add("slice 0", "slice", "every 0th sample is none", "use 1 to keep all samples");
+    problems.add("slice 0", "slice", "a slice keeps every n-th sample, n at least 1",
+                 "use 1 to keep all samples");
   if (!(recipe.start_s >= 0.0 && recipe.start_s < recipe.end_s && recipe.end_s <= length + 1e-9))
     problems.add(fmt::format("window {} s to {} s", recipe.start_s, recipe.end_s), "start_s, end_s",
-                 fmt::format("the records run from 0 to {} s", length), "choose a window inside");
+                 fmt::format("the records run from 0 to {} s", length), "choose a window within the records");
   problems.raise();
   s.first = static_cast<std::size_t>(std::lround(recipe.start_s * dataset.rate));
   const auto end = static_cast<std::size_t>(std::lround(recipe.end_s * dataset.rate));

@@ -48,7 +48,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
               stream.dataset()
                   .channel_names[stream.selection().channels[g % stream.selection().channels.size()]] +
               " is constant",
-          stream.dataset().path.string(), "it tells a network nothing and has no variance to divide by",
+          stream.dataset().path.string(), "it contains no information and has no variance to normalise by",
           "leave it out of the experiment's channels");
   }
   problems.raise();
@@ -91,7 +91,7 @@ Features Features::restore(const FeatureSizes& s, std::span<const std::vector<fl
   Features f;
   f.channels_ = s.channels;
   f.samples_ = f.length_ = s.samples;
-  if (arrays.size() != array_count(s)) throw Unusable{"it holds another number of arrays"};
+  if (arrays.size() != array_count(s)) throw Unusable{"its number of arrays differs"};
   if (s.pca_components > 0) {
     f.pca_ = Pca::restore(s.pca_components, s.pca_per_second, s.samples, arrays.subspan(2));
     f.length_ = f.pca_->length();
@@ -100,7 +100,7 @@ Features Features::restore(const FeatureSizes& s, std::span<const std::vector<fl
   }
   f.scale_ = {arrays[0], arrays[1]};
   for (const auto* a : {&f.scale_.mean, &f.scale_.deviation})
-    if (a->size() != f.channels_ * f.groups_per_channel_) throw Unusable{"an array has another length"};
+    if (a->size() != f.channels_ * f.groups_per_channel_) throw Unusable{"the length of an array differs"};
   return f;
 }
 

@@ -63,8 +63,8 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
   for (const std::string& name : dataset.channel_names) {
     const auto channel = known(name);
     if (!channel)
-      problems.add("no noise is known of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
-                   "no instrument at a terminal shows it", "read this dataset without noise");
+      problems.add("no noise model of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
+                   "no instrument measures it at the terminal", "read this dataset without noise");
     channels_.push_back(channel.value_or(Noisy{}));
     if (channel && channel->kind == Kind::frequency && system_frequency_ <= 0)
       problems.add("no system frequency", dataset.name.empty() ? "dataset.json" : dataset.name,

@@ -95,7 +95,8 @@ std::vector<std::vector<float>> Pca::arrays() const {
 
 Pca Pca::restore(std::size_t components, std::size_t per_second, std::size_t samples,
                  std::span<const std::vector<float>> arrays) {
-  if (per_second == 0 || samples % per_second != 0) throw Unusable{"its seconds are no whole number"};
+  if (per_second == 0 || samples % per_second != 0)
+    throw Unusable{"its length is not a whole number of seconds"};
   Pca pca;
   pca.components_ = components;
   pca.per_second_ = per_second;
@@ -103,7 +104,7 @@ Pca Pca::restore(std::size_t components, std::size_t per_second, std::size_t sam
   const auto rows = static_cast<Eigen::Index>(per_second), columns = static_cast<Eigen::Index>(components);
   for (std::size_t i = 0; i + 1 < arrays.size(); i += 2) {
     if (arrays[i].size() != per_second || arrays[i + 1].size() != per_second * components)
-      throw Unusable{"an array has another length"};
+      throw Unusable{"the length of an array differs"};
     pca.mean_.push_back(Eigen::Map<const Eigen::VectorXf>(arrays[i].data(), rows));
     pca.basis_.push_back(Eigen::Map<const Eigen::MatrixXf>(arrays[i + 1].data(), rows, columns));
   }

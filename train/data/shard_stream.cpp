@@ -73,7 +73,7 @@ void ShardStream::take(const mpi::store::ShardData& shard) {
   rows_ += shard.rows;
   dataset_.rows = rows_;
   if (rows_ > options_.memory_limit / (kept() * sizeof(float)))
-    throw InputError({fmt::format("no room for the rows of {}", dataset_.name),
+    throw InputError({fmt::format("too little memory for the rows of {}", dataset_.name),
                       fmt::format("shard {}", info.shard),
                       fmt::format("{} rows of {} values are more than {:.1f} GB", rows_, kept(),
                                   static_cast<double>(options_.memory_limit) * 1e-9),

@@ -46,7 +46,8 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
   const InputSelection& s = stream.selection();
   if (components == 0 || components > s.samples)
     throw InputError({fmt::format("{} components of {} samples", components, s.samples), "pca_components",
-                      "a channel has between 1 and as many as samples", "choose such a number"});
+                      "a channel has at least 1 and at most as many as samples",
+                      "choose a number in this range"});
   Whitening w;
   w.sizes_ = {s.outputs(),
               s.samples,
@@ -217,10 +218,11 @@ Whitening Whitening::restore(const WhiteningSizes& sizes, std::span<const std::v
   const auto n = static_cast<Index>(sizes.samples), k = static_cast<Index>(sizes.components);
   const auto all = static_cast<Index>(sizes.channels * sizes.components + sizes.levels + 1);
   const auto checked = [&](std::size_t i, Index length) {
-    if (arrays[i].size() != static_cast<std::size_t>(length)) throw Unusable{"an array has another length"};
+    if (arrays[i].size() != static_cast<std::size_t>(length))
+      throw Unusable{"the length of an array differs"};
     return arrays[i].data();
   };
-  if (arrays.size() != array_count(sizes)) throw Unusable{"it holds another number of arrays"};
+  if (arrays.size() != array_count(sizes)) throw Unusable{"its number of arrays differs"};
   for (std::size_t c = 0; c < sizes.channels; ++c) {
     w.mean_.emplace_back(Eigen::Map<const Eigen::RowVectorXf>(checked(2 * c, n), n));
     w.basis_.emplace_back(Eigen::Map<const Eigen::MatrixXf>(checked(2 * c + 1, n * k), n, k));

@@ -33,7 +33,7 @@ class Rows {
     effect_ = sim::library::compiled().find(d.machine_model);
     if (!effect_ || !effect_->closed_form)
       problems.add("no closed form for " + d.machine_model, where,
-                   "nobody has written one for this machine's equations",
+                   "none is implemented for this machine's equations",
                    "leave closed-form and refined out of the preset's networks");
     const bool likely = method != Method::closed_form;
     if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
@@ -41,7 +41,7 @@ class Rows {
                    "it has too many states, or no constant impedance behind its terminal",
                    "leave refined, curve-fit and floor out of the preset's networks");
     if (!d.parameter_effects.empty())
-      problems.add("parameters of other effects", where, "a closed form knows the machine alone",
+      problems.add("parameters of other effects", where, "a closed form estimates machine parameters only",
                    "leave closed-form and refined out of the preset's networks");
     fluxes_ = effect_ && effect_->states.size() > 2;
     for (const char* name : {"V", "P", "Q", "speed", "Ifd"})

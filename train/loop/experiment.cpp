@@ -74,7 +74,7 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
   if (const std::string name = at + ".training_noise"; c.has(name)) {
     const auto range = c.require<std::vector<double>>(name, {1e-6, kNoiseLevels.high});
     if (range.size() != 2 || range[0] >= range[1])
-      c.problem(name, "no range of levels", "it is a lowest level above 0 and a highest",
+      c.problem(name, "invalid range of noise levels", "it is a lowest level above 0 and a highest",
                 "give [0.0001, 0.005]");
     else
       t.noise_levels = {range[0], range[1], c.require<double>(at + ".training_noise_zero", {0.0, 1.0})};
@@ -82,7 +82,7 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
   input.recipe.shows_level = t.noise_levels.has_value();
   if (t.noise_levels && input.recipe.form != data::InputForm::physics)
     c.problem(at + ".form", "training at many levels of noise",
-              "the network is told the level, and only the form physics has a place for it",
+              "the noise level is an input, which only the form physics has",
               "choose form = \"physics\", or leave training_noise out");
 }
 
@@ -101,11 +101,12 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   extra.flag("seconds_as_steps", i.recipe.seconds_as_steps);
   if (i.recipe.seconds_as_steps && i.pca_components == 0)
     c.problem(at + ".seconds_as_steps", "seconds as steps of samples",
-              "a step is a second's principal components", "give pca_components, or leave it out");
+              "each step consists of the principal components of one second",
+              "give pca_components, or leave it out");
   extra.flag("regressions", i.recipe.regressions);
   if (i.recipe.regressions && i.recipe.form != data::InputForm::physics)
     c.problem(at + ".regressions", "regressions of another form",
-              "they are taken of the signals of the form physics",
+              "they are computed from the signals of the form physics",
               "choose form = \"physics\", or leave regressions out");
 }
 
@@ -118,8 +119,8 @@ void train_as_judged(TrainingRecipe& t) {
 
 void refuse_unknown_posteriors(Config& c, const std::string& at, const TrainingRecipe& t) {
   if (t.corrects.empty() || (!t.noise_levels && t.posterior_epochs == 0)) return;
-  c.problem(at + ".corrects", "many levels of noise, or a posterior, of a network that corrects",
-            "the estimates that it corrects are made once, of records with one noise",
+  c.problem(at + ".corrects", "training_noise or posterior_epochs for a network that corrects estimates",
+            "the estimates are computed once, from records with one noise level",
             "leave training_noise and posterior_epochs out");
 }
 
@@ -151,7 +152,7 @@ Preset read_preset(Config& c, const std::string& name) {
     const std::string like = c.optional<std::string>(own + ".like", "");
     if (!like.empty() && !p.training.contains(like))
       c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
-                "a network is like one that stands before it in the preset's networks", "put that one first");
+                "`like` refers to an earlier entry of the preset's networks", "put that one first");
     const bool copied = p.training.contains(like);
     p.input[network] = copied ? p.input[like] : input;
     p.judging[network] = copied ? p.judging[like] : judging;
@@ -169,7 +170,7 @@ Preset read_preset(Config& c, const std::string& name) {
     read_noise_levels(c, own, p.training[network], p.input[network]);
     refuse_unknown_posteriors(c, own, p.training[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
-      c.problem(at + "." + network + ".training_rows", "no rows that only train",
+      c.problem(at + "." + network + ".training_rows", "no training-only rows",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");
   }
   return p;

@@ -76,7 +76,8 @@ Head::Head(networks::Network& trained, std::int64_t inputs, std::vector<HeadPara
   at::NoGradGuard no_gradients;
   const Tensor known = trained.describe(at::zeros({1, 1, inputs}, at::kFloat));
   if (!known.defined())
-    throw InputError({"no posterior", "posterior_epochs", "this network describes nothing but its estimates",
+    throw InputError({"no posterior", "posterior_epochs",
+                      "this network outputs estimates without a distribution",
                       "choose mlp, or leave posterior_epochs out"});
   Layers& l = *layers_;
   const std::int64_t in = known.size(1) + inputs;

@@ -32,9 +32,10 @@ int wait_for(pid_t child, const std::vector<pid_t>& running) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) {
       if (WIFEXITED(status)) return WEXITSTATUS(status);
-      fmt::print(stderr,
-                 "a process that trains folds ended at signal {} ({}): run the same command again to go on\n",
-                 WTERMSIG(status), strsignal(WTERMSIG(status)));
+      fmt::print(
+          stderr,
+          "a process that trains folds was ended by signal {} ({}): run the same command again to continue\n",
+          WTERMSIG(status), strsignal(WTERMSIG(status)));
       return 1;
     }
     usleep(50'000);

@@ -42,9 +42,9 @@ bool already_done(const std::filesystem::path& file, const json& run) {
     if (run["software"] == "any") there["software"] = "any";
   }
   if (there == run) return true;
-  throw InputError({"another run's result is in the way", file.string(),
+  throw InputError({"result of another run", file.string(),
                     fmt::format("it differs from this run's in: {}", differing(there, run)),
-                    "remove it, choose another --out, or give --any-maker if it is only the software"});
+                    "remove it, choose another --out, or give --any-maker if only the software differs"});
 }
 
 /// Computes the score. `predicted`: `rows` x parameters [raw units].
@@ -129,7 +129,7 @@ void require_records(const data::ShardStream& stream, const RunRequest& r) {
       direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
   if (reads && stream.from_memory())
     throw InputError({"network " + r.network, "--simulate",
-                      "it reads whole records, which training from memory forgets",
+                      "it reads whole records, which training from memory does not keep",
                       "generate the dataset on a disk, or choose a network that reads series alone"});
 }
 
@@ -253,7 +253,7 @@ class NetworkRun {
     const bool whole = report_.finished && (recipe_.posterior_epochs == 0 || train_head());
     if (!whole) {
       progress_.line(
-          fmt::format("saved to {}; submit the same command again to go on", checkpoint_.string()));
+          fmt::format("saved to {}; submit the same command again to continue", checkpoint_.string()));
       return false;
     }
     // A network that corrects estimates is not saved: it cannot be used without them.

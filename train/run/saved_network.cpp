@@ -184,7 +184,7 @@ fs::path find_file(const fs::path& path) {
   if (found.size() == 1) return found[0];
   std::ranges::sort(found);
   throw InputError({found.empty() ? "no network" : fmt::format("{} networks", found.size()), path.string(),
-                    found.empty() ? "the folder holds no .network file" : "an estimate is made by one",
+                    found.empty() ? "the folder holds no .network file" : "an estimate uses one network",
                     found.empty() ? "give a folder of results of train or cross-validate"
                                   : fmt::format("name one, for example {}", found[0].string())});
 }
@@ -224,7 +224,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     try {
       sizes = n.read_header(header);
     } catch (const json::exception& e) {
-      throw Unusable{std::string("its header is of another kind: ") + e.what()};
+      throw Unusable{std::string("its header has another format: ") + e.what()};
     }
     n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, n.info_.parameters.size()));
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
@@ -234,7 +234,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
       for (const auto& w : n.posterior_->head->parameters()) weights.push_back(w.detach());
     }
     features.resize(data::Features::array_count(sizes));
-    if (arrays != features.size() + weights.size()) throw Unusable{"it holds another number of arrays"};
+    if (arrays != features.size() + weights.size()) throw Unusable{"its number of arrays differs"};
   };
   const auto place = [&](std::size_t i, std::size_t size) -> std::span<float> {
     if (i < features.size()) {
@@ -242,7 +242,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
       return features[i];
     }
     at::Tensor& w = weights[i - features.size()];
-    if (size != static_cast<std::size_t>(w.numel())) throw Unusable{"an array has another length"};
+    if (size != static_cast<std::size_t>(w.numel())) throw Unusable{"the length of an array differs"};
     return {w.data_ptr<float>(), size};
   };
   read_sealed(kNetwork, n.file_, start, place);
@@ -298,7 +298,7 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   selection_.shows_level = info_.noise_as_input = sizes.noisy > 0;
   selection_.regressions = sizes.regressed > 0;
   if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
-    throw Unusable{"its sizes do not fit together"};
+    throw Unusable{"its sizes are inconsistent"};
   return sizes;
 }
 

@@ -140,7 +140,7 @@ std::string BlasRate::warning() const {
   if (share() >= kLeastOfPeak) return "";
   return Problem{
       fmt::format("{:.0f} GFLOP/s", product), "BLAS",
-      fmt::format("one core makes {:.0f} GFLOP/s of multiply-adds, of which good kernels reach 60 % and more",
+      fmt::format("one core reaches {:.0f} GFLOP/s of multiply-adds, of which good kernels use at least 60 %",
                   multiply_adds),
       "install libopenblas0-openmp and unset OPENBLAS_CORETYPE; training is slow until then"}
       .sentence();
@@ -156,8 +156,8 @@ const BlasRate& blas_rate() {
 
 void require_right_products(const BlasFound& found) {
   if (!sgemm())
-    throw InputError({"no sgemm", "BLAS", "no library of those that LibTorch loads has it",
-                      "install libopenblas0-openmp"});
+    throw InputError(
+        {"no sgemm", "BLAS", "no library loaded by LibTorch provides it", "install libopenblas0-openmp"});
   const OneThread guard;
   double worst = 0.0;
   for (const bool a : {false, true})

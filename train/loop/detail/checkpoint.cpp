@@ -22,13 +22,12 @@ bool read_checkpoint(const std::filesystem::path& file, const json& run, json& h
     json its = found.value("run", json());
     for (const char* maker : {"software", "kernels"})
       if (its.is_object() && run.is_object() && run.value(maker, "") == "any") its[maker] = "any";
-    if (its != run)
-      throw Unusable{"it belongs to a run with other data or settings, or of other software or kernels"};
-    if (count != arrays.size()) throw Unusable{"it holds another number of arrays"};
+    if (its != run) throw Unusable{"it belongs to a run with other data, settings, software or kernels"};
+    if (count != arrays.size()) throw Unusable{"its number of arrays differs"};
     header = found;
   };
   return read_sealed(kCheckpoint, file, start, [&](std::size_t i, std::size_t size) {
-    if (size != arrays[i].size()) throw Unusable{"an array has another length"};
+    if (size != arrays[i].size()) throw Unusable{"the length of an array differs"};
     return arrays[i];
   });
 }

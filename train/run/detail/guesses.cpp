@@ -15,7 +15,8 @@ namespace swingbank::train::run {
 namespace {
 
 using nlohmann::json;
-constexpr SealedKind kGuesses{"file of guesses", "swingbank-guesses-1\n", "remove it; it is made again"};
+constexpr SealedKind kGuesses{"file of guesses", "swingbank-guesses-1\n",
+                              "remove it; it is then computed again"};
 constexpr auto kPatience = std::chrono::hours(12);  ///< longest wait for another process
 
 /// Reads the file. Returns false if it does not exist.
@@ -25,10 +26,10 @@ bool read(const std::filesystem::path& file, const json& identity, std::size_t s
   return read_sealed(
       kGuesses, file,
       [&](const json& header, std::size_t arrays) {
-        if (header != identity || arrays != 1) throw Unusable{"it is of other data or of another method"};
+        if (header != identity || arrays != 1) throw Unusable{"it belongs to other data or another method"};
       },
       [&](std::size_t, std::size_t found) -> std::span<float> {
-        if (found != size) throw Unusable{"it has another number of rows"};
+        if (found != size) throw Unusable{"its number of rows differs"};
         return values;
       });
 }
