@@ -11,7 +11,7 @@ finish_or_requeue() {
   ((status > 2)) && retry_elsewhere "$status"
   ((status == 2)) || exit "$status"
   if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted: then Slurm itself requeues
-    echo "saved; stopped from outside"
+    echo "saved; stopped by a signal"
     exit "$status"
   fi
   if ((restarts >= max_restarts)); then
@@ -19,7 +19,7 @@ finish_or_requeue() {
       "or the time per attempt, then submit again; nothing done so far is lost" >&2
     exit 1
   fi
-  echo "saved before the time limit; going back into the queue (restart $((restarts + 1)) of at most $max_restarts)"
+  echo "saved before the time limit; requeued (restart $((restarts + 1)) of at most $max_restarts)"
   local id=$SLURM_JOB_ID
   if [[ -n ${SLURM_ARRAY_JOB_ID:-} ]]; then id=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID; fi
   if ! scontrol requeue "$id"; then
@@ -76,7 +76,7 @@ follow_up() {
     echo "$stage $id" >>"$log/jobs"
     wait_for_the_new_one "$stage"
   } 8>"$log/.jobs.lock"
-  echo "it goes on as job $id"
+  echo "it continues as job $id"
 }
 
 # The last job of a stage, and all of them: the dependencies of the following jobs.

@@ -44,9 +44,9 @@ fault() { echo "$1 at $SWINGBANK_SITE ($2): $3" >&2; faults=1; }
 whole() {
   local value=${!1:-}
   if [[ -z $value ]]; then
-    fault "no $1" "a site file sets everything" "start from a copy of slurm/site.conf"
+    fault "no $1" "a site file sets every value" "start from a copy of slurm/site.conf"
   elif [[ ! $value =~ ^[0-9]+$ ]] || ((10#$value < $2)); then
-    fault "$1='$value'" "it is no whole number from $2 on" "write one"
+    fault "$1='$value'" "it is not a whole number of at least $2" "write such a number"
   fi
 }
 check_site() {
@@ -57,13 +57,13 @@ check_site() {
   whole max_restarts 0
   whole max_retries 0
   for name in databank_mem generate_mem_per_rank fold_mem tables_mem; do
-    [[ ${!name:-} =~ ^[0-9]+[KMGT]?$ ]] || fault "$name='${!name:-}'" "it is no size as Slurm writes it" "write for example 4G"
+    [[ ${!name:-} =~ ^[0-9]+[KMGT]?$ ]] || fault "$name='${!name:-}'" "it is not a memory size of Slurm" "write for example 4G"
   done
-  [[ -n ${launcher:-} ]] || fault "no launcher" "nothing starts the ranks" "write mpirun or srun --mpi=pmix"
+  [[ -n ${launcher:-} ]] || fault "no launcher" "no program starts the MPI ranks" "write mpirun or srun --mpi=pmix"
   ((faults)) && exit 1
   for name in generate_time fold_time tables_time; do
     ((60 * ${!name} > warn_before)) ||
-      fault "$name=${!name} min" "the warning comes $warn_before s before its end" "give more time, or a shorter warn_before"
+      fault "$name=${!name} min" "the warning signal is sent $warn_before s before the end" "give more time, or a shorter warn_before"
   done
   ((!faults)) || exit 1
 }
@@ -98,7 +98,7 @@ unfinished_jobs() {
 case $action in
   status)
     ids=$(earlier_jobs)
-    if [[ -z $ids ]]; then echo "nothing was submitted for $SWINGBANK_OUT"; exit 0; fi
+    if [[ -z $ids ]]; then echo "no jobs were submitted for $SWINGBANK_OUT"; exit 0; fi
     cat "$log/jobs"
     sacct --jobs="$ids" --format=JobID,JobName,State,Elapsed,ExitCode 2>/dev/null || squeue --jobs="$ids"
     exit 0
@@ -152,7 +152,7 @@ submit() {
   if ! id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
     mapfile -t queued < <(cut -d' ' -f2 "$log/jobs")
     ((${#queued[@]} == 0)) || scancel "${queued[@]}"
-    echo "job refused at stage $stage (sbatch says why above): mend the site file and submit again;" \
+    echo "job refused at stage $stage (sbatch says why above): correct the site file and submit again;" \
       "${#queued[@]} jobs before it were cancelled" >&2
     exit 1
   fi

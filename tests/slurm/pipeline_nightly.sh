@@ -73,7 +73,7 @@ cluster_retry 600 all_ended || fail "jobs still there after 600 s: $(squeue)"
 tiny_experiment "$work"
 [[ $(job_state "$tables") == COMPLETED ]] || fail "tables: $(job_state "$tables")"
 for log in generate fold-0; do
-  grep -q 'going back into the queue' "$work/broken/log/$log.log" || fail "$log was never cut short: the test shows nothing"
+  grep -q 'requeued (restart' "$work/broken/log/$log.log" || fail "$log was never cut short: the test shows nothing"
   grep -q 'attempt 2' "$work/broken/log/$log.log" || fail "$log did not start again"
 done
 [[ -s $work/broken/tables/tables.html ]] || fail "no tables.html"
