@@ -117,8 +117,8 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
   }
 }
 
-/// Largest number of parts of a dotted key. toml++ limits the depth of values to 256, but each key in them
-/// may be dotted, and it destroys its tables by recursion.
+/// Largest number of parts of a dotted key. toml++ limits the nesting of values to 256. Dotted keys nest
+/// tables beyond that limit, and the recursive destructor of the tables would overflow the stack.
 constexpr int kMostKeyParts = 32;
 
 /// Scanner of a TOML text that counts the dots of each key outside strings and comments.
@@ -173,7 +173,7 @@ class KeyLengths {
 };
 
 /// Parses the text, a second time after an error: toml++ reads numbers through a stream, which reports a
-/// failed allocation as a malformed number. Only a repeated error is one of the text.
+/// failed allocation as a malformed number. An error that occurs twice is an error of the text.
 toml::table parse(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text, name);

@@ -59,7 +59,7 @@ struct Outcome {
 
 Outcome simulate(int workers, double shard_seconds, const Reply& reply) {
   struct Asking {
-    double at;  ///< when its report reaches the master [s]
+    double at;  ///< arrival time of its report at the master [s]
     int rank;
     bool operator>(const Asking& other) const { return at > other.at; }
   };

@@ -88,7 +88,7 @@ void let_loads_move(BlindEvent& event, const sim::network::Network& network, con
   const double adds = c.ambient * std::sqrt((1 - keeps * keeps) * (kMemory + kSmooth) / kMemory);
   double rough = 0, noise = 0;
   move(event, network, event.seconds, [&](int k, double t) {
-    if (k == 0) rough = noise = 0;  // at rest where the run begins
+    if (k == 0) rough = noise = 0;  // steady state at the start of the run
     rough = keeps * rough + adds * draw.normal();
     noise = smoothing * noise + (1 - smoothing) * rough;
     return noise + c.drift * t;

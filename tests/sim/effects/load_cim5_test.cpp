@@ -123,7 +123,7 @@ TEST(LoadCim5, SaturationIncreasesMagnetisingCurrent) {
   }
   const double amps = (gap + saturation(rotor) * rotor) / 3.8;
   const Complex motor = m.drawn(kV0) + j * m.o.c[load_cim5::Model::shunt] * kV0;
-  EXPECT_NEAR(std::abs(motor), amps, 1e-6);  // the load of 1e-7
+  EXPECT_NEAR(std::abs(motor), amps, 1e-6);  // tolerance: the load is 1e-7 pu, not 0
   EXPECT_GT(saturation(rotor), 0.005);
   EXPECT_GT(std::abs(motor), 0.98 / 3.867 + 0.001);
 }

@@ -10,8 +10,8 @@
 namespace swingbank::validate::record {
 
 /// Returns the meaning of "Va_mag", "VA_Ang (deg)", "IC_M", "PhA Voltage Magnitude" or "Vab_kV": magnitude or
-/// angle of one phase, or of a line-to-line voltage. A magnitude to neutral has a line-to-neutral unit. None:
-/// no such column.
+/// angle of one phase, or of a line-to-line voltage. A magnitude to neutral has a line-to-neutral unit.
+/// Returns no value for any other heading.
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit);
 
 /// Clears the meaning of phase columns that are not needed: of an incomplete set, or if the file contains the

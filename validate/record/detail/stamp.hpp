@@ -16,7 +16,7 @@ struct Stamp {
 /// Parses "2024-05-01T12:00:00.033Z", "5/1/2024 12:00:00.033 PM" (month first unless impossible), "1.5.2024
 /// 12:00:00,033" (day first), "08-Aug-2026 12:56:20.000" and "Mar 13 2026 …" (months in English, German,
 /// French, Spanish, Portuguese, Italian, Russian), "20260313 125620.000", "12:56:20:033", "12:00:00.033" and
-/// "56:20.0". None: no such stamp.
+/// "56:20.0". Returns no value for any other text.
 std::optional<Stamp> parse_stamp(std::string_view text);
 
 }  // namespace swingbank::validate::record
