@@ -121,7 +121,7 @@ Card card_of(const DatasetConfig& config, const std::string& kernel,
     const std::string name = fmt::format("{}/{}", card.files.size() + 1, place.filename().string());
     if (!replace_name(card.config, written, name))
       throw InputError({"no card of the config", config.file.string(),
-                        "the name '" + written + "' stands there with escapes",
+                        "the name '" + written + "' appears there with escapes",
                         "write the name between quotes as it is"});
     card.files.push_back({name, read_text(place)});
   }
@@ -138,7 +138,7 @@ void write_card(const fs::path& folder, const Card& card) {
   try {
     write_text(folder / "card.json", sealed_text(j.dump(1)));
   } catch (const nlohmann::json::type_error& e) {
-    throw InputError({"a name that is no UTF-8", card.name + " or a file it names", e.what(),
+    throw InputError({"a name that is not UTF-8", card.name + " or a file it names", e.what(),
                       "give the file a name in UTF-8"});
   }
 }
@@ -163,7 +163,7 @@ Card read_card(const fs::path& where) {
     for (const auto& f : j.at("files")) card.files.push_back(file_of(f));
     return card;
   } catch (const std::exception& e) {
-    throw InputError({"a card of another kind", file.string(), e.what(), kRemedy});
+    throw InputError({"a card of another format", file.string(), e.what(), kRemedy});
   }
 }
 

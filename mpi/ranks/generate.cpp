@@ -101,7 +101,7 @@ Shards ask_master(MPI_Comm world, const Report& report, double timeout) {
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
   if (!wait_for(world, 0, kLeaseTag, timeout)) {
     fmt::print(stderr,
-               "no answer from rank 0 for {:.0f} s (it hangs or is gone): the run ends; finished shards are "
+               "no reply from rank 0 for {:.0f} s (it hangs or has ended): the run ends; finished shards are "
                "safe, run the command again to continue\n",
                timeout);
     MPI_Abort(world, 1);

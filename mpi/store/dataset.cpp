@@ -188,7 +188,7 @@ std::string header_text(const DatasetHeader& header) {
   try {
     return sealed_text(to_json(header).dump(1));
   } catch (const nlohmann::json::type_error& e) {
-    throw InputError({"a name that is no UTF-8", "the config '" + header.name + "' or a file it names",
+    throw InputError({"a name that is not UTF-8", "the config '" + header.name + "' or a file it names",
                       e.what(), "give the file a name in UTF-8"});
   }
 }

@@ -101,7 +101,7 @@ std::vector<Placed> read_placed(const std::filesystem::path& folder, Problems& d
         all.push_back(std::move(line));
       } else if (Placed& other = all[first->second]; !(other.line == line.line)) {
         damaged.add("shard " + std::to_string(line.line.shard) + " twice", place_of(line),
-                    "it is not what " + place_of(other) + " says", kMendJournal);
+                    "it differs from " + place_of(other), kMendJournal);
         other.doubtful = true;
       }
     }

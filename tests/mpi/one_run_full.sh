@@ -73,7 +73,7 @@ expect 0 "dataset $whole" "${make[@]}" --out "$work/early"
 
 # A refused run leaves nothing that blocks a valid one.
 sed "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" "$configs/ieee14_genrou_bus3.toml" >"$work/"$'b\xff.toml'
-expect 1 "a name that is no UTF-8" "$generate" "$work/"$'b\xff.toml' --progress none --out "$work/refused"
+expect 1 "a name that is not UTF-8" "$generate" "$work/"$'b\xff.toml' --progress none --out "$work/refused"
 [ ! -e "$work/refused" ] || fail "a refused start left $(ls -A "$work/refused")"
 mkdir "$work/foreign" && touch "$work/foreign/letter"
 expect 1 "it holds files but no dataset" "${make[@]}" --out "$work/foreign"

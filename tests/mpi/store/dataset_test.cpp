@@ -194,7 +194,7 @@ TEST(DatasetFolder, RefusesHeadersThatJsonCannotHold) {
   DatasetHeader h;
   h.name = "b\xff";
   h.draws_per_shard = 1;
-  EXPECT_THAT(sentence_of([&] { write_header(folder.path, h); }), HasSubstr("a name that is no UTF-8"));
+  EXPECT_THAT(sentence_of([&] { write_header(folder.path, h); }), HasSubstr("a name that is not UTF-8"));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
@@ -285,8 +285,8 @@ TEST(JournalFile, OtherDamageIsRefusedWithLineNumbers) {
   write_text(file, "garbage\n" + text + text + other);
   const std::string sentence = sentence_of([&] { read_journals(folder.path); });
   EXPECT_THAT(sentence, HasSubstr("damaged journal line at " + file.string() + ":1"));
-  EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":6 (it is not what " +
-                                  file.string() + ":2 says"));
+  EXPECT_THAT(sentence, HasSubstr("shard 1 twice at " + file.string() + ":6 (it differs from " +
+                                  file.string() + ":2)"));
   EXPECT_THAT(sentence, ::testing::Not(HasSubstr("shard 0")));  // a repeated line is no contradiction
 
   Problems damaged;
