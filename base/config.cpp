@@ -164,7 +164,7 @@ class KeyLengths {
   [[noreturn]] void refuse() const {
     throw InputError({fmt::format("a key of more than {} parts", kMostKeyParts),
                       fmt::format("{}:{}:{}", name_.string(), line_, at_ - begin_ + 1),
-                      "tables nested so deep are not read", "write a key of fewer parts"});
+                      "such deep nesting is not supported", "write a key of fewer parts"});
   }
 
   std::string_view text_;
@@ -193,7 +193,7 @@ Config::Config(const std::string& text, const fs::path& name) : name_(name), tre
     tree_->root = parse(text, name.string());
   } catch (const toml::parse_error& e) {
     throw InputError(
-        {"not TOML", place(name, e.source().begin), std::string(e.description()), "mend the line"});
+        {"not TOML", place(name, e.source().begin), std::string(e.description()), "correct the line"});
   }
 }
 
@@ -234,7 +234,7 @@ bool Config::take(const std::string& key, T& value, const Range& range) {
   T found{};
   if (!convert(*n, found)) {
     problem(key, key + " = " + written(*n), "it must be " + kind(static_cast<const T*>(nullptr)),
-            "write it as such");
+            "write such a value");
   } else if (!inside(found, range)) {
     problem(key, key + " = " + written(*n), "it must be " + describe(range), "give such a value");
   } else {

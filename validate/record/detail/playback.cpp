@@ -115,7 +115,7 @@ class Playback {
     const auto t = at(time_), v = at(voltage_), f = at(frequency_);
     if (!t && t_.empty() && !powerworld_) return;  // a title
     if (!t || !v || (!f_.empty() && !f)) {
-      problems_.add("a line that is no sample", fmt::format("{}:{}", name_, line_),
+      problems_.add("a line that is not a sample", fmt::format("{}:{}", name_, line_),
                     "it must hold time, voltage and frequency as numbers", "complete the line or remove it");
       return;
     }
