@@ -42,7 +42,7 @@ missing_packages() {
 install_packages() {
   local missing
   if ! command -v dpkg-query >/dev/null; then
-    echo "packages cannot be installed at this machine (not a Debian system): install what packages.txt lists by hand" >&2
+    echo "packages cannot be installed at this machine (not a Debian system): install those of packages.txt by hand" >&2
     return 1
   fi
   mapfile -t missing < <(missing_packages)
