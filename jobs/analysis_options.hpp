@@ -26,7 +26,7 @@ struct AnalysisOptions {
   std::vector<std::string> records, user_model_files, held_out;
   bool json = false, verbose = false, measured_states = true;
   int threads = -1;  ///< 0: one per core; -1: option absent
-  double step_threshold = validate::playin::kStepThreshold;
+  double step_threshold = validate::switching::kStepThreshold;
   double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
   double prior_sd = validate::thresholds::parameters.prior_sd;      ///< prior standard deviation, relative
   Reading reading;

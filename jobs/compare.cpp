@@ -93,7 +93,7 @@ int run(Arguments& a) {
   compare::CompareOptions options = a.of.comparing();
   options.input = a.input == "pq" ? compare::PlaybackInput::power : compare::PlaybackInput::voltage;
   options.fit_switchings = a.fit_switchings;
-  options.step_shape = event::step_shape_of(records, options.step_threshold);
+  options.step_shape = switching::step_shape_of(records, options.step_threshold);
   options.progress = jobs::progress_line();
   std::vector<compare::EventComparison> events;
   try {

@@ -17,7 +17,6 @@
 #include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/given_switching_times.hpp"
 #include "jobs/progress_plan.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
@@ -25,6 +24,7 @@
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
 #include "validate/record/staged.hpp"
+#include "validate/switching/given.hpp"
 
 namespace swingbank::jobs {
 
@@ -125,7 +125,8 @@ struct Reading {
         for (std::size_t k = warnings_before; k < model.warnings.size(); ++k)
           fmt::print(stderr, "note: {}\n", model.warnings[k]);
       }
-    return [given_times = given_switching_times(switches, records), at](validate::record::Record r) {
+    return [given_times = validate::switching::given_switching_times(switches, records),
+            at](validate::record::Record r) {
       if (const auto of = given_times.find(r.name); of != given_times.end()) r.switched = of->second;
       return at ? validate::event::of_tried_unit(*at, std::move(r)) : r;
     };

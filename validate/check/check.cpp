@@ -13,7 +13,7 @@
 #include "validate/check/detail/findings.hpp"
 #include "validate/check/detail/mistakes.hpp"
 #include "validate/check/detail/power.hpp"
-#include "validate/check/detail/voltage_steps.hpp"
+#include "validate/check/detail/step_fit.hpp"
 #include "validate/check/signals.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -32,7 +32,7 @@ class Check : Findings {
   std::vector<Finding> run() {
     if (!complete()) return taken();
     signals_ = record_signals(r_);
-    steps_ = find_large_steps(r_);
+    steps_ = switching::find_large_steps(r_);
     rate();
     dropouts();
     event();
@@ -367,11 +367,12 @@ class Check : Findings {
     double least = 1;
     for (const auto& m : mistakes()) {
       const record::Record alternative = reinterpreted(m.reinterpret);
-      const std::vector<VoltageStep> there = find_large_steps(alternative);
+      const std::vector<switching::StepInterval> there = switching::find_large_steps(alternative);
       const StepFit fit = fit_steps(alternative, there, delay), same = fit_steps(r_, there, delay);
       const double noise = noise_share(fit);
       if (!(fit.reactance > 0 && noise < 0.1 && fit.residual < 0.01 + 2 * noise)) continue;
-      if (m.turn > 0 && std::ranges::none_of(there, [&](const VoltageStep& j) { return turned(j) > m.turn; }))
+      if (m.turn > 0 &&
+          std::ranges::none_of(there, [&](const switching::StepInterval& j) { return turned(j) > m.turn; }))
         continue;
       // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
       const bool sound =
@@ -395,8 +396,8 @@ class Check : Findings {
   [[nodiscard]] bool apart() const {
     constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
     return std::ranges::any_of(kWider, [this](const auto& wider) {
-      std::vector<VoltageStep> wide;
-      for (const VoltageStep& j : steps_)
+      std::vector<switching::StepInterval> wide;
+      for (const switching::StepInterval& j : steps_)
         if (j.before >= wider.first) wide.push_back({j.before - wider.first, j.after + wider.second});
       const StepFit fit = fit_steps(r_, wide, 0);
       const double noise = noise_share(fit);
@@ -404,7 +405,7 @@ class Check : Findings {
     });
   }
   /// Returns the step of the angle as written [rad].
-  [[nodiscard]] double turned(const VoltageStep& j) const {
+  [[nodiscard]] double turned(const switching::StepInterval& j) const {
     const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
     return std::abs(theta[j.after] - theta[j.before]);
   }
@@ -449,7 +450,7 @@ class Check : Findings {
   const record::Record& r_;
   PlantFacts plant_;
   Signals signals_;
-  std::vector<VoltageStep> steps_;
+  std::vector<switching::StepInterval> steps_;
 };
 
 }  // namespace

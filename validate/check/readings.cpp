@@ -10,6 +10,7 @@
 #include "validate/check/detail/mistakes.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/playin/voltage_curve.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::check {
 namespace {
@@ -94,7 +95,7 @@ class Readings {
   [[nodiscard]] std::optional<playin::Playback> play(const record::Record& record) const {
     constexpr int kStepsASample = 200;
     try {
-      const auto switchings = playin::detect_switchings(record);
+      const auto switchings = switching::detect_switchings(record);
       return playin::play_in(model_.under_test(), record, playin::VoltageCurve(record, switchings),
                              {.tolerance = 1e-6, .step_limit = kStepsASample * record.samples()});
     } catch (const InputError&) {

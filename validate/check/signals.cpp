@@ -9,8 +9,9 @@
 
 #include "base/constants.hpp"
 #include "base/median.hpp"
-#include "validate/check/detail/voltage_steps.hpp"
-#include "validate/playin/switching_times.hpp"
+#include "validate/switching/steady.hpp"
+#include "validate/switching/step_intervals.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::check {
 namespace {
@@ -69,7 +70,7 @@ std::size_t turns_faster(const record::Record& r) {
   find_noise(r.theta, r.rate(), noise);
   const double reach = std::max(6 * 1.1 * std::numbers::sqrt2 * noise.white, kLeastDrift * kSpan);
   const std::size_t k =
-      playin::leaves(turned, {.level = median_in(std::span(turned).first(10)), .reach = reach});
+      switching::leaves(turned, {.level = median_in(std::span(turned).first(10)), .reach = reach});
   return k < turned.size() ? k + m : n;
 }
 
@@ -77,7 +78,7 @@ std::size_t turns_faster(const record::Record& r) {
 /// it. The event begins there if the step is filtered, or if an earlier one is too small to count.
 std::size_t step_before(const record::Record& r, std::size_t first_step) {
   std::vector<double> steps;
-  const std::vector<Complex> all = playin::voltage_steps(r);
+  const std::vector<Complex> all = switching::voltage_steps(r);
   for (std::size_t k = 0; k < first_step; ++k) steps.push_back(std::abs(all[k]));
   const double limit = std::max(10 * median_in(steps), 0.002);
   const auto back = static_cast<std::size_t>(0.5 * r.rate());
@@ -89,7 +90,7 @@ std::size_t step_before(const record::Record& r, std::size_t first_step) {
 /// Finds the start of the event: the sample before the first step, or before a channel first leaves the noise
 /// about its first samples.
 void find_event(const record::Record& r, Signals& s) {
-  const auto steps = find_steps(r);
+  const auto steps = switching::find_steps(r);
   const std::size_t n = r.t.size();
   if (!steps.empty()) {
     s.event = true;
@@ -104,8 +105,8 @@ void find_event(const record::Record& r, Signals& s) {
     // Six standard deviations: pure noise stays below five in ten thousand samples. The floor covers rounding
     // in records without noise.
     const double reach = std::max(6 * facts->noise, 1e-4);
-    first = std::min(first,
-                     playin::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
+    first = std::min(
+        first, switching::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
   }
   first = std::min(first, turns_faster(r));
   s.event = s.slow = first < n;

@@ -13,6 +13,8 @@
 #include "validate/compare/event_title.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
+#include "validate/switching/given.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -85,7 +87,7 @@ const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
 /// interpolation error.
 bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
   if (e.playback.start.samples < 3) return false;
-  const double floor = event::kLeastNoise * model.plant.mva / e.record.base.mva;
+  const double floor = switching::kLeastNoise * model.plant.mva / e.record.base.mva;
   const auto least = [&](const std::vector<double>& measured, const std::vector<double>& modelled) {
     if (measured.size() != modelled.size()) return false;
     std::vector<double> residual(measured.size());
@@ -143,7 +145,7 @@ void measure_channels(const plant::PlantModel& model, PlaybackInput input,
     if (!measured.empty()) e.channels.push_back(compare_channel(channel, measured, modelled, e));
   };
   if (power) {
-    add({"V", "pu", 1, event::kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
+    add({"V", "pu", 1, switching::kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
     if (e.record.angle != record::AngleSource::none)
       add({"frequency", "mHz", 1e3 * base.frequency, event::kLeastSpeedNoise, true, false},
           frequency_of(e.record.t, e.record.theta, base.frequency),
@@ -233,9 +235,9 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
                : "the middle of each interval is used.";
 }
 
-void explain(EventComparison& e, event::StepShape step_shape, bool tried, const std::string& failed) {
+void explain(EventComparison& e, switching::StepShape step_shape, bool tried, const std::string& failed) {
   if (const auto filtered_count = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
-      step_shape == event::StepShape::filtered && filtered_count > 0)
+      step_shape == switching::StepShape::filtered && filtered_count > 0)
     e.notes.push_back(
         fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
                     "nor compared, and {} fitted to P and Q.",
@@ -245,9 +247,9 @@ void explain(EventComparison& e, event::StepShape step_shape, bool tried, const 
         fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
                     "{} Give them with --switch where they are known.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
-  if (std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.turn != 0; })) {
+  if (std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.turn != 0; })) {
     std::string turns;
-    for (const playin::Switching& s : e.switchings)
+    for (const switching::Switching& s : e.switchings)
       turns += (turns.empty() ? "" : ", ") + fmt::format("{:+.1f}°", s.turn * constants::degrees_in_radian);
     e.notes.push_back(
         "Angle steps of " + turns +
@@ -326,7 +328,7 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
 }
 
 std::vector<Window> event_windows(const record::Record& record,
-                                  const std::vector<playin::Switching>& switchings, double pre_event,
+                                  const std::vector<switching::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out) {
   const auto out = [&](std::size_t k) { return !left_out.empty() && left_out[k]; };
   const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
@@ -364,13 +366,13 @@ ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) 
   switch (output) {
     case playin::Output::P:
     case playin::Output::Pm:
-      return {"MW", base.mva, event::kLeastNoise};
+      return {"MW", base.mva, switching::kLeastNoise};
     case playin::Output::Q:
-      return {"Mvar", base.mva, event::kLeastNoise};
+      return {"Mvar", base.mva, switching::kLeastNoise};
     case playin::Output::speed:
       return {"mHz", 1e3 * base.frequency, event::kLeastSpeedNoise};
     default:
-      return {"pu", 1, event::kLeastNoise};
+      return {"pu", 1, switching::kLeastNoise};
   }
 }
 
@@ -389,34 +391,39 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
   if (no_angle) options.input = PlaybackInput::power;
   e.detected = e.record.switched.empty();
-  const event::StepShape step_shape = options.step_shape == event::StepShape::either
-                                          ? event::step_shape_of({e.record}, options.step_threshold)
-                                          : options.step_shape;
+  const switching::StepShape step_shape = options.step_shape == switching::StepShape::either
+                                              ? switching::step_shape_of({e.record}, options.step_threshold)
+                                              : options.step_shape;
   std::string failed;
-  const auto fitted_with = [&](Fitted how) {
+  const auto fitted_with = [&](const event::WhitenedEvents& events, Fitted how) {
     EventComparison other = e;
-    play_fitted(model, options, step_shape, how, other);
+    play_fitted(model, events, step_shape, how, other);
     measure_channels(model, PlaybackInput::voltage, options.play_in, other);
     return other;
   };
   // the start is fitted only if residuals are then within noise; an incomplete model would bias it
   const auto fitted = [&] {
+    const auto events = event::prepare_events(model, {e.record},
+                                              {.step_threshold = options.step_threshold,
+                                               .pre_event = options.play_in.pre_event,
+                                               .step_shape = step_shape});
     for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
-      if (EventComparison other = fitted_with(how); explained(other)) return other;
+      if (EventComparison other = fitted_with(events, how); explained(other)) return other;
     }
-    return fitted_with(Fitted::steady_start);
+    return fitted_with(events, Fitted::steady_start);
   };
-  if (!e.record.breaker() && step_shape == event::StepShape::filtered &&
+  if (!e.record.breaker() && step_shape == switching::StepShape::filtered &&
       options.input == PlaybackInput::voltage) {
     e = fitted();
   } else {
     if (e.detected)
-      e.switchings = playin::detect_switchings(event::seen_by_rotor({e.record}, model.plant.mva).front(),
-                                               options.step_threshold);
+      e.switchings =
+          switching::VoltageSteps(e.record, switching::angle_seen_by_rotor(e.record, model.plant.mva))
+              .detect(options.step_threshold);
     else
-      for (const double t : e.record.switched) e.switchings.push_back({.time = t});
-    if (e.detected && e.record.breaker()) e.switchings = playin::breaker_times(e.record, e.switchings);
+      e.switchings = switching::given_times(e.record);
+    if (e.detected && e.record.breaker()) e.switchings = switching::breaker_times(e.record, e.switchings);
     step("the voltage is played in", 0);
     if (!no_angle) play(model, PlaybackInput::voltage, options.play_in, e);
     const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;

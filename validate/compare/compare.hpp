@@ -40,13 +40,13 @@ enum class PlaybackInput {
 };
 /// Result of compare_event().
 struct EventComparison {
-  record::Record record;                      ///< record, cut to the compared samples
-  std::vector<playin::Switching> switchings;  ///< switching times that were used
-  bool detected = false;                      ///< switching times were detected in the record, not given
-  bool fitted = false;                        ///< switching times were fitted within their sample intervals
-  std::vector<Window> windows;                ///< evaluation windows, in order of time
-  playin::Playback playback;                  ///< response of the model
-  std::vector<ChannelComparison> channels;    ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
+  record::Record record;                         ///< record, cut to the compared samples
+  std::vector<switching::Switching> switchings;  ///< switching times that were used
+  bool detected = false;                         ///< switching times were detected in the record, not given
+  bool fitted = false;                      ///< switching times were fitted within their sample intervals
+  std::vector<Window> windows;              ///< evaluation windows, in order of time
+  playin::Playback playback;                ///< response of the model
+  std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
   /// Marks samples within a filtered step of the instrument, which are not compared. Empty: none.
   std::vector<char> left_out = {};
   /// Per channel: possible residuals due to errors of the played-in quantities, one standard deviation each
@@ -57,14 +57,14 @@ struct EventComparison {
 
 /// Options of a comparison.
 struct CompareOptions {
-  PlaybackInput input = PlaybackInput::voltage;    ///< inputs of the playback
-  double step_threshold = playin::kStepThreshold;  ///< threshold of playin::detect_switchings [pu]
+  PlaybackInput input = PlaybackInput::voltage;       ///< inputs of the playback
+  double step_threshold = switching::kStepThreshold;  ///< threshold of switching::detect_switchings [pu]
   /// Fits detected switching times to P and Q within their sample intervals, because the record does not
   /// determine them any better. At 30/s half an interval is 17 ms; in a fault this error alone left eight
   /// times the noise of a correct model. If the fit brings no improvement, the interval's middle is kept.
   bool fit_switchings = true;
-  event::StepShape step_shape =
-      event::StepShape::either;  ///< filtering of steps; either: decided from the record
+  switching::StepShape step_shape =
+      switching::StepShape::either;  ///< filtering of steps; either: decided from the record
   /// Called before each step of the comparison: next step, steps done, total steps.
   event::Progress progress = {};
   playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
@@ -103,7 +103,7 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
 /// windows count from the start of the record (0-1 s, 1-2 s, 2-6 s and > 6 s with a pre-event of 1 s).
 /// Windows without a sample are omitted, and no window begins or ends with samples that are left out.
 std::vector<Window> event_windows(const record::Record& record,
-                                  const std::vector<playin::Switching>& switchings, double pre_event,
+                                  const std::vector<switching::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});
 
 /// Plays the record into the model and computes the residuals. With P and Q played in, no network fixes the

@@ -14,7 +14,7 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
   Played played{std::move(name), {}, {}};
   const double mva = model.plant.mva;
   try {
-    options.step_shape = event::step_shape_of(records, options.step_threshold);
+    options.step_shape = switching::step_shape_of(records, options.step_threshold);
     for (const auto& record : records) played.events.push_back(compare_event(model, record, options));
     judge(played.events);  // sets the bounds of the maps
     played.fitness = judge_fitness(played.events, mva, by);

@@ -10,7 +10,7 @@
 
 namespace swingbank::validate::event {
 
-std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventState& state) {
+std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state) {
   auto switchings = event.switchings;
   for (std::size_t k = 0; k < state.switchings.size(); ++k) switchings[k].time = state.switchings[k];
   for (std::size_t k = 0; k < state.turns.size(); ++k) switchings[k].turn = state.turns[k];

@@ -51,7 +51,7 @@ struct Playing {
 };
 
 /// Returns the event's switchings at the switching times of `state`.
-std::vector<playin::Switching> switchings_at(const FitEvent& event, const EventState& state);
+std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state);
 /// Returns the operating point with the offsets of `state`.
 playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 /// Returns the plant's response through its instruments, and its sensitivities to the parameters `along`.

@@ -31,7 +31,7 @@ KeptCurve kept_curve(const FitEvent& e) {
 
 }  // namespace
 
-playin::VoltageCurve FitEvent::curve(std::vector<playin::Switching> at) const {
+playin::VoltageCurve FitEvent::curve(std::vector<switching::Switching> at) const {
   return kept.get() ? kept.get()->moved(played(), std::move(at))
                     : playin::VoltageCurve(played(), std::move(at));
 }

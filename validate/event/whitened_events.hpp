@@ -41,22 +41,15 @@ class KeptCurve {
 };
 
 /// One event, prepared for fitting.
-struct FitEvent {
-  record::Record record;                      ///< record as read
-  std::vector<playin::Switching> switchings;  ///< as found; those with an uncertainty are fitted
-  playin::OperatingPoint start;               ///< operating point before the event
-  /// Marks samples within a step filtered by the instrument; these are not played in. Empty: none.
-  std::vector<char> filtered_samples = {};
+struct FitEvent : switching::SwitchedRecord {
+  playin::OperatingPoint start = {};  ///< operating point before the event
   /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
   /// where a delay of a millisecond may put a channel on the other side. Empty: none.
   std::vector<char> left_out = {};
-  /// Time, V and theta of the samples that are not filtered, and of those that reconstruct_voltage()
-  /// restored. Empty if no sample is filtered.
-  record::Record clean = {};
-  std::vector<playin::Output> channels;  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
-  KeptCurve kept = {};                   ///< of played() with `switchings`, in WhitenedEvents
+  std::vector<playin::Output> channels = {};  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
+  KeptCurve kept = {};                        ///< of played() with `switchings`, in WhitenedEvents
   /// Returns the played-in voltage with the given switchings.
-  [[nodiscard]] playin::VoltageCurve curve(std::vector<playin::Switching> at) const;
+  [[nodiscard]] playin::VoltageCurve curve(std::vector<switching::Switching> at) const;
   /// Returns an output or a sensitivity of Response ([output][sample]) as a vector
   /// [compared sample * channels + channel], minus the measured values if `less_measured`.
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;

@@ -36,7 +36,7 @@ void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& ch
   const auto& measured = e.measured(e.channels[c]);
   const auto residual = [&](std::size_t k) { return f.model[c][k] - measured[k]; };
   const auto counts = [&](std::size_t k) {
-    return e.compared(k) && std::ranges::none_of(e.switchings, [&](const playin::Switching& s) {
+    return e.compared(k) && std::ranges::none_of(e.switchings, [&](const switching::Switching& s) {
              return std::abs(e.record.t[k] - s.time) < kBeside;
            });
   };
@@ -136,7 +136,7 @@ bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
   const std::size_t last = first + n - 1;
   for (std::size_t k = first; k <= last; ++k)
     if (!e.compared(k)) return true;
-  return std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+  return std::ranges::any_of(e.switchings, [&](const switching::Switching& s) {
     return e.record.t[first] - kBeside < s.time && s.time < e.record.t[last] + kBeside;
   });
 }
@@ -328,7 +328,7 @@ event::SlowNoise slow_noise(const playin::LinearPlant& plant, event::WhitenedEve
   s.added_covariance.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
   for (std::size_t k = 0; k + 1 < e.record.t.size(); ++k) {
-    const bool switched = std::ranges::any_of(e.switchings, [&](const playin::Switching& w) {
+    const bool switched = std::ranges::any_of(e.switchings, [&](const switching::Switching& w) {
       return e.record.t[k] <= w.time && w.time < e.record.t[k + 1];
     });
     s.doubtful[k] = !e.filtered_samples.empty() && e.filtered_samples[k] ? kFiltered : switched ? 1 : 0;

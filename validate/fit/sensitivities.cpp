@@ -30,7 +30,7 @@ std::vector<playin::SensitivityParameter> own_parameters(const event::FitEvent& 
 Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventState& state) {
   std::vector<double> all;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
-    if (const playin::Switching& s = event.switchings[k]; s.uncertainty > 0)
+    if (const switching::Switching& s = event.switchings[k]; s.uncertainty > 0)
       all.push_back(k < state.switchings.size() ? (state.switchings[k] - s.time) / s.uncertainty : 0.0);
   for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
     all.push_back(k < state.turns.size()

@@ -76,20 +76,6 @@ Given::At Given::operator()(int segment, double t) const {
   return at;
 }
 
-std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found) {
-  const record::StagedEvent& breaker = *record.breaker();
-  if (record.open_circuit()) return {};
-  for (const Switching& s : found)
-    if (std::abs(s.time - breaker.time) < kNearBreaker) return {s};
-  // the initial power falls by half
-  constexpr double kLoaded = 0.01;  // [pu]: a smaller power is not conclusive
-  for (std::size_t k = 0; k + 1 < record.t.size() && k + 1 < record.P.size(); ++k)
-    if (std::abs(record.t[k] - breaker.time) < kNearBreaker && std::abs(record.P[0]) > kLoaded &&
-        std::abs(record.P[k + 1]) < std::abs(record.P[0]) / 2)
-      return {{.time = (record.t[k] + record.t[k + 1]) / 2, .uncertainty = record.step() / 2}};
-  return {{.time = breaker.time, .uncertainty = record.step()}};
-}
-
 void set_to_initial(record::Record& r, const OperatingPoint& start) {
   const std::pair<std::vector<double>*, double> all[] = {
       {&r.P, start.P},       {&r.Q, start.Q},     {&r.speed, start.speed}, {&r.f, start.speed},

@@ -37,10 +37,6 @@ class Given {
 inline bool is_part(const record::Record& r) {
   return r.component == record::Component::exciter || r.component == record::Component::governor;
 }
-/// Returns the switching times of a record whose breaker opens: the step found within kNearBreaker of the
-/// given time, or the time at which P falls by half, else the given time.
-std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found);
-constexpr double kNearBreaker = 0.2;  ///< [s]
 /// Sets every input and every compared channel of a component to its initial value.
 void set_to_initial(record::Record& record, const OperatingPoint& start);
 /// Returns the inputs of the record's component; none if the whole plant is tested.

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.hpp"
-#include "validate/playin/switching_times.hpp"
+#include "base/problem.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -48,20 +47,6 @@ std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<
 }
 
 }  // namespace
-
-std::vector<Switching> detect_switchings(const record::Record& record, double threshold) {
-  const std::vector<Complex> step = voltage_steps(record);
-  const std::size_t steps = step.size();
-  // A step differs from both neighbours; the interval next to a step differs from one of them only.
-  std::vector<double> spike(steps, 0.0);
-  for (std::size_t k = 1; k + 1 < steps; ++k)
-    spike[k] = std::min(std::abs(step[k] - step[k - 1]), std::abs(step[k] - step[k + 1]));
-  const double limit = std::max(threshold, 10 * upper_median(spike));
-  std::vector<Switching> found;
-  for (std::size_t k = 1; k + 1 < steps; ++k)
-    if (spike[k] > limit) found.push_back(within_step(record, k));
-  return found.empty() ? find_isolated_steps(record, threshold) : found;
-}
 
 VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> switchings)
     : switchings_(std::move(switchings)) {

@@ -5,25 +5,11 @@
 
 #include "base/complex.hpp"
 #include "validate/record/record.hpp"
+#include "validate/switching/switching.hpp"
 
 namespace swingbank::validate::playin {
 
-/// Change of the network with a step of the voltage. Samples at `time` itself count as before it.
-struct Switching {
-  double time = 0;                             ///< [s]
-  double uncertainty = 0;                      ///< it lies within time ± uncertainty [s]; 0: known
-  bool has_before = false, has_after = false;  ///< whether `before` and `after` are known
-  Complex before{}, after{};                   ///< one-sided voltages at `time` [pu], if known
-  double turn = 0;  ///< correction of an angle that was not measured, from here on [rad]
-};
-
-/// Step of the voltage in one sample interval above which it counts as a switching [pu].
-constexpr double kStepThreshold = 0.02;
-
-/// Finds the sample intervals with a voltage step: the change differs from both neighbouring ones by more
-/// than `threshold` [pu] and more than ten times the median difference (noise). Each switching time is the
-/// middle of its interval, with half the interval as uncertainty. If there are none: find_isolated_steps().
-std::vector<Switching> detect_switchings(const record::Record& record, double threshold = kStepThreshold);
+using switching::Switching;
 
 /// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,
 /// rather than V and theta, remain smooth if V is near zero and theta turns. Segments of 3, 2 or 1 points get

@@ -8,6 +8,7 @@
 #include "base/golden_section.hpp"
 #include "sim/plant/measure.hpp"
 #include "validate/event/event.hpp"
+#include "validate/switching/voltage_steps.hpp"
 #include "validate/system/detail/run.hpp"
 
 namespace swingbank::validate::system {
@@ -16,9 +17,8 @@ namespace {
 constexpr double kAfterLast = 1.0;  // duration of the fit after the last switching [s]
 
 /// Returns the voltage steps of one record.
-std::vector<playin::Switching> find_voltage_steps(const record::Record& r) {
-  std::vector<char> filtered_samples;
-  return event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, filtered_samples);
+std::vector<switching::Switching> find_voltage_steps(const record::Record& r) {
+  return switching::VoltageSteps(r).find(switching::kStepThreshold, switching::StepShape::either).switchings;
 }
 
 /// Returns the case with its records cut off after `end` [s].
@@ -65,11 +65,13 @@ class SwitchingTimeFit {
     std::vector<record::Record> records;
     for (const SystemTerminal& t : s_.terminals)
       if (!declared(t)) records.push_back(t.record);
-    const event::StepShape step_shape = event::step_shape_of(records, playin::kStepThreshold);
+    const switching::StepShape step_shape = switching::step_shape_of(records, switching::kStepThreshold);
     for (const SystemTerminal& t : s_.terminals) {
       filtered_samples_.emplace_back(t.record.t.size(), 0);
-      if (!declared(t) && step_shape == event::StepShape::filtered)
-        event::find_switchings(t.record, playin::kStepThreshold / 2, step_shape, filtered_samples_.back());
+      if (!declared(t) && step_shape == switching::StepShape::filtered)
+        filtered_samples_.back() = switching::VoltageSteps(t.record)
+                                       .find(switching::kStepThreshold / 2, step_shape)
+                                       .filtered_samples;
     }
   }
   /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
@@ -105,7 +107,7 @@ class SwitchingTimeFit {
       variance += std::pow(modelled[k] - measured[k] - mean, 2) / static_cast<double>(quiet);
     for (std::size_t k = 0; k < t.size(); ++k)
       if (!filtered_samples[k]) sum += std::pow(modelled[k] - measured[k] - mean, 2);
-    return sum / (variance + event::kLeastNoise * event::kLeastNoise);
+    return sum / (variance + switching::kLeastNoise * switching::kLeastNoise);
   }
 
   SystemCase s_;

@@ -15,6 +15,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/event/event.hpp"
 #include "validate/playin/instruments.hpp"
+#include "validate/switching/voltage_steps.hpp"
 #include "validate/system/detail/run.hpp"
 
 namespace swingbank::validate::system {
@@ -40,13 +41,13 @@ double filter_reach_of(const SystemCase& system) {
   std::vector<record::Record> records;
   for (const SystemTerminal& t : system.terminals)
     if (!(sim::plant::memory(t.instruments) > 0)) records.push_back(t.record);
-  if (event::step_shape_of(records, playin::kStepThreshold) != event::StepShape::filtered) return 0;
+  if (switching::step_shape_of(records, switching::kStepThreshold) != switching::StepShape::filtered)
+    return 0;
   double farthest = 0;
   for (const record::Record& r : records) {
-    std::vector<char> filtered_samples;
-    for (const playin::Switching& s :
-         event::find_switchings(r, playin::kStepThreshold / 2, event::StepShape::filtered, filtered_samples))
-      farthest = std::max(farthest, s.uncertainty);
+    const auto found =
+        switching::VoltageSteps(r).find(switching::kStepThreshold / 2, switching::StepShape::filtered);
+    for (const switching::Switching& s : found.switchings) farthest = std::max(farthest, s.uncertainty);
   }
   return farthest;
 }
@@ -112,7 +113,7 @@ class Comparer {
     const record::Record& r = s_.terminals[i].record;
     // The angle is undefined while a bolted fault reduces V to nearly zero.
     const bool gone = std::ranges::any_of(r.V, [](double v) { return v < 0.05; });
-    out_.initial.push_back(add(e, {"V", "pu", 1, event::kLeastNoise, shift()}, r.V, m.V));
+    out_.initial.push_back(add(e, {"V", "pu", 1, switching::kLeastNoise, shift()}, r.V, m.V));
     out_.initial.push_back(angle(i, e, gone));
     const record::RecordBase& base = s_.base;
     const auto output = [&](playin::Output o, const std::vector<double>& measured,
@@ -139,7 +140,7 @@ class Comparer {
     if (s_.reference < 0 || i == reference || by_meter) {
       const double nominal = s_.base.frequency;
       const std::vector<char> compared = e.left_out;
-      if (by_meter) leave_out(e, event::kPeakReach * r.step());  // meters delay or smooth an angle step
+      if (by_meter) leave_out(e, switching::kPeakReach * r.step());  // meters delay or smooth an angle step
       add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.responses[i].theta, nominal));
@@ -157,8 +158,8 @@ class Comparer {
     const double turns =
         constants::turn * std::round((modelled.front() - measured.front()) / constants::turn);
     for (double& v : modelled) v -= turns;
-    return add(e, {"angle", "deg", 360 / constants::turn, event::kLeastNoise, shift(), true, skip}, measured,
-               modelled);
+    return add(e, {"angle", "deg", 360 / constants::turn, switching::kLeastNoise, shift(), true, skip},
+               measured, modelled);
   }
   [[nodiscard]] bool shift() const { return s_.steady_state == SteadyState::shift; }
 

@@ -43,27 +43,6 @@ TEST(Hypotheses, LeaveOccupiedSlotsUnchanged) {
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
     EXPECT_NE(h.slot, static_cast<int>(sim::Slot::exciter)) << h.name;
 }
-TEST(FindSwitchings, FindsAndMarksFilteredSteps) {
-  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  record::Record r = example_records(model).front();
-  std::vector<char> filtered_samples;
-  const auto sharp =
-      event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, filtered_samples);
-  ASSERT_EQ(sharp.size(), 2u);
-  EXPECT_EQ(std::ranges::count(filtered_samples, 1), 0);
-  // A filter: the mean of each sample and the next.
-  for (std::size_t k = 0; k + 1 < r.t.size(); ++k) {
-    const Complex v = (std::polar(r.V[k], r.theta[k]) + std::polar(r.V[k + 1], r.theta[k + 1])) / 2.0;
-    r.V[k] = std::abs(v);
-    r.theta[k] += std::arg(v * std::polar(1.0, -r.theta[k]));
-  }
-  const auto found =
-      event::find_switchings(r, playin::kStepThreshold, event::StepShape::either, filtered_samples);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_GE(std::ranges::count(filtered_samples, 1), 4);
-  for (std::size_t k = 0; k < 2; ++k)
-    EXPECT_LE(std::abs(found[k].time - sharp[k].time), found[k].uncertainty);
-}
 
 TEST(DiagnoseFull, NamesMissingExciter) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));

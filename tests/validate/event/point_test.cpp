@@ -11,6 +11,7 @@
 #include "validate/event/event.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::event {
 namespace {
@@ -47,9 +48,9 @@ struct TwoUnits : ::testing::Test {
     record::Record beside = alone;
     beside.P.assign(beside.t.size(), kP / r.base.mva);
     beside.Q.assign(beside.t.size(), kQ / r.base.mva);
-    std::vector<char> filtered_samples;
-    auto switchings =
-        find_switchings(beside, playin::kStepThreshold / 2, StepShape::either, filtered_samples);
+    auto switchings = switching::VoltageSteps(beside)
+                          .find(switching::kStepThreshold / 2, switching::StepShape::either)
+                          .switchings;
     for (auto& s : switchings) s.time = s.time < 2.05 ? 2.0 : 2.1;  // simulated fault times
     const playin::VoltageCurve curve(beside, switchings);
     const playin::Playback both = playin::play_in(other.under_test(), beside, curve);

@@ -28,7 +28,7 @@ struct Turns : ::testing::Test {
     std::vector<double> left;
     for (std::size_t k = 0; k < whole.t.size(); ++k) {
       double turn = 0;
-      for (const playin::Switching& w : e.switchings) turn += e.record.t[k] > w.time ? w.turn : 0.0;
+      for (const switching::Switching& w : e.switchings) turn += e.record.t[k] > w.time ? w.turn : 0.0;
       if (e.compared(k)) left.push_back(e.record.theta[k] + turn - whole.theta[k]);
     }
     const auto [low, high] = std::ranges::minmax(left);
@@ -55,26 +55,6 @@ TEST_F(Turns, MeterPeakIsDropped) {
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_LT(off(events[0]), 0.1);  // the fit's prior deviation
   EXPECT_FALSE(events[0].record.notes.empty());
-}
-TEST_F(Turns, FindsSwitchingInPowerAlone) {
-  record::Record r;
-  r.base = whole.base;
-  for (int k = 0; k < 300; ++k) {
-    r.t.push_back(k / 30.0);
-    r.V.push_back(1.0 + 1e-4 * std::sin(7.0 * k));
-    r.P.push_back(k < 100 ? 0.8 : 0.68);
-    r.Q.push_back(0.1);
-    r.f.push_back(0.0);
-  }
-  r.theta.assign(r.t.size(), 0.0);
-  r.angle = record::AngleSource::integrated;
-  std::vector<char> filtered_samples;
-  EXPECT_TRUE(find_switchings(r, playin::kStepThreshold / 2, StepShape::sharp, filtered_samples).empty());
-  const auto seen = seen_by_rotor({r}, r.base.mva);
-  EXPECT_EQ(find_switchings(seen[0], playin::kStepThreshold / 2, StepShape::sharp, filtered_samples).size(),
-            1U);
-  r.angle = record::AngleSource::measured;
-  EXPECT_EQ(seen_by_rotor({r}, r.base.mva)[0].theta, r.theta);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class InstrumentsTest : public ::testing::Test {
     const std::filesystem::path configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs";
     model_ = plant::load_plant_model(configs / "plants" / "ieee14_bus2.toml");
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
-    switchings_ = detect_switchings(record_);
+    switchings_ = switching::detect_switchings(record_);
   }
   PlaybackRun run_with(const sim::plant::Plant& plant, const record::Record& record,
                        const VoltageCurve& curve) const {

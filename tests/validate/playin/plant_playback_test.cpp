@@ -25,7 +25,7 @@ class PlantPlaybackTest : public ::testing::Test {
       model_.plant.controls.push_back({effect, effect->default_parameters()});
     }
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
-    switchings_ = detect_switchings(record_);
+    switchings_ = switching::detect_switchings(record_);
     knots_ = {0.5, 1.5, 2.5, 4.0};
     zeros_.assign(knots_.size(), 0.0);
   }

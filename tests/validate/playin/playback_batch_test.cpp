@@ -20,7 +20,7 @@ class PlaybackBatchTest : public ::testing::Test {
     const auto* effect = sim::library::compiled().find("SEXS");
     model_.plant.controls.push_back({effect, effect->default_parameters()});
     record_ = record::read_record(configs / "records" / "record-example" / "avr_ev1.csv", model_.record_base);
-    switchings_ = detect_switchings(record_);
+    switchings_ = switching::detect_switchings(record_);
     for (Switching& s : switchings_) s.turn = 0.1;
     curve_.emplace(record_, switchings_);
   }

@@ -81,18 +81,5 @@ TEST(StagedTest, StepInOpenCircuit) {
   }
 }
 
-TEST(StagedTest, BreakerTimeIsTheStepNearestToTheGivenTime) {
-  record::Record r;
-  for (int k = 0; k < 100; ++k) r.t.push_back(0.02 * k);
-  r.staged = {{Staged::load_rejection, 1.0}};
-  EXPECT_EQ(breaker_times(r, {{.time = 0.3}, {.time = 1.03, .uncertainty = 0.01}}).front().time, 1.03);
-  EXPECT_EQ(breaker_times(r, {{.time = 0.3}}).front().time, 1.0);
-  for (const double t : r.t) r.P.push_back(t < 1.03 ? 0.8 : 0.0);
-  EXPECT_NEAR(breaker_times(r, {}).front().time, 1.03, 1e-12);
-  EXPECT_NEAR(breaker_times(r, {}).front().uncertainty, 0.01, 1e-12);
-  r.component = record::Component::exciter;  // has no connection to the grid
-  EXPECT_EQ(r.breaker(), nullptr);
-}
-
 }  // namespace
 }  // namespace swingbank::validate::playin

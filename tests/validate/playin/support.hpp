@@ -149,10 +149,10 @@ inline record::Record by_frequency(record::Record r, const std::vector<double>& 
 
 /// Returns the exact switching times, with both one-sided voltages if requested (they must be samples of the
 /// run).
-inline std::vector<playin::Switching> exact_switchings(const Simulated& s, int plant, bool one_sided) {
-  std::vector<playin::Switching> list;
+inline std::vector<switching::Switching> exact_switchings(const Simulated& s, int plant, bool one_sided) {
+  std::vector<switching::Switching> list;
   for (const double t : {s.t_on, s.t_off}) {
-    playin::Switching w{.time = t};
+    switching::Switching w{.time = t};
     if (one_sided) {
       const auto k = static_cast<int>(std::lround(t * s.before.rate));
       w.has_before = w.has_after = true;

@@ -84,45 +84,5 @@ TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
               ElementsAre(HasSubstr("no sample between")));
 }
 
-TEST(DetectTest, FindsTheFaultsOfTheExampleRecords) {
-  const double truth[4][2] = {{2.0, 2.1}, {2.0, 2.08}, {2.0, 2.2}, {2.0, 2.15}};  // configs/records/README.md
-  for (int i = 0; i < 4; ++i) {
-    const record::Record r = record::read_record(
-        test::source("configs/records/record-example/avr_ev" + std::to_string(i + 1) + ".csv"), {});
-    const auto found = detect_switchings(r);
-    ASSERT_EQ(found.size(), 2u) << "event " << i + 1;
-    for (int j = 0; j < 2; ++j)
-      EXPECT_LE(std::abs(found[static_cast<std::size_t>(j)].time - truth[i][j]),
-                found[static_cast<std::size_t>(j)].uncertainty + 1e-6);
-  }
-}
-TEST(DetectTest, FindsOneSampleFaultAndNothingInQuietRecord) {
-  record::Record r = stepped();
-  std::fill(r.V.begin(), r.V.end(), 1.0);
-  EXPECT_TRUE(detect_switchings(r).empty());
-  r.V[30] = 0.2;
-  EXPECT_EQ(detect_switchings(r).size(), 2u);
-}
-/// A generator lost far away: the voltage falls over seconds, the angle turns, and one step has 0.002 pu.
-record::Record far_loss(double noise) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal(0, 1);
-  record::Record r;
-  for (int k = 0; k < 600; ++k) {
-    const double t = k / 30.0, since = std::max(0.0, t - 5.01);
-    r.t.push_back(t);
-    r.V.push_back(1 - (since > 0 ? 0.002 : 0) - 0.01 * (1 - std::exp(-since / 3)) * std::cos(4 * since) +
-                  noise * normal(random));
-    r.theta.push_back(-0.3 * since * since / (1 + since) + noise * normal(random));
-  }
-  return r;
-}
-TEST(DetectTest, FindsIsolatedSmallStep) {
-  const auto found = detect_switchings(far_loss(0));
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_NEAR(found[0].time, 5.01, 0.5 / 30 + 1e-6);
-  EXPECT_TRUE(detect_switchings(far_loss(2e-4)).empty()) << "noise hides it";
-}
-
 }  // namespace
 }  // namespace swingbank::validate::playin

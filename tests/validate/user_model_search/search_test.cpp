@@ -174,7 +174,7 @@ struct Case {
     for (const int i : numbers) {
       record::Record r = record::read_record(
           test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), model.record_base);
-      const auto switchings = playin::detect_switchings(r);
+      const auto switchings = switching::detect_switchings(r);
       const playin::VoltageCurve curve(r, switchings);
       playin::PlaybackRun run{
           .plant = &truth.plant, .conventions = truth.conventions, .record = &r, .curve = &curve};

@@ -22,12 +22,8 @@ fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const eve
 
 }  // namespace
 
-void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::StepShape step_shape,
-                 Fitted how, EventComparison& e) {
-  const auto events = event::prepare_events(model, {e.record},
-                                            {.step_threshold = options.step_threshold,
-                                             .pre_event = options.play_in.pre_event,
-                                             .step_shape = step_shape});
+void play_fitted(const plant::PlantModel& model, const event::WhitenedEvents& events,
+                 switching::StepShape step_shape, Fitted how, EventComparison& e) {
   const event::FitEvent& event = events.front();
   fit::Fit f = fit::fit(model.under_test(), events, {}, {.steady_start = how == Fitted::steady_start});
   if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
@@ -43,7 +39,7 @@ void play_fitted(const plant::PlantModel& model, const CompareOptions& options, 
   e.record.theta = event.record.theta;  // angle as played in
   e.record.notes = event.record.notes;
   e.fitted = true;
-  e.left_out = step_shape == event::StepShape::filtered || event.turns() ? event.left_out : e.record.lost;
+  e.left_out = step_shape == switching::StepShape::filtered || event.turns() ? event.left_out : e.record.lost;
 }
 
 void add_doubt(const plant::PlantModel& model, EventComparison& e) {
@@ -54,7 +50,7 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   for (std::size_t k = 0; k < e.record.lost.size(); ++k)
     if (e.record.lost[k])
       event.filtered_samples[k] = 0;  // lost samples away from steps are interpolated accurately
-  for (const playin::Switching& s : e.switchings)
+  for (const switching::Switching& s : e.switchings)
     if (s.uncertainty > 0) event.switchings.push_back(s);
   event.channels = playin::compared_outputs(e.record, true);
   const auto n = static_cast<Eigen::Index>(event.channels.size());

@@ -13,11 +13,12 @@ enum class Fitted {
   steady_start    ///< the start is the steady state before the event; noise is white
 };
 
-/// Fits switching times and start of an event whose record is set, with the model unchanged. Sets switchings,
+/// Fits switching times and start of an event whose record is set, with the model unchanged. `events`: that
+/// record prepared for fitting, and `step_shape` of its steps. Sets switchings,
 /// playback and left_out, and the angle and notes of the record. Samples within a filtered step are not
 /// played in. Throws InputError if the model cannot follow the record.
-void play_fitted(const plant::PlantModel& model, const CompareOptions& options, event::StepShape step_shape,
-                 Fitted how, EventComparison& e);
+void play_fitted(const plant::PlantModel& model, const event::WhitenedEvents& events,
+                 switching::StepShape step_shape, Fitted how, EventComparison& e);
 
 /// Sets EventComparison::doubt of an event whose voltage was played in.
 void add_doubt(const plant::PlantModel& model, EventComparison& e);

@@ -48,7 +48,7 @@ class PowerDoubt {
   /// is estimated as the error of extrapolating the adjacent sample from those behind it.
   void beside_switchings(std::vector<double> record::Record::*power) {
     constexpr double kOfStep = 0.3;  // share of a whole step's error, RMS over the position in the step
-    for (const playin::Switching& s : e_.switchings) {
+    for (const switching::Switching& s : e_.switchings) {
       const auto next =
           static_cast<std::ptrdiff_t>(std::ranges::upper_bound(e_.record.t, s.time) - e_.record.t.begin());
       for (const std::ptrdiff_t side : {-1, 1}) {
@@ -80,7 +80,7 @@ class PowerDoubt {
     if (low < 0 || high >= static_cast<std::ptrdiff_t>(t.size())) return false;
     const double from = t[static_cast<std::size_t>(low)], to = t[static_cast<std::size_t>(high)];
     return std::ranges::none_of(e_.switchings,
-                                [&](const playin::Switching& s) { return from <= s.time && s.time < to; });
+                                [&](const switching::Switching& s) { return from <= s.time && s.time < to; });
   }
   /// Shifts each switching time by the standard deviation of a uniform distribution over its interval.
   void switching_times() {
@@ -91,7 +91,7 @@ class PowerDoubt {
       play(e_.record, moved, 1);
     }
   }
-  void play(const record::Record& moved, const std::vector<playin::Switching>& switchings, double part) {
+  void play(const record::Record& moved, const std::vector<switching::Switching>& switchings, double part) {
     playin::Playback other;
     try {
       other = playin::play_in_power(model_.under_test(), moved, switchings, options_);

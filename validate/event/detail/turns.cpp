@@ -113,22 +113,13 @@ double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std:
 
 }  // namespace
 
-std::vector<record::Record> seen_by_rotor(std::vector<record::Record> records, double mva) {
-  constexpr double kTransientReactance = 0.3;  // X'd as most machines have it [pu]
-  for (record::Record& r : records)
-    if (r.angle == record::AngleSource::integrated && r.P.size() == r.t.size())
-      std::ranges::transform(r.P, r.theta.begin(),
-                             [&](double P) { return -kTransientReactance * P * r.base.mva / mva; });
-  return records;
-}
-
 void drop_peaks(FitEvent& event) {
   record::Record& r = event.record;
   if (!event.turns() || !event.filtered_samples.empty()) return;
   const double least = std::max(kPeakThreshold * std::sqrt(white_variance(std::span(r.f).first(
                                                      static_cast<std::size_t>(event.start.samples)))),
                                 kLeastPeak / r.base.frequency),
-               reach = kPeakReach * r.step();
+               reach = switching::kPeakReach * r.step();
   const auto& at = event.switchings;
   bool dropped = false;
   const std::vector<double> with_peaks = record::angle_of_frequency(r);

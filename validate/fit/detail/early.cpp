@@ -19,12 +19,12 @@ constexpr int kEarlySteps = 12;
 /// Returns whether any switching time is fitted.
 bool is_open(const event::FitEvent& e) {
   return !playin::is_part(e.record) && !e.record.breaker() &&
-         std::ranges::any_of(e.switchings, [](const playin::Switching& s) { return s.uncertainty > 0; });
+         std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.uncertainty > 0; });
 }
 
 EventState as_prepared(const event::FitEvent& e) {
   EventState state;
-  for (const playin::Switching& s : e.switchings) state.switchings.push_back(s.time);
+  for (const switching::Switching& s : e.switchings) state.switchings.push_back(s.time);
   return state;
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "validate/playin/switching_times.hpp"
+#include "validate/switching/steady.hpp"
 
 namespace swingbank::validate::user_model_search {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 double trigger_of(const event::FitEvent& e, double level) {
   const record::Record& r = e.played();
   const auto first = static_cast<std::size_t>(e.start.samples);
-  const std::size_t k =
-      playin::leaves(r.V, {.level = std::abs(e.start.voltage), .reach = level, .from = first, .in_a_row = 1});
+  const std::size_t k = switching::leaves(
+      r.V, {.level = std::abs(e.start.voltage), .reach = level, .from = first, .in_a_row = 1});
   if (level > 0 && k < r.V.size()) return r.t[k];
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -6,18 +6,9 @@
 #include <vector>
 
 #include "validate/record/record.hpp"
+#include "validate/switching/step_intervals.hpp"
 
 namespace swingbank::validate::check {
-
-/// A sample interval (or two, if a filter spreads the step) with a voltage step.
-struct VoltageStep {
-  std::size_t before, after;  ///< samples
-};
-/// Finds steps of the voltage phasor, down to the size that exceeds noise and swings.
-std::vector<VoltageStep> find_steps(const record::Record& record);
-/// Returns the steps large enough for a quotient. Excluded are those of small events, and those where the
-/// fall and rise of a fault shorter than the filter overlap.
-std::vector<VoltageStep> find_large_steps(const record::Record& record);
 
 /// Least-squares fit of the steps to dV = -jX dI.
 struct StepFit {
@@ -27,9 +18,9 @@ struct StepFit {
 };
 /// Fits the steps with P and Q taken `delay` samples later than the voltage. NaN if the current does not
 /// change.
-StepFit fit_steps(const record::Record& record, const std::vector<VoltageStep>& steps, int delay);
+StepFit fit_steps(const record::Record& record, const std::vector<switching::StepInterval>& steps, int delay);
 
 /// Returns the delay of P and Q after the voltage [samples] if it is the same for every step, otherwise 0.
-int power_delay(const record::Record& record, const std::vector<VoltageStep>& steps);
+int power_delay(const record::Record& record, const std::vector<switching::StepInterval>& steps);
 
 }  // namespace swingbank::validate::check

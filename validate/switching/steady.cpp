@@ -1,25 +1,14 @@
-#include "validate/playin/switching_times.hpp"
+#include "validate/switching/steady.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "base/white_noise.hpp"
+#include "validate/switching/switching.hpp"
 
-namespace swingbank::validate::playin {
+namespace swingbank::validate::switching {
 namespace {
-
-/// Returns the smaller distance of each step from the extrapolations of the two steps before and of the two
-/// after it [pu]. A switching step differs from both, the change next to it from one, a rotor swing from
-/// none.
-std::vector<double> extrapolation_errors(const std::vector<Complex>& step) {
-  std::vector<double> out(step.size(), 0.0);
-  for (std::size_t k = 2; k + 2 < step.size(); ++k)
-    out[k] = std::min(std::abs(step[k] - 2.0 * step[k - 1] + step[k - 2]),
-                      std::abs(step[k] - 2.0 * step[k + 1] + step[k + 2]));
-  return out;
-}
 
 /// Number of values on either side of a step that determine its height.
 constexpr std::size_t kSamplesBeside = 3;
@@ -66,34 +55,6 @@ std::size_t before_power_step(const record::Record& record, std::size_t n) {
   return n - 1;
 }
 
-std::vector<Complex> voltage_steps(const record::Record& record) {
-  const auto phasor = [&](std::size_t k) { return std::polar(record.V[k], record.theta[k]); };
-  std::vector<Complex> step;
-  for (std::size_t k = 0; k + 1 < record.t.size(); ++k) step.push_back(phasor(k + 1) - phasor(k));
-  return step;
-}
-
-Switching within_step(const record::Record& record, std::size_t k) {
-  const double half = (record.t[k + 1] - record.t[k]) / 2;
-  return {.time = record.t[k] + half, .uncertainty = half};
-}
-
-std::vector<Switching> find_isolated_steps(const record::Record& record, double threshold) {
-  constexpr double kOfThreshold = 0.05, kOfAround = 5;
-  constexpr std::size_t kAround = 10, kSamplesBefore = 4;  // the record may begin just before the event
-  const auto out = extrapolation_errors(voltage_steps(record));
-  const auto is_lone = [&](std::size_t k) {
-    if (out[k] <= kOfThreshold * threshold) return false;
-    for (std::size_t j = k > kAround ? k - kAround : 0; j <= k + kAround; ++j)
-      if (j != k && out[k] <= kOfAround * out[j]) return false;
-    return true;
-  };
-  std::vector<Switching> found;
-  for (std::size_t k = kSamplesBefore; k + kAround < out.size(); ++k)
-    if (is_lone(k)) found.push_back(within_step(record, k));
-  return found;
-}
-
 std::size_t leaves(std::span<const double> signal, const Leaving& rule) {
   std::size_t off = 0;
   for (std::size_t k = rule.from; k < signal.size(); ++k) {
@@ -103,4 +64,16 @@ std::size_t leaves(std::span<const double> signal, const Leaving& rule) {
   return signal.size();
 }
 
-}  // namespace swingbank::validate::playin
+double steady_until(const record::Record& r) {
+  constexpr double kFirstStretch = 0.5, kOffMean = 8;  // [s]; standard deviations
+  const auto n = static_cast<std::size_t>(std::lround(kFirstStretch / r.step()));
+  if (n < 3 || n + 1 >= r.V.size()) return r.t.back();
+  double mean = 0, square = 0;
+  for (std::size_t k = 0; k < n; ++k) mean += r.V[k] / static_cast<double>(n);
+  for (std::size_t k = 0; k < n; ++k) square += std::pow(r.V[k] - mean, 2) / static_cast<double>(n - 1);
+  const double limit = std::max(kOffMean * std::sqrt(square), kLeastNoise);
+  const std::size_t k = leaves(r.V, {.level = mean, .reach = limit, .from = n});
+  return k < r.V.size() ? r.t[k - 1] : r.t.back();
+}
+
+}  // namespace swingbank::validate::switching

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/complex.hpp"
-#include "validate/event/detail/filter_window.hpp"
+#include "validate/switching/filter_window.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::switching {
 
 /// Filtered samples around some switchings, each a weighted average over a window.
 struct FilteredSamples {
@@ -47,4 +47,4 @@ class ReconstructedCurve {
   double evidence_ = 0;
 };
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

@@ -1,4 +1,4 @@
-#include "validate/event/detail/voltage_reconstruction.hpp"
+#include "validate/switching/voltage_reconstruction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include "base/constants.hpp"
 #include "base/white_noise.hpp"
-#include "validate/event/detail/reconstructed_curve.hpp"
+#include "validate/switching/detail/reconstructed_curve.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::switching {
 namespace {
 
 constexpr int kLeastKnots = 3;  ///< minimum number of knots in a reconstructed segment
@@ -43,13 +43,13 @@ struct BroughtBack {
 };
 
 /// Returns the noise from second differences before the first filtered sample.
-double noise_of(const std::vector<double>& x, const FitEvent& e) {
+double noise_of(const std::vector<double>& x, const SwitchedRecord& e) {
   const auto quiet =
       static_cast<std::size_t>(std::ranges::find(e.filtered_samples, 1) - e.filtered_samples.begin());
   return std::sqrt(white_variance(std::span(x).first(std::min(quiet, x.size()))));
 }
 
-std::vector<Cluster> clusters_of(const FitEvent& e, std::size_t event, double widest) {
+std::vector<Cluster> clusters_of(const SwitchedRecord& e, std::size_t event, double widest) {
   std::vector<Cluster> found;
   const double step = e.record.step(), magnitude = noise_of(e.record.V, e) + kLeastNoise,
                angle = noise_of(e.record.theta, e), reach = widest + kAbout * step;
@@ -135,11 +135,11 @@ class SwitchingTimeSearch {
 /// Returns the width of the search for switching times after so many rounds [s].
 double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
 
-bool has_given_times(const FitEvent& e) { return !e.record.switched.empty(); }
+bool has_given_times(const SwitchedRecord& e) { return !e.record.switched.empty(); }
 
 /// Returns approximate switching times; those given by the user are unchanged. All windows are even, so one
 /// of them suffices.
-std::vector<double> approximate_switching_times(const FitEvent& e, const Cluster& c,
+std::vector<double> approximate_switching_times(const SwitchedRecord& e, const Cluster& c,
                                                 const FilterWindow& window) {
   std::vector<double> middle, width;
   for (std::size_t s = c.first; s < c.first + c.count; ++s) {
@@ -165,7 +165,7 @@ void take_roughness(const Cluster& c, const FilterWindow& window, BroughtBack& b
       best = {std::move(best.switching_times), other, std::move(curve)};
 }
 
-BroughtBack brought_back(const FitEvent& e, const Cluster& c, const FilterWindow& window,
+BroughtBack brought_back(const SwitchedRecord& e, const Cluster& c, const FilterWindow& window,
                          const std::vector<double>& switching_times) {
   BroughtBack best{switching_times};
   if (has_given_times(e)) {
@@ -185,7 +185,7 @@ struct Attempt {
   std::vector<BroughtBack> clusters;
   double evidence = -1e300;
 };
-Attempt attempt(const std::vector<FitEvent>& events, const std::vector<Cluster>& clusters,
+Attempt attempt(const std::vector<SwitchedRecord>& events, const std::vector<Cluster>& clusters,
                 const std::vector<std::vector<double>>& switching_times, const FilterWindow& window) {
   Attempt a{window, {}, 0};
   for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -215,7 +215,7 @@ double log_occam_factor(const Cluster& c, const FilterWindow& window, const Brou
 }
 /// Drops switching times whose removal increases the evidence, most beneficial first: a fast swing resembles
 /// a step filtered by a wide window. Returns marks of the remaining ones of the cluster.
-std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterWindow& window,
+std::vector<char> drop_swings(const SwitchedRecord& e, const Cluster& c, const FilterWindow& window,
                               BroughtBack& b) {
   std::vector<char> stays(c.count, 1);
   for (bool dropped = true; dropped;) {
@@ -241,21 +241,21 @@ std::vector<char> drop_swings(const FitEvent& e, const Cluster& c, const FilterW
 }
 
 /// Removes the other switchings, and their marks of filtered samples.
-void keep(FitEvent& e, const std::vector<char>& stays) {
-  std::vector<playin::Switching> kept;
+void keep(SwitchedRecord& e, const std::vector<char>& stays) {
+  std::vector<Switching> kept;
   for (std::size_t s = 0; s < stays.size(); ++s)
     if (stays[s]) kept.push_back(e.switchings[s]);
   if (kept.size() == e.switchings.size()) return;
   e.switchings = std::move(kept);
   for (std::size_t k = 0; k < e.filtered_samples.size(); ++k)
     e.filtered_samples[k] =
-        e.filtered_samples[k] && std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+        e.filtered_samples[k] && std::ranges::any_of(e.switchings, [&](const Switching& s) {
           return std::abs(e.record.t[k] - s.time) < s.uncertainty - 0.5 * e.record.step();
         });
   if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear(), e.clean = {};
 }
 /// Drops such switching times of all events, and clusters without remaining ones.
-void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, Attempt& a) {
+void drop_swings(std::vector<SwitchedRecord>& events, std::vector<Cluster>& clusters, Attempt& a) {
   std::vector<std::vector<char>> stays(events.size());
   for (std::size_t i = 0; i < clusters.size(); ++i) {
     Cluster& c = clusters[i];
@@ -277,17 +277,17 @@ void drop_swings(std::vector<FitEvent>& events, std::vector<Cluster>& clusters, 
 }
 
 /// Marks the samples within the window, in addition to those that were seen to move.
-void mark_again(FitEvent& e, const FilterWindow& window) {
+void mark_again(SwitchedRecord& e, const FilterWindow& window) {
   const double reach = window.half() - 1e-3 * e.record.step();
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
     e.filtered_samples[k] =
-        e.filtered_samples[k] || std::ranges::any_of(e.switchings, [&](const playin::Switching& s) {
+        e.filtered_samples[k] || std::ranges::any_of(e.switchings, [&](const Switching& s) {
           return std::abs(e.record.t[k] - s.time) < reach;
         });
 }
 
 /// Replaces the clean record between two times by knots of the curve.
-void replace(FitEvent& e, int segment, double from, double to, const ReconstructedCurve& curve) {
+void replace(SwitchedRecord& e, int segment, double from, double to, const ReconstructedCurve& curve) {
   record::Record& r = e.clean;
   const auto first = std::ranges::lower_bound(r.t, from) - r.t.begin(),
              last = std::ranges::upper_bound(r.t, to) - r.t.begin();
@@ -310,14 +310,14 @@ void replace(FitEvent& e, int segment, double from, double to, const Reconstruct
   put(r.theta, theta);
 }
 
-void place(FitEvent& e, const Cluster& c, const BroughtBack& b) {
+void place(SwitchedRecord& e, const Cluster& c, const BroughtBack& b) {
   if (has_given_times(e)) return;
   for (std::size_t i = 0; i < c.count; ++i)
     e.switchings[c.first + i] = {.time = b.switching_times[i], .uncertainty = e.record.step() / 5};
 }
 
 /// Fills all filtered samples of a cluster.
-void fill(FitEvent& e, const Cluster& c, const BroughtBack& b, double half) {
+void fill(SwitchedRecord& e, const Cluster& c, const BroughtBack& b, double half) {
   const double begin = std::max(b.switching_times.front() - half, c.stretch.t.front());
   const double end = std::min(b.switching_times.back() + half, c.stretch.t.back());
   for (std::size_t s = 0; s <= c.count; ++s)
@@ -348,9 +348,9 @@ struct FilteredSteps {
   std::vector<Cluster> clusters = {};
   std::vector<std::vector<double>> switching_times = {};
 };
-FilteredSteps filtered_steps_of(const std::vector<FitEvent>& events) {
+FilteredSteps filtered_steps_of(const std::vector<SwitchedRecord>& events) {
   const auto first =
-      std::ranges::find_if(events, [](const FitEvent& e) { return !e.filtered_samples.empty(); });
+      std::ranges::find_if(events, [](const SwitchedRecord& e) { return !e.filtered_samples.empty(); });
   if (first == events.end()) return {};
   const double frequency = first->record.base.frequency;
   FilteredSteps all{known_windows(frequency, 1 / first->record.step())};
@@ -364,7 +364,7 @@ FilteredSteps filtered_steps_of(const std::vector<FitEvent>& events) {
     all.switching_times.push_back(approximate_switching_times(events[c.event], c, one_cycle));
   return all;
 }
-Attempt most_probable(const std::vector<FitEvent>& events, const FilteredSteps& all) {
+Attempt most_probable(const std::vector<SwitchedRecord>& events, const FilteredSteps& all) {
   Attempt best;
   for (const FilterWindow& w : all.windows)
     if (Attempt a = attempt(events, all.clusters, all.switching_times, w); a.evidence > best.evidence)
@@ -374,7 +374,7 @@ Attempt most_probable(const std::vector<FitEvent>& events, const FilteredSteps& 
 
 }  // namespace
 
-bool passed_filter(const std::vector<FitEvent>& events) {
+bool passed_filter(const std::vector<SwitchedRecord>& events) {
   const FilteredSteps all = filtered_steps_of(events);
   if (all.clusters.empty()) return false;
   const FilterWindow none(FilterWindow::Shape::box, 1e-3 * all.clusters.front().stretch.step);
@@ -383,7 +383,7 @@ bool passed_filter(const std::vector<FitEvent>& events) {
          best.evidence > attempt(events, all.clusters, all.switching_times, none).evidence;
 }
 
-FilterWindow reconstruct_voltage(std::vector<FitEvent>& events) {
+FilterWindow reconstruct_voltage(std::vector<SwitchedRecord>& events) {
   FilteredSteps all = filtered_steps_of(events);
   if (all.windows.empty()) return {};
   Attempt best = most_probable(events, all);
@@ -395,7 +395,7 @@ FilterWindow reconstruct_voltage(std::vector<FitEvent>& events) {
   drop_swings(events, clusters, best);
   for (std::size_t i = 0; i < clusters.size(); ++i)
     place(events[clusters[i].event], clusters[i], best.clusters[i]);
-  for (FitEvent& e : events) {
+  for (SwitchedRecord& e : events) {
     if (e.filtered_samples.empty()) continue;
     mark_again(e, best.window);
     e.clean = without(e.record, e.filtered_samples);
@@ -405,4 +405,4 @@ FilterWindow reconstruct_voltage(std::vector<FitEvent>& events) {
   return best.window;
 }
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

@@ -1,11 +1,11 @@
-#include "validate/event/detail/reconstructed_curve.hpp"
+#include "validate/switching/detail/reconstructed_curve.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::switching {
 namespace {
 
 constexpr double kAnyVoltage = 1;  ///< prior standard deviation of a coefficient about 0 [pu]
@@ -145,4 +145,4 @@ Complex ReconstructedCurve::operator()(int segment, double t) const {
   return v;
 }
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

@@ -1,5 +1,5 @@
-// Time at which a signal leaves its level, and steps of the voltage.
-#include "validate/playin/switching_times.hpp"
+// Time at which a signal leaves its level, end of the steady state, and steps of the voltage.
+#include "validate/switching/steady.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,9 @@
 #include <numbers>
 #include <random>
 
-namespace swingbank::validate::playin {
+#include "validate/switching/voltage_steps.hpp"
+
+namespace swingbank::validate::switching {
 namespace {
 
 TEST(Leaves, IgnoresSingleSample) {
@@ -64,4 +66,4 @@ TEST(VoltageSteps, AreDifferencesOfThePhasor) {
 }
 
 }  // namespace
-}  // namespace swingbank::validate::playin
+}  // namespace swingbank::validate::switching

@@ -1,10 +1,10 @@
-#include "validate/event/detail/filter_window.hpp"
+#include "validate/switching/filter_window.hpp"
 
 #include <cmath>
 
 #include "sim/core/pmu_window.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::switching {
 namespace pmu = sim::pmu_window;
 
 FilterWindow::FilterWindow(Shape shape, double half, double Ffr) : shape_(shape), half_(half), Ffr_(Ffr) {
@@ -39,4 +39,4 @@ std::vector<FilterWindow> known_windows(double frequency, double rate) {
   return windows;
 }
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

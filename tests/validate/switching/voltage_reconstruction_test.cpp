@@ -1,5 +1,5 @@
 // A fault of three samples behind a filter of two cycles is restored.
-#include "validate/event/detail/voltage_reconstruction.hpp"
+#include "validate/switching/voltage_reconstruction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,10 @@
 #include <numbers>
 #include <random>
 
-namespace swingbank::validate::event {
+#include "validate/playin/voltage_curve.hpp"
+#include "validate/switching/voltage_steps.hpp"
+
+namespace swingbank::validate::switching {
 namespace {
 
 constexpr double kOn = 1.8583, kRate = 60.0, kCycle = 1 / 60.0, kPi = std::numbers::pi;
@@ -44,9 +47,9 @@ Complex averaged(const Fault& fault, const Filter& filter, double t) {
   }
   return sum / weight;
 }
-FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTriangle, double rate = kRate,
-               double phase = 0) {
-  FitEvent e;
+SwitchedRecord event(double noise, const Fault& fault = {}, const Filter& filter = kTriangle,
+                     double rate = kRate, double phase = 0) {
+  SwitchedRecord e;
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(0, noise);
   e.record.base.frequency = 60;
@@ -57,11 +60,11 @@ FitEvent event(double noise, const Fault& fault = {}, const Filter& filter = kTr
     e.record.V.push_back(std::abs(v) + normal(random));
     e.record.theta.push_back(std::arg(v) + normal(random));
   }
-  e.switchings = find_switchings(e.record, playin::kStepThreshold, StepShape::filtered, e.filtered_samples);
+  static_cast<SwitchingTimes&>(e) = VoltageSteps(e.record).find(kStepThreshold, StepShape::filtered);
   e.clean = without(e.record, e.filtered_samples);
   return e;
 }
-double worst_within(const FitEvent& e, const Fault& fault = {}) {
+double worst_within(const SwitchedRecord& e, const Fault& fault = {}) {
   const playin::VoltageCurve curve(e.clean, e.switchings);
   double worst = 0;
   for (double t = kOn + 1e-3; t < fault.off; t += 1e-3)
@@ -70,7 +73,7 @@ double worst_within(const FitEvent& e, const Fault& fault = {}) {
 }
 
 TEST(VoltageReconstruction, RestoresShortFault) {
-  std::vector<FitEvent> events = {event(0.0)};
+  std::vector<SwitchedRecord> events = {event(0.0)};
   const double before = worst_within(events.front());
   const FilterWindow window = reconstruct_voltage(events);
   EXPECT_EQ(window.shape(), FilterWindow::Shape::triangle);
@@ -84,7 +87,7 @@ TEST(VoltageReconstruction, RestoresShortFault) {
   EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
 }
 TEST(VoltageReconstruction, IsInsensitiveToNoise) {
-  std::vector<FitEvent> events = {event(2e-4)};
+  std::vector<SwitchedRecord> events = {event(2e-4)};
   reconstruct_voltage(events);
   // One filtered sample determines a switching time to 2e-4 pu / (0.25 pu / 17 ms); with the fault's slopes
   // free, to a few times as much.
@@ -98,7 +101,7 @@ TEST(VoltageReconstruction, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {
       const Fault fault = {.off = kOn + length, .V = 0.85};
-      std::vector<FitEvent> events = {event(1e-4, fault, kTriangle, kRate, phase / kRate)};
+      std::vector<SwitchedRecord> events = {event(1e-4, fault, kTriangle, kRate, phase / kRate)};
       reconstruct_voltage(events);
       ASSERT_EQ(events.front().switchings.size(), 2u);
       EXPECT_NEAR(events.front().switchings[0].time, kOn, 2e-3) << phase << ' ' << length;
@@ -107,13 +110,13 @@ TEST(VoltageReconstruction, FindsTimesOfShortFaultAtAnyOffset) {
 }
 /// The knots of the restored samples lie closer to a switching than its uncertainty.
 TEST(VoltageReconstruction, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
-  std::vector<FitEvent> events = {event(1e-4, {.off = kOn + 0.055})};
+  std::vector<SwitchedRecord> events = {event(1e-4, {.off = kOn + 0.055})};
   reconstruct_voltage(events);
-  const FitEvent& e = events.front();
+  const SwitchedRecord& e = events.front();
   const playin::VoltageCurve curve(e.clean, e.switchings);
   for (const double by : {-0.9, 0.9})
     for (std::size_t s = 0; s < e.switchings.size(); ++s) {
-      std::vector<playin::Switching> at = e.switchings;
+      std::vector<Switching> at = e.switchings;
       at[s].time += by * at[s].uncertainty;
       const playin::VoltageCurve moved = curve.moved(e.clean, at);
       EXPECT_EQ(moved.end(static_cast<int>(s)), at[s].time);
@@ -126,8 +129,8 @@ TEST(VoltageReconstruction, KnotsStayInTheirSegment_WhenSwitchingTimesMove) {
 TEST(VoltageReconstruction, RestoresFaultShorterThanClassMWindow) {
   for (const double phase : {0.0, 0.3, 0.6, 0.9}) {
     const Fault deep = {.off = kOn + 0.1, .V = 0.3};
-    std::vector<FitEvent> events = {event(1e-4, deep, kClassM30, 30, phase / 30)};
-    FitEvent& e = events.front();
+    std::vector<SwitchedRecord> events = {event(1e-4, deep, kClassM30, 30, phase / 30)};
+    SwitchedRecord& e = events.front();
     const FilterWindow window = reconstruct_voltage(events);
     EXPECT_EQ(window.shape(), FilterWindow::Shape::class_m);
     EXPECT_NEAR(window.half(), kClassM30.half, 1e-9);
@@ -139,8 +142,8 @@ TEST(VoltageReconstruction, RestoresFaultShorterThanClassMWindow) {
 }
 TEST(VoltageReconstruction, KeepsFaultVoltageBehindALag) {
   const Fault deep = {.off = 1.92, .V = 0.3};
-  std::vector<FitEvent> events = {event(1e-4, deep, kLag)};
-  FitEvent& e = events.front();
+  std::vector<SwitchedRecord> events = {event(1e-4, deep, kLag)};
+  SwitchedRecord& e = events.front();
   reconstruct_voltage(events);
   ASSERT_EQ(e.switchings.size(), 2u);
   EXPECT_NEAR(e.switchings[0].time, kOn, 0.012) << "later by more than the lag";
@@ -151,4 +154,4 @@ TEST(VoltageReconstruction, KeepsFaultVoltageBehindALag) {
 }
 
 }  // namespace
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

@@ -2,7 +2,7 @@
 // Averaging windows of phasor measurement units.
 #include <vector>
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::switching {
 
 /// Averaging window: an even weight function with integral 1.
 class FilterWindow {
@@ -27,4 +27,4 @@ class FilterWindow {
 /// rate. The latter applies if every second report was dropped.
 std::vector<FilterWindow> known_windows(double frequency, double rate);
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::switching

@@ -1,0 +1,37 @@
+#pragma once
+// Switching times of the records of one instrument: found in the voltage, given by the user, or those of a
+// breaker.
+#include <vector>
+
+#include "validate/switching/switching.hpp"
+
+namespace swingbank::validate::switching {
+
+/// Reach of a meter's window around a switching [samples]: there the frequency is not the derivative of the
+/// angle.
+constexpr double kPeakReach = 2.1;
+
+/// Options of the detection.
+struct SwitchingOptions {
+  double threshold = kStepThreshold;    ///< of VoltageSteps::detect() [pu]
+  StepShape shape = StepShape::either;  ///< either: determined from the records (step_shape_of)
+  double mva = 0;                       ///< rating of all machines whose power the records contain
+};
+
+/// Returns the angle for the detection of switchings [rad]. An angle integrated from a frequency lacks their
+/// steps, but the power through the transient reactance shows them. It is replaced by that of the voltage
+/// seen from the rotor, theta = -0.3 P [pu on `mva`]. Others are returned unchanged.
+std::vector<double> angle_seen_by_rotor(const record::Record& record, double mva);
+
+/// Returns the shape of steps as one instrument records them, from all of its records. The first step of each
+/// record decides (VoltageSteps::shape_of_first). If some are sharp and others are not, the most probable
+/// window decides (passed_filter). `either` if no record decides. If the angle was integrated, only V is
+/// used.
+StepShape step_shape_of(const std::vector<record::Record>& records, double threshold);
+
+/// Returns the records of one instrument with their switching times. The voltage at filtered samples is not
+/// yet reconstructed (reconstruct_voltage).
+std::vector<SwitchedRecord> switched_records(std::vector<record::Record> records,
+                                             const SwitchingOptions& options);
+
+}  // namespace swingbank::validate::switching
