@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "validate/fit/fit.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 
 int main(int argc, char** argv) try {
@@ -13,7 +14,7 @@ int main(int argc, char** argv) try {
   std::vector<record::Record> records;
   for (int k = 2; k < argc; ++k)
     records.push_back(record::read_record(argv[k], model.record_base, model.reading));
-  const event::WhitenedEvents events = event::prepare_events(model, records);
+  const noise::WhitenedEvents events = noise::whitened_events(model, records);
   const double prior = 0.3;  // standard deviation of the prior, relative to the submitted value
   std::vector<fit::FreeParameter> free;
   for (const char* name : {"H", "Xdp"})

@@ -9,6 +9,7 @@
 
 #include "validate/event/event.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/reduced/identify.hpp"
 
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
   const plant::PlantModel model = plant::load_plant_model(argv[1]);
   std::vector<record::Record> records;
   for (const auto& file : files) records.push_back(record::read_record(file, model.record_base));
-  const event::WhitenedEvents events = event::prepare_events(model, records, {.measured_states = false});
+  const noise::WhitenedEvents events = noise::whitened_events(model, records, {.measured_states = false});
   const double begin = seconds();
   const auto free = fit::free_parameters(model.plant, 0.3);
   std::vector<reduced::Inference> inferences;

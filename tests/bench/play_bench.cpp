@@ -13,6 +13,7 @@
 #include "validate/event/play.hpp"
 #include "validate/fit/states.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 
 namespace swingbank::validate {
@@ -26,7 +27,7 @@ struct Cost {
 };
 
 struct Bench {
-  const event::WhitenedEvents& events;
+  const noise::WhitenedEvents& events;
   bool lenient;
   std::map<std::string, Cost> costs = {};
 
@@ -84,7 +85,7 @@ void print_costs(const Bench& bench) {
 }
 
 /// Processor time of the whitened residuals of all events [s], minimum of several calls.
-double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+double objective_seconds(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                          bool gradient) {
   constexpr int kCalls = 10;
   double fastest = 1e300;
@@ -104,7 +105,7 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::
       const playin::Response r =
           event::play(tested, event, {}, along,
                       {.lenient = true, .allowance = &allowances[e], .linear_sensitivities = true});
-      event::RowMatrix columns(event.values(), static_cast<Eigen::Index>(along.size()) + 1);
+      noise::RowMatrix columns(event.values(), static_cast<Eigen::Index>(along.size()) + 1);
       for (std::size_t d = 0; d < along.size(); ++d)
         columns.col(static_cast<Eigen::Index>(d)) = event.collected(r.sensitivities[d].value, false);
       columns.rightCols(1) = event.collected(r.value, true);
@@ -115,7 +116,7 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const event::
   return fastest;
 }
 
-void print_objective(const plant::PlantModel& model, const event::WhitenedEvents& events) {
+void print_objective(const plant::PlantModel& model, const noise::WhitenedEvents& events) {
   fmt::print("{:22} {:>12} {:>12} {:>8}\n", "all records", "objective ms", "gradient ms", "ratio");
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) try {
       const sim::plant::PlantUnderTest tested{hypothesis::started(h, h.starts.front()), h.conventions};
@@ -130,7 +131,7 @@ int run(const char* model_file, std::size_t draws, std::span<const char* const> 
   const plant::PlantModel model = plant::load_plant_model(model_file);
   std::vector<record::Record> records;
   for (const char* file : record_files) records.push_back(record::read_record(file, model.record_base));
-  const auto events = event::prepare_events(model, records, {.measured_states = false});
+  const auto events = noise::whitened_events(model, records, {.measured_states = false});
   print_objective(model, events);
   for (const bool lenient : {false, true}) {
     Bench bench{events, lenient};

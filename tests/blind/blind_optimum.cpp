@@ -41,7 +41,7 @@ std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Di
 
 /// Returns the best fit that starts at the truth, from two event states: that of `ended` and the prepared
 /// one.
-fit::Fit from_truth(const Ended& ended, const event::WhitenedEvents& events, const calibrate::Truth& truth) {
+fit::Fit from_truth(const Ended& ended, const noise::WhitenedEvents& events, const calibrate::Truth& truth) {
   std::vector<double> values = fit::values_of(ended.fit->plant, ended.free);
   for (std::size_t i = 0; i < ended.free.size(); ++i)
     if (const auto at = truth.find(sim::plant::parameter_name(ended.fit->plant, ended.free[i].id).text());

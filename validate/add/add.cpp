@@ -14,9 +14,10 @@
 #include "base/in_parallel.hpp"
 #include "base/nearest_word.hpp"
 #include "validate/fit/interrupted.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/fit/sensitivities.hpp"
 #include "validate/hypothesis/search.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
@@ -35,17 +36,17 @@ class Bench {
   Bench(const plant::PlantModel& model, std::vector<record::Record> records,
         const calibrate::CalibrateOptions& options)
       : options_(options), out_(calibrate::held_out_events(records, options.held_out)) {
-    all_ = event::prepare_events(model, std::move(records), options.events);
+    all_ = noise::whitened_events(model, std::move(records), options.events);
     keep_seen();
   }
-  [[nodiscard]] const event::WhitenedEvents& all() const { return all_; }
-  [[nodiscard]] const event::WhitenedEvents& seen() const { return seen_; }
+  [[nodiscard]] const noise::WhitenedEvents& all() const { return all_; }
+  [[nodiscard]] const noise::WhitenedEvents& seen() const { return seen_; }
   /// Measures the noise again through a fit to the seen events, if its reduced chi-square is low enough.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions) {
     if (seen.reduced_chi2() >= thresholds::noise.measurable) return false;
-    fit::Fit whole = seen;
-    whole.events = each({seen.plant, conventions}, event::Phase::noise_again);
-    all_ = all_.with(fit::measure_noise_through(whole, conventions, all_));
+    const sim::plant::PlantUnderTest fitted{seen.plant, conventions};
+    all_ = all_.with(noise::measure_noise_through(fitted, each(fitted, event::Phase::noise_again),
+                                                  seen.reduced_chi2(), all_));
     keep_seen();
     return true;
   }
@@ -86,7 +87,7 @@ class Bench {
 
   const calibrate::CalibrateOptions& options_;
   std::vector<bool> out_;
-  event::WhitenedEvents all_, seen_;
+  noise::WhitenedEvents all_, seen_;
 };
 
 /// Continues a fit from the end of `f`.

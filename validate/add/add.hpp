@@ -34,7 +34,7 @@ struct Addition {
   bool adequate = false;           ///< the residual is noise in every event
   thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
   std::string sentence;            ///< result in words
-  event::WhitenedEvents prepared;  ///< the events with their noise model
+  noise::WhitenedEvents prepared;  ///< the events with their noise model
   fit::Fit without, with;          ///< fits to the seen events without and with the effect
   double seconds = 0;              ///< processing time [s]
 };

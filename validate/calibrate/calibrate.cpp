@@ -16,15 +16,16 @@
 #include "validate/calibrate/detail/screen.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
 #include "validate/fit/interrupted.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/fit/sign.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
 
 fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
-               const event::WhitenedEvents& event) {
+               const noise::WhitenedEvents& event) {
   fit::Fit f = fit::fit({plant, model.conventions}, event, {});
   if (!f.failed.empty())
     throw InputError({"playback of the record fails", event.front().record.name, f.failed,
@@ -33,7 +34,7 @@ fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
 }
 
 /// Returns chi2 of all events with fixed states; infinite if the plant cannot be simulated.
-double chi2_of(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+double chi2_of(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                const std::vector<fit::EventState>& states) {
   double sum = 0;
   try {
@@ -57,7 +58,7 @@ class Calibrating {
         free_(options.free.empty() ? chosen_parameters(model.plant, options.prior_sd, options.fixed)
                                    : options.free) {
     c_.model = model;
-    c_.prepared = event::prepare_events(model, std::move(records), options.events);
+    c_.prepared = noise::whitened_events(model, std::move(records), options.events);
     for (std::size_t e = 0; e < c_.prepared.size(); ++e)
       if (!out_[e]) fitted_.push_back(e);
     seen_ = c_.prepared.only(fitted_);
@@ -215,16 +216,14 @@ class Calibrating {
   /// Whitens the fitted plant's response to noise of the played-in voltage by an innovations filter, then
   /// refits.
   void whiten_voltage_noise() {
-    fit::Fit whole;
-    whole.plant = c_.fit.plant;
-    whole.events = each_alone(whole.plant, event::Phase::voltage_noise);
-    event::WhitenedEvents measured = c_.prepared;
-    measured = measured.with(event::measure_noise({whole.plant, model_.conventions}, measured));
-    measured = measured.with(fit::sharpen_noise(whole, measured));
-    noise_ = fit::voltage_noise(whole, measured);
+    const sim::plant::PlantUnderTest whole{c_.fit.plant, model_.conventions};
+    const auto fits = each_alone(whole.plant, event::Phase::voltage_noise);
+    noise::WhitenedEvents measured = c_.prepared;
+    measured = measured.with(noise::measure_noise(whole, measured));
+    measured = measured.with(noise::sharpen_noise(fits, measured));
+    noise_ = noise::voltage_noise(fits, measured);
     whitened_through_ = whole.plant;
-    const event::WhitenedEvents remembered =
-        measured.with(fit::remember_noise(whole, model_.conventions, measured));
+    const noise::WhitenedEvents remembered = measured.with(noise::remember_noise(whole, fits, measured));
     bool any_memory = false;
     for (std::size_t e = 0; e < remembered.size(); ++e)
       any_memory = any_memory || remembered.noise(e).memory != nullptr;
@@ -233,7 +232,7 @@ class Calibrating {
     seen_ = remembered.only(fitted_);
     fit::FitOptions o;
     o.values = fit::values_of(whole.plant, free_);
-    for (const std::size_t e : fitted_) o.start.push_back(whole.events[e].state);
+    for (const std::size_t e : fitted_) o.start.push_back(fits[e].state);
     c_.fit = fit::fit(model_.under_test(), seen_, free_, o);
     if (!c_.fit.failed.empty())
       throw InputError({"the fitted model cannot run", model_.origin, c_.fit.failed, "fix parameters"});
@@ -477,10 +476,10 @@ class Calibrating {
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
   std::vector<std::size_t> fitted_;  ///< indices of the events that are not held out
-  event::WhitenedEvents seen_;       ///< these events
+  noise::WhitenedEvents seen_;       ///< these events
   std::vector<fit::EventFit> before_, after_;
   std::vector<double> allowance_;
-  fit::VoltageNoise noise_;
+  noise::VoltageNoise noise_;
   VoltagePull pull_;
   sim::plant::Plant whitened_through_;   ///< plant of the innovations filter
   std::vector<fit::EventState> states_;  ///< of the fitted events during the bias correction

@@ -114,7 +114,7 @@ struct Calibration {
   double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
   fit::Fit fit;                         ///< fit of the events that are not held out
   std::vector<fit::EventState> states;  ///< of every event, at the fitted parameters
-  event::WhitenedEvents prepared;       ///< every event, in the order given
+  noise::WhitenedEvents prepared;       ///< every event, in the order given
   double seconds = 0;                   ///< processing time [s]
 };
 
@@ -135,7 +135,7 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
 
 /// Returns the number of pre-event samples over all events, less one per event.
-int pre_event_samples(const event::WhitenedEvents& events);
+int pre_event_samples(const noise::WhitenedEvents& events);
 
 /// Returns the limit of an event's reduced chi-square that noise alone exceeds with probability 0.001, at
 /// least `least`. It allows for the autocorrelation of the pre-event residual (Bartlett) and for a noise
@@ -151,7 +151,7 @@ double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixX
 
 /// Returns the reduced chi-square and channel errors of one event before and after. Both fits must use the
 /// noise of `event`; otherwise throws std::logic_error.
-EventScore score_event(event::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
+EventScore score_event(noise::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
 
 }  // namespace swingbank::validate::calibrate

@@ -11,6 +11,7 @@
 #include "base/constants.hpp"
 #include "sim/plant/usual.hpp"
 #include "validate/fit/interrupted.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -82,9 +83,9 @@ class EventResidual : public ceres::CostFunction {
 
 /// Returns the event's whitened residuals with the prepared switching times and start.
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
-                        const event::WhitenedEvents& events, std::size_t e) {
+                        const noise::WhitenedEvents& events, std::size_t e) {
   fit::EventFit f;
-  fit::compare(events, e, event::play({plant, setting.model.conventions}, events[e], {}), f);
+  noise::compare(events, e, event::play({plant, setting.model.conventions}, events[e], {}), f);
   return f;
 }
 
@@ -120,7 +121,7 @@ class CurveFitting {
         setting_{model, free_, {}} {
     event::FitEventOptions events = options.events;
     events.measured_states = false;
-    events_ = event::prepare_events(model, std::move(records), events);
+    events_ = noise::whitened_events(model, std::move(records), events);
     fit_.model = model;
     setting_.start = fit::values_of(model.plant, free_);
     z_.assign(free_.size(), 1.0);
@@ -260,7 +261,7 @@ class CurveFitting {
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
   Setting setting_;
-  event::WhitenedEvents events_;
+  noise::WhitenedEvents events_;
   std::vector<double> z_;
   CurveFit fit_;
 };

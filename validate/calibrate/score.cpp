@@ -59,7 +59,7 @@ double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fit
   return thresholds::event_limit(std::sqrt(samples + estimate), least);
 }
 
-int pre_event_samples(const event::WhitenedEvents& events) {
+int pre_event_samples(const noise::WhitenedEvents& events) {
   int sum = 0;
   for (const auto& e : events) sum += e.start.samples - 1;
   return sum;
@@ -72,13 +72,13 @@ double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixX
   return (mean + thresholds::adequacy.one_in_thousand * std::sqrt(std::max(variance, 0.0))) / values;
 }
 
-EventScore score_event(event::WhitenedEvent whitened, const fit::EventFit& before, const fit::EventFit& after,
+EventScore score_event(noise::WhitenedEvent whitened, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least) {
   const event::FitEvent& event = whitened.event;
   EventScore s;
   s.record = event.record.name;
   s.seen = seen;
-  fit::require_same_noise(before, after);
+  noise::require_same(before.noise, after.noise);
   s.before = before.reduced_chi2();
   s.after = after.reduced_chi2();
   s.limit = reduced_chi2_limit(event, after, pre_event, least);

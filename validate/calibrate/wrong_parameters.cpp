@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/json.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::calibrate {
 
@@ -13,7 +14,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
   for (std::size_t k = 0; k < records.size(); ++k)
     if (!out[k]) seen.push_back(std::move(records[k]));
   const auto free = chosen_parameters(model.plant, options.prior_sd, options.fixed);
-  const auto events = event::prepare_events(model, std::move(seen), options.events);
+  const auto events = noise::whitened_events(model, std::move(seen), options.events);
   fit::SparseOptions o;
   o.progress = options.progress;
   WrongParameters w;

@@ -11,6 +11,7 @@
 #include "validate/compare/detail/power_doubt.hpp"
 #include "validate/compare/detail/standard_deviation.hpp"
 #include "validate/compare/event_title.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
 #include "validate/switching/given.hpp"
@@ -147,7 +148,7 @@ void measure_channels(const plant::PlantModel& model, PlaybackInput input,
   if (power) {
     add({"V", "pu", 1, switching::kLeastNoise, true, true, "fault"}, e.record.V, e.playback.V);
     if (e.record.angle != record::AngleSource::none)
-      add({"frequency", "mHz", 1e3 * base.frequency, event::kLeastSpeedNoise, true, false},
+      add({"frequency", "mHz", 1e3 * base.frequency, noise::kLeastSpeedNoise, true, false},
           frequency_of(e.record.t, e.record.theta, base.frequency),
           frequency_of(e.record.t, e.playback.theta, base.frequency));
   }
@@ -370,7 +371,7 @@ ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) 
     case playin::Output::Q:
       return {"Mvar", base.mva, switching::kLeastNoise};
     case playin::Output::speed:
-      return {"mHz", 1e3 * base.frequency, event::kLeastSpeedNoise};
+      return {"mHz", 1e3 * base.frequency, noise::kLeastSpeedNoise};
     default:
       return {"pu", 1, switching::kLeastNoise};
   }
@@ -395,7 +396,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
                                               ? switching::step_shape_of({e.record}, options.step_threshold)
                                               : options.step_shape;
   std::string failed;
-  const auto fitted_with = [&](const event::WhitenedEvents& events, Fitted how) {
+  const auto fitted_with = [&](const noise::WhitenedEvents& events, Fitted how) {
     EventComparison other = e;
     play_fitted(model, events, step_shape, how, other);
     measure_channels(model, PlaybackInput::voltage, options.play_in, other);
@@ -403,10 +404,10 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   };
   // the start is fitted only if residuals are then within noise; an incomplete model would bias it
   const auto fitted = [&] {
-    const auto events = event::prepare_events(model, {e.record},
-                                              {.step_threshold = options.step_threshold,
-                                               .pre_event = options.play_in.pre_event,
-                                               .step_shape = step_shape});
+    const auto events = noise::whitened_events(model, {e.record},
+                                               {.step_threshold = options.step_threshold,
+                                                .pre_event = options.play_in.pre_event,
+                                                .step_shape = step_shape});
     for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
       if (EventComparison other = fitted_with(events, how); explained(other)) return other;

@@ -14,9 +14,10 @@
 #include "base/stop_signal.hpp"
 #include "validate/diagnose/detail/base.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/search.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -37,7 +38,7 @@ class Diagnoser {
       throw InputError({fmt::format("{} event", records.size()), "--records",
                         "an effect is accepted only if it predicts a held-out event",
                         "give records of two events or more"});
-    result_.events = event::prepare_events(model, std::move(records), options.events);
+    result_.events = noise::whitened_events(model, std::move(records), options.events);
     result_.conventions = model.conventions;
     threads_ = options.threads > 0 ? options.threads : omp_get_max_threads();
   }
@@ -62,7 +63,7 @@ class Diagnoser {
   /// Fits the given model, infers the missing inputs and tries every hypothesis. Returns false if the user
   /// has stopped.
   bool fit_all() {
-    const event::WhitenedEvents prepared = result_.events;
+    const noise::WhitenedEvents prepared = result_.events;
     fit::FitOptions from{.lenient = true};
     for (int round = 0;; ++round) {
       report(event::Phase::base, "", 0, 1);
@@ -98,7 +99,7 @@ class Diagnoser {
   bool judge_all() {
     const bool again = measure_noise_again();
     noise_transfer_.emplace(sim::plant::PlantUnderTest{result_.base.plant, model_.conventions},
-                            result_.events, fit::voltage_noise(result_.base, result_.events));
+                            result_.events, noise::voltage_noise(result_.base.events, result_.events));
     held_out_base_ = hypothesis::hold_out(trial(), model_.under_test(), {}, result_.base);
     if (again) infer_inputs();
     keep();
@@ -149,7 +150,8 @@ class Diagnoser {
     const hypothesis::Judgement& best = result_.ranked.front();
     if (!best.fitted || best.fit.reduced_chi2() >= thresholds::noise.measurable) return false;
     result_.events = result_.events.with(
-        fit::measure_noise_through(best.fit, best.hypothesis.conventions, result_.events));
+        noise::measure_noise_through({best.fit.plant, best.hypothesis.conventions}, best.fit.events,
+                                     best.fit.reduced_chi2(), result_.events));
     const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
                            const std::vector<fit::FreeParameter>& free, const fit::Fit& f,
                            const fit::FitOptions& how) {
@@ -451,7 +453,7 @@ class Diagnoser {
   Diagnosis result_;
   std::optional<Diagnosis> kept_;
   std::vector<hypothesis::HeldOut> held_out_base_;
-  std::optional<fit::NoiseTransfer> noise_transfer_;
+  std::optional<noise::NoiseTransfer> noise_transfer_;
   int threads_;
 };
 

@@ -48,7 +48,7 @@ struct Diagnosis {
   user_model_search::UserModelSearch
       user_models;  ///< user-defined models tried if no known effect explains the records
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
-  event::WhitenedEvents events;               ///< with the noise model of all fits
+  noise::WhitenedEvents events;               ///< with the noise model of all fits
   sim::Conventions conventions;               ///< of the model
   double seconds = 0;                         ///< processing time [s]
 };

@@ -12,7 +12,7 @@
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
-#include "validate/fit/voltage_doubt.hpp"
+#include "validate/noise/voltage_doubt.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -42,7 +42,7 @@ double share_inside(const event::FitEvent& e, const std::vector<double>& residua
   return static_cast<double>(inside) / compared;
 }
 /// Returns the shapes of one channel.
-std::vector<std::vector<double>> shapes_of(const fit::VoltageDoubt& doubt, std::size_t channel) {
+std::vector<std::vector<double>> shapes_of(const noise::VoltageDoubt& doubt, std::size_t channel) {
   std::vector<std::vector<double>> shapes;
   for (const auto& shape : doubt.shapes) shapes.push_back(shape[channel]);
   return shapes;
@@ -50,7 +50,7 @@ std::vector<std::vector<double>> shapes_of(const fit::VoltageDoubt& doubt, std::
 
 /// Residual shapes of the played-in voltage's errors, for the models before and after the addition.
 struct Doubts {
-  fit::VoltageDoubt before, after;
+  noise::VoltageDoubt before, after;
 };
 
 ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t e, std::size_t c,
@@ -74,8 +74,8 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
   if (after)
     if (compare::ChannelNoise other = noise_of(*after); other.sigma < noise.sigma) noise = std::move(other);
   r.noise = noise.sigma;
-  const auto judge_one = [&](const fit::Fit& fit, const fit::VoltageDoubt& doubt, std::vector<double>& model,
-                             compare::ErrorMap& map, double& inside) {
+  const auto judge_one = [&](const fit::Fit& fit, const noise::VoltageDoubt& doubt,
+                             std::vector<double>& model, compare::ErrorMap& map, double& inside) {
     model = fit.events[e].model[c];
     const auto residual = difference(model, r.measured);
     inside = share_inside(event, residual, constants::normal99 * r.noise);
@@ -208,9 +208,9 @@ ReportFigures report_figures(const Diagnosis& d) {
     r.event = &d.events[e];
     r.windows = compare::event_windows(r.event->record, r.event->switchings,
                                        event::FitEventOptions{}.pre_event, r.event->filtered_samples);
-    Doubts doubts{fit::voltage_doubt({d.base.plant, d.conventions}, d.events.whitened(e)), {}};
+    Doubts doubts{noise::voltage_doubt({d.base.plant, d.conventions}, d.events.whitened(e)), {}};
     if (figures.after)
-      doubts.after = fit::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));
+      doubts.after = noise::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
     r.before = std::sqrt(d.base.events[e].reduced_chi2());

@@ -1,10 +1,9 @@
 #pragma once
-// Preparation of events for fitting: switching times, operating point and noise of each channel.
+// Preparation of records for fitting: switching times and operating point.
 #include <optional>
 #include <vector>
 
-#include "sim/plant/under_test.hpp"
-#include "validate/event/whitened_events.hpp"
+#include "validate/event/fit_event.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/switching/switched_records.hpp"
 
@@ -24,23 +23,13 @@ struct FitEventOptions {
   std::optional<Complex> start = {};
 };
 
-/// Prepares the records of one plant and one instrument. The noise covariance is that of the pre-event
-/// residual of `model`, pooled over the events. It thus includes the voltage noise transferred through the
-/// machine's reactance, and the correlation of P and Q. `switching::kLeastNoise` is its floor. Throws
+/// Prepares the records of one plant and one instrument, without their noise (noise::whitened_events). Throws
 /// InputError if a record has no pre-event window.
-WhitenedEvents prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
-                              const FitEventOptions& options = {});
+std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
+                                     const FitEventOptions& options = {});
 
 /// Returns the number of samples in steady state before the first switching, as in prepare_events(), without
 /// a model. `options.mva` is required if the angle was integrated. Throws InputError if there are none.
 int samples_before_event(const record::Record& record, const FitEventOptions& options);
-
-/// Estimates the noise again with another model of the plant; the noise is white. An error of a fifth in a
-/// reactance causes an error of a fifth in the noise.
-NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events);
-
-/// Noise floor of the speed [pu]: effect of an error of 1e-4 pu of P that lasts 0.1 s on a machine of H = 1
-/// s.
-constexpr double kLeastSpeedNoise = 5e-6;
 
 }  // namespace swingbank::validate::event

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/config.hpp"
 #include "validate/event/detail/turns.hpp"
@@ -187,9 +188,9 @@ namespace {
 struct PreparedUnit {
   sim::plant::PlantUnderTest tested;
   Complex start;  ///< P and Q before the event [pu on the record's base]
-  WhitenedEvents events;
+  FitEvent event;
   [[nodiscard]] playin::Response response(const EventState& state, const Playing& how) const {
-    return play(tested, events[0], state, {}, how);
+    return play(tested, event, state, {}, how);
   }
 };
 
@@ -212,14 +213,16 @@ PreparedUnit prepare_unit(const plant::PlantModel& model, const record::Record& 
                           Complex start) {
   FitEventOptions options = of_all(mva);
   options.start = start;
-  return {model.under_test(), start, prepare_events(model, {seen}, options)};
+  PreparedUnit unit{model.under_test(), start, std::move(prepare_events(model, {seen}, options).front())};
+  unit.event.keep_curve();
+  return unit;
 }
 
 /// Returns the residual of measured P and Q minus those of all units, until shortly after the switchings.
 Eigen::VectorXd left_over(const std::vector<PreparedUnit>& units, const record::Record& whole,
                           const EventState& state) {
   constexpr double kAfter = 0.5;  // [s]; later the models matter more than the switching times
-  const FitEvent& event = units[0].events[0];
+  const FitEvent& event = units[0].event;
   const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
   std::vector<playin::Response> responses;
   for (const PreparedUnit& unit : units) responses.push_back(unit.response(state, how));
@@ -266,8 +269,8 @@ EventState fit_switching_times(const std::vector<PreparedUnit>& units, const rec
   constexpr int kPointRounds = 8;
   constexpr double kAside = 0.02,
                    kPointSettled = 1e-4;  // fraction of the half interval, or of the largest turn
-  const auto& switchings = units[0].events[0].switchings;
-  const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].events[0].turns() ? 2 : 1));
+  const auto& switchings = units[0].event.switchings;
+  const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].event.turns() ? 2 : 1));
   const auto state_at = [&](const Eigen::VectorXd& at) {
     EventState state;
     for (std::size_t k = 0; k < switchings.size(); ++k)
@@ -338,7 +341,7 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   }
   units.push_back(prepare_unit(models.back(), seen, mva, whole - others));
   EventState state;
-  if (!units[0].events[0].switchings.empty()) state = fit_switching_times(units, record);
+  if (!units[0].event.switchings.empty()) state = fit_switching_times(units, record);
   for (std::size_t u = 0; u < point.others.size(); ++u) {
     const playin::Response r = units[u].response(state, {.tolerance = 1e-8, .hasty = false});
     for (std::size_t k = 0; k < record.t.size(); ++k) {

@@ -245,7 +245,7 @@ class Search {
       EventFit f;
       f.state = costs_[e]->at(states_[e].data());
       const playin::Response r = final_response(e, fit.plant, f.state);
-      compare(*setting_.events, e, r, f);
+      noise::compare(*setting_.events, e, r, f);
       fit.chi2 += f.chi2;
       fit.values += f.values;
       fit.fitted += static_cast<int>(switching_numbers(event)) + kStates;
@@ -327,13 +327,6 @@ class Search {
   std::unique_ptr<AtBounds> bounds_;
 };
 
-void require_same(const event::NoiseModel& a, const event::NoiseModel& b) {
-  if (a != b)
-    throw std::logic_error(
-        "the costs of two fits with different noise models cannot be compared: fit both again "
-        "with the latest noise model");
-}
-
 }  // namespace
 
 double penalised(const Fit& f) {
@@ -345,30 +338,19 @@ double data_cost(const Fit& f) {
 }
 
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&)) {
-  if (from.failed.empty() && to.failed.empty()) require_same(from.noise, to.noise);
+  if (from.failed.empty() && to.failed.empty()) noise::require_same(from.noise, to.noise);
   return cost(from) - cost(to);
 }
 double gain(const EventFit& from, const EventFit& to) {
-  require_same_noise(from, to);
+  noise::require_same(from.noise, to.noise);
   return from.chi2 - to.chi2;
 }
-void require_same_noise(const EventFit& a, const EventFit& b) { require_same(a.noise, b.noise); }
 bool better(const Fit& a, const Fit& b) { return gain(b, a) > 0; }
 
-void compare(const event::WhitenedEvents& events, std::size_t which, const playin::Response& response,
-             EventFit& f) {
-  const event::FitEvent& event = events[which];
-  for (const playin::Output o : event.channels) f.model.push_back(response.of(o));
-  event::RowMatrix e = event.collected(response.value, true);
-  events.noise(which).whiten(e);
-  f.noise = events.noise_model();
-  f.values = event.values();
-  f.chi2 = e.squaredNorm();
-  f.residual.assign(event.channels.size(), std::vector<double>(event.record.t.size(), 0.0));
-  Eigen::Index row = 0;
-  for (std::size_t k = 0; k < event.record.t.size(); ++k)
-    for (std::size_t c = 0; event.compared(k) && c < event.channels.size(); ++c)
-      f.residual[c][k] = e(row++, 0);
+void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
+                            Fit& fit) {
+  if (noise_transfer && fit.failed.empty())
+    fit.transfer_deficit = std::max(0.0, noise_transfer->less_with({fit.plant, conventions}));
 }
 
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
@@ -378,7 +360,7 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
   return o;
 }
 
-Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance};
   setting.lenient = setting.linear_sensitivities = options.lenient;

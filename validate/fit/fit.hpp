@@ -9,10 +9,13 @@
 
 #include "sim/plant/parameter_id.hpp"
 #include "validate/event/play.hpp"
+#include "validate/noise/event_fit.hpp"
+#include "validate/noise/noise_transfer.hpp"
 
 namespace swingbank::validate::fit {
 
 using event::EventState, event::InputKind;
+using noise::EventFit;
 
 /// A parameter that may move. `prior_sd` is its prior standard deviation: relative if the parameter is
 /// positive by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
@@ -29,19 +32,6 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, doubl
 
 /// Returns the present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
-
-/// Fit of one event: its state, response and residual.
-struct EventFit {
-  EventState state;                        ///< estimate of the event's own state
-  double chi2 = 0;                         ///< sum of squared whitened residuals
-  int values = 0;                          ///< number of compared values
-  std::vector<std::vector<double>> model;  ///< [channel][sample]
-  /// Model - measured, whitened: [channel][sample]; 0 at samples that are not compared.
-  std::vector<std::vector<double>> residual;
-  event::NoiseModel noise;  ///< noise model in which chi2 and residual are computed
-  /// Reduced chi-square [-]; 1 if the residual is noise only.
-  [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
-};
 
 /// A fitted parameter with standard error and 95 % interval.
 struct FittedParameter {
@@ -65,7 +55,7 @@ struct Fit {
   sim::plant::Plant plant;                  ///< with the fitted values
   std::vector<FittedParameter> parameters;  ///< free parameters, in the order of the request
   std::vector<EventFit> events;             ///< fits of the events, in their order
-  event::NoiseModel noise;                  ///< noise model in which chi2 is computed
+  noise::NoiseModel noise;                  ///< noise model in which chi2 is computed
   double chi2 = 0, prior_cost = 0;          ///< chi2 of the data, and of the priors
   int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
@@ -100,6 +90,12 @@ double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::transfer_deficit added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
+/// Sets Fit::transfer_deficit of another structure's fit, at least 0: a higher noise transfer earns no
+/// credit. Every explanation that competes with another must be corrected here, a free input's refitted plant
+/// included. Null: the noise transfer is ignored.
+void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
+                            Fit& fit);
+
 /// Returns the reduction of `cost` between two fits; negative if the cost rises. Every comparison of two fits
 /// uses this function. Throws std::logic_error if the fits have different noise models, because their costs
 /// then have different units. A failed fit has infinite cost in any unit.
@@ -108,9 +104,6 @@ double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&) = penalis
 double gain(const EventFit& from, const EventFit& to);
 /// Returns whether fit `a` has the lower penalised cost.
 bool better(const Fit& a, const Fit& b);
-/// Throws std::logic_error if the two fits have different noise models.
-void require_same_noise(const EventFit& a, const EventFit& b);
-
 constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration; see event::Playing
 
 /// Target of a fit: a penalised cost of at most `cost` within `steps` steps, those of continued fits
@@ -145,16 +138,12 @@ struct FitOptions {
 /// Returns options that continue from the end of `f`. The priors stay centred on the plant that is fitted.
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
-/// Fills `fit`, except its state, with the comparison of `response` with one event.
-void compare(const event::WhitenedEvents& events, std::size_t event, const playin::Response& response,
-             EventFit& fit);
-
 /// Fits the `free` parameters of the plant and every event's own state. If the start cannot be evaluated, the
 /// result has `failed` set; later steps to such points are refused. With a wrong structure the residuals
 /// would outweigh the priors, and parameters would be biased to compensate for the missing effect. The
 /// priors' cost is therefore multiplied by the reduced chi-square reached so far, as if the noise variance
 /// were larger by this factor. The factor falls as the fit improves.
-Fit fit(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options = {});
 
 }  // namespace swingbank::validate::fit

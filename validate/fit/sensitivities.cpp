@@ -42,9 +42,9 @@ Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventStat
 }
 
 /// Returns the whitened values: [compared sample * channels + channel].
-Eigen::VectorXd whitened(const event::WhitenedEvent& e, const std::vector<double>* values,
+Eigen::VectorXd whitened(const noise::WhitenedEvent& e, const std::vector<double>* values,
                          bool less_measured) {
-  event::RowMatrix all = e.event.collected(values, less_measured);
+  noise::RowMatrix all = e.event.collected(values, less_measured);
   e.noise.whiten(all);
   return all;
 }
@@ -58,7 +58,7 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
   return (f.prior_sd > 0 ? f.prior_sd : 1.0) * size;
 }
 
-EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent e,
                                        const EventState& state, const std::vector<FreeParameter>& free) {
   const event::FitEvent& event = e.event;
   std::vector<playin::SensitivityParameter> along;

@@ -23,7 +23,7 @@ struct EventSensitivities {
 
 /// Computes the sensitivities of one event. The event's own state (switching times, operating point, initial
 /// motion) is projected out of `sensitivities` and `score`. Throws InputError if the playback fails.
-EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event,
+EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent event,
                                        const EventState& state, const std::vector<FreeParameter>& free);
 
 /// Returns J'J of one event, the Fisher information on the parameters in units of their priors.

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "validate/fit/interrupted.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/fit/sensitivities.hpp"
 #include "validate/fit/sign.hpp"
+#include "validate/noise/level.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -33,7 +33,7 @@ struct Ranked {
 
 class Selection {
  public:
-  Selection(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+  Selection(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
             const std::vector<FreeParameter>& free, const SparseOptions& options)
       : tested_(tested), events_(events), free_(free), options_(options) {}
 
@@ -103,7 +103,8 @@ class Selection {
     report(event::Phase::every_parameter, 0, 1);
     all_ = fit(tested_, events_, free_, kSearch);
     require(all_);
-    events_ = events_.with(measure_noise_through(all_, tested_.conventions, events_));
+    events_ = events_.with(noise::measure_noise_through({all_.plant, tested_.conventions}, all_.events,
+                                                        all_.reduced_chi2(), events_));
     all_ = fit(tested_, events_, free_, continued(kSearch, all_, free_));
     require(all_);
   }
@@ -376,7 +377,7 @@ class Selection {
   }
 
   const sim::plant::PlantUnderTest tested_;
-  event::WhitenedEvents events_;
+  noise::WhitenedEvents events_;
   const std::vector<FreeParameter>& free_;
   const SparseOptions& options_;
   Fit all_;
@@ -390,7 +391,7 @@ class Selection {
 }  // namespace
 
 SparseSelection select_parameters(const sim::plant::PlantUnderTest& tested,
-                                  const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
+                                  const noise::WhitenedEvents& events, const std::vector<FreeParameter>& free,
                                   const SparseOptions& options) {
   return Selection(tested, events, free, options).run();
 }

@@ -34,7 +34,7 @@ struct SparseSelection {
   Fit fit;                       ///< with the named parameters free and all others at their given values
   double before = 0;             ///< reduced chi-square of the given model, with each event's state fitted
   double best = 0;               ///< reduced chi-square with every parameter free
-  event::WhitenedEvents events;  ///< with the noise model of all fits here
+  noise::WhitenedEvents events;  ///< with the noise model of all fits here
 };
 
 /// Limits of the sparse parameter selection.
@@ -60,7 +60,7 @@ struct SparseOptions {
 /// sets of each size are refitted from the optimum that the quadratic model predicts. `free` lists the
 /// candidates with their priors. Throws InputError if the model cannot be fitted.
 SparseSelection select_parameters(const sim::plant::PlantUnderTest& tested,
-                                  const event::WhitenedEvents& events, const std::vector<FreeParameter>& free,
+                                  const noise::WhitenedEvents& events, const std::vector<FreeParameter>& free,
                                   const SparseOptions& options = {});
 
 }  // namespace swingbank::validate::fit

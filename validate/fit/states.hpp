@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "validate/event/play.hpp"
-#include "validate/event/whitened_events.hpp"
+#include "validate/noise/whitened_events.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::fit {

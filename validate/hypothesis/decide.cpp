@@ -67,7 +67,7 @@ event::FitEvent quiet(const event::FitEvent& like, double dip) {
 
 class Separations {
  public:
-  Separations(std::vector<const Judgement*> competitors, const event::WhitenedEvents& events, double prior_sd)
+  Separations(std::vector<const Judgement*> competitors, const noise::WhitenedEvents& events, double prior_sd)
       : competitors_(std::move(competitors)), events_(events), known_(competitors_.size()) {
     for (std::size_t e = 0; e < events.size(); ++e)
       scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
@@ -174,7 +174,7 @@ class Separations {
   }
 
   std::vector<const Judgement*> competitors_;
-  const event::WhitenedEvents& events_;
+  const noise::WhitenedEvents& events_;
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
   std::vector<std::optional<ScaledResponse>> responses_;  ///< [scene * competitors + competitor]
@@ -209,7 +209,7 @@ std::optional<double> expected_size(const Separations& between, std::size_t scen
 }  // namespace
 
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
-                           const event::WhitenedEvents& events, double prior_sd, int threads) {
+                           const noise::WhitenedEvents& events, double prior_sd, int threads) {
   Decision d;
   d.now = effects_in_set(all);
   std::vector<Explanation> set;

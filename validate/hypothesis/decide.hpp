@@ -26,7 +26,7 @@ struct Decision {
 /// record. Each other hypothesis is refitted to it (linearised about its fit, with the records' information
 /// on its parameters); the remaining chi2 is the fall of its evidence. Only for records of whole plants.
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
-                           const event::WhitenedEvents& events, double prior_sd, int threads);
+                           const noise::WhitenedEvents& events, double prior_sd, int threads);
 
 /// Returns for example "Field current in one more event like ev1 would decide: set of 4 -> 1.2."; empty
 /// without competing hypotheses.

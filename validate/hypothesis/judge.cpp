@@ -27,7 +27,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole) {
   std::vector<HeldOut> out(trial.events.size());
   for (std::size_t left = 0; left < trial.events.size(); ++left) {
-    const event::WhitenedEvents others = trial.events.without(left);
+    const noise::WhitenedEvents others = trial.events.without(left);
     fit::FitOptions o;
     o.iterations = 6;
     o.errors = false;

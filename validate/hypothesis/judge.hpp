@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "validate/fit/fit.hpp"
-#include "validate/fit/noise_transfer.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
+#include "validate/noise/noise_transfer.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -45,12 +45,12 @@ std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd);
 
 /// Events of the judgement, and the limits of acceptance.
 struct Trial {
-  const event::WhitenedEvents& events;  ///< events with their noise model
+  const noise::WhitenedEvents& events;  ///< events with their noise model
   double prior_sd;                      ///< prior standard deviation of the model's parameters
   double adequate;                      ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
   /// Noise transfer of the base model: a lower noise transfer is no evidence. Null: it is ignored.
-  const fit::NoiseTransfer* noise_transfer = nullptr;
+  const noise::NoiseTransfer* noise_transfer = nullptr;
 };
 
 /// Predicts each event with the structure fitted to the other events. Empty `free` means the plant's own

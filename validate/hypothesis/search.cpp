@@ -194,14 +194,14 @@ fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& t
 }
 
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
-                                 const sim::Conventions& conventions, const event::WhitenedEvents& events,
+                                 const sim::Conventions& conventions, const noise::WhitenedEvents& events,
                                  const std::vector<fit::EventState>& states) {
   std::vector<double> chi2(plants.size(), 0.0);
   for (std::size_t e = 0; e < events.size(); ++e) {
     const auto responses = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
     for (std::size_t k = 0; k < plants.size(); ++k) {
       fit::EventFit f;
-      if (responses[k]) fit::compare(events, e, *responses[k], f);
+      if (responses[k]) noise::compare(events, e, *responses[k], f);
       chi2[k] += responses[k] ? f.chi2 : std::numeric_limits<double>::infinity();
     }
   }

@@ -16,7 +16,7 @@ namespace swingbank::validate::hypothesis {
 
 /// Base model of a search: a structure to which a hypothesis may be added.
 struct BaseModel {
-  const event::WhitenedEvents& events;         ///< events with their noise model
+  const noise::WhitenedEvents& events;         ///< events with their noise model
   sim::plant::Plant plant;                     ///< with the nominal values, the centres of the priors
   sim::Conventions conventions;                ///< conventions of the model
   const sim::library::EffectLibrary& library;  ///< source of the effects
@@ -55,7 +55,7 @@ fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& t
 /// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
 /// The plants differ only in parameter values and are simulated in SIMD batches.
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
-                                 const sim::Conventions& conventions, const event::WhitenedEvents& events,
+                                 const sim::Conventions& conventions, const noise::WhitenedEvents& events,
                                  const std::vector<fit::EventState>& states);
 
 /// Returns the plant at its prior mean: the hypothesis at its first start, and parameters of effects added

@@ -11,7 +11,7 @@ double FreeInput::reduced_chi2() const {
 }
 
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
-                     const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
+                     const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                      const fit::Fit& without, int threads) {
   FreeInput input;
   input.kind = kind;
@@ -30,8 +30,8 @@ FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& te
     for (std::size_t e = 0; e < events.size(); ++e) {
       fit::EventFit fitted;
       fitted.state = smooth.states[e];
-      fit::compare(events, e, event::play({smooth.plant, tested.conventions}, events[e], fitted.state),
-                   fitted);
+      noise::compare(events, e, event::play({smooth.plant, tested.conventions}, events[e], fitted.state),
+                     fitted);
       f.chi2 += fitted.chi2;
       f.values += fitted.values;
       f.events.push_back(std::move(fitted));

@@ -32,7 +32,7 @@ struct FreeInput {
 /// its reduced chi-square is below thresholds::noise.measurable. Otherwise its parameters are biased, and the
 /// inference begins at the submitted values.
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
-                     const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
+                     const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                      const fit::Fit& without, int threads);
 
 }  // namespace swingbank::validate::reduced

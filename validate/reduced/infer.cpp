@@ -53,7 +53,7 @@ Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
 
 class Inferring {
  public:
-  Inferring(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+  Inferring(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
             const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads)
       : tested_(tested), events_(events), free_(free), inputs_(inputs), threads_(threads) {
     for (const auto& f : free) axes_.push_back(fit::make_axis(tested.plant, f));
@@ -257,7 +257,7 @@ class Inferring {
       for (const Kind kind : kinds) along.push_back({.kind = kind, .index = k});
     const playin::Response r =
         event::play({plant, tested_.conventions}, event, state, along, {.linear_sensitivities = true});
-    event::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
+    noise::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
     for (std::size_t d = 0; d < along.size(); ++d)
       columns.col(static_cast<Index>(d)) = event.collected(r.sensitivities[d].value, false);
     columns.rightCols(1) = event.collected(r.value, true);
@@ -288,7 +288,7 @@ class Inferring {
         [&](std::size_t e) {
           try {
             const playin::Response r = event::play({plant, tested_.conventions}, events_[e], state_at(p, e));
-            event::RowMatrix residual = events_[e].collected(r.value, true);
+            noise::RowMatrix residual = events_[e].collected(r.value, true);
             events_.noise(e).whiten(residual);
             parts[e] = residual.squaredNorm();
           } catch (const InputError&) {  // its cost stays infinite
@@ -345,7 +345,7 @@ class Inferring {
 
   static constexpr double kInfinite = 1e300;
   const sim::plant::PlantUnderTest& tested_;
-  const event::WhitenedEvents& events_;
+  const noise::WhitenedEvents& events_;
   const std::vector<fit::FreeParameter>& free_;
   Inputs inputs_;
   int threads_;
@@ -391,14 +391,14 @@ Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {
   return weight;
 }
 
-Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+Inference infer(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads, int steps) {
   Inferring inferring(tested, events, free, inputs, threads);
   inferring.begin(tested.plant, {});
   return inferring.run(steps);
 }
 
-SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from) {
   Inferring inferring(tested, events, free, inputs, threads);
@@ -410,13 +410,13 @@ SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const eve
   return found;
 }
 
-void add_changes(Inference& inference, const event::WhitenedEvents& events,
+void add_changes(Inference& inference, const noise::WhitenedEvents& events,
                  const sim::Conventions& conventions, std::span<const Change> changes, int threads) {
   in_parallel(
       events.size(),
       [&](std::size_t e) {
         const auto played = [&](const sim::plant::Plant& plant) -> VectorXd {
-          event::RowMatrix residual = events[e].collected(
+          noise::RowMatrix residual = events[e].collected(
               event::play({plant, conventions}, events[e], inference.states[e]).value, true);
           events.noise(e).whiten(residual);
           return residual;
@@ -434,7 +434,7 @@ void add_changes(Inference& inference, const event::WhitenedEvents& events,
 }
 
 Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
-                       const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
+                       const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        const std::vector<event::EventState>& states, Inputs inputs, int threads) {
   Inferring inferring(tested, events, free, inputs, threads);
   inferring.begin(plant, states);

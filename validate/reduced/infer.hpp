@@ -46,7 +46,7 @@ struct Inference {
   Eigen::VectorXd offset;                  ///< of the free parameters from their prior means, on their axes
   std::vector<event::EventState> states;   ///< including both inputs
   std::vector<EventSensitivities> events;  ///< residuals and Jacobians of the events
-  event::NoiseModel noise;                 ///< noise model of the residuals
+  noise::NoiseModel noise;                 ///< noise model of the residuals
   double chi2 = 0;                         ///< sum of squared whitened residuals
   /// -2 log evidence by Laplace's approximation, up to a constant common to all inferences of these events.
   double criterion = 0;
@@ -63,7 +63,7 @@ struct Change {
 };
 /// Adds a Jacobian column for each change to an inference: residuals with `to` minus residuals with `from`,
 /// at the states of the inference. A column is zero if one of the two plants cannot be simulated.
-void add_changes(Inference& inference, const event::WhitenedEvents& events,
+void add_changes(Inference& inference, const noise::WhitenedEvents& events,
                  const sim::Conventions& conventions, std::span<const Change> changes, int threads);
 
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
@@ -80,7 +80,7 @@ void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
 
 inline constexpr int kInferenceSteps = 5;  ///< maximum number of Gauss-Newton steps of an inference
 /// Infers the inputs from the submitted values. Throws InputError if the submitted model cannot be simulated.
-Inference infer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+Inference infer(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                 int steps = kInferenceSteps);
 
@@ -92,14 +92,14 @@ struct SmoothInference {
 /// Computes both inferences. `from`: a fit of the tested plant without inputs whose residuals are nearly
 /// linear in the inputs; the first inference is then the linearisation at this fit. Null: both start at the
 /// submitted values. Throws as infer().
-SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from);
 /// Linearises about `plant` without any step, at the given event states and with Jacobians for the requested
 /// inputs, which are zero. `plant` is the tested plant, or has a block added or replaced. Throws InputError
 /// if it cannot be simulated.
 Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
-                       const event::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
+                       const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        const std::vector<event::EventState>& states, Inputs inputs, int threads);
 
 }  // namespace swingbank::validate::reduced

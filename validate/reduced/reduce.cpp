@@ -120,7 +120,7 @@ VectorXd at_times(const playin::PiecewiseLinear& input,
 
 }  // namespace
 
-Reduction::Reduction(Inference inference, const event::WhitenedEvents& events,
+Reduction::Reduction(Inference inference, const noise::WhitenedEvents& events,
                      const sim::Conventions& conventions)
     : inference_(std::move(inference)), conventions_(conventions) {
   step_ = events.front().record.step();
@@ -201,7 +201,7 @@ MatrixXd Reduction::responses(InputKind kind, const std::vector<sim::plant::Plan
   return all;
 }
 
-std::vector<VectorXd> Reduction::states_at(const event::WhitenedEvents& events, InputKind kind,
+std::vector<VectorXd> Reduction::states_at(const noise::WhitenedEvents& events, InputKind kind,
                                            const VectorXd& plant, const VectorXd& series) const {
   const Gain g = gain(kind);
   const double moved = g.number >= 0 ? g.exponent * plant[g.number] : 0.0;
@@ -223,7 +223,7 @@ std::vector<VectorXd> Reduction::states_at(const event::WhitenedEvents& events, 
   return states;
 }
 
-Reduction::Gain Reduction::find_gain(const event::WhitenedEvents& events, InputKind kind) const {
+Reduction::Gain Reduction::find_gain(const noise::WhitenedEvents& events, InputKind kind) const {
   constexpr double kGainMove = 1e-4, kNoExponent = 0.1;  // of a logarithm, of an exponent
   const auto rates = [&](const sim::plant::Plant& plant) {
     return event::rates_by_input({plant, conventions_}, events.front(), inference_.states.front(), kind)

@@ -17,7 +17,7 @@ namespace swingbank::validate::reduced {
 class Reduction {
  public:
   /// Reduces the events of `events` to the inputs and parameters of the inference.
-  Reduction(Inference inference, const event::WhitenedEvents& events, const sim::Conventions& conventions);
+  Reduction(Inference inference, const noise::WhitenedEvents& events, const sim::Conventions& conventions);
 
   /// Returns the inference that is reduced.
   [[nodiscard]] const Inference& inference() const { return inference_; }
@@ -55,7 +55,7 @@ class Reduction {
   }
   /// Returns the events' states that minimise the cost, in their units. `plant`: changes of the plant's
   /// parameters; `series`: time series of the only input.
-  [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const event::WhitenedEvents& events,
+  [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const noise::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;
   /// The plant parameter that scales an input, and its exponent.
@@ -69,7 +69,7 @@ class Reduction {
   }
 
  private:
-  [[nodiscard]] Gain find_gain(const event::WhitenedEvents& events, event::InputKind kind) const;
+  [[nodiscard]] Gain find_gain(const noise::WhitenedEvents& events, event::InputKind kind) const;
   Inference inference_;
   sim::Conventions conventions_;
   std::vector<Event> events_;

@@ -82,7 +82,7 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
 }
 
 /// Computes reduced chi-square and RMS of P and Q [MW, Mvar] of one event, with its state fitted.
-void leave(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& alone, double& reduced_chi2,
+void leave(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& alone, double& reduced_chi2,
            double& rms) {
   reduced_chi2 = rms = kInfinity;
   const fit::Fit own = fit::fit(tested, alone, {});

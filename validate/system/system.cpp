@@ -14,6 +14,7 @@
 #include "sim/plant/measure.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/event/event.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/instruments.hpp"
 #include "validate/switching/voltage_steps.hpp"
 #include "validate/system/detail/run.hpp"
@@ -141,7 +142,7 @@ class Comparer {
       const double nominal = s_.base.frequency;
       const std::vector<char> compared = e.left_out;
       if (by_meter) leave_out(e, switching::kPeakReach * r.step());  // meters delay or smooth an angle step
-      add(e, {"frequency", "mHz", 1e3 * nominal, event::kLeastSpeedNoise, shift(), true, skip},
+      add(e, {"frequency", "mHz", 1e3 * nominal, noise::kLeastSpeedNoise, shift(), true, skip},
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.responses[i].theta, nominal));
       e.left_out = compared;

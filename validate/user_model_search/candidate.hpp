@@ -62,7 +62,7 @@ struct UserModelCandidate {
 /// Returns the deviation of the voltage that triggers a candidate's clock [pu]. It exceeds the voltage's
 /// noise and is at most half of the deviation in the smallest event with a switching. 0: no event has a
 /// switching, or the smallest deviation is too small.
-double trigger_level(const event::WhitenedEvents& events);
+double trigger_level(const noise::WhitenedEvents& events);
 
 /// Returns the best candidate of each family and signal, in ascending order of score. `level`: see
 /// trigger_level().

@@ -207,7 +207,7 @@ std::vector<UserModelTrace> thinned(std::vector<UserModelTrace> traces) {
 
 }  // namespace
 
-double trigger_level(const event::WhitenedEvents& events) {
+double trigger_level(const noise::WhitenedEvents& events) {
   constexpr double kLeastTrigger = 0.01;  // [pu]; above instrument errors and ambient changes
   double smallest = 1e300, noise = 0;
   for (const event::FitEvent& e : events) {

@@ -58,7 +58,7 @@ double handicap(const UserModelCandidate& user_model) {
          (user_model.family.ends_with("in proportion") ? thresholds::user_models.in_proportion.value : 0.0);
 }
 
-std::string source_of(const event::WhitenedEvents& events) {
+std::string source_of(const noise::WhitenedEvents& events) {
   std::string names;
   for (const auto& e : events) names += (names.empty() ? "" : ", ") + e.record.name;
   return "found by swingbank diagnose in " + names;

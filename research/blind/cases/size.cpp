@@ -5,7 +5,7 @@
 
 #include "research/blind/cases/detail/world.hpp"
 #include "validate/fit/fit.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/slow_noise.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::research::blind::cases {
@@ -50,7 +50,7 @@ validate::event::FitEvent prepared(const validate::record::Record& record, const
 }
 
 /// Returns the noise of an event for these standard deviations of P and Q, and of V and theta.
-validate::event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested,
+validate::noise::EventNoise noise_of(const sim::plant::PlantUnderTest& tested,
                                      const validate::event::FitEvent& e, double power, double voltage) {
   const validate::playin::VoltageCurve curve(e.record, e.switchings);
   const validate::playin::LinearPlant linear = validate::playin::linearise({.plant = &tested.plant,
@@ -62,10 +62,10 @@ validate::event::EventNoise noise_of(const sim::plant::PlantUnderTest& tested,
   const Eigen::Matrix2d at_once =
       linear.D.topRows(2) * variance.asDiagonal() * linear.D.topRows(2).transpose();
   const Eigen::Matrix2d white = at_once + power * power * Eigen::Matrix2d::Identity();
-  validate::event::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
+  validate::noise::EventNoise noise{.deviation = white.diagonal().cwiseSqrt(),
                                     .whitening = white.llt().matrixL().solve(Eigen::Matrix2d::Identity())};
-  noise.memory = std::make_shared<validate::event::Innovations>(
-      validate::fit::slow_noise(linear, {e, noise}, {.variance = {variance[0], variance[1], 0.0}}),
+  noise.memory = std::make_shared<validate::noise::Innovations>(
+      validate::noise::slow_noise(linear, {e, noise}, {.variance = {variance[0], variance[1], 0.0}}),
       e.record.samples(), e.left_out);
   return noise;
 }
@@ -83,7 +83,7 @@ BlindSize::BlindSize(const sim::plant::PlantUnderTest& tested, const std::vector
   }
   auto columns = static_cast<Eigen::Index>(validate::fit::free_parameters(plant_, 1.0).size());
   for (std::size_t e = 0; e < events_.size(); ++e) columns += own_columns(e);
-  columns_ = validate::event::RowMatrix::Zero(first_row(plain_.size()), columns);
+  columns_ = validate::noise::RowMatrix::Zero(first_row(plain_.size()), columns);
   for (std::size_t e = 0; e < plain_.size(); ++e) add_columns(e);
 }
 
@@ -129,8 +129,8 @@ void BlindSize::add_columns(std::size_t event) {
 
   auto first = static_cast<Eigen::Index>(shared);  // first column of this event
   for (std::size_t e = 0; e < event; ++e) first += own_columns(e);
-  validate::event::RowMatrix own =
-      validate::event::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
+  validate::noise::RowMatrix own =
+      validate::noise::RowMatrix::Zero(prepared_[event].values(), columns_.cols());
   for (std::size_t d = 0; d < along.size(); ++d) {
     const auto& sensitivity = r.sensitivities[d].value;
     const auto at = static_cast<Eigen::Index>(d);
@@ -156,11 +156,11 @@ double BlindSize::left(const std::vector<validate::record::Record>& with,
                        std::span<const BlindPath> but) const {
   Eigen::VectorXd all(columns_.rows());
   for (std::size_t e = 0; e < with.size(); ++e) {
-    validate::event::RowMatrix r = residual(e, with[e]);
+    validate::noise::RowMatrix r = residual(e, with[e]);
     noise_[e].whiten(r);
     all.segment(first_row(e), r.rows()) = r;
   }
-  validate::event::RowMatrix columns = columns_;
+  validate::noise::RowMatrix columns = columns_;
   const auto shared = validate::fit::free_parameters(plant_, 1.0);
   for (std::size_t d = 0; d < shared.size(); ++d)
     if (std::ranges::any_of(but, [&](const BlindPath& path) {

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "validate/event/point.hpp"
-#include "validate/fit/lines.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/lines.hpp"
 
 namespace swingbank::research::blind::score {
 namespace {
@@ -30,8 +30,8 @@ nlohmann::json basis_of(const validate::diagnose::Diagnosis& d) {
   };
   nlohmann::json j = {{"values", d.base.values},
                       {"misfit", d.base.reduced_chi2()},
-                      {"slow", validate::fit::slow_remainder(d.base, d.events)},
-                      {"line", validate::fit::strongest_line(d.base, d.events).explains},
+                      {"slow", validate::noise::slow_remainder(d.base.events, d.events)},
+                      {"line", validate::noise::strongest_line(d.base.events, d.events).explains},
                       {"torque", input(d.torque)},
                       {"field", input(d.field)},
                       {"hypotheses", nlohmann::json::array()}};

@@ -8,6 +8,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/instrument_example.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::add {
 namespace {
@@ -98,7 +99,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
   exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("KF"))] = KF;
   exst1.plant.controls.back().p[static_cast<std::size_t>(effect->parameter_index("TF"))] = kFast;
   std::vector<record::Record> changed = records(model);
-  const auto events = event::prepare_events(model, changed, power_only().calibrate.events);
+  const auto events = noise::whitened_events(model, changed, power_only().calibrate.events);
   for (std::size_t e = 0; e < changed.size(); ++e) {
     const playin::Response was = event::play(sexs.under_test(), events[e], {}),
                            is = event::play(exst1.under_test(), events[e], {});

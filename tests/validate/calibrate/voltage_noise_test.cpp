@@ -8,6 +8,7 @@
 #include "base/in_parallel.hpp"
 #include "tests/validate/calibrate/example.hpp"
 #include "validate/calibrate/detail/newton.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -18,15 +19,15 @@ constexpr double kDeviation = 1e-3;  // of V (relative) and theta [rad]
 class Copies {
  public:
   Copies() : model_(readme::example()) {
-    event::WhitenedEvents one = event::prepare_events(model_, {readme::example_record(model_, 1)});
-    event_ = fit::at_rest(one.front(), 20);
+    noise::WhitenedEvents one = noise::whitened_events(model_, {readme::example_record(model_, 1)});
+    event_ = noise::at_rest(one.front(), 20);
     noise_ = one.noise(0);
-    noise_.memory = fit::memory_of(model_.under_test(), {event_, noise_}, voltage());
+    noise_.memory = noise::memory_of(model_.under_test(), {event_, noise_}, voltage());
     for (const char* name : {"Xdpp", "Xqp", "Tqopp", "H"})
       for (const auto& f : fit::free_parameters(model_.plant, 0.2))
         if (sim::plant::parameter_record(model_.plant, f.id).name == name) free_.push_back(f);
   }
-  [[nodiscard]] static fit::VoltageNoise voltage(double carried = 1) {
+  [[nodiscard]] static noise::VoltageNoise voltage(double carried = 1) {
     return {.variance = {kDeviation * kDeviation, kDeviation * kDeviation, 0.0}, .carried = carried};
   }
   /// Scores of one copy after `settled` samples, minus those of the plant at rest.
@@ -50,14 +51,14 @@ class Copies {
     return (moved.sensitivities - still.sensitivities).transpose() * (moved.residual - still.residual);
   }
   [[nodiscard]] Eigen::VectorXd expected(double carried) const {
-    const event::WhitenedEvents events({event_}, event::NoiseModel({noise_}));
+    const noise::WhitenedEvents events({event_}, noise::NoiseModel({noise_}));
     return voltage_pull(model_.under_test(), model_.under_test(), events, voltage(carried), free_).score;
   }
 
  private:
   plant::PlantModel model_;
   event::FitEvent event_;
-  event::EventNoise noise_;
+  noise::EventNoise noise_;
   std::vector<fit::FreeParameter> free_;
 };
 

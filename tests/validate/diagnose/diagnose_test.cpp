@@ -8,6 +8,7 @@
 #include "sim/library/library.hpp"
 #include "sim/library/variants.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::diagnose {
@@ -89,7 +90,7 @@ std::vector<record::Record> records_with_exst1(
   }
   sim::plant::insert_block(truth, exciter);
   auto records = example_records(model);
-  const event::WhitenedEvents events = event::prepare_events(model, records, {.measured_states = false});
+  const noise::WhitenedEvents events = noise::whitened_events(model, records, {.measured_states = false});
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0, kNoise);
   for (std::size_t e = 0; e < events.size(); ++e) {

@@ -6,6 +6,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/diagnose/diagnose.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -21,7 +22,7 @@ std::vector<record::Record> records_with_valves(const plant::PlantModel& model) 
     records.push_back(record::read_record(
         test::source("configs/records/record-example/avr_ev" + std::to_string(i) + ".csv"),
         model.record_base));
-  const event::WhitenedEvents events = event::prepare_events(model, records, {.measured_states = false});
+  const noise::WhitenedEvents events = noise::whitened_events(model, records, {.measured_states = false});
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0, kValveNoise);
   for (std::size_t e = 0; e < events.size(); ++e) {

@@ -6,6 +6,7 @@
 #include "tests/validate/playin/support.hpp"
 #include "validate/diagnose/detail/base.hpp"
 #include "validate/event/event.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -38,7 +39,7 @@ TEST(BetterStart, TriesLimitThatTheModelNeverReaches) {
   }
   current_limit(model.plant) = 1.3;
   Diagnosis d;
-  d.events = event::prepare_events(model, records);
+  d.events = noise::whitened_events(model, records);
   fit_base(model, {}, {.lenient = true}, d);
   const auto free = fit::free_parameters(model.plant, thresholds::parameters.prior_sd);
   const auto infer = [&](fit::InputKind kind) {

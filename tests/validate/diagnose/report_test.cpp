@@ -11,6 +11,7 @@
 #include "tests/validate/playin/support.hpp"
 #include "tests/validate/report/browser.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -29,7 +30,7 @@ struct Example {
     for (const char* name : {"avr_ev1.csv", "avr_ev3.csv"})
       records.push_back(record::read_record(
           test::source(std::string("configs/records/record-example/") + name), model.record_base));
-    d.events = event::prepare_events(model, std::move(records));
+    d.events = noise::whitened_events(model, std::move(records));
     fit::FitOptions brief;
     brief.iterations = 2;
     d.base = fit::fit(model.under_test(), d.events, fit::free_parameters(model.plant, 0.2), brief);

@@ -73,7 +73,7 @@ inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
 
 /// Bound of each fitted parameter, from the events of `prepared` that `used` marks.
 inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
-                                      const event::WhitenedEvents& prepared, const std::vector<bool>& used,
+                                      const noise::WhitenedEvents& prepared, const std::vector<bool>& used,
                                       const std::vector<fit::FittedParameter>& fitted) {
   std::vector<event::FitEvent> events;
   for (std::size_t e = 0; e < prepared.size(); ++e)

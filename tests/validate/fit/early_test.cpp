@@ -3,7 +3,8 @@
 
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -22,9 +23,10 @@ TEST(EarlyStates, FitConverges_WhenTheResponseDivergesFromWrongTimes) {
   model.conventions = s.grid.conventions;
   const record::Record record = test::record_of(s, 3, 8, 0.001);
   model.record_base = record.base;
-  const auto events = event::prepare_events(model, {record});
+  const auto events = noise::whitened_events(model, {record});
   const Fit white = fit(model.under_test(), events, {});
-  const auto slow = events.with(remember_noise(white, model.conventions, events));
+  const auto slow =
+      events.with(noise::remember_noise({white.plant, model.conventions}, white.events, events));
   const Fit f = fit(model.under_test(), slow, {});
   EXPECT_LT(f.reduced_chi2(), 1.2);
   // The sample interval is 16.7 ms; the middles are 5.7 and 8.3 ms off.

@@ -3,6 +3,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/fit/fit.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::fit {
 
@@ -14,14 +15,14 @@ inline playin::Response response_to(const event::FitEvent& e, const EventState& 
 
 struct ExciterExample {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  event::WhitenedEvents events;
+  noise::WhitenedEvents events;
   double prior_sd;  ///< prior relative standard deviation of every parameter
   /// `TE` of the exciter [s]; the true value is 0.05.
   explicit ExciterExample(double believed, double TE = 0.05) : prior_sd(believed) {
     model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, TE, -4.0, 5.0}});
     record::Record r =
         record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base);
-    events = event::prepare_events(model, {r}, {.measured_states = false});
+    events = noise::whitened_events(model, {r}, {.measured_states = false});
   }
   [[nodiscard]] std::vector<FreeParameter> free(const std::vector<std::string>& names) const {
     std::vector<FreeParameter> some;

@@ -9,6 +9,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/fit/sparse_selection.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 /// The example's plant with its exciter, whose true values are known, and its records.
 struct Known {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  event::WhitenedEvents events;
+  noise::WhitenedEvents events;
   Known(const std::vector<std::pair<std::string, double>>& wrong, int records) {
     model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
     std::vector<record::Record> all;
@@ -27,7 +28,7 @@ struct Known {
       for (const auto& f : free())
         if (sim::plant::parameter_name(model.plant, f.id).text() == name)
           sim::plant::parameter_value(model.plant, f.id) *= factor;
-    events = event::prepare_events(model, all, {.measured_states = false});
+    events = noise::whitened_events(model, all, {.measured_states = false});
   }
   [[nodiscard]] std::vector<FreeParameter> free() const { return free_parameters(model.plant, 0.2); }
   /// Names of the selected parameters, in alphabetical order.
@@ -57,7 +58,7 @@ TEST(SparseSelection, AcceptsErrorOfOnePerCent) {
 TEST(SparseSelection, SelectsNothing_WhenAllValuesAreRight) { EXPECT_TRUE(Known({}, 2).named().empty()); }
 
 /// Unit 2 of IEEE 14 modified by `change`, and the record of one fault.
-std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
+std::pair<plant::PlantModel, noise::WhitenedEvents> unit_behind_a_fault(
     const std::function<void(sim::grid::Grid&)>& change) {
   const auto run =
       test::simulate("ieee14_genrou", sim::Conventions::psse(), 5, 2.0, 2.1, 240, {0.0, 0.1}, change);
@@ -67,8 +68,8 @@ std::pair<plant::PlantModel, event::WhitenedEvents> unit_behind_a_fault(
   model.plant.bus = model.plant.generator = -1;
   model.conventions = sim::Conventions::psse();
   model.record_base.mva = model.plant.mva;
-  auto events = event::prepare_events(model, {test::record_of(run, static_cast<int>(at), 4, 1e-3)},
-                                      {.measured_states = false});
+  auto events = noise::whitened_events(model, {test::record_of(run, static_cast<int>(at), 4, 1e-3)},
+                                       {.measured_states = false});
   return {std::move(model), std::move(events)};
 }
 

@@ -16,7 +16,7 @@ double& parameter(sim::plant::Block& block, std::string_view name) {
 }
 
 /// Returns the example's first event as `truth` would respond to it, without noise.
-event::WhitenedEvents with_response_of(const ExciterExample& example, const sim::plant::Plant& truth) {
+noise::WhitenedEvents with_response_of(const ExciterExample& example, const sim::plant::Plant& truth) {
   event::FitEvent e = example.events.front();
   const playin::Response r = response_to(e, {}, {truth, example.model.conventions});
   e.record.P = r.of(playin::Output::P);
@@ -43,7 +43,7 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   example.model.plant.controls.back() = {&effect("IEEET1"), effect("IEEET1").default_parameters()};
   sim::plant::Plant truth = example.model.plant;
   parameter(truth.controls.back(), "KE") = -0.1;
-  const event::WhitenedEvents events = with_response_of(example, truth);
+  const noise::WhitenedEvents events = with_response_of(example, truth);
   std::vector<FreeParameter> free = free_parameters(example.model.plant, 0.2);
   for (auto& f : free)
     if (f.id.block > sim::plant::kMachineBlock) f.prior_sd = 1;
@@ -66,7 +66,7 @@ TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   sim::plant::Block& machine = example.model.plant.machine;
   parameter(machine, "Xdpp") = 0.7 * parameter(machine, "Xl");
   ASSERT_FALSE(sim::plant::violated(machine).empty());
-  const event::WhitenedEvents events = with_response_of(example, example.model.plant);
+  const noise::WhitenedEvents events = with_response_of(example, example.model.plant);
   const Fit f =
       fit(example.model.under_test(), events, free_parameters(example.model.plant, example.prior_sd));
   ASSERT_EQ(f.failed, "");
@@ -78,7 +78,7 @@ TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
 struct BelowLeakage {
   ExciterExample example{0.5};
   sim::plant::Block& machine = example.model.plant.machine;
-  event::WhitenedEvents events = [this] {
+  noise::WhitenedEvents events = [this] {
     parameter(machine, "Xdpp") = 0.8 * parameter(machine, "Xl");
     return with_response_of(example, example.model.plant);
   }();

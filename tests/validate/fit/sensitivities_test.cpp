@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/validate/playin/instrument_example.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::fit {
 namespace {
@@ -14,12 +15,12 @@ constexpr event::Playing kExact{.tolerance = 1e-9, .hasty = false};
 struct EventSensitivitiesTest : ::testing::TestWithParam<const char*> {
   const test::InstrumentExample example{{test::instrument(GetParam())}};
   const plant::PlantModel& model = example.truth;
-  const event::WhitenedEvents events =
-      event::prepare_events(model, example.records, {.measured_states = false});
+  const noise::WhitenedEvents events =
+      noise::whitened_events(model, example.records, {.measured_states = false});
   const event::FitEvent& event = events.front();
 
   [[nodiscard]] Eigen::VectorXd whitened(const sim::plant::Plant& plant, const EventState& state) const {
-    event::RowMatrix all =
+    noise::RowMatrix all =
         event.collected(event::play({plant, model.conventions}, event, state, {}, kExact).value, true);
     events.noise(0).whiten(all);
     return all;

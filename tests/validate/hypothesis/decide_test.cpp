@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/validate/fit/exciter_example.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -31,7 +32,7 @@ class Decide : public ::testing::Test {
     return what_would_decide(competitors, posterior(std::move(all), 0), events_, kDecidePriorSd, 1);
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  const event::WhitenedEvents events_ = event::prepare_events(
+  const noise::WhitenedEvents events_ = noise::whitened_events(
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});

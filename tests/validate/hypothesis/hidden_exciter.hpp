@@ -7,6 +7,7 @@
 
 #include "tests/validate/fit/exciter_example.hpp"
 #include "validate/hypothesis/search.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::hypothesis {
 
@@ -32,7 +33,7 @@ class HiddenExciter : public ::testing::Test {
     return exciter.p[static_cast<std::size_t>(at - known.begin())];
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  event::WhitenedEvents events_ = event::prepare_events(
+  noise::WhitenedEvents events_ = noise::whitened_events(
       model_,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model_.record_base)},
       {.measured_states = false});

@@ -148,9 +148,9 @@ TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
   EXPECT_EQ(bands, 2);
 }
 TEST(Triangle, ReproducesTheProductsOfTheColumns) {
-  event::RowMatrix e = event::RowMatrix::Random(50, 6);
+  noise::RowMatrix e = noise::RowMatrix::Random(50, 6);
   e.col(3) = 2 * e.col(0) - e.col(1);  // linearly dependent
-  const event::RowMatrix r = fit::fitting::triangle_of(e);
+  const noise::RowMatrix r = fit::fitting::triangle_of(e);
   EXPECT_LT((r.transpose() * r - e.transpose() * e).cwiseAbs().maxCoeff(), 1e-12);  // rounding of sums of 50
   EXPECT_EQ(r.row(3).cwiseAbs().maxCoeff(), 0.0);
   for (Eigen::Index i = 1; i < r.rows(); ++i) EXPECT_EQ(r.row(i).head(i).cwiseAbs().maxCoeff(), 0.0);

@@ -5,6 +5,7 @@
 
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -31,8 +32,8 @@ class IdentifiedExciter : public ::testing::Test {
     return all;
   }
   const plant::PlantModel model_ = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  const event::WhitenedEvents events_ =
-      event::prepare_events(model_, records(model_), {.measured_states = false});
+  const noise::WhitenedEvents events_ =
+      noise::whitened_events(model_, records(model_), {.measured_states = false});
   const fit::Fit base_ = fit::fit(model_.under_test(), events_, {}, {.iterations = 0});
   const BaseModel base_model_{.events = events_,
                               .plant = model_.plant,
@@ -72,7 +73,7 @@ TEST_F(IdentifiedExciter, FindsTheMissingCompanionToo) {
       r.P[k] = S.real();
       r.Q[k] = S.imag();
     }
-  const auto events = event::prepare_events(model_, wrong, {.measured_states = false});
+  const auto events = noise::whitened_events(model_, wrong, {.measured_states = false});
   const fit::Fit base = fit::fit(model_.under_test(), events, {}, {.iterations = 0});
   const BaseModel base_model{.events = events,
                              .plant = model_.plant,

@@ -5,6 +5,7 @@
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/reduced/free_input.hpp"
 #include "validate/reduced/identify.hpp"
@@ -22,7 +23,7 @@ class Reduced : public ::testing::Test {
       records.push_back(record::read_record(
           test::source("configs/records/record-example/avr_ev" + std::to_string(k) + ".csv"),
           model_->record_base));
-    events_ = new event::WhitenedEvents(event::prepare_events(*model_, records, {.measured_states = false}));
+    events_ = new noise::WhitenedEvents(noise::whitened_events(*model_, records, {.measured_states = false}));
     reduction_ = new Reduction(infer(model_->under_test(), *events_, fit::free_parameters(model_->plant, 0.3),
                                      {.torque = true, .field = true}, 1),
                                *events_, model_->conventions);
@@ -42,11 +43,11 @@ class Reduced : public ::testing::Test {
     return h;
   }
   static plant::PlantModel* model_;
-  static event::WhitenedEvents* events_;
+  static noise::WhitenedEvents* events_;
   static Reduction* reduction_;
 };
 plant::PlantModel* Reduced::model_;
-event::WhitenedEvents* Reduced::events_;
+noise::WhitenedEvents* Reduced::events_;
 Reduction* Reduced::reduction_;
 
 TEST_F(Reduced, BothFreeInputsLeaveOnlyNoise) {

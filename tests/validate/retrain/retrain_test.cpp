@@ -13,6 +13,7 @@
 #include "sim/grid/attach.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::retrain {
@@ -45,7 +46,7 @@ struct Example {
     added.model = before;
     added.model.plant.controls.push_back(
         {sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
-    added.prepared = event::prepare_events(before, records);
+    added.prepared = noise::whitened_events(before, records);
     const double decided[] = {1, 1, 0.9, 0.7, 0, 0.3};
     const auto& effect = *sim::library::compiled().find("SEXS");
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {

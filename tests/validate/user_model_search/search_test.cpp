@@ -9,6 +9,7 @@
 
 #include "sim/user_models/user_model.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/user_model_search/detail/text.hpp"
 #include "validate/user_model_search/detail/time_series.hpp"
@@ -154,7 +155,7 @@ TEST(UserModelText, NumbersHaveUnitAndInterval) {
 /// input.
 struct Case {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  event::WhitenedEvents events;
+  noise::WhitenedEvents events;
   fit::Fit base;
   std::vector<hypothesis::HeldOut> held_out;
   reduced::FreeInput torque, field;
@@ -191,7 +192,7 @@ struct Case {
       r.Ifd.clear();
       records.push_back(std::move(r));
     }
-    events = event::prepare_events(model, std::move(records), {.measured_states = false});
+    events = noise::whitened_events(model, std::move(records), {.measured_states = false});
     base = fit::fit(model.under_test(), events, fit::free_parameters(model.plant, kPriorSd), {});
     const hypothesis::Trial trial{events, kPriorSd, kAdequate};
     held_out = hypothesis::hold_out(trial, model.under_test(), {}, base);

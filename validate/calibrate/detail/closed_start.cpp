@@ -63,7 +63,7 @@ std::vector<double> medians(const std::vector<sim::Recording>& records, const si
 }  // namespace
 
 std::vector<std::vector<double>> closed_starts(const sim::plant::PlantUnderTest& tested,
-                                               const event::WhitenedEvents& events,
+                                               const noise::WhitenedEvents& events,
                                                const std::vector<fit::FreeParameter>& free) {
   if (!is_bare_machine(tested.plant)) return {};
   std::vector<sim::Recording> records;

@@ -13,7 +13,7 @@ namespace swingbank::validate::calibrate {
 /// the terminal recorded. Returns none either if an event lacks speed, or field current for a machine with a
 /// field. Values that contradict the machine's equations are left out.
 std::vector<std::vector<double>> closed_starts(const sim::plant::PlantUnderTest& tested,
-                                               const event::WhitenedEvents& events,
+                                               const noise::WhitenedEvents& events,
                                                const std::vector<fit::FreeParameter>& free);
 
 }  // namespace swingbank::validate::calibrate

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "base/constants.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/slow_noise.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::calibrate {
@@ -91,8 +91,8 @@ event::FitEvent inner_channels(event::FitEvent event) {
     channel->assign(event.record.t.size(), 0.0);
   return event;
 }
-event::EventNoise inner_noise() {
-  event::EventNoise noise;
+noise::EventNoise inner_noise() {
+  noise::EventNoise noise;
   noise.deviation.resize(3);
   noise.deviation << 2e-5, 2e-3, 2e-3;  // [pu]: 1 mHz, 0.2 %
   noise.whitening = noise.deviation.cwiseInverse().asDiagonal();
@@ -122,17 +122,17 @@ std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::Ve
 }
 
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
-                                   const event::WhitenedEvents& events,
+                                   const noise::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
-                                   const fit::VoltageNoise& voltage,
+                                   const noise::VoltageNoise& voltage,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
   // the further inputs of a component or a staged test would have to be invented
   if (like.record.component != record::Component::plant || !like.record.staged.empty()) return tried;
-  const auto learnt = [&](const event::FitEvent& event, event::EventNoise noise,
+  const auto learnt = [&](const event::FitEvent& event, noise::EventNoise noise,
                           const fit::EventState& state) {
-    noise.memory = fit::memory_of(tested, {event, noise}, voltage);
+    noise.memory = noise::memory_of(tested, {event, noise}, voltage);
     return fit::information(fit::event_sensitivities(tested, {event, noise}, state, free));
   };
   const auto attempt = [&](const std::string& what, const event::FitEvent& event,

@@ -1,8 +1,8 @@
 #pragma once
 // Identifiability: directions that the records do not determine, and further events that would.
 #include "validate/calibrate/calibrate.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/fit/sensitivities.hpp"
+#include "validate/noise/voltage_noise.hpp"
 
 namespace swingbank::validate::calibrate {
 
@@ -20,9 +20,9 @@ struct TriedEvent {
 /// follow. Returns none for records of a component other than the plant and for staged tests, whose further
 /// inputs would have to be invented. `voltage` is the noise of the played-in voltage.
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
-                                   const event::WhitenedEvents& events,
+                                   const noise::WhitenedEvents& events,
                                    const std::vector<fit::EventState>& states,
-                                   const fit::VoltageNoise& voltage,
+                                   const noise::VoltageNoise& voltage,
                                    const std::vector<fit::FreeParameter>& free);
 
 }  // namespace swingbank::validate::calibrate

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "validate/event/play.hpp"
+#include "validate/noise/noise_events.hpp"
+#include "validate/noise/slow_noise.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -15,11 +17,11 @@ struct WhitenedResidual {
   Eigen::VectorXd residual;
   Eigen::MatrixXd sensitivities;
 };
-WhitenedResidual whitened_residual(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent e,
+WhitenedResidual whitened_residual(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent e,
                                    const std::vector<playin::SensitivityParameter>& along) {
   const playin::Response r = event::play(tested, e.event, {}, along, {.tolerance = 1e-8, .hasty = false});
   const auto n = static_cast<Eigen::Index>(along.size());
-  event::RowMatrix all(e.event.values(), n + 1);
+  noise::RowMatrix all(e.event.values(), n + 1);
   for (Eigen::Index d = 0; d < n; ++d)
     all.col(d) = e.event.collected(r.sensitivities[static_cast<std::size_t>(d)].value, false);
   all.col(n) = e.event.collected(r.value, true);
@@ -30,8 +32,8 @@ WhitenedResidual whitened_residual(const sim::plant::PlantUnderTest& tested, eve
 }  // namespace
 
 VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
-                         const sim::plant::PlantUnderTest& whitening, const event::WhitenedEvents& events,
-                         const fit::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free) {
+                         const sim::plant::PlantUnderTest& whitening, const noise::WhitenedEvents& events,
+                         const noise::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free) {
   double samples = 0;
   for (const auto& e : events) samples += e.record.samples();
   std::vector<playin::SensitivityParameter> along;
@@ -39,10 +41,10 @@ VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
     along.push_back({.kind = playin::SensitivityParameter::Kind::parameter,
                      .parameter = f.id,
                      .scale = fit::axis_unit(tested.plant, f)});
-  const event::FitEvent quiet = fit::at_rest(events.front(), kSettle + kFade);
+  const event::FitEvent quiet = noise::at_rest(events.front(), kSettle + kFade);
   const auto at = static_cast<std::size_t>(kSettle / quiet.record.step());
-  event::EventNoise noise = events.noise(0);
-  noise.memory = fit::memory_of(whitening, {quiet, noise}, voltage);
+  noise::EventNoise noise = events.noise(0);
+  noise.memory = noise::memory_of(whitening, {quiet, noise}, voltage);
   const WhitenedResidual still = whitened_residual(tested, {quiet, noise}, along);
   const Eigen::MatrixXd carried = voltage.into(quiet);
   const auto n = static_cast<Eigen::Index>(free.size());

@@ -3,8 +3,8 @@
 // the plant into the response and into the sensitivities. It biases the fit towards parameters with low noise
 // transfer (reactances too large), and the noise in the sensitivities counts as information. Whitening
 // removes neither; this file computes both, and the calibration subtracts them.
-#include "validate/fit/noise.hpp"
 #include "validate/fit/sensitivities.hpp"
+#include "validate/noise/voltage_noise.hpp"
 
 namespace swingbank::validate::calibrate {
 
@@ -18,7 +18,7 @@ struct VoltagePull {
 /// theta, at the operating point of the first event. Samples of white noise act independently, so their
 /// contributions add up. `whitening` is the plant through which the events' residuals were whitened.
 VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
-                         const sim::plant::PlantUnderTest& whitening, const event::WhitenedEvents& events,
-                         const fit::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free);
+                         const sim::plant::PlantUnderTest& whitening, const noise::WhitenedEvents& events,
+                         const noise::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free);
 
 }  // namespace swingbank::validate::calibrate

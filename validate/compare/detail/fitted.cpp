@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "validate/fit/fit.hpp"
-#include "validate/fit/noise.hpp"
-#include "validate/fit/voltage_doubt.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/voltage_doubt.hpp"
 #include "validate/playin/component.hpp"
 
 namespace swingbank::validate::compare {
@@ -13,8 +13,9 @@ namespace {
 
 /// Refits `white` with the plant's response to voltage noise in the noise model. Returns `white` if that
 /// noise is negligible.
-fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const event::WhitenedEvents& events) {
-  const auto slow = events.with(fit::remember_noise(white, model.conventions, events));
+fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const noise::WhitenedEvents& events) {
+  const auto slow =
+      events.with(noise::remember_noise({white.plant, model.conventions}, white.events, events));
   if (!slow.noise(0).memory) return white;
   return std::min(fit::fit(model.under_test(), slow, {}),
                   fit::fit(model.under_test(), slow, {}, fit::continued({}, white, {})), fit::better);
@@ -22,7 +23,7 @@ fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const eve
 
 }  // namespace
 
-void play_fitted(const plant::PlantModel& model, const event::WhitenedEvents& events,
+void play_fitted(const plant::PlantModel& model, const noise::WhitenedEvents& events,
                  switching::StepShape step_shape, Fitted how, EventComparison& e) {
   const event::FitEvent& event = events.front();
   fit::Fit f = fit::fit(model.under_test(), events, {}, {.steady_start = how == Fitted::steady_start});
@@ -55,10 +56,10 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event.channels = playin::compared_outputs(e.record, true);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
   // the error map has the channels' noise, so unit noise is used here
-  const event::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
+  const noise::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
                                .whitening = Eigen::MatrixXd::Identity(n, n)};
   e.doubt.clear();
-  for (const auto& shape : fit::voltage_doubt(model.under_test(), {event, unit}).shapes)
+  for (const auto& shape : noise::voltage_doubt(model.under_test(), {event, unit}).shapes)
     for (std::size_t c = 0; c < event.channels.size(); ++c)
       e.doubt[std::string(playin::output_name(event.channels[c]))].push_back(shape[c]);
 }

@@ -2,6 +2,7 @@
 // Playback of a record with fitted switching times and start. A record does not determine when between two
 // samples the network switched, and a few milliseconds change the rotor swing.
 #include "validate/compare/compare.hpp"
+#include "validate/noise/whitened_events.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -17,7 +18,7 @@ enum class Fitted {
 /// record prepared for fitting, and `step_shape` of its steps. Sets switchings,
 /// playback and left_out, and the angle and notes of the record. Samples within a filtered step are not
 /// played in. Throws InputError if the model cannot follow the record.
-void play_fitted(const plant::PlantModel& model, const event::WhitenedEvents& events,
+void play_fitted(const plant::PlantModel& model, const noise::WhitenedEvents& events,
                  switching::StepShape step_shape, Fitted how, EventComparison& e);
 
 /// Sets EventComparison::doubt of an event whose voltage was played in.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/plant/usual.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -78,7 +78,8 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
   const auto free = fit::free_parameters(model.plant, options.prior_sd);
   d.base = fit::fit(model.under_test(), d.events, free, from);
   for (int measured = 0; d.base.failed.empty() && measured < kMeasured; ++measured) {
-    d.events = d.events.with(fit::measure_noise_through(d.base, model.conventions, d.events));
+    d.events = d.events.with(noise::measure_noise_through({d.base.plant, model.conventions}, d.base.events,
+                                                          d.base.reduced_chi2(), d.events));
     for (int round = 0; round == 0 || (round < kBaseRounds && unfinished(d.base)); ++round)
       d.base = fit::fit(model.under_test(), d.events, free, fit::continued({.lenient = true}, d.base, free));
     if (d.base.reduced_chi2() <= options.adequate || d.base.reduced_chi2() > thresholds::noise.believed)

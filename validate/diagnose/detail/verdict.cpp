@@ -8,9 +8,9 @@
 #include <cmath>
 #include <span>
 
-#include "validate/fit/lines.hpp"
-#include "validate/fit/noise.hpp"
 #include "validate/hypothesis/decide.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/lines.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -42,15 +42,15 @@ void weigh(Diagnosis& d) {
         j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))
       all.push_back({hypothesis::full_name(j.hypothesis), j.gain - price(j.hypothesis), static_cast<int>(k)});
   const auto worth = [](const reduced::FreeInput& m) { return m.evidence - thresholds::evidence.accepted; };
-  const double line = fit::strongest_line(d.base, d.events).explains - thresholds::adequacy.line;
+  const double line = noise::strongest_line(d.base.events, d.events).explains - thresholds::adequacy.line;
   d.probabilities = hypothesis::posterior(std::move(all), std::max({worth(d.torque), worth(d.field), line}));
 }
 
 /// Returns the measures of the refitted model's residual; `torque` and `field`: evidence of the inputs, if
 /// known yet.
 thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
-  return {d.base.reduced_chi2(), slow_remainder(d.base, d.events), strongest_line(d.base, d.events).explains,
-          torque, field};
+  return {d.base.reduced_chi2(), noise::slow_remainder(d.base.events, d.events),
+          noise::strongest_line(d.base.events, d.events).explains, torque, field};
 }
 /// Returns " The residual oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
 /// because any residual has a frequency at which it is strongest.
@@ -58,7 +58,7 @@ std::string line_sentence(const Diagnosis& d) {
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.reduced_chi2).by !=
       thresholds::Criterion::line)
     return "";
-  const fit::Line line = strongest_line(d.base, d.events);
+  const noise::Line line = noise::strongest_line(d.base.events, d.events);
   return fmt::format(" The residual oscillates at {:.2f} Hz in {} (chi2 {:.0f}, all events).", line.frequency,
                      playin::output_name(line.channel), line.explains);
 }
@@ -204,7 +204,7 @@ void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
 }  // namespace
 
 std::string first_sentence(const Diagnosis& d, double adequate) {
-  const double slow = slow_remainder(d.base, d.events);
+  const double slow = noise::slow_remainder(d.base.events, d.events);
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
     return fmt::format("So far: with refitted parameters the residual is noise (reduced chi-square {:.3f}).",
                        d.base.reduced_chi2());

@@ -18,7 +18,7 @@ using Kind = playin::SensitivityParameter::Kind;
 struct Setting {
   const sim::plant::Plant* plant;
   const sim::Conventions* conventions;
-  const event::WhitenedEvents* events;
+  const noise::WhitenedEvents* events;
   std::vector<Axis> axes;
   double tolerance;
   bool lenient = false;               ///< of the search; see FitOptions

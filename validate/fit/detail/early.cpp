@@ -31,20 +31,20 @@ EventState as_prepared(const event::FitEvent& e) {
 double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kFirstPart; }
 
 /// Returns the event up to `until`, with white noise.
-event::WhitenedEvents first_part(const event::WhitenedEvent& whole, double until) {
+noise::WhitenedEvents first_part(const noise::WhitenedEvent& whole, double until) {
   constexpr double kBeginning = -std::numeric_limits<double>::infinity();
   event::FitEvent e = whole.event;
   e.record = record::stretch(std::move(e.record), kBeginning, until);
   if (!e.clean.t.empty()) e.clean = record::stretch(std::move(e.clean), kBeginning, until);
   for (auto* marks : {&e.filtered_samples, &e.left_out})
     if (!marks->empty()) marks->resize(e.record.t.size());
-  event::EventNoise noise = whole.noise;
+  noise::EventNoise noise = whole.noise;
   noise.memory = nullptr;
-  return {{std::move(e)}, event::NoiseModel({std::move(noise)})};
+  return {{std::move(e)}, noise::NoiseModel({std::move(noise)})};
 }
 
 /// Returns the reduced chi-square of a response in white noise, up to `until` and after it.
-std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::Response& response,
+std::pair<double, double> left(const noise::WhitenedEvent& whole, const playin::Response& response,
                                double until) {
   const event::FitEvent& e = whole.event;
   double early = 0, late = 0;
@@ -64,7 +64,7 @@ std::pair<double, double> left(const event::WhitenedEvent& whole, const playin::
 
 /// Returns the start state of an event; empty if it starts as prepared.
 std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
-                                      const event::WhitenedEvent& whole, const FitOptions& options) {
+                                      const noise::WhitenedEvent& whole, const FitOptions& options) {
   const event::FitEvent& e = whole.event;
   if (!is_open(e)) return std::nullopt;
   const double until = end_of_first_part(e);
@@ -86,7 +86,7 @@ std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
 }  // namespace
 
 std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
-                                     const event::WhitenedEvents& events, const FitOptions& options) {
+                                     const noise::WhitenedEvents& events, const FitOptions& options) {
   std::vector<EventState> states;
   for (const event::FitEvent& e : events) states.push_back(as_prepared(e));
   bool any = false;

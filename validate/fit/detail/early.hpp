@@ -9,6 +9,6 @@ namespace swingbank::validate::fit::fitting {
 /// seconds later by more than the machine's rating, and no step of a search follows that far. In such an
 /// event, the switching times are first fitted to the record up to shortly after the last switching.
 std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
-                                     const event::WhitenedEvents& events, const FitOptions& options);
+                                     const noise::WhitenedEvents& events, const FitOptions& options);
 
 }  // namespace swingbank::validate::fit::fitting

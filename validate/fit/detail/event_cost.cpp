@@ -22,9 +22,9 @@ bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() 
 
 }  // namespace
 
-event::RowMatrix triangle_of(const event::RowMatrix& e) {
+noise::RowMatrix triangle_of(const noise::RowMatrix& e) {
   constexpr double kNormRounding = 1e-14;  // of a squared norm
-  event::RowMatrix r = e.transpose() * e;
+  noise::RowMatrix r = e.transpose() * e;
   const Eigen::Index n = r.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
     const double whole = e.col(i).squaredNorm(), left = r(i, i);
@@ -67,7 +67,7 @@ bool EventCost::evaluate(double const* const* blocks, double* residuals, double*
   const bool looks = jacobians && points_ > 0, known = same(here, last_.at);
   if (!known) last_ = {here, {}, nullptr};
   if (looks ? !(known && reuse_sensitivities()) : !known) {
-    event::RowMatrix e = values(z, state, looks);
+    noise::RowMatrix e = values(z, state, looks);
     if (e.size() == 0) {
       last_ = {};
       return false;
@@ -79,7 +79,7 @@ bool EventCost::evaluate(double const* const* blocks, double* residuals, double*
   residual.setZero();
   residual[rows - 1] = last_.residual.norm();
   if (!jacobians) return true;
-  event::RowMatrix r = event::RowMatrix::Zero(rows, rows);
+  noise::RowMatrix r = noise::RowMatrix::Zero(rows, rows);
   if (looks) {
     --points_;
     r = triangle_of(looked_.e);
@@ -88,7 +88,7 @@ bool EventCost::evaluate(double const* const* blocks, double* residuals, double*
   Eigen::Index column = 0;
   for (const std::int32_t size : parameter_block_sizes()) {
     if (double* block = *jacobians++)
-      Eigen::Map<event::RowMatrix>(block, rows, size) = r.middleCols(column, size);
+      Eigen::Map<noise::RowMatrix>(block, rows, size) = r.middleCols(column, size);
     column += size;
   }
   return true;
@@ -118,7 +118,7 @@ bool EventCost::reuse_sensitivities() const {
   return true;
 }
 
-void EventCost::take(event::RowMatrix e) const {
+void EventCost::take(noise::RowMatrix e) const {
   const Eigen::Index n = last_.at.size();
   if (setting_.lenient && looked_.at.size() > 0) {
     if (looked_.off.size() > 0) e.leftCols(n) += looked_.off;
@@ -139,7 +139,7 @@ void EventCost::take(event::RowMatrix e) const {
   renew_ = false;
 }
 
-event::RowMatrix EventCost::values(const double* z, const double* state, bool with_sensitivities) const {
+noise::RowMatrix EventCost::values(const double* z, const double* state, bool with_sensitivities) const {
   const sim::plant::Plant plant = moved(setting_, z);
   if (!(setting_.can_exist ? playin::can_exist_beside(plant, *setting_.plant) : playin::can_run(plant)))
     return {};
@@ -159,7 +159,7 @@ event::RowMatrix EventCost::values(const double* z, const double* state, bool wi
                                             .linear_sensitivities = setting_.linear_sensitivities,
                                             .cache = &last_.cache});
     const auto n = static_cast<Eigen::Index>(along.size());
-    event::RowMatrix e(event_.values(), n + 1);
+    noise::RowMatrix e(event_.values(), n + 1);
     for (Eigen::Index d = 0; d < n; ++d)
       e.col(d) = event_.collected(r.sensitivities[static_cast<std::size_t>(d)].value, false);
     e.col(n) = event_.collected(r.value, true);

@@ -8,7 +8,7 @@ namespace swingbank::validate::fit::fitting {
 
 /// Returns the upper triangular R with R'R = e'e. A column that depends linearly on the others gives a zero
 /// row.
-event::RowMatrix triangle_of(const event::RowMatrix& e);
+noise::RowMatrix triangle_of(const noise::RowMatrix& e);
 
 /// Cost of one event. The parameter blocks are the plant's z (absent if no parameter is free) and the event's
 /// state. Ceres uses only products of residuals and sensitivities, so it receives the triangular factor with
@@ -33,7 +33,7 @@ class EventCost : public ceres::CostFunction {
   bool evaluate(double const* const* blocks, double* residuals, double** jacobians) const;
   /// Returns the whitened residuals in the last column, and their sensitivities to z and to the state in the
   /// columns before it. Empty if the plant cannot be simulated.
-  [[nodiscard]] event::RowMatrix values(const double* z, const double* state, bool with_sensitivities) const;
+  [[nodiscard]] noise::RowMatrix values(const double* z, const double* state, bool with_sensitivities) const;
   /// Distributes the prediction error of a step over the columns of the sensitivities. Linearised
   /// sensitivities are wrong by per cents, which stops a search along nearly collinear columns. Each column
   /// receives a share proportional to its squared norm (Broyden, Math. Comp. 19, 1965, p. 577, with each
@@ -43,11 +43,11 @@ class EventCost : public ceres::CostFunction {
   /// they are updated and assigned to the last point.
   [[nodiscard]] bool reuse_sensitivities() const;
   /// Stores new sensitivities at the last point, corrected by the prediction errors of earlier steps.
-  void take(event::RowMatrix e) const;
+  void take(noise::RowMatrix e) const;
 
   const Setting& setting_;
   const event::FitEvent& event_;
-  const event::EventNoise& noise_;
+  const noise::EventNoise& noise_;
   mutable bool renew_ = false;
   mutable int points_ = std::numeric_limits<int>::max();
   mutable std::vector<double> allowance_;  ///< see event::Playing
@@ -61,7 +61,7 @@ class EventCost : public ceres::CostFunction {
   /// computed sensitivities, and the number of reuses.
   struct Looked {
     Eigen::VectorXd at;
-    event::RowMatrix e, off;
+    noise::RowMatrix e, off;
     int gone_on = 0;
   };
   mutable Looked looked_;

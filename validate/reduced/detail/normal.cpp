@@ -36,7 +36,7 @@ void add_walk(const Knots& knots, InputKind kind, const VectorXd& input, Index f
 }  // namespace
 
 Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const std::vector<fit::Axis>& axes,
-                     const Point& at, const event::WhitenedEvents& events) {
+                     const Point& at, const noise::WhitenedEvents& events) {
   const auto n = static_cast<Index>(axes.size());
   Normal normal{MatrixXd::Zero(n, n), VectorXd::Zero(n), {}, {}, {}, {}};
   for (Index i = 0; i < n; ++i)

@@ -27,7 +27,7 @@ struct Normal {
 /// Returns the normal equations of the residuals and of the priors of parameters and states, without the
 /// inputs' prior.
 Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const std::vector<fit::Axis>& axes,
-                     const Point& at, const event::WhitenedEvents& events);
+                     const Point& at, const noise::WhitenedEvents& events);
 /// Adds the prior of the inputs: a random walk of `intensity` times the variance in walk_weights().
 void add_walks(const std::vector<EventSensitivities>& sensitivities, const Point& at, double intensity,
                Normal& normal);

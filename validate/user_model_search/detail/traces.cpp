@@ -32,7 +32,7 @@ playin::Response play_event(const sim::plant::PlantUnderTest& tested, const even
 }  // namespace
 
 std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
-                                              const event::WhitenedEvents& events,
+                                              const noise::WhitenedEvents& events,
                                               const reduced::FreeInput& input, double level) {
   std::vector<UserModelTrace> all;
   for (std::size_t i = 0; i < events.size(); ++i) {

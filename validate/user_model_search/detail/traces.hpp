@@ -8,7 +8,7 @@ namespace swingbank::validate::user_model_search {
 /// Returns one trace per event. The signals are those of the playback model with the inferred input. `level`:
 /// see trigger_level().
 std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
-                                              const event::WhitenedEvents& events,
+                                              const noise::WhitenedEvents& events,
                                               const reduced::FreeInput& input, double level);
 
 }  // namespace swingbank::validate::user_model_search

@@ -114,9 +114,9 @@ class BlindSize {
   std::vector<BlindEvent> events_;
   std::vector<validate::record::Record> plain_;
   std::vector<validate::event::FitEvent> prepared_;
-  std::vector<validate::event::EventNoise> noise_;  ///< of each event
+  std::vector<validate::noise::EventNoise> noise_;  ///< of each event
   std::vector<Eigen::VectorXd> plain_residual_;     ///< [event][sample * 2 + channel] [pu]
-  validate::event::RowMatrix
+  validate::noise::RowMatrix
       columns_;  ///< whitened sensitivities for the refit: [event, sample, channel][parameter]
 };
 

@@ -8,6 +8,7 @@
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
 #include "validate/fit/fit.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::research::blind::score {
 namespace {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 double left_by(const cases::BlindCase& made, const fs::path& folder) {
   SeenCase seen = read_seen_case(folder);
   seen.model.plant.machine.p = made.truth.machine.p;
-  const validate::event::WhitenedEvents events = validate::event::prepare_events(seen.model, seen.records);
+  const validate::noise::WhitenedEvents events = validate::noise::whitened_events(seen.model, seen.records);
   return validate::fit::fit(seen.model.under_test(), events, {}, {.lenient = true, .errors = false})
       .reduced_chi2();
 }

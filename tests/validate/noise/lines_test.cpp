@@ -1,5 +1,5 @@
 // A steady oscillation in a residual is found below the limit of chi2, and none is found in noise.
-#include "validate/fit/lines.hpp"
+#include "validate/noise/lines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,15 +9,15 @@
 #include "base/constants.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 namespace {
 
 struct Residuals {
-  event::WhitenedEvents events;
-  Fit fit;
+  WhitenedEvents events;
+  std::vector<EventFit> fits;
   [[nodiscard]] double reduced_chi2() const {
     double sum = 0, count = 0;
-    for (const EventFit& e : fit.events)
+    for (const EventFit& e : fits)
       for (const auto& channel : e.residual)
         for (const double r : channel) sum += r * r, ++count;
     return sum / count;
@@ -30,7 +30,7 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
   std::normal_distribution<double> normal;
   Residuals c;
   std::vector<event::FitEvent> events;
-  std::vector<event::EventNoise> noise;
+  std::vector<EventNoise> noise;
   for (int i = 0; i < 5; ++i) {
     event::FitEvent e;
     EventFit f;
@@ -48,16 +48,16 @@ Residuals with_wave(double amplitude, double frequency, unsigned seed) {
     noise.push_back(
         {.deviation = Eigen::VectorXd::Constant(2, 1.0), .whitening = Eigen::MatrixXd::Identity(2, 2)});
     events.push_back(std::move(e));
-    c.fit.events.push_back(std::move(f));
+    c.fits.push_back(std::move(f));
   }
-  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  c.events = {std::move(events), NoiseModel(std::move(noise))};
   return c;
 }
 
 TEST(Lines, FindsOscillationBelowTheChi2Limit) {
   const Residuals c = with_wave(0.2, 0.37, 1);
   EXPECT_LT(c.reduced_chi2(), thresholds::adequacy.reduced_chi2);
-  const Line line = strongest_line(c.fit, c.events);
+  const Line line = strongest_line(c.fits, c.events);
   EXPECT_EQ(line.channel, playin::Output::Q);
   EXPECT_NEAR(line.frequency, 0.37, 0.02);  // resolution: half of 1 / 20 s
   EXPECT_GT(line.explains, thresholds::adequacy.line);
@@ -67,19 +67,19 @@ TEST(Lines, FindsNoneInNoise) {
     const Residuals c = with_wave(0.0, 0.37, seed);
     // A sum of ten squares reaches 52, i.e. 20 above the penalty, at one of 400 frequencies in 40 residuals
     // once in 500 such tests.
-    EXPECT_LT(strongest_line(c.fit, c.events).explains, thresholds::adequacy.line / 2) << seed;
+    EXPECT_LT(strongest_line(c.fits, c.events).explains, thresholds::adequacy.line / 2) << seed;
   }
 }
 TEST(Lines, IgnoresLinesWithFewerThanTwoPeriods) {
   Residuals c = with_wave(0.2, 0.37, 1);
   std::vector<event::FitEvent> events(c.events.begin(), c.events.end());
-  std::vector<event::EventNoise> noise(5, c.events.noise(0));
+  std::vector<EventNoise> noise(5, c.events.noise(0));
   for (auto& e : events) e.record.t = {0, 0.1, 0.2};
-  for (auto& e : c.fit.events)
+  for (auto& e : c.fits)
     for (auto& channel : e.residual) channel.resize(3);
-  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
-  EXPECT_LE(strongest_line(c.fit, c.events).explains, 0.0);
+  c.events = {std::move(events), NoiseModel(std::move(noise))};
+  EXPECT_LE(strongest_line(c.fits, c.events).explains, 0.0);
 }
 
 }  // namespace
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -1,8 +1,8 @@
 #pragma once
 // Detection of a steady oscillation in a fit's residual that is too small to show in chi2 or in slow means.
-#include "validate/fit/fit.hpp"
+#include "validate/noise/event_fit.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 
 /// An oscillation of one frequency, with its own amplitude and phase in each event.
 struct Line {
@@ -16,6 +16,6 @@ struct Line {
 /// distributed and independent between frequencies, so the periodograms of several events add (J. Follum, J.
 /// W. Pierre, IEEE Trans. Power Syst. 31, 2016, p. 2423). The search covers two periods in the longest record
 /// up to 5 Hz or 80 % of the lowest Nyquist frequency. If no frequency remains, `explains` is 0.
-Line strongest_line(const Fit& fit, const event::WhitenedEvents& events);
+Line strongest_line(const std::vector<EventFit>& fits, const WhitenedEvents& events);
 
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -1,4 +1,4 @@
-#include "validate/fit/voltage_doubt.hpp"
+#include "validate/noise/voltage_doubt.hpp"
 
 #include <cmath>
 #include <span>
@@ -6,9 +6,9 @@
 #include "base/constants.hpp"
 #include "base/white_noise.hpp"
 #include "sim/core/noise.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/slow_noise.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 namespace {
 
 /// Returns a square root of a covariance of rank three at most: columns whose outer products sum to it.
@@ -23,7 +23,7 @@ double astray(const record::Record& r, std::size_t n) {
 
 /// Returns the plant's response to impulses on its states: [channel][sample].
 template <class Kick>
-VoltageDoubt::Shape impulse_response(const event::SlowNoise& noise, std::size_t samples, Kick kick) {
+VoltageDoubt::Shape impulse_response(const SlowNoise& noise, std::size_t samples, Kick kick) {
   VoltageDoubt::Shape shape(static_cast<std::size_t>(noise.C.rows()), std::vector<double>(samples, 0.0));
   Eigen::VectorXd x = kick(-1);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -36,7 +36,7 @@ VoltageDoubt::Shape impulse_response(const event::SlowNoise& noise, std::size_t 
 
 }  // namespace
 
-VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent whitened) {
+VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, WhitenedEvent whitened) {
   const event::FitEvent& e = whitened.event;
   constexpr std::uint32_t kDraws = 48;  // gives a variance to 20 %
   const std::size_t samples = e.record.t.size();
@@ -47,12 +47,12 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
       integrated ? 0.0 : white_variance(std::span(e.record.theta).first(quiet)),
       integrated ? astray(e.record, quiet) : 0.0);
   const playin::VoltageCurve curve(e.record, {});
-  const event::SlowNoise noise = slow_noise(playin::linearise({.plant = &tested.plant,
-                                                               .conventions = tested.conventions,
-                                                               .record = &e.record,
-                                                               .curve = &curve,
-                                                               .start = e.start}),
-                                            whitened, {.variance = variance});
+  const SlowNoise noise = slow_noise(playin::linearise({.plant = &tested.plant,
+                                                        .conventions = tested.conventions,
+                                                        .record = &e.record,
+                                                        .curve = &curve,
+                                                        .start = e.start}),
+                                     whitened, {.variance = variance});
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(noise.A.rows());
   VoltageDoubt doubt;
   for (const Eigen::Index j : {0, 1}) {
@@ -77,4 +77,4 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::Whit
   return doubt;
 }
 
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

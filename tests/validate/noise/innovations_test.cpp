@@ -1,15 +1,16 @@
 // The whitening filter against the covariance that it represents, and the slow noise of a regulated machine.
-#include "validate/event/innovations.hpp"
+#include "validate/noise/innovations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "sim/library/library.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::noise {
 namespace {
 
 /// Covariance of all compared values of a short record, computed directly.
@@ -59,7 +60,7 @@ TEST(Innovations, EqualCholeskyWhitening) {
 struct Quiet {
   plant::PlantModel model;
   WhitenedEvents events;
-  fit::Fit fit;
+  std::vector<EventFit> fits;
 
   explicit Quiet(const char* exciter) {
     constexpr double kPower = 1e-3, kVoltage = 1e-4;
@@ -73,7 +74,6 @@ struct Quiet {
     }
     std::mt19937_64 random(11);
     std::normal_distribution<double> normal;
-    fit.plant = model.plant;
     std::vector<record::Record> records;
     for (int i = 0; i < 5; ++i) {
       record::Record r;
@@ -88,13 +88,13 @@ struct Quiet {
       }
       records.push_back(std::move(r));
     }
-    events = prepare_events(model, std::move(records));
+    events = whitened_events(model, std::move(records));
   }
   /// Computes the residuals of the present model.
   void compute_residuals() {
-    fit.events.clear();
+    fits.clear();
     for (std::size_t i = 0; i < events.size(); ++i) {
-      const FitEvent& e = events[i];
+      const event::FitEvent& e = events[i];
       const playin::VoltageCurve curve(e.record, {});
       playin::PlaybackRun run{.plant = &model.plant,
                               .conventions = model.conventions,
@@ -102,9 +102,9 @@ struct Quiet {
                               .curve = &curve,
                               .start = e.start};
       run.tolerance = 1e-7;
-      fit::EventFit f;
-      fit::compare(events, i, playin::simulate_playback(run), f);
-      fit.events.push_back(std::move(f));
+      EventFit f;
+      compare(events, i, playin::simulate_playback(run), f);
+      fits.push_back(std::move(f));
     }
   }
   /// Variance of one-second means of Q's residual, relative to white noise (1).
@@ -112,7 +112,7 @@ struct Quiet {
     constexpr std::size_t kLength = 60;
     double sum = 0;
     int blocks = 0;
-    for (const auto& f : fit.events)
+    for (const auto& f : fits)
       for (std::size_t first = 0; first + kLength <= f.residual[1].size(); first += kLength, ++blocks) {
         double block = 0;
         for (std::size_t k = first; k < first + kLength; ++k) block += f.residual[1][k];
@@ -126,7 +126,7 @@ TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
   Quiet quiet("SEXS");
   quiet.compute_residuals();
   EXPECT_GT(quiet.slow_power(), 3.0);  // the residual is coloured
-  quiet.events = quiet.events.with(fit::remember_noise(quiet.fit, quiet.model.conventions, quiet.events));
+  quiet.events = quiet.events.with(remember_noise(quiet.model.under_test(), quiet.fits, quiet.events));
   ASSERT_TRUE(quiet.events.noise(0).memory);
   quiet.compute_residuals();
   // 75 squares scatter by 16 %, and the measured noise of V by another 20 %.
@@ -134,4 +134,4 @@ TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
 }
 
 }  // namespace
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::noise

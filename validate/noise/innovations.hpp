@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::noise {
 
 /// Dense matrix, row by row in memory.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -39,4 +39,4 @@ class Innovations {
   std::vector<Step> steps_;
 };
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::noise

@@ -1,8 +1,8 @@
 #pragma once
 // Residual shapes of errors of the played-in voltage, which add to the variance of an error map.
-#include "validate/event/event.hpp"
+#include "validate/noise/whitened_events.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 
 /// Shapes of the residual that errors of the played-in voltage cause in an event's channels, one standard
 /// deviation each. Two shapes are for errors of the pre-event means of V and theta. A number of random draws,
@@ -14,6 +14,6 @@ struct VoltageDoubt {
   std::vector<Shape> shapes;                       ///< each one standard deviation
 };
 /// Computes the shapes of one event.
-VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, event::WhitenedEvent event);
+VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, WhitenedEvent event);
 
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

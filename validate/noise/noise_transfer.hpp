@@ -2,17 +2,16 @@
 // Transfer of the played-in voltage's noise into the response of a structure. A structure with lower noise
 // transfer has a lower chi2 without explaining anything. Example: a current with a delay of a part of a
 // sample is interpolated, and the interpolated curve is smoother than the noise of the samples.
-#include "validate/event/event.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/voltage_noise.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 
 /// Noise transfer of a reference structure, with which other structures are compared.
 class NoiseTransfer {
  public:
   /// Sets the reference structure. Noise of these variances is played in for one minute at the first event's
   /// operating point and whitened as the residual of this structure.
-  NoiseTransfer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+  NoiseTransfer(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events,
                 const VoltageNoise& voltage);
   /// Returns the fall of chi2 over all events due to the lower noise transfer of another structure. Negative
   /// if its transfer is higher, 0 if it cannot be simulated.
@@ -25,15 +24,9 @@ class NoiseTransfer {
   [[nodiscard]] double chi2_of(const sim::plant::PlantUnderTest& tested) const;
 
   event::FitEvent quiet_, noisy_;
-  event::EventNoise noise_;  ///< of both
-  double times_ = 0;         ///< ratio of the events' number of values to the minute's
+  EventNoise noise_;  ///< of both
+  double times_ = 0;  ///< ratio of the events' number of values to the minute's
   double own_ = 0;
 };
 
-/// Sets Fit::transfer_deficit of another structure's fit, at least 0: a higher noise transfer earns no
-/// credit. Every explanation that competes with another must be corrected here, a free input's refitted plant
-/// included. Null: the noise transfer is ignored.
-void correct_noise_transfer(const NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
-                            Fit& fit);
-
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -1,5 +1,5 @@
 // Detection of a steady oscillation in a fit's residual.
-#include "validate/fit/lines.hpp"
+#include "validate/noise/lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "base/constants.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 namespace {
 
 constexpr double kHighestLine = 5.0;  ///< [Hz]; faster oscillations of a plant are damped quickly
@@ -32,7 +32,7 @@ double taken_off(const std::vector<double>& residual, double turns_per_sample) {
 
 }  // namespace
 
-Line strongest_line(const Fit& fit, const event::WhitenedEvents& events) {
+Line strongest_line(const std::vector<EventFit>& fits, const WhitenedEvents& events) {
   double longest = 0, highest = kHighestLine;
   for (const event::FitEvent& e : events) {
     longest = std::max(longest, e.record.t.back() - e.record.t.front());
@@ -51,11 +51,11 @@ Line strongest_line(const Fit& fit, const event::WhitenedEvents& events) {
       double explains = -choice;
       for (std::size_t e = 0; e < events.size(); ++e)
         if (events[e].channels == channels)
-          explains += taken_off(fit.events[e].residual[c], frequency * events[e].record.step()) -
+          explains += taken_off(fits[e].residual[c], frequency * events[e].record.step()) -
                       2 * thresholds::adequacy.number;
       if (explains > best.explains) best = {channels[c], frequency, explains};
     }
   return best;
 }
 
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -1,13 +1,15 @@
 // Transfer of the played-in voltage's noise into the responses of two structures.
-#include "validate/fit/noise_transfer.hpp"
+#include "validate/noise/noise_transfer.hpp"
 
 #include <gtest/gtest.h>
 
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/exciter_example.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 namespace {
+
+using namespace fit;
 
 class NoiseTransferTest : public ::testing::Test {
  protected:
@@ -66,4 +68,4 @@ TEST_F(NoiseTransferTest, GivesNoCreditForHigherNoiseTransfer) {
 }
 
 }  // namespace
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -4,19 +4,22 @@
 #include <stdexcept>
 
 #include "tests/validate/fit/exciter_example.hpp"
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 
-namespace swingbank::validate::fit {
+namespace swingbank::validate::noise {
 namespace {
+
+using namespace fit;
 
 struct NoiseModels : ::testing::Test {
   const ExciterExample example{0.2};
   const Fit first = example.fitted({"H"}, {.iterations = 2});
   /// The same events with the noise measured once more through that fit.
-  const event::WhitenedEvents again =
-      example.events.with(measure_noise_through(first, example.model.conventions, example.events));
+  const WhitenedEvents again = example.events.with(measure_noise_through(
+      {first.plant, example.model.conventions}, first.events, first.reduced_chi2(), example.events));
 
-  [[nodiscard]] Fit fitted_to(const event::WhitenedEvents& events) const {
+  [[nodiscard]] Fit fitted_to(const WhitenedEvents& events) const {
     return fit(example.model.under_test(), events, example.free({"H", "K"}), {.iterations = 2});
   }
 };
@@ -33,8 +36,7 @@ TEST_F(NoiseModels, RefusesToCompareFitsWithDifferentNoise) {
   EXPECT_THROW(static_cast<void>(gain(first.events.front(), other.events.front())), std::logic_error);
 }
 TEST_F(NoiseModels, EqualValuesOfTwoMeasurementsRemainDistinct) {
-  const event::WhitenedEvents twice =
-      example.events.with(event::measure_noise(example.model.under_test(), example.events));
+  const WhitenedEvents twice = example.events.with(measure_noise(example.model.under_test(), example.events));
   EXPECT_EQ(twice.noise(0).deviation, example.events.noise(0).deviation);
   EXPECT_THROW(static_cast<void>(gain(first, fitted_to(twice))), std::logic_error);
 }
@@ -48,13 +50,15 @@ TEST_F(NoiseModels, FailedFitIsWorseThanAnyOther) {
   EXPECT_FALSE(better(failed, first));
 }
 TEST_F(NoiseModels, MeasuringDoesNotChangeTheEvents) {
-  const event::EventNoise before = example.events.noise(0);
-  const event::NoiseModel measured = example.events.noise_model();
+  const EventNoise before = example.events.noise(0);
+  const NoiseModel measured = example.events.noise_model();
   const event::FitEvent* const where = &example.events.front();
   const Fit whole = fitted_to(example.events);
-  const event::NoiseModel sharp = sharpen_noise(whole, example.events),
-                          remembered = remember_noise(whole, example.model.conventions, example.events),
-                          through = measure_noise_through(whole, example.model.conventions, example.events);
+  const sim::plant::PlantUnderTest tested{whole.plant, example.model.conventions};
+  const NoiseModel sharp = sharpen_noise(whole.events, example.events),
+                   remembered = remember_noise(tested, whole.events, example.events),
+                   through =
+                       measure_noise_through(tested, whole.events, whole.reduced_chi2(), example.events);
   for (const auto* other : {&sharp, &remembered, &through}) EXPECT_FALSE(*other == measured);
   EXPECT_TRUE(example.events.noise_model() == measured);
   EXPECT_EQ(&example.events.front(), where);
@@ -66,4 +70,4 @@ TEST_F(NoiseModels, MeasuringDoesNotChangeTheEvents) {
 }
 
 }  // namespace
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "validate/event/innovations.hpp"
+#include "validate/noise/innovations.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::noise {
 
 /// Noise of one event's channels.
 struct EventNoise {
@@ -38,4 +38,7 @@ class NoiseModel {
   std::shared_ptr<const std::vector<EventNoise>> measured_;
 };
 
-}  // namespace swingbank::validate::event
+/// Throws std::logic_error if the two estimates are not the same: costs in their units are not comparable.
+void require_same(const NoiseModel& a, const NoiseModel& b);
+
+}  // namespace swingbank::validate::noise

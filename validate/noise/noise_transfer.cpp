@@ -1,11 +1,14 @@
-#include "validate/fit/noise_transfer.hpp"
+#include "validate/noise/noise_transfer.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace swingbank::validate::fit {
+#include "validate/noise/noise_events.hpp"
+#include "validate/noise/slow_noise.hpp"
 
-NoiseTransfer::NoiseTransfer(const sim::plant::PlantUnderTest& tested, const event::WhitenedEvents& events,
+namespace swingbank::validate::noise {
+
+NoiseTransfer::NoiseTransfer(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events,
                              const VoltageNoise& voltage)
     : quiet_(minute_of_noise(events.front(), Eigen::Vector3d::Zero())),
       noisy_(minute_of_noise(events.front(), voltage.variance)),
@@ -24,7 +27,7 @@ double NoiseTransfer::less_with(const sim::plant::PlantUnderTest& tested) const 
 
 double NoiseTransfer::chi2_of(const sim::plant::PlantUnderTest& tested) const {
   try {
-    event::RowMatrix moved = noisy_.collected(event::play(tested, noisy_, {}).value, false);
+    RowMatrix moved = noisy_.collected(event::play(tested, noisy_, {}).value, false);
     moved -= quiet_.collected(event::play(tested, quiet_, {}).value, false);
     noise_.whiten(moved);
     return times_ * moved.squaredNorm();
@@ -33,10 +36,4 @@ double NoiseTransfer::chi2_of(const sim::plant::PlantUnderTest& tested) const {
   }
 }
 
-void correct_noise_transfer(const NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
-                            Fit& fit) {
-  if (noise_transfer && fit.failed.empty())
-    fit.transfer_deficit = std::max(0.0, noise_transfer->less_with({fit.plant, conventions}));
-}
-
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

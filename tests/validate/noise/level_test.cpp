@@ -1,19 +1,21 @@
 // Noise measured on whole records: white noise is estimated, coloured noise is left unchanged.
-#include "validate/fit/noise.hpp"
+#include "validate/noise/level.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace swingbank::validate::fit {
+#include "validate/noise/voltage_noise.hpp"
+
+namespace swingbank::validate::noise {
 namespace {
 
 constexpr int kSamples = 900, kQuiet = 90;
 constexpr double kSigma = 2e-3;
 
 struct Case {
-  event::WhitenedEvents events;
-  Fit fit;
+  WhitenedEvents events;
+  std::vector<EventFit> fits;
 };
 /// Events whose residual is noise of that colour (1: white) on a slow model error of ten times its size; the
 /// assumed noise is `assumed` times the true one.
@@ -22,7 +24,7 @@ Case make(double colour, double assumed) {
   std::normal_distribution<double> normal(0, kSigma);
   Case c;
   std::vector<event::FitEvent> events;
-  std::vector<event::EventNoise> noise;
+  std::vector<EventNoise> noise;
   for (int i = 0; i < 5; ++i) {
     event::FitEvent e;
     EventFit f;
@@ -42,26 +44,26 @@ Case make(double colour, double assumed) {
     noise.push_back({.deviation = Eigen::VectorXd::Constant(2, assumed * kSigma),
                      .whitening = Eigen::MatrixXd::Identity(2, 2) / (assumed * kSigma)});
     events.push_back(std::move(e));
-    c.fit.events.push_back(std::move(f));
+    c.fits.push_back(std::move(f));
   }
-  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  c.events = {std::move(events), NoiseModel(std::move(noise))};
   return c;
 }
 
 TEST(SharpenNoise, EstimatesWhiteNoiseWithinFivePerCent) {
   Case c = make(1.0, 1.0);
-  // As prepare_events: the standard deviation of 450 samples before the events.
+  // As whitened_events: the standard deviation of 450 samples before the events.
   double quiet = 0;
   for (const auto& e : c.events)
     for (int k = 0; k < kQuiet; ++k) quiet += std::pow(e.record.P[static_cast<std::size_t>(k)] - 0.5, 2);
   quiet = std::sqrt(quiet / (5 * kQuiet));
-  std::vector<event::EventNoise> noise;
+  std::vector<EventNoise> noise;
   for (std::size_t e = 0; e < c.events.size(); ++e) {
     noise.push_back(c.events.noise(e));
     noise.back().deviation[0] = quiet;
     noise.back().whitening(0, 0) = 1 / quiet;
   }
-  const event::NoiseModel sharp = sharpen_noise(c.fit, c.events.with(event::NoiseModel(std::move(noise))));
+  const NoiseModel sharp = sharpen_noise(c.fits, c.events.with(NoiseModel(std::move(noise))));
   // The median of 4400 squares scatters by 2.6 %, its root by 1.3 %; pre-event means cost another 1 %.
   EXPECT_NEAR(sharp.of(0).deviation[0], kSigma, 0.05 * kSigma);
   EXPECT_NEAR(sharp.of(0).whitening(0, 0) * sharp.of(0).deviation[0], 1.0, 1e-12);
@@ -71,7 +73,7 @@ TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
   std::normal_distribution<double> normal;
   for (const double slow : {0.0, 0.25}) {  // a quarter of the noise, over seconds
     Case c = make(1.0, 1.0);
-    for (auto& f : c.fit.events) {
+    for (auto& f : c.fits) {
       f.residual.assign(2, {});
       for (auto& channel : f.residual) {
         double drift = 0;
@@ -81,7 +83,7 @@ TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
         }
       }
     }
-    const double remainder = slow_remainder(c.fit, c.events);
+    const double remainder = slow_remainder(c.fits, c.events);
     // The largest of six nearly normal numbers. Slow: 0.0625 of the variance over 200 samples is some 5 times
     // the power of white noise in two seconds, 4 / sqrt(2 / 35).
     if (slow == 0.0) {
@@ -93,7 +95,7 @@ TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
 }
 TEST(SharpenNoise, DoesNotChangeColouredNoise) {
   Case c = make(0.3, 1.0);
-  const event::NoiseModel sharp = sharpen_noise(c.fit, c.events);
+  const NoiseModel sharp = sharpen_noise(c.fits, c.events);
   EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
 }
 
@@ -109,7 +111,7 @@ Case moving(double carried, bool real, Samples samples = {}) {
   std::normal_distribution<double> normal;
   Case c;
   std::vector<event::FitEvent> events;
-  std::vector<event::EventNoise> noise;
+  std::vector<EventNoise> noise;
   for (int i = 0; i < samples.events; ++i) {
     event::FitEvent e;
     EventFit f;
@@ -131,16 +133,16 @@ Case moving(double carried, bool real, Samples samples = {}) {
     e.channels = {playin::Output::P, playin::Output::Q};
     noise.push_back({.deviation = Eigen::Vector2d(3e-3, 2e-3), .whitening = Eigen::Matrix2d::Identity()});
     events.push_back(std::move(e));
-    c.fit.events.push_back(std::move(f));
+    c.fits.push_back(std::move(f));
   }
-  c.events = {std::move(events), event::NoiseModel(std::move(noise))};
+  c.events = {std::move(events), NoiseModel(std::move(noise))};
   return c;
 }
 
 TEST(VoltageNoise, IsDetectedInPAndQComputedFromPhasors) {
   for (const double carried : {0.0, 1.0}) {
     const Case c = moving(carried, false);
-    const VoltageNoise found = voltage_noise(c.fit, c.events);
+    const VoltageNoise found = voltage_noise(c.fits, c.events);
     EXPECT_NEAR(found.carried, carried, 0.15);
     EXPECT_NEAR(found.share, 1.0, 0.05);
     // Noise of 4e-4 with an assumed deviation of 2e-3; 84 samples determine it to 15 %.
@@ -148,27 +150,27 @@ TEST(VoltageNoise, IsDetectedInPAndQComputedFromPhasors) {
   }
 }
 TEST(VoltageNoise, IsEstimatedOnTheWholeRecordWithoutSwings) {
-  const VoltageNoise found = voltage_noise(moving(1, false).fit, moving(1, false).events);
+  const VoltageNoise found = voltage_noise(moving(1, false).fits, moving(1, false).events);
   EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the pre-event segments alone determine it to 0.3
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, UsesCalmSegments_WhenThePreEventIsShort) {
   const Case c = moving(1, false, {.before = 6});
-  const VoltageNoise found = voltage_noise(c.fit, c.events);
+  const VoltageNoise found = voltage_noise(c.fits, c.events);
   EXPECT_LT(found.doubt[1], 0.05);  // six bins alone determine it to 0.6
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, CorrectsForMeanAndTrendOfShortSegments) {
   const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no calm second
-  const VoltageNoise found = voltage_noise(c.fit, c.events);
+  const VoltageNoise found = voltage_noise(c.fits, c.events);
   EXPECT_LT(found.doubt[1], 0.04);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be missing
 }
 TEST(VoltageNoise, ExcludesThePlantsResponse) {
   const Case c = moving(0, true);
-  EXPECT_LT(voltage_noise(c.fit, c.events).share, 0.05);
+  EXPECT_LT(voltage_noise(c.fits, c.events).share, 0.05);
 }
 
 }  // namespace
-}  // namespace swingbank::validate::fit
+}  // namespace swingbank::validate::noise

@@ -1,6 +1,6 @@
-#include "validate/event/innovations.hpp"
+#include "validate/noise/innovations.hpp"
 
-namespace swingbank::validate::event {
+namespace swingbank::validate::noise {
 
 Innovations::Innovations(const SlowNoise& noise, int samples, const std::vector<char>& left_out)
     : A_(noise.A), C_(noise.C) {
@@ -41,4 +41,4 @@ void Innovations::whiten(RowMatrix& e) const {
   }
 }
 
-}  // namespace swingbank::validate::event
+}  // namespace swingbank::validate::noise

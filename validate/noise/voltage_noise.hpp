@@ -1,0 +1,37 @@
+#pragma once
+// Noise of the played-in voltage, estimated from the whole records.
+#include <array>
+#include <vector>
+
+#include "validate/noise/event_fit.hpp"
+
+namespace swingbank::validate::noise {
+
+/// Noise of the played-in voltage, white in each measured channel. An angle that was integrated from the
+/// frequency has a random walk instead.
+struct VoltageNoise {
+  /// Variances of V (relative), of theta [rad^2], and of the random walk of an integrated theta [rad^2 per
+  /// sample].
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();
+  /// Share of this noise that the measured P and Q also carry. 1: the instrument computes P and Q from the
+  /// recorded phasors; 0: each channel has independent noise.
+  double carried = 0;
+  /// Share of the pre-event fluctuation of V and theta that is instrument noise. 1: the measured P and Q do
+  /// not respond to the fluctuation; 0: they respond as the model does, so the fluctuation is real.
+  double share = 0;
+  Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< relative standard deviation of each variance
+  /// Share of each channel's variance that is its own noise and no response to the voltage's noise, by
+  /// playin::Output. slow_noise() applies a lower limit of 0.01.
+  std::array<double, playin::kOutputs> own{};
+  /// Returns the sensitivity of the measured P and Q to V (relative) and theta [rad] at constant current,
+  /// times `carried`: [channel][V, theta], in the channels' units.
+  [[nodiscard]] Eigen::MatrixXd into(const event::FitEvent& event) const;
+  /// Returns the variances that apply to this event's kind of angle; the others are 0.
+  [[nodiscard]] Eigen::Vector3d of(const event::FitEvent& event) const;
+};
+
+/// Estimates the voltage's noise from its fluctuation between 3 and 10 Hz, before the events and in later
+/// segments that fluctuate no more. Below this band the grid itself moves; above it instruments filter.
+VoltageNoise voltage_noise(const std::vector<EventFit>& fits, const WhitenedEvents& events);
+
+}  // namespace swingbank::validate::noise
