@@ -23,7 +23,6 @@
 #include "validate/event/point.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/record/record.hpp"
-#include "validate/record/staged.hpp"
 #include "validate/switching/given.hpp"
 
 namespace swingbank::jobs {
@@ -139,7 +138,7 @@ inline void note_unused_events(const std::vector<std::string>& files,
                                const std::vector<validate::record::StagedEvent>& staged) {
   if (quiet) return;
   for (const auto& e : staged)
-    if (std::ranges::none_of(files, [&](const auto& file) { return validate::record::belongs_to(e, file); }))
+    if (std::ranges::none_of(files, [&](const auto& file) { return e.applies_to(file); }))
       fmt::print(stderr,
                  "note: the [[event]] {} of {} is left out (none of the records here has that name)\n",
                  validate::record::staged_name(e.kind), e.record);

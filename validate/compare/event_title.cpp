@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "validate/record/staged.hpp"
+#include "validate/record/record.hpp"
 
 namespace swingbank::validate::compare {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -15,89 +14,53 @@
 #include "base/sha256.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
-#include "validate/record/staged.hpp"
 
 namespace swingbank::validate::record {
 namespace {
 
-/// Splits "run.h5#G2" at the last '#' into file and terminal, unless it is part of the file's name.
-std::filesystem::path split_terminal(const std::filesystem::path& file, ReadOptions& options) {
-  const std::string text = file.string();
-  const auto at = text.rfind('#');
-  if (at == std::string::npos || at == 0 || std::filesystem::exists(file)) return file;
-  options.terminal = text.substr(at + 1);
-  return text.substr(0, at);
-}
-
-std::string extension(const std::filesystem::path& file) {
-  std::string e = file.extension().string();
-  std::ranges::transform(e, e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return e;
-}
-
-/// Returns the other file of a pair, preferably with an extension in the same case.
-std::filesystem::path partner(std::filesystem::path file, const char* lower, const char* upper) {
-  const std::string e = file.extension().string();
-  const bool capitals = e.size() > 1 && std::isupper(static_cast<unsigned char>(e[1])) != 0;
-  const std::filesystem::path same = file.replace_extension(capitals ? upper : lower);
-  if (std::filesystem::exists(same)) return same;
-  const std::filesystem::path other = file.replace_extension(capitals ? lower : upper);
-  return std::filesystem::exists(other) ? other : same;
-}
-
-Record read_comtrade(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options) {
-  const std::string e = extension(file), name = file.filename().string();
-  std::string bytes;
-  Record record;
-  if (e == ".cff") {
-    bytes = read_bytes(file);
-    record = record_of_comtrade(parse_cff(bytes, file.string()), name, base, options);
-  } else {
-    const auto cfg = e == ".cfg" ? file : partner(file, ".cfg", ".CFG");
-    const auto dat = e == ".dat" ? file : partner(file, ".dat", ".DAT");
-    bytes = read_bytes(cfg);
-    const std::size_t split = bytes.size();
-    bytes += read_bytes(dat);
-    const std::string_view all = bytes;
-    record = record_of_comtrade(
-        parse_comtrade(all.substr(0, split), all.substr(split), cfg.string(), dat.string()), name, base,
-        options);
-  }
+Record read_comtrade(const SourceFile& source, const RecordBase& base, const ReadOptions& options) {
+  const bool pair = !source.data.empty();
+  std::string bytes = read_bytes(pair ? source.config : source.path);
+  const std::size_t split = bytes.size();
+  if (pair) bytes += read_bytes(source.data);
+  const std::string_view all = bytes;
+  Record record = record_of_comtrade(pair ? parse_comtrade(all.substr(0, split), all.substr(split),
+                                                           source.config.string(), source.data.string())
+                                          : parse_cff(bytes, source.path.string()),
+                                     source.path.filename().string(), base, options);
   record.sha256 = sha256(bytes);
   return record;
 }
 
-/// Splits "event.plb+meter.csv" into the files of one event, unless it is one file's name.
-std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) {
-  if (std::filesystem::exists(named)) return {named};
-  std::vector<std::filesystem::path> parts;
-  const std::string text = named.string();
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('+', at), text.size());
-    if (end > at) parts.emplace_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return parts;
+Record read_file(const SourceFile& file, const RecordBase& base, ReadOptions options) {
+  if (!file.terminal.empty()) options.terminal = file.terminal;
+  using Format = SourceFile::Format;
+  Record record = file.format == Format::comtrade ? read_comtrade(file, base, options)
+                  : file.format == Format::hdf5   ? read_hdf5_record(file.path, base, options)
+                  : file.format == Format::matlab
+                      ? read_mat_record(file.path, base, options)
+                      : parse_record(read_bytes(file.path), file.path.string(), base, options);
+  record.name = file.name;  // includes the terminal: two of a file must differ
+  return record;
 }
 
-Record read_parts(const std::vector<std::filesystem::path>& files, const RecordBase& base,
-                  const ReadOptions& options, const std::string& names) {
+Record read_parts(const Source& source, const RecordBase& base, const ReadOptions& options) {
   ReadOptions part = options;
   part.part = true;
   std::vector<Record> records;
   std::string bytes;
   Problems problems;
-  for (const auto& file : files) {
+  for (const SourceFile& file : source.files) {
     try {
-      records.push_back(read_record(file, base, part));
+      records.push_back(read_file(file, base, part));
       bytes += records.back().sha256;
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
   }
   problems.raise();
-  Record all = join_records(std::move(records), options, names);
-  all.name = names;
+  Record all = join_records(std::move(records), options, source.name);
+  all.name = source.name;
   all.sha256 = sha256(bytes);
   return all;
 }
@@ -132,16 +95,10 @@ double Record::first_staged() const {
   return first;
 }
 
-bool belongs_to(const StagedEvent& e, const std::filesystem::path& file) {
-  const std::string named = file.string(), path = named.substr(0, named.rfind('#'));
-  return e.record.empty() || e.record == std::filesystem::path(path).filename().string() ||
-         e.record == file.filename().string();
-}
-
-Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options) {
+Record read_staged(const Source& source, const RecordBase& base, ReadOptions options) {
   std::vector<StagedEvent> staged;
   std::ranges::copy_if(options.staged, std::back_inserter(staged),
-                       [&](const StagedEvent& e) { return belongs_to(e, file); });
+                       [&](const StagedEvent& e) { return e.applies_to(source); });
   const bool open = std::ranges::any_of(
       staged, [](const StagedEvent& e) { return e.kind == StagedEvent::Kind::open_circuit; });
   if (open) {
@@ -150,7 +107,7 @@ Record read_staged(const std::filesystem::path& file, const RecordBase& base, Re
       return any.front() == "P" || any.front() == "Q" || any.front() == "theta";
     });
   }
-  Record r = read_record(file, base, options);
+  Record r = read_record(source, base, options);
   r.staged = std::move(staged);
   if (!r.breaker()) return r;
   for (auto* power : {&r.P, &r.Q})
@@ -257,25 +214,9 @@ std::string beginning(const Record& record) {
   return record.start.empty() ? std::string() : record.start + " (as written; its zone is not known)";
 }
 
-std::string record_name(const std::filesystem::path& named) {
-  std::string names;
-  for (const auto& part : parts_of(named)) names += (names.empty() ? "" : "+") + part.filename().string();
-  return names;
-}
-
-Record read_record(const std::filesystem::path& named, const RecordBase& base, const ReadOptions& given) {
-  if (const auto parts = parts_of(named); parts.size() > 1)
-    return read_parts(parts, base, given, record_name(named));
-  ReadOptions options = given;
-  const std::filesystem::path file = split_terminal(named, options);
-  const std::string e = extension(file);
-  const bool comtrade = e == ".cfg" || e == ".dat" || e == ".cff";
-  Record record = comtrade                     ? read_comtrade(file, base, options)
-                  : e == ".h5" || e == ".hdf5" ? read_hdf5_record(file, base, options)
-                  : e == ".mat"                ? read_mat_record(file, base, options)
-                                               : parse_record(read_bytes(file), file.string(), base, options);
-  record.name = record_name(named);  // includes the terminal: two of a file must differ
-  return record;
+Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options) {
+  return source.files.size() > 1 ? read_parts(source, base, options)
+                                 : read_file(source.files.front(), base, options);
 }
 
 }  // namespace swingbank::validate::record

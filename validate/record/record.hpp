@@ -1,7 +1,6 @@
 #pragma once
 // Record of measurements at one plant's terminal: uniformly sampled, units converted on reading.
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "base/problem.hpp"
+#include "validate/record/source.hpp"
 
 namespace swingbank::validate::record {
 
@@ -54,6 +54,10 @@ struct StagedEvent {
   std::string record = {};  ///< file name of the record that it applies to; empty: all
   /// Whether the event disconnects the plant from the grid.
   [[nodiscard]] bool opens_breaker() const { return kind >= Kind::open_circuit; }
+  /// Returns whether the event applies to this record, by name or because it applies to all.
+  [[nodiscard]] bool applies_to(const Source& source) const {
+    return record.empty() || source.is_named(record);
+  }
   /// Compares all members.
   friend bool operator==(const StagedEvent&, const StagedEvent&) = default;
 };
@@ -141,23 +145,20 @@ struct ReadOptions {
   bool angle = false;  ///< a measured angle is required; false: it may be integrated from f, or be missing
 };
 
-/// Reads a record. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat MATLAB, .h5 a run of
-/// `swingbank simulate`, otherwise text columns (validate/record/README.md lists names, units and dialects).
-/// "FILE#TERMINAL" selects one of several terminals; "FILE+FILE" joins the columns of several files of one
-/// event. Columns that are not measurements of the terminal are listed in `ignored`. Repairs (shorter gaps,
-/// repeated stamps, clock adjustments) are listed in `notes`. check_record (validate/check/check.hpp) judges
-/// the content. Throws InputError with every fault of the file and its lines or bytes: missing, repeated or
-/// unitless columns, lines of unequal length, values that are not finite or missing for longer than
-/// kLongestGap, times that do not increase or are unevenly spaced, too few samples.
-Record read_record(const std::filesystem::path& file, const RecordBase& base,
-                   const ReadOptions& options = {});
-
-/// Returns the name of a record without folders: "a.csv#NORTH", "a.csv+b.csv".
-std::string record_name(const std::filesystem::path& named);
+/// Reads a record from its source. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat
+/// MATLAB, .h5 a run of `swingbank simulate`, otherwise text columns (validate/record/README.md lists names,
+/// units and dialects). "FILE#TERMINAL" selects one of several terminals; "FILE+FILE" joins the columns of
+/// several files of one event. Columns that are not measurements of the terminal are listed in `ignored`.
+/// Repairs (shorter gaps, repeated stamps, clock adjustments) are listed in `notes`. check_record
+/// (validate/check/check.hpp) judges the content. Throws InputError with every fault of the file and its
+/// lines or bytes: missing, repeated or unitless columns, lines of unequal length, values that are not finite
+/// or missing for longer than kLongestGap, times that do not increase or are unevenly spaced, too few
+/// samples.
+Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole
 /// record, P and Q are not required.
-Record read_staged(const std::filesystem::path& file, const RecordBase& base, ReadOptions options);
+Record read_staged(const Source& source, const RecordBase& base, ReadOptions options);
 
 /// Returns the name of a staged event in plant files: "vref_step".
 std::string_view staged_name(StagedEvent::Kind kind);

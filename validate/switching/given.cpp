@@ -11,7 +11,7 @@ namespace swingbank::validate::switching {
 std::map<std::string, std::vector<double>> given_switching_times(const std::vector<std::string>& words,
                                                                  const std::vector<std::string>& files) {
   std::vector<std::string> records;
-  for (const auto& file : files) records.push_back(record::record_name(file));
+  for (const auto& file : files) records.push_back(record::Source(file).name);
   std::map<std::string, std::vector<double>> switching_times;
   Problems problems;
   for (const auto& word : words) {

@@ -1,0 +1,78 @@
+#include "validate/record/source.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace swingbank::validate::record {
+namespace {
+
+std::string extension(const std::filesystem::path& file) {
+  std::string e = file.extension().string();
+  std::ranges::transform(e, e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+/// Returns the other file of a pair, preferably with an extension in the same case.
+std::filesystem::path partner(std::filesystem::path file, const char* lower, const char* upper) {
+  const std::string e = file.extension().string();
+  const bool capitals = e.size() > 1 && std::isupper(static_cast<unsigned char>(e[1])) != 0;
+  const std::filesystem::path same = file.replace_extension(capitals ? upper : lower);
+  if (std::filesystem::exists(same)) return same;
+  const std::filesystem::path other = file.replace_extension(capitals ? lower : upper);
+  return std::filesystem::exists(other) ? other : same;
+}
+
+/// Splits "event.plb+meter.csv" into the files of one event, unless it is one file's name.
+std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) {
+  if (std::filesystem::exists(named)) return {named};
+  std::vector<std::filesystem::path> parts;
+  const std::string text = named.string();
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('+', at), text.size());
+    if (end > at) parts.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+SourceFile source_file(const std::filesystem::path& named) {
+  using Format = SourceFile::Format;
+  SourceFile file;
+  file.path = named;
+  file.name = named.filename().string();
+  const std::string text = named.string();
+  const auto at = text.rfind('#');
+  if (at != std::string::npos && at > 0 && !std::filesystem::exists(named)) {  // else part of the file's name
+    file.path = text.substr(0, at);
+    file.terminal = text.substr(at + 1);
+  }
+  const std::string e = extension(file.path);
+  if (e == ".cfg" || e == ".dat") {
+    file.config = e == ".cfg" ? file.path : partner(file.path, ".cfg", ".CFG");
+    file.data = e == ".dat" ? file.path : partner(file.path, ".dat", ".DAT");
+  }
+  file.format = e == ".cfg" || e == ".dat" || e == ".cff" ? Format::comtrade
+                : e == ".h5" || e == ".hdf5"              ? Format::hdf5
+                : e == ".mat"                             ? Format::matlab
+                                                          : Format::text;
+  return file;
+}
+
+}  // namespace
+
+Source::Source(const std::filesystem::path& named) : path(named) {
+  std::vector<std::filesystem::path> parts = parts_of(named);
+  if (parts.size() < 2) parts = {named};
+  for (const auto& part : parts) {
+    files.push_back(source_file(part));
+    name += (name.empty() ? "" : "+") + files.back().name;
+  }
+}
+
+bool Source::is_named(const std::string& record) const {
+  const std::string named = path.string();
+  const std::filesystem::path whole = named.substr(0, named.rfind('#'));
+  return record == whole.filename().string() || record == path.filename().string();
+}
+
+}  // namespace swingbank::validate::record

@@ -1,0 +1,36 @@
+#pragma once
+// Files of one record, determined once from the name that the user gives.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace swingbank::validate::record {
+
+/// One file of a record, or one of its terminals.
+struct SourceFile {
+  /// Format of the file, by its extension.
+  enum class Format { text, comtrade, hdf5, matlab };
+  Format format = Format::text;        ///< format of the file
+  std::filesystem::path path;          ///< without the terminal
+  std::filesystem::path config, data;  ///< the .cfg and .dat file of a COMTRADE pair; otherwise empty
+  std::string name;                    ///< file name as given, without folder: "run.h5#G2"
+  std::string terminal;                ///< "G2" of "run.h5#G2"; empty: none is selected
+};
+
+/// Location of a record: "FILE", "FILE#TERMINAL", or the files of one event, "FILE+FILE".
+struct Source {
+  /// Determines the files of a record; converts implicitly, because a record is named by its path.
+  Source(const std::filesystem::path& named);
+  /// The same, from a string.
+  Source(const std::string& named) : Source(std::filesystem::path(named)) {}
+  /// The same, from a literal.
+  Source(const char* named) : Source(std::filesystem::path(named)) {}
+  /// Returns whether `record` is the file name, with or without terminal.
+  [[nodiscard]] bool is_named(const std::string& record) const;
+
+  std::filesystem::path path;     ///< as given
+  std::string name;               ///< name of the record without folders: "a.csv#NORTH", "a.csv+b.csv"
+  std::vector<SourceFile> files;  ///< in the order given, at least one
+};
+
+}  // namespace swingbank::validate::record
