@@ -112,3 +112,31 @@ function(swingbank_command_tables)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/${program}/commands_of_program.inc CONTENT "${table}" @ONLY)
   endforeach()
 endfunction()
+
+# swingbank_embed(out files...): writes a source that contains the files, and page_file(), which finds them by name.
+function(swingbank_embed out)
+  set(places "")
+  set(symbols "")
+  set(names "")
+  foreach(file ${ARGN})
+    cmake_path(GET file FILENAME name)
+    string(MAKE_C_IDENTIFIER page_${name} symbol)
+    string(APPEND places "    \".global ${symbol}\\n${symbol}:\\n.incbin \\\"${file}\\\"\\n.global ${symbol}_end\\n${symbol}_end:\\n.byte 0\\n\"\n")
+    string(APPEND symbols "extern \"C\" const char ${symbol}[], ${symbol}_end[];\n")
+    string(APPEND names "  if (name == \"${name}\") return {name, {${symbol}, static_cast<std::size_t>(${symbol}_end - ${symbol})}};\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${out} CONTENT "// Made by swingbank_embed of cmake/targets.cmake.
+#include \"jobs/page_server.hpp\"
+
+asm(\".section .rodata\\n\"
+@places@    \".previous\\n\");
+@symbols@
+namespace swingbank::jobs {
+
+PageFile page_file(std::string_view name) {
+@names@  return {};
+}
+
+}  // namespace swingbank::jobs
+" @ONLY)
+endfunction()

@@ -45,7 +45,9 @@ int run(Command& c) {
   options.events = c.of.events();
   options.progress = jobs::progress_line(jobs::kDiagnosePlan);
   if (!jobs::quiet)
-    options.preliminary_result = [](const std::string& sentence) { fmt::print(stderr, "\n{}\n", sentence); };
+    options.preliminary_result = [](const std::string& sentence, const diagnose::Diagnosis&) {
+      fmt::print(stderr, "\n{}\n", sentence);
+    };
   c.of.open_results("diagnose", {kPage, kResult});
   const diagnose::Diagnosis d = diagnose::diagnose(model, set.records, options);
   const bool adequate = d.verdict == diagnose::Verdict::adequate;

@@ -20,27 +20,6 @@
 namespace swingbank::validate::compare {
 namespace {
 
-WindowError measure(const std::vector<double>& t, const std::vector<double>& residual,
-                    const std::vector<char>& left_out, const Window& window, bool first, double noise) {
-  WindowError e;
-  double sum = 0, square = 0;
-  for (std::size_t k = 0; k < t.size(); ++k) {
-    if ((!left_out.empty() && left_out[k]) || t[k] > window.to ||
-        !(t[k] > window.from || (first && t[k] == window.from)))
-      continue;
-    ++e.samples;
-    sum += residual[k];
-    square += residual[k] * residual[k];
-    if (std::abs(residual[k]) > e.worst) e.worst = std::abs(residual[k]), e.worst_at = t[k];
-  }
-  if (e.samples > 0) {
-    e.mean = sum / e.samples;
-    e.rms = std::sqrt(square / e.samples);
-  }
-  e.in_noise = noise > 0 ? e.rms / noise : std::numeric_limits<double>::quiet_NaN();
-  return e;
-}
-
 /// Replaces samples that are left out by linear interpolation between their neighbours.
 std::vector<double> bridged(std::vector<double> values, const std::vector<char>& left_out) {
   for (std::size_t k = 0; k < left_out.size(); ++k) {
@@ -281,6 +260,27 @@ void explain(EventComparison& e, switching::StepShape step_shape, bool tried, co
 
 }  // namespace
 
+WindowError window_error(const std::vector<double>& t, const std::vector<double>& residual,
+                         const std::vector<char>& left_out, const Window& window, bool first, double noise) {
+  WindowError e;
+  double sum = 0, square = 0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    if ((!left_out.empty() && left_out[k]) || t[k] > window.to ||
+        !(t[k] > window.from || (first && t[k] == window.from)))
+      continue;
+    ++e.samples;
+    sum += residual[k];
+    square += residual[k] * residual[k];
+    if (std::abs(residual[k]) > e.worst) e.worst = std::abs(residual[k]), e.worst_at = t[k];
+  }
+  if (e.samples > 0) {
+    e.mean = sum / e.samples;
+    e.rms = std::sqrt(square / e.samples);
+  }
+  e.in_noise = noise > 0 ? e.rms / noise : std::numeric_limits<double>::quiet_NaN();
+  return e;
+}
+
 ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<double>& measured,
                                   const std::vector<double>& modelled, const EventComparison& event) {
   ChannelComparison c;
@@ -297,7 +297,7 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   c.noise = standard_deviation(c.residual, quiet);
   const auto& t = event.record.t;
   const auto measured_in = [&](const Window& window, bool first) {
-    return measure(t, c.residual, event.left_out, window, first, c.noise);
+    return window_error(t, c.residual, event.left_out, window, first, c.noise);
   };
   c.whole = measured_in({"whole record", t.front(), t.back()}, true);
   for (std::size_t w = 0; w < event.windows.size(); ++w)
@@ -439,6 +439,12 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("the residual is evaluated", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
+  if (!e.prepared)
+    e.prepared = std::make_shared<const event::FitEvent>(
+        event::FitEvent{.record = e.record,
+                        .switchings = e.switchings,
+                        .start = e.playback.start,
+                        .channels = playin::compared_outputs(e.record, true)});
   explain(e, step_shape, options.fit_switchings && !no_angle, failed);
   if (options.input == PlaybackInput::power) {  // with the switching times found by the voltage
     if (!no_angle) play(model, PlaybackInput::power, options.play_in, e);

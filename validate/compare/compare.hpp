@@ -1,11 +1,12 @@
 #pragma once
 // Comparison of the measured and simulated channels of one event, per time window and relative to the noise.
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "validate/compare/error_map.hpp"
-#include "validate/event/event.hpp"
+#include "validate/event/play.hpp"
 #include "validate/event/progress.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
@@ -52,6 +53,9 @@ struct EventComparison {
   /// Per channel: possible residuals due to errors of the played-in quantities, one standard deviation each
   /// [shape][sample] [pu].
   std::map<std::string, std::vector<std::vector<double>>> doubt = {};
+  /// Event and its state as played, for replay().
+  std::shared_ptr<const event::FitEvent> prepared = {};
+  event::EventState state = {};    ///< of `prepared`
   std::vector<std::string> notes;  ///< notes for the reader: uncertain switching times, drift, unread columns
 };
 
@@ -90,6 +94,10 @@ struct ChannelRule {
       {};           ///< window without evaluation, because its noise differs from the pre-event noise
   double size = 1;  ///< nominal value: the machine's MVA for a power, else 1 [pu]
 };
+/// Computes the errors of a residual [pu] in one window. `first`: the window includes its start. `noise`:
+/// standard deviation of the noise [pu].
+WindowError window_error(const std::vector<double>& t, const std::vector<double>& residual,
+                         const std::vector<char>& left_out, const Window& window, bool first, double noise);
 /// Computes residual, window errors and error map of one channel. Record, windows and playback.start of
 /// `event` must be set; the noise is that of the first playback.start.samples residuals.
 ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<double>& measured,
@@ -111,6 +119,17 @@ std::vector<Window> event_windows(const record::Record& record,
 /// are then shown, not judged. Throws InputError: the model cannot follow the record, or its parts throw.
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
                               const CompareOptions& options = {});
+
+/// Response of one channel to the inputs of a comparison, without the error map.
+struct ReplayedChannel {
+  std::vector<double> modelled;  ///< [pu]
+  double noise = 0;              ///< standard deviation of the pre-event residual [pu]
+  WindowError whole;             ///< error of the whole record
+};
+/// Plays an event of a comparison into the same structure with other parameter values, with the switching
+/// times and the start of the comparison. Returns one entry for each of its channels. Takes a few
+/// milliseconds. Throws InputError as compare_event().
+std::vector<ReplayedChannel> replay(const sim::plant::PlantUnderTest& tested, const EventComparison& event);
 
 /// Statistical verdict: whether the residuals are within noise.
 struct Adequacy {

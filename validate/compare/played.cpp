@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "base/in_parallel.hpp"
 #include "base/json.hpp"
 
 namespace swingbank::validate::compare {
@@ -15,7 +16,15 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
   const double mva = model.plant.mva;
   try {
     options.step_shape = switching::step_shape_of(records, options.step_threshold);
-    for (const auto& record : records) played.events.push_back(compare_event(model, record, options));
+    const event::Progress progress = std::exchange(options.progress, {});
+    const int total = static_cast<int>(records.size());
+    std::vector<EventComparison> events(records.size());
+    in_parallel(
+        records.size(), [&](std::size_t k) { events[k] = compare_event(model, records[k], options); },
+        [&](int done, std::size_t k) {
+          if (progress) progress(event::Phase::playing, records[k].name, done, total);
+        });
+    played.events = std::move(events);
     judge(played.events);  // sets the bounds of the maps
     played.fitness = judge_fitness(played.events, mva, by);
   } catch (const InputError& error) {

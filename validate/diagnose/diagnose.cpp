@@ -442,7 +442,7 @@ class Diagnoser {
   }
 
   void report_preliminary(const std::string& sentence) const {
-    if (options_.preliminary_result) options_.preliminary_result(sentence);
+    if (options_.preliminary_result) options_.preliminary_result(sentence, result_);
   }
   void report(event::Phase phase, const std::string& item, int done, int total) const {
     if (options_.progress) options_.progress(phase, item, done, total);

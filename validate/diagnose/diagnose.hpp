@@ -64,8 +64,9 @@ struct DiagnoseOptions {
   int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events
   int firsts = 2;            ///< number of first effects of pairs, if no hypothesis is accepted alone
   event::Progress progress;  ///< recipient of progress messages; empty: none
-  /// Called with each preliminary result: the residual, the side, then the leading hypothesis. May be empty.
-  std::function<void(const std::string& sentence)> preliminary_result = {};
+  /// Called with each preliminary result (the residual, the side, then the leading hypothesis) and the
+  /// diagnosis so far. May be empty.
+  std::function<void(const std::string& sentence, const Diagnosis& so_far)> preliminary_result = {};
   /// Returns whether the user has asked to stop. Completed fits are kept once the given model is fitted. May
   /// be empty.
   std::function<bool()> stop = {};

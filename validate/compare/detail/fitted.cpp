@@ -40,6 +40,8 @@ void play_fitted(const plant::PlantModel& model, const noise::WhitenedEvents& ev
   e.record.theta = event.record.theta;  // angle as played in
   e.record.notes = event.record.notes;
   e.fitted = true;
+  e.prepared = std::make_shared<const event::FitEvent>(event);
+  e.state = state;
   e.left_out = step_shape == switching::StepShape::filtered || event.turns() ? event.left_out : e.record.lost;
 }
 

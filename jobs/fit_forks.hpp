@@ -1,0 +1,48 @@
+#pragma once
+// Fits in processes of their own, so that a crash of a fit does not end the server, and a stop signal reaches
+// this fit alone.
+#include <functional>
+#include <memory>
+
+#include "base/json.hpp"
+
+namespace swingbank::jobs {
+
+/// Running fit in a process of its own. Destruction asks it to end.
+class FitProcess {
+ public:
+  /// Takes ownership of the socket to the process.
+  explicit FitProcess(int socket) : socket_(socket) {}
+  ~FitProcess();
+  FitProcess(const FitProcess&) = delete;
+  FitProcess& operator=(const FitProcess&) = delete;
+  /// Waits for the next message and returns it; null after the last one.
+  nlohmann::json next();
+  /// Asks the fit to end with the values reached so far.
+  void stop() const;
+
+ private:
+  int socket_;
+};
+
+/// Source of such processes: a copy of this process from before it started threads, which forks again for
+/// every fit.
+class FitForks {
+ public:
+  /// Work of a process: a request, and the function that sends messages.
+  using Work = std::function<void(const nlohmann::json& request,
+                                  const std::function<void(const nlohmann::json&)>& send)>;
+  /// Forks the copy. No other thread may run, and this thread may not have used OpenMP.
+  explicit FitForks(const Work& work);
+  /// Ends the copy, and asks running fits to end.
+  ~FitForks();
+  FitForks(const FitForks&) = delete;
+  FitForks& operator=(const FitForks&) = delete;
+  /// Starts a fit. Throws InputError if the system allows no further process.
+  [[nodiscard]] std::unique_ptr<FitProcess> start(const nlohmann::json& request) const;
+
+ private:
+  int control_ = -1;  ///< socket to the copy
+};
+
+}  // namespace swingbank::jobs

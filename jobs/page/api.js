@@ -1,0 +1,39 @@
+// Requests to the server. The page's address ends with the token, so relative addresses carry it.
+let session = "";
+
+async function checked(answer) {
+  if (answer.ok) return answer;
+  const text = await answer.text();
+  let message = text;
+  try { message = JSON.parse(text).error || text; } catch { /* plain text */ }
+  throw new Error(message || `the server answered ${answer.status}`);
+}
+const query = (values = {}) => "?" + new URLSearchParams({ s: session, ...values });
+const post = (name, body) =>
+  fetch("api/" + name + query(), { method: "POST", body: JSON.stringify(body) }).then(checked);
+const get = (name, values) => fetch("api/" + name + query(values)).then(checked);
+
+/** Opens a session; returns {setup, step}. */
+export async function open() {
+  const answer = await (await fetch("api/open", { method: "POST" }).then(checked)).json();
+  session = answer.session;
+  return answer;
+}
+export const step = async (k) => (await get("step", { k })).json();
+export const effects = async (k) => (await get("effects", { k })).json();
+export const curves = async (k, e) => new Float32Array(await (await get("curves", { k, e })).arrayBuffer());
+/** Returns the samples of a preview; null if a newer one has overtaken it. */
+export async function preview(body) {
+  const answer = await post("preview", body);
+  return answer.status === 204 ? null : new Float32Array(await answer.arrayBuffer());
+}
+export const change = async (body) => (await post("change", body)).json();
+export const fit = async (body) => (await post("fit", body)).json();
+export const stop = async () => (await post("stop", {})).json();
+export const save = async (k) => (await post("save", { step: k })).json();
+/** Calls `receive` with every message of fits. */
+export function listen(receive) {
+  const stream = new EventSource("api/stream" + query());
+  stream.onmessage = (m) => receive(JSON.parse(m.data));
+  return stream;
+}

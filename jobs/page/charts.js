@@ -1,0 +1,119 @@
+// Curves of one event: measured, submitted model and this model, with cursors that move together.
+/* global uPlot */
+import { by, digits, make } from "./format.js";
+
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+const sync = uPlot.sync("event");
+const charts = [];
+
+/** Splits the samples of api.curves() into t and, for each channel, measured and modelled. */
+export function split(samples, channels) {
+  const n = samples.length / (1 + 2 * channels);
+  const part = (k) => samples.subarray(k * n, (k + 1) * n);
+  return { t: part(0), channels: Array.from({ length: channels }, (_, c) => ({ measured: part(1 + 2 * c), modelled: part(2 + 2 * c) })) };
+}
+
+/** Shades the failing window and the fault. */
+function shades(of) {
+  const band = (u, from, to, fill) => {
+    const a = Math.max(u.valToPos(from, "x", true), u.bbox.left);
+    const b = Math.min(u.valToPos(to, "x", true), u.bbox.left + u.bbox.width);
+    if (b <= a) return;
+    u.ctx.save();
+    u.ctx.fillStyle = fill;
+    u.ctx.fillRect(a, u.bbox.top, b - a, u.bbox.height);
+    u.ctx.restore();
+  };
+  return {
+    hooks: {
+      drawClear: (u) => {
+        if (of.window) band(u, of.window[0], of.window[1], colour("shade"));
+        if (of.fault) band(u, of.fault[0], of.fault[1], colour("fault"));
+      },
+    },
+  };
+}
+
+function chart(place, of, height) {
+  const value = (u, v) => (v === null || v === undefined ? "–" : digits(v) + " " + of.unit);
+  const axis = { stroke: colour("soft"), grid: { stroke: colour("line"), width: 1 }, ticks: { stroke: colour("line") } };
+  const options = {
+    title: `${of.name} [${of.unit}]`,
+    width: place.clientWidth || 600, height,
+    cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },
+    scales: { x: { time: false } },
+    axes: [{ ...axis, size: 34 }, { ...axis, size: 56 }],
+    series: [
+      { label: "t", value: (u, v) => (v === null || v === undefined ? "–" : v.toFixed(3) + " s") },
+      { label: "measured", stroke: colour("measured"), width: 3, value, points: { show: false } },
+      { label: "submitted", stroke: colour("ghost"), width: 1.5, dash: [6, 4], value, points: { show: false } },
+      { label: "this model", stroke: colour("model"), width: 2, value, points: { show: false } },
+    ],
+    plugins: [shades(of)],
+  };
+  const box = make("div", { className: "chart" });
+  place.append(box);
+  const plot = new uPlot(options, of.data, box);
+  sync.sub(plot);
+  return { plot, of, place, height };
+}
+
+/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, main}. */
+export function show(channels) {
+  for (const c of charts.splice(0)) { sync.unsub(c.plot); c.plot.destroy(); }
+  by("charts").replaceChildren();
+  by("others").replaceChildren();
+  const tall = Math.max(170, Math.min(290, innerHeight * 0.29));
+  for (const of of channels) charts.push(chart(of.main ? by("charts") : by("others"), of, of.main ? tall : 180));
+  by("more").hidden = channels.every((c) => c.main);
+}
+/** Replaces the modelled samples of a channel. */
+export function model(channel, samples) {
+  const c = charts[channel];
+  if (!c) return;
+  c.of.data = [c.of.data[0], c.of.data[1], c.of.data[2], samples];
+  if (c.plot.root.offsetParent !== null) c.plot.setData(c.of.data, false), c.plot.redraw(true, false);
+}
+/** Moves the modelled curves from where they are to the new samples. */
+export function animate(next, done = () => {}) {
+  const start = charts.map((c) => c.of.data[3]);
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const begin = performance.now(), span = still ? 0 : 700;
+  const frame = (now) => {
+    const share = span ? Math.min(1, (now - begin) / span) : 1, eased = share * (2 - share);
+    next.forEach((to, k) => {
+      const from = start[k];
+      if (!from || from.length !== to.length || share === 1) return model(k, to);
+      model(k, to.map((v, i) => from[i] + (v - from[i]) * eased));
+    });
+    if (share < 1) requestAnimationFrame(frame); else done();
+  };
+  requestAnimationFrame(frame);
+}
+/** Shows the times from..to [s] in every chart; without arguments, the whole record. */
+export function zoom(from, to) {
+  for (const c of charts) {
+    const t = c.of.data[0];
+    c.plot.setScale("x", { min: from ?? t[0], max: to ?? t[t.length - 1] });
+  }
+}
+export function shade(window) {
+  for (const c of charts) { c.of.window = window; c.plot.redraw(false); }
+}
+function fitted() {
+  for (const c of charts) if (c.place.clientWidth) c.plot.setSize({ width: c.place.clientWidth, height: c.height });
+}
+new ResizeObserver(fitted).observe(by("charts"));
+by("more").addEventListener("toggle", () => { fitted(); for (const c of charts) c.plot.setData(c.of.data, false), c.plot.redraw(true); });
+
+/** Small curve of an inferred input. */
+export function small(place, title, t, values) {
+  const axis = { stroke: colour("soft"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
+  const box = make("div", { className: "chart" });
+  place.append(box);
+  new uPlot({
+    title, width: place.clientWidth || 360, height: 120, legend: { show: false }, cursor: { show: false },
+    scales: { x: { time: false } }, axes: [{ ...axis, size: 26 }, { ...axis, size: 44 }],
+    series: [{}, { stroke: colour("model"), width: 2, points: { show: false } }],
+  }, [t, values], box);
+}

@@ -1,0 +1,67 @@
+// A chip for each event and channel, and the map of errors of one event.
+import { by, digits, level, make, sign, times } from "./format.js";
+
+/** Builds the chips. `state`: setup, step, first (the submitted step), event, heldOut; `choose(event, channel)`. */
+export function build(state, choose, hold) {
+  const { setup, step, first } = state;
+  by("chips").replaceChildren(...setup.events.map((event, e) => {
+    const box = make("input", { type: "checkbox", checked: state.heldOut.has(event.name), title: "hold out: fits leave this event out, to judge them on it" });
+    box.addEventListener("change", () => hold(e, box.checked));
+    const out = step.held_out.includes(event.name);
+    const label = make("label", { title: `${event.name}: ${event.title}` }, `event ${e + 1} `, box, make("span", { textContent: box.checked ? " held out" : "" }));
+    const group = make("div", { className: "group" + (e === state.event ? " out" : "") }, label);
+    step.chips.filter((c) => c.event === e).forEach((c) => {
+      const before = first.chips.find((f) => f.event === e && f.name === c.name);
+      const chip = make("button", { className: "chip " + level(c) + (e === state.event ? " chosen" : "") });
+      chip.dataset.event = e;
+      chip.dataset.channel = c.channel;
+      chip.append(sign[level(c)] + " ", make("b", { textContent: c.name }), " ", make("span", { className: "ratio", textContent: times(c.ratio) }));
+      if (step.step !== first.step && before && times(before.ratio) !== times(c.ratio)) chip.append(make("s", { textContent: times(before.ratio) }));
+      chip.title = `${event.name} ${c.name}: RMS error ${digits(c.rms)} ${c.unit}, ${times(c.ratio)} the noise` +
+        (c.limit ? `; ${Math.round(100 * c.limit)} % of its limit` : "") + (out ? "; this event was held out" : "");
+      chip.setAttribute("aria-label", `event ${e + 1} ${c.name}: ${times(c.ratio)} noise, ${{ good: "only noise", warn: "more than noise", bad: "limit exceeded" }[level(c)]}`);
+      chip.addEventListener("click", () => choose(e, c.channel));
+      group.append(chip);
+    });
+    return group;
+  }));
+}
+/** Shows the errors of a preview in an event's chips. */
+export function moving(event, errors) {
+  for (const chip of by("chips").querySelectorAll(`.chip[data-event="${event}"]`)) {
+    const e = errors[chip.dataset.channel];
+    chip.classList.add("moving");
+    chip.querySelector(".ratio").textContent = times(e.noise > 0 ? e.rms / e.noise : NaN);
+  }
+}
+
+// Blue to vermilion, as multiples of the bound for noise: colour-blind readers tell them apart, and a star says the same.
+function shade(share) {
+  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  if (!(share > 1)) return dark ? "#16324a" : "#dcecf7";
+  const strength = Math.min(1, Math.log10(share) / 2);
+  return dark ? `hsl(24 75% ${20 + 24 * strength}%)` : `hsl(24 90% ${91 - 32 * strength}%)`;
+}
+
+/** Builds the map of one event; `zoom(from, to)` shows a window. */
+export function map(state, zoom) {
+  const { setup, step, event } = state;
+  const table = make("table", {}, make("tr", {}, make("th"), make("th"), ...setup.bands.map((b) => make("th", { textContent: b }))));
+  for (const c of step.chips.filter((x) => x.event === event)) {
+    c.map.forEach((row, w) => {
+      const tr = make("tr", {}, make("th", { textContent: w ? "" : c.name }), make("th", { textContent: row.window }));
+      row.bins.forEach((bin, b) => {
+        if (!bin || bin[0] === null) return tr.append(make("td", { className: "none", textContent: "–", title: "the window is too short for this band" }));
+        const [ratio, bound, rms] = bin;
+        const cell = make("button", { textContent: times(ratio) + (ratio > bound ? " ★" : "") });
+        cell.style.background = shade(ratio / bound);
+        const share = c.size > 0 ? `, ${digits(100 * rms / c.size, 3)} % of ${digits(c.size)} ${c.unit}` : "";
+        cell.title = `${c.name}, ${row.window}, ${setup.bands[b]}: RMS ${digits(rms)} ${c.unit}${share}; ${times(ratio)} the noise, which may reach ${times(bound)}`;
+        cell.addEventListener("click", () => zoom(row.from, row.to));
+        tr.append(make("td", {}, cell));
+      });
+      table.append(tr);
+    });
+  }
+  by("bins").replaceChildren(table);
+}

@@ -1,0 +1,228 @@
+// The live page: state, and what each action does.
+import * as api from "./api.js";
+import * as charts from "./charts.js";
+import * as chips from "./chips.js";
+import * as fits from "./fits.js";
+import { by, digits, make, times } from "./format.js";
+import * as sliders from "./sliders.js";
+
+const state = { setup: null, step: null, first: null, event: 0, channel: 0, heldOut: new Set(), past: [], future: [], known: new Map(),
+  base: 0, values: {}, curves: new Map(), running: null, number: 0 };
+
+function fail(error) {
+  by("failure").textContent = error.message ?? String(error);
+  by("failure").hidden = false;
+  clearTimeout(fail.timer);
+  fail.timer = setTimeout(() => { by("failure").hidden = true; }, 9000);
+}
+const guard = (action) => async (...words) => { try { return await action(...words); } catch (error) { fail(error); } };
+
+async function curvesOf(k, e) {
+  const key = k + "/" + e;
+  if (!state.curves.has(key)) {
+    if (state.curves.size > 40) state.curves.delete(state.curves.keys().next().value);
+    const count = state.first.chips.filter((c) => c.event === e).length;
+    state.curves.set(key, charts.split(await api.curves(k, e), count));
+  }
+  return state.curves.get(key);
+}
+const chipsOf = (step, e) => step.chips.filter((c) => c.event === e);
+const windowOf = (chip) => { const row = chip?.map[chip.window]; return row ? [row.from, row.to] : null; };
+
+/** Shows the event's curves of the present step. */
+async function showEvent() {
+  const { event: e, step } = state;
+  const [ghost, now] = [await curvesOf(0, e), await curvesOf(step.step, e)];
+  const own = chipsOf(step, e), times_ = step.switchings[e];
+  charts.show(own.map((c, k) => ({
+    name: c.name, unit: c.unit, main: k < 2, window: windowOf(c), fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
+    data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled] })));
+  near();
+  const about = state.setup.events[e];
+  by("title").textContent = `Event ${e + 1}: ${about.title}`;
+  by("notes").hidden = !about.notes.length;
+  by("notes").querySelector("ul").replaceChildren(...about.notes.map((n) => make("li", { textContent: n })));
+}
+function near() {
+  const at = state.step.switchings[state.event];
+  if (at.length) charts.zoom(at[0] - 1, at.at(-1) + 5); else charts.zoom();
+}
+
+function showSteps() {
+  const shown = [...state.known.values()].filter((s) => s.kind !== "manual" || s.step === state.step.step);
+  by("steps").replaceChildren(...shown.map((s) => {
+    const b = make("button", {}, make("span", {}, s.label, make("small", { textContent: s.evidence ? `2 ln(Bayes factor) ${digits(s.evidence)}` + (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "") : "" })),
+      make("span", { className: "error", textContent: times(s.ratio) + " noise" }));
+    b.addEventListener("click", guard(() => goTo(s.step)));
+    return make("li", { className: s.step === state.step.step ? "now" : "" }, b);
+  }));
+  by("undo").disabled = !state.past.length;
+  by("redo").disabled = !state.future.length;
+}
+function showStep() {
+  const { step } = state;
+  by("verdict").textContent = step.verdict;
+  by("verdict").className = step.complete && step.fit ? "good" : step.fit || step.complete ? "warn" : "bad";
+  by("reason").textContent = step.sentence || step.reason;
+  by("command").textContent = step.command;
+  by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
+  chips.build(state, guard(choose), hold);
+  chips.map(state, (from, to) => { charts.zoom(from - 0.2 * (to - from), to + 0.2 * (to - from)); by("charts").scrollIntoView({ block: "nearest" }); });
+  sliders.build(step, moved, settled);
+  showSteps();
+  api.effects(step.step).then((all) => by("effects").replaceChildren(...all.map((h) => make("option", { value: h.name, label: h.what }))));
+}
+
+/** Makes a step the present one; its curves move from those shown. */
+async function enter(step, keepPast = false) {
+  if (!keepPast) { state.past.push(state.step.step); state.future = []; }
+  state.known.set(step.step, step);
+  state.step = step;
+  state.base = step.kind === "manual" ? step.parent : step.step;
+  const base = state.known.get(state.base) ?? step;
+  state.values = {};
+  for (const p of step.sliders) {
+    const before = base.sliders.find((q) => q.name === p.name);
+    if (before && before.value !== p.value) state.values[p.name] = p.value;
+  }
+  showStep();
+  const now = await curvesOf(step.step, state.event);
+  if (state.step === step) charts.animate(now.channels.map((c) => c.modelled), () => charts.shade(windowOf(chipsOf(step, state.event)[state.channel])));
+}
+async function goTo(k) {
+  if (k === state.step.step) return;
+  await enter(await api.step(k));
+}
+async function walk(from, to) {
+  while (from.length) {
+    const k = from.pop();
+    try {
+      const step = await api.step(k);
+      to.push(state.step.step);
+      return await enter(step, true);
+    } catch { state.known.delete(k); } // an old manual change that the server has dropped
+  }
+}
+async function choose(event, channel = 0) {
+  state.event = event;
+  state.channel = channel;
+  chips.build(state, guard(choose), hold);
+  chips.map(state, (from, to) => charts.zoom(from, to));
+  await showEvent();
+  const window = windowOf(chipsOf(state.step, event)[channel]);
+  charts.shade(window);
+}
+function hold(event, on) {
+  const { name } = state.setup.events[event];
+  if (on) state.heldOut.add(name); else state.heldOut.delete(name);
+  if (state.heldOut.size >= state.setup.events.length) { state.heldOut.delete(name); fail(new Error("A fit needs an event: leave one that is not held out.")); }
+  chips.build(state, guard(choose), hold);
+}
+
+// --- sliders: one preview is under way at a time; a newer value replaces a waiting one
+let flying = false, waiting = false;
+async function fly() {
+  if (flying) { waiting = true; return; }
+  flying = true;
+  const number = ++state.number, event = state.event;
+  const begin = performance.now();
+  try {
+    const samples = await api.preview({ seq: number, step: state.base, event, values: state.values });
+    if (samples && event === state.event && number === state.number) {
+      const n = chipsOf(state.step, event).length, size = samples.length / n, errors = [];
+      for (let k = 0; k < n; ++k) {
+        errors.push({ rms: samples[k * size], noise: samples[k * size + 1] });
+        charts.model(k, samples.subarray(k * size + 2, (k + 1) * size));
+      }
+      chips.moving(event, errors);
+      by("charts").dataset.answered = (performance.now() - begin).toFixed(1);
+    }
+  } catch (error) { fail(error); }
+  flying = false;
+  if (waiting) { waiting = false; fly(); }
+}
+function moved(name, value) {
+  state.values[name] = value;
+  by("verdict").textContent = "Trying …";
+  fly();
+}
+const settled = guard(async () => {
+  const number = ++state.number; // stale previews are dropped
+  try {
+    const step = await api.change({ step: state.base, values: state.values });
+    if (number === state.number && step.step !== state.step.step) await enter(step);
+    else if (number === state.number) showStep();
+  } catch (error) { showStep(); await showEvent(); throw error; }
+});
+
+// --- fits
+async function start(request) {
+  const held = [...state.heldOut];
+  if (request.kind === "diagnose") fits.clear();
+  fits.busy(true);
+  by("command").textContent = request.kind === "diagnose"
+    ? `swingbank diagnose --model ${state.step.step ? "model.toml" : state.setup.file}${state.setup.options}` : by("command").textContent;
+  try {
+    await api.fit({ ...request, step: state.step.step, held_out: held });
+    state.running = request.kind;
+  } catch (error) { fits.busy(false); throw error; }
+}
+const add = guard((effect) => (effect ? start({ kind: "add", effect }) : undefined));
+const receive = guard(async (m) => {
+  if (m.type === "progress") return fits.progress(m);
+  if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, add);
+  fits.busy(false);
+  state.running = null;
+  if (m.type === "step") { fits.clear(); await enter(m); by("said").textContent = m.sentence; }
+  if (m.type === "failed") by("said").textContent = m.text;
+});
+
+const save = guard(async () => {
+  const saved = await api.save(state.step.step);
+  by("saved").replaceChildren("Saved: ", saved.files.join(", "), ". ", ...saved.notes.map((n) => n + ". "), "Check it: ", make("code", { textContent: saved.command }));
+  by("command").textContent = saved.command;
+});
+const undo = guard(() => walk(state.past, state.future));
+const redo = guard(() => walk(state.future, state.past));
+
+const actions = {
+  d: () => by("diagnose").click(), f: () => by("fit").click(), a: () => add(fits.best()), z: undo, y: redo, s: save,
+  h: () => hold(state.event, !state.heldOut.has(state.setup.events[state.event].name)), Escape: () => by("stop").click(),
+};
+document.addEventListener("keydown", (k) => {
+  const typing = k.target.matches?.("input:not([type=range]):not([type=checkbox])");
+  if (typing || k.altKey || k.metaKey || (k.ctrlKey && !"zy".includes(k.key))) return;
+  if (/^[1-9]$/.test(k.key) && Number(k.key) <= state.setup.events.length) return void guard(choose)(Number(k.key) - 1);
+  if (actions[k.key]) { k.preventDefault(); actions[k.key](); }
+});
+by("diagnose").addEventListener("click", guard(() => start({ kind: "diagnose" })));
+by("fit").addEventListener("click", guard(() => start({ kind: "calibrate" })));
+by("stop").addEventListener("click", guard(() => (state.running ? api.stop() : undefined)));
+by("undo").addEventListener("click", undo);
+by("redo").addEventListener("click", redo);
+by("save").addEventListener("click", save);
+by("near").addEventListener("click", near);
+by("whole").addEventListener("click", () => charts.zoom());
+by("copy").addEventListener("click", () => navigator.clipboard.writeText(by("command").textContent));
+by("any").addEventListener("submit", (e) => { e.preventDefault(); add(by("effect").value.trim()); });
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", guard(() => choose(state.event, state.channel)));
+
+async function begin() {
+  const opened = await api.open();
+  state.setup = opened.setup;
+  state.step = state.first = opened.step;
+  state.known.set(0, opened.step);
+  by("plant").textContent = state.setup.name;
+  by("subject").textContent = `${state.setup.subject}, ${digits(state.setup.mva)} MVA · limits ${state.setup.limits}`;
+  document.title = `${state.setup.name} – Swingbank`;
+  // the worst event first: P and Q are the channels that the limits judge
+  const judged = state.step.chips.filter((c) => c.judged && c.channel < 2);
+  const worst = judged.reduce((a, b) => ((b.ratio ?? 0) > (a.ratio ?? 0) ? b : a), judged[0]);
+  state.event = worst?.event ?? 0;
+  state.channel = worst?.channel ?? 0;
+  showStep();
+  await showEvent();
+  api.listen(receive);
+  document.body.dataset.ready = "yes";
+}
+begin().catch(fail);

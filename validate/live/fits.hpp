@@ -1,0 +1,29 @@
+#pragma once
+// Fits of the live page: diagnosis, addition of an effect, and calibration. Each runs in a process of its own
+// and reports by messages.
+#include <functional>
+
+#include "validate/live/session.hpp"
+
+namespace swingbank::validate::live {
+
+/// Receives the messages of a fit, from any thread. Member "type":
+/// - "progress": phase (event::Phase), item, done, total
+/// - "preliminary": sentence, candidates with probability so far, inferred inputs of each event
+/// - "diagnosis": the result of a diagnosis
+/// - "step": a new model, for step_of_fit()
+/// - "failed": text
+using Emit = std::function<void(const nlohmann::json& message)>;
+
+/// Runs a fit: {"kind": "diagnose", "add" or "calibrate", "plant": plant_json(), "effect", "held_out"}. A
+/// stop signal ends it with the values reached so far.
+void run_fit(const Setup& setup, const nlohmann::json& request, const Emit& emit);
+
+/// Returns effects, values and conventions of a model's plant, exact to the last bit.
+nlohmann::json plant_json(const plant::PlantModel& model);
+/// Returns `model` with another plant of the same case. Throws InputError: unknown effect.
+plant::PlantModel with_plant(plant::PlantModel model, const nlohmann::json& plant);
+/// Returns the step of a message "step", without its comparison. `parent`: the step that was fitted.
+Step step_of_fit(const Setup& setup, const Step& from, int parent, const nlohmann::json& message);
+
+}  // namespace swingbank::validate::live

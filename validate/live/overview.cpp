@@ -1,0 +1,242 @@
+#include "validate/live/overview.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/plant/parameter_id.hpp"
+#include "validate/compare/error_map_table.hpp"
+#include "validate/compare/event_title.hpp"
+#include "validate/fit/axis.hpp"
+#include "validate/hypothesis/hypothesis.hpp"
+#include "validate/live/detail/number.hpp"
+
+namespace swingbank::validate::live {
+namespace {
+
+using nlohmann::json;
+
+/// Slider range of a positive parameter: a thirtieth to thirty times its value, within the usual range.
+constexpr double kReach = 30;
+
+/// Returns the sliders of a model: every parameter but codes.
+json sliders(const Setup& setup, const Step& step) {
+  json all = json::array();
+  const auto& plant = step.model.plant;
+  const auto free = fit::free_parameters(plant, setup.prior_sd);
+  for (int block = 0; block < sim::plant::block_count(plant); ++block)
+    for (const auto id : sim::plant::parameters_of(plant, block)) {
+      const sim::Parameter& p = parameter_record(plant, id);
+      if (p.is_code()) continue;
+      const double value = parameter_value(plant, id);
+      const auto name = parameter_name(plant, id);
+      const fit::Axis axis = fit::make_axis(plant, {id, setup.prior_sd});
+      double low = std::min(axis.low, value), high = std::max(axis.high, value);
+      if (axis.logarithmic) low = std::max(low, value / kReach), high = std::min(high, value * kReach);
+      const auto interval = std::ranges::find(step.intervals, name.text(), &Interval::name);
+      const auto submitted = sim::plant::same_parameter(setup.model.plant, plant, id);
+      json s = {{"name", name.text()},
+                {"block", name.effect},
+                {"key", std::string(p.name)},
+                {"symbol", std::string(p.symbol)},
+                {"unit", p.unit == "-" ? std::string() : std::string(p.unit)},
+                {"meaning", std::string(p.meaning)},
+                {"value", value},
+                {"low", low},
+                {"high", high},
+                {"log", axis.logarithmic},
+                {"fitted", std::ranges::any_of(free, [&](const auto& f) { return f.id == id; })}};
+      if (submitted) s["submitted"] = parameter_value(setup.model.plant, *submitted);
+      if (interval != step.intervals.end()) s["interval"] = {number(interval->low), number(interval->high)};
+      all.push_back(std::move(s));
+    }
+  return all;
+}
+
+/// Returns the windows of a channel's map with their bins; the fraction of MVA where the channel is a power.
+json map_of(const compare::EventComparison& e, const compare::ChannelComparison& c) {
+  json rows = json::array();
+  for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+    const auto bin = [&](const compare::TimeFrequencyBin& b) {
+      return b.empty() ? json(nullptr)
+                       : json::array({number(b.normalised), number(b.bound), number(b.rms * c.scale)});
+    };
+    json bands = json::array({bin(c.map.rows[w].all)});
+    for (const auto& b : c.map.rows[w].bands) bands.push_back(bin(b));
+    rows.push_back({{"window", e.windows[w].name},
+                    {"from", e.windows[w].from},
+                    {"to", e.windows[w].to},
+                    {"bins", bands}});
+  }
+  return rows;
+}
+
+/// Returns the largest normalised RMS / bound of a channel with its window; 0 without bins.
+std::pair<double, int> worst_window(const compare::ChannelComparison& c) {
+  double worst = c.map.whole.empty() ? 0 : c.map.whole.normalised / c.map.whole.bound;
+  double largest = 0;
+  int at = -1;
+  for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+    double here = 0;
+    const auto take = [&](const compare::TimeFrequencyBin& b) {
+      if (!b.empty() && b.bound > 0) here = std::max(here, b.normalised / b.bound);
+    };
+    take(c.map.rows[w].all);
+    for (const auto& b : c.map.rows[w].bands) take(b);
+    if (here > largest) largest = here, at = static_cast<int>(w);
+  }
+  return {std::max(worst, largest), at};
+}
+
+/// Returns the largest ratio of an error of this channel and event to its limit.
+double share_of_limit(const compare::Fitness& fitness, const std::string& event, const std::string& channel) {
+  double most = 0;
+  for (const auto& row : fitness.rows)
+    if (row.event == event && row.channel == channel && row.samples > 0)
+      most = std::max(most, thresholds::nearest(row.errors, row.limits).ratio);
+  for (const auto& m : fitness.movements)
+    if (m.event == event && m.channel == channel) most = std::max(most, m.error / m.limit);
+  return most;
+}
+
+/// Returns the result of each channel of each event.
+json chips(const Step& step) {
+  json all = json::array();
+  for (std::size_t e = 0; e < step.played->events.size(); ++e) {
+    const auto& event = step.played->events[e];
+    for (std::size_t k = 0; k < event.channels.size(); ++k) {
+      const auto& c = event.channels[k];
+      const auto [worst, window] = worst_window(c);
+      all.push_back({{"event", e},
+                     {"channel", k},
+                     {"name", c.name},
+                     {"unit", c.unit},
+                     {"rms", number(c.whole.rms * c.scale)},
+                     {"noise", number(c.noise * c.scale)},
+                     {"ratio", number(c.whole.in_noise)},
+                     {"worst", number(c.whole.worst * c.scale)},
+                     {"worst_at", c.whole.worst_at},
+                     {"judged", c.judged},
+                     {"bound", number(worst)},
+                     {"limit", number(share_of_limit(step.played->fitness, event.record.name, c.name))},
+                     {"window", window},
+                     {"size", number(c.size * c.scale)},
+                     {"map", map_of(event, c)}});
+    }
+  }
+  return all;
+}
+
+/// Returns the verdict in at most eight words.
+std::string verdict(const Step& step) {
+  const auto& fitness = step.played->fitness;
+  const bool judged = fitness.not_judged.empty();
+  if (step.complete)
+    return judged && !fitness.fit ? "Only noise remains, but limits are exceeded"
+                                  : "Model matches: only noise remains";
+  if (judged && fitness.fit) return "Fit for purpose, but errors exceed noise";
+  return "Model does not match the records";
+}
+
+std::string kind_name(Step::Kind kind) {
+  switch (kind) {
+    case Step::Kind::submitted:
+      return "submitted";
+    case Step::Kind::manual:
+      return "manual";
+    case Step::Kind::added:
+      return "added";
+    case Step::Kind::calibrated:
+      return "calibrated";
+  }
+  return "";
+}
+
+}  // namespace
+
+nlohmann::json setup_json(const Setup& setup, const Step& submitted) {
+  json events = json::array();
+  for (std::size_t k = 0; k < submitted.played->events.size(); ++k) {
+    const auto& e = submitted.played->events[k];
+    json one = {{"name", e.record.name},
+                {"title", compare::event_title(e)},
+                {"notes", e.notes},
+                {"samples", e.record.samples()}};
+    if (k < setup.warnings.size())
+      for (const auto& w : setup.warnings[k]) one["notes"].push_back(w);
+    events.push_back(std::move(one));
+  }
+  json bands = json::array({"all"});
+  for (const auto& b : compare::error_bands()) bands.push_back(std::string(b.name));
+  return {
+      {"name", setup.model.name}, {"mva", setup.model.plant.mva}, {"subject", plant::subject(setup.model)},
+      {"file", setup.plant_file}, {"limits", setup.by.name},      {"events", events},
+      {"bands", bands},           {"options", setup.options}};
+}
+
+nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
+  json blocks = json::array();
+  for (int k = 0; k < sim::plant::block_count(step.model.plant); ++k) {
+    const sim::Effect& effect = sim::plant::block_effect(step.model.plant, k);
+    blocks.push_back({{"name", std::string(effect.name)}, {"title", std::string(effect.title)}});
+  }
+  double ratio = 0;
+  for (const auto& e : step.played->events)
+    for (const auto& c : e.channels)
+      if (c.judged && std::isfinite(c.whole.in_noise)) ratio = std::max(ratio, c.whole.in_noise);
+  json switchings = json::array();
+  for (const auto& e : step.played->events) {
+    json times = json::array();
+    for (const auto& s : e.switchings) times.push_back(s.time);
+    switchings.push_back(times);
+  }
+  return {{"step", number_of},
+          {"parent", step.parent},
+          {"kind", kind_name(step.kind)},
+          {"label", step.label},
+          {"command", step.command},
+          {"sentence", step.sentence},
+          {"verdict", verdict(step)},
+          {"reason", step.played->fitness.sentence},
+          {"complete", step.complete},
+          {"fit", step.played->fitness.fit},
+          {"ratio", ratio},
+          {"evidence", number(step.evidence)},
+          {"held_out", step.held_out},
+          {"blocks", blocks},
+          {"switchings", switchings},
+          {"sliders", sliders(setup, step)},
+          {"chips", chips(step)}};
+}
+
+std::vector<float> curves(const Step& step, std::size_t event) {
+  const auto& e = step.played->events.at(event);
+  std::vector<float> all(e.record.t.begin(), e.record.t.end());
+  for (const auto& c : e.channels)
+    for (const auto* values : {&c.measured, &c.modelled})
+      for (const double v : *values) all.push_back(static_cast<float>(v * c.scale));
+  return all;
+}
+
+std::vector<float> preview_floats(const Preview& preview, const compare::EventComparison& event) {
+  std::vector<float> all;
+  for (std::size_t k = 0; k < preview.channels.size(); ++k) {
+    const auto& c = preview.channels[k];
+    const double scale = event.channels[k].scale;
+    all.push_back(static_cast<float>(c.whole.rms * scale));
+    all.push_back(static_cast<float>(c.noise * scale));
+    for (const double v : c.modelled) all.push_back(static_cast<float>(v * scale));
+  }
+  return all;
+}
+
+nlohmann::json effects_json(const Step& step) {
+  json all = json::array();
+  for (const auto& h :
+       hypothesis::all_hypotheses(step.model.under_test(), step.model.library, step.model.reading.component))
+    all.push_back({{"name", h.name}, {"what", h.what}, {"side", std::string(hypothesis::side_name(h.side))}});
+  return all;
+}
+
+}  // namespace swingbank::validate::live

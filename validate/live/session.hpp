@@ -1,0 +1,93 @@
+#pragma once
+// Session of the live page: the steps from the submitted model to the completed one, each compared with all
+// records, and playback of changed parameter values while a slider moves.
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "validate/compare/played.hpp"
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::live {
+
+/// Inputs that all sessions share; not changed after the start.
+struct Setup {
+  plant::PlantModel model;                         ///< submitted model
+  std::vector<record::Record> records;             ///< one for each event
+  std::vector<std::vector<std::string>> warnings;  ///< notes on each record
+  compare::CompareOptions compare;                 ///< options of the comparison
+  event::FitEventOptions events;                   ///< preparation of the records for fits
+  thresholds::Acceptance by;                       ///< limits of fitness for purpose
+  double prior_sd = 0;                             ///< prior standard deviation of parameters, relative
+  int threads = 0;                                 ///< processor cores to use; 0: all
+  /// Options of the command line that read these records, for the equivalent command of each step.
+  std::string options;
+  std::string plant_file;  ///< as given by the user
+};
+
+/// Fitted parameter of a step with its 95 % interval.
+struct Interval {
+  std::string name;          ///< "SEXS.K"
+  double low = 0, high = 0;  ///< [unit of the parameter]
+};
+
+/// One step of a session. Immutable once it is in the session.
+struct Step {
+  /// Origin of a step.
+  enum class Kind { submitted, manual, added, calibrated };
+  Kind kind = Kind::submitted;             ///< origin
+  int parent = -1;                         ///< step before it; -1: none
+  std::string label;                       ///< "GENROU.H 6.54 → 5.2 s", "+ SEXS"
+  std::string command;                     ///< equivalent command line; empty: none
+  std::string sentence = {};               ///< result of the fit in words
+  plant::PlantModel model;                 ///< model of this step
+  std::vector<Interval> intervals = {};    ///< of fitted parameters
+  std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
+  double evidence = 0;    ///< 2 ln(Bayes factor) of an added effect over the refit without it
+  bool complete = false;  ///< the residual is noise in every bin
+  std::shared_ptr<const compare::Played> played = {};  ///< comparison with all records
+};
+
+/// Returns the submitted model compared with all records.
+Step submitted_step(const Setup& setup);
+
+/// Values of parameters by full name ("GENROU.H") [unit of the parameter].
+using Values = std::vector<std::pair<std::string, double>>;
+/// Returns the model with other parameter values. Throws InputError: unknown name, or a value that the
+/// equations do not allow.
+plant::PlantModel with_values(plant::PlantModel model, const Values& values);
+
+/// Steps of one open page. All functions may be called from several threads.
+class Session {
+ public:
+  /// Begins with the submitted model.
+  Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted);
+  [[nodiscard]] const Setup& setup() const { return *setup_; }  ///< inputs
+  /// Returns a step. Throws InputError if there is none of that number.
+  [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
+  /// Returns the number of steps.
+  [[nodiscard]] int steps() const;
+  /// Compares a step's model with other values with all records, and appends it as a step. Returns the number
+  /// of the step; `from` if nothing changes.
+  int change(int from, const Values& values);
+  /// Appends the model of a fit, compared with all records. Returns the number of the step.
+  int append(Step step);
+
+ private:
+  int put(std::shared_ptr<const Step> step);
+
+  std::shared_ptr<const Setup> setup_;
+  mutable std::mutex lock_;
+  std::vector<std::shared_ptr<const Step>> steps_;
+};
+
+/// Curves of one event during a drag.
+struct Preview {
+  std::vector<compare::ReplayedChannel> channels;  ///< as the channels of the step's comparison
+};
+/// Plays one event into a step's model with other values, with the step's switching times and start.
+Preview preview(const Step& step, std::size_t event, const Values& values);
+
+}  // namespace swingbank::validate::live
