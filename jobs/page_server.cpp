@@ -178,6 +178,12 @@ struct PageServer::State {
     const live::Preview shown = live::preview(*step, event, values_of(body));
     reply(out, live::preview_floats(shown, step->played->events[event]));
   }
+  void ribbon(const httplib::Request& r, httplib::Response& out) {
+    const auto of = page(r);
+    const json body = json::parse(r.body);
+    const auto step = of->session.step(body.at("step"));
+    reply(out, live::ribbon(*step, body.at("event"), values_of(body), body.at("name")));
+  }
   void change(const httplib::Request& r, httplib::Response& out) {
     const auto of = page(r);
     const json body = json::parse(r.body);
@@ -323,6 +329,7 @@ void PageServer::State::routes() {
     reply(out, live::effects_json(*page(r)->session.step(whole(r, "k"))));
   });
   http.Post(api("preview"), [this](const Request& r, Response& out) { preview(r, out); });
+  http.Post(api("ribbon"), [this](const Request& r, Response& out) { ribbon(r, out); });
   http.Post(api("change"), [this](const Request& r, Response& out) { change(r, out); });
   http.Post(api("fit"), [this](const Request& r, Response& out) { start_fit(r, out); });
   http.Post(api("stop"), [this](const Request& r, Response& out) {

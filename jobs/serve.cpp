@@ -105,12 +105,16 @@ int run(Command& c) {
   parts.start_fit = [&](const json& request) { return forks.start(request); };
   parts.progress = progress_text;
   parts.save = [&](const live::Session& session, int step) {
-    OutputFolder folder(c.of.out, "serve", live::saved_files());
+    OutputFolder folder(c.of.out, "serve", live::saved_files(), c.of.judging.outputs());
     report::Provenance provenance = {{"software", fmt::format("swingbank {}", jobs::version())},
                                      {"model", c.of.model}};
     jobs::sign(provenance, c.of.judging, c.of.model, c.of.records);
     json saved = live::save(session, step, folder, provenance);
     folder.finish();
+    if (!c.of.judging.pdf.empty()) {
+      c.of.judging.print(folder.path() / "report.html");
+      saved["files"].push_back(c.of.judging.pdf);
+    }
     return saved;
   };
   jobs::PageServer server(std::move(parts), c.port);

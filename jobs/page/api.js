@@ -27,6 +27,10 @@ export async function preview(body) {
   const answer = await post("preview", body);
   return answer.status === 204 ? null : new Float32Array(await answer.arrayBuffer());
 }
+/** Returns the samples with 10 % less and 10 % more of a parameter, one after the other for each channel. */
+export const ribbon = async (body) => new Float32Array(await (await post("ribbon", body)).arrayBuffer());
+/** Ends a running fit as the page closes. */
+export const leave = () => navigator.sendBeacon("api/stop" + query());
 export const change = async (body) => (await post("change", body)).json();
 export const fit = async (body) => (await post("fit", body)).json();
 export const stop = async () => (await post("stop", {})).json();

@@ -13,6 +13,23 @@ export function split(samples, channels) {
   return { t: part(0), channels: Array.from({ length: channels }, (_, c) => ({ measured: part(1 + 2 * c), modelled: part(2 + 2 * c) })) };
 }
 
+/** Fills the area between two curves. */
+function between(u, t, low, high) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.beginPath();
+  const x = (k) => u.valToPos(t[k], "x", true), y = (v) => u.valToPos(v, "y", true);
+  for (let k = 0; k < t.length; ++k) ctx.lineTo(x(k), y(low[k]));
+  for (let k = t.length - 1; k >= 0; --k) ctx.lineTo(x(k), y(high[k]));
+  ctx.globalAlpha = 0.3;
+  ctx.fillStyle = colour("model");
+  ctx.fill();
+  ctx.restore();
+}
+
 /** Shades the failing window and the fault. */
 function shades(of) {
   const band = (u, from, to, fill) => {
@@ -28,6 +45,7 @@ function shades(of) {
     hooks: {
       drawClear: (u) => {
         if (of.window) band(u, of.window[0], of.window[1], colour("shade"));
+        if (of.range) between(u, of.data[0], of.range[0], of.range[1]);
         if (of.fault) band(u, of.fault[0], of.fault[1], colour("fault"));
       },
     },
@@ -97,8 +115,17 @@ export function zoom(from, to) {
     c.plot.setScale("x", { min: from ?? t[0], max: to ?? t[t.length - 1] });
   }
 }
-export function shade(window) {
-  for (const c of charts) { c.of.window = window; c.plot.redraw(false); }
+/** Shades a window [from, to] or nothing in each chart. */
+export function shade(windows) {
+  charts.forEach((c, k) => { c.of.window = windows[k]; c.plot.redraw(false); });
+}
+export function choose(channel) {
+  charts.forEach((c, k) => c.plot.root.parentElement.classList.toggle("chosen", k === channel));
+  if (channel > 1) by("more").open = true;
+}
+/** Shows the range of each channel between two responses; null: none. */
+export function ribbon(ranges) {
+  charts.forEach((c, k) => { c.of.range = ranges?.[k]; c.plot.redraw(false); });
 }
 function fitted() {
   for (const c of charts) if (c.place.clientWidth) c.plot.setSize({ width: c.place.clientWidth, height: c.height });

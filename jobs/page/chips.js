@@ -1,24 +1,24 @@
 // A chip for each event and channel, and the map of errors of one event.
 import { by, digits, level, make, sign, times } from "./format.js";
 
-/** Builds the chips. `state`: setup, step, first (the submitted step), event, heldOut; `choose(event, channel)`. */
-export function build(state, choose, hold) {
+/** Builds the chips. `state`: setup, step, first (the submitted step), event, channel, heldOut; `choose(event, channel)`. */
+export function build(state, choose) {
   const { setup, step, first } = state;
   by("chips").replaceChildren(...setup.events.map((event, e) => {
-    const box = make("input", { type: "checkbox", checked: state.heldOut.has(event.name), title: "hold out: fits leave this event out, to judge them on it" });
-    box.addEventListener("change", () => hold(e, box.checked));
-    const out = step.held_out.includes(event.name);
-    const label = make("label", { title: `${event.name}: ${event.title}` }, `event ${e + 1} `, box, make("span", { textContent: box.checked ? " held out" : "" }));
-    const group = make("div", { className: "group" + (e === state.event ? " out" : "") }, label);
+    const unseen = step.held_out.includes(event.name);
+    const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out)" : "";
+    const group = make("div", { className: "group" + (e === state.event ? " now" : "") },
+      make("span", { textContent: `event ${e + 1}${mark}`, title: `${event.name}: ${event.title}` }));
     step.chips.filter((c) => c.event === e).forEach((c) => {
       const before = first.chips.find((f) => f.event === e && f.name === c.name);
-      const chip = make("button", { className: "chip " + level(c) + (e === state.event ? " chosen" : "") });
+      const chip = make("button", { className: "chip " + level(c) + (e === state.event && c.channel === state.channel ? " chosen" : "") });
       chip.dataset.event = e;
       chip.dataset.channel = c.channel;
-      chip.append(sign[level(c)] + " ", make("b", { textContent: c.name }), " ", make("span", { className: "ratio", textContent: times(c.ratio) }));
-      if (step.step !== first.step && before && times(before.ratio) !== times(c.ratio)) chip.append(make("s", { textContent: times(before.ratio) }));
+      const moved = step.step !== first.step && before && times(before.ratio) !== times(c.ratio);
+      chip.append(sign[level(c)] + " ", make("b", { textContent: c.name }), moved ? ` ${times(before.ratio).replace(" ×", "")} → ` : " ",
+        make("span", { className: "ratio", textContent: times(c.ratio) }));
       chip.title = `${event.name} ${c.name}: RMS error ${digits(c.rms)} ${c.unit}, ${times(c.ratio)} the noise` +
-        (c.limit ? `; ${Math.round(100 * c.limit)} % of its limit` : "") + (out ? "; this event was held out" : "");
+        (c.limit ? `; ${Math.round(100 * c.limit)} % of its limit` : "") + (unseen ? "; the fit has not seen this event" : "");
       chip.setAttribute("aria-label", `event ${e + 1} ${c.name}: ${times(c.ratio)} noise, ${{ good: "only noise", warn: "more than noise", bad: "limit exceeded" }[level(c)]}`);
       chip.addEventListener("click", () => choose(e, c.channel));
       group.append(chip);

@@ -3,7 +3,7 @@ import * as api from "./api.js";
 import * as charts from "./charts.js";
 import * as chips from "./chips.js";
 import * as fits from "./fits.js";
-import { by, digits, make, times } from "./format.js";
+import { by, digits, level, make, times } from "./format.js";
 import * as sliders from "./sliders.js";
 
 const state = { setup: null, step: null, first: null, event: 0, channel: 0, heldOut: new Set(), past: [], future: [], known: new Map(),
@@ -27,7 +27,8 @@ async function curvesOf(k, e) {
   return state.curves.get(key);
 }
 const chipsOf = (step, e) => step.chips.filter((c) => c.event === e);
-const windowOf = (chip) => { const row = chip?.map[chip.window]; return row ? [row.from, row.to] : null; };
+const windowOf = (chip) => { const row = level(chip) !== "good" && chip.map[chip.window]; return row ? [row.from, row.to] : null; };
+const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
 /** Shows the event's curves of the present step. */
 async function showEvent() {
@@ -38,6 +39,8 @@ async function showEvent() {
     name: c.name, unit: c.unit, main: k < 2, window: windowOf(c), fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
     data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled] })));
   near();
+  charts.choose(state.channel);
+  by("hold").checked = state.heldOut.has(state.setup.events[e].name);
   const about = state.setup.events[e];
   by("title").textContent = `Event ${e + 1}: ${about.title}`;
   by("notes").hidden = !about.notes.length;
@@ -51,7 +54,7 @@ function near() {
 function showSteps() {
   const shown = [...state.known.values()].filter((s) => s.kind !== "manual" || s.step === state.step.step);
   by("steps").replaceChildren(...shown.map((s) => {
-    const b = make("button", {}, make("span", {}, s.label, make("small", { textContent: s.evidence ? `2 ln(Bayes factor) ${digits(s.evidence)}` + (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "") : "" })),
+    const b = make("button", {}, make("span", {}, s.label, make("small", { textContent: s.evidence ? `evidence ${Math.round(s.evidence).toLocaleString("en")}` + (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "") : "" })),
       make("span", { className: "error", textContent: times(s.ratio) + " noise" }));
     b.addEventListener("click", guard(() => goTo(s.step)));
     return make("li", { className: s.step === state.step.step ? "now" : "" }, b);
@@ -66,9 +69,9 @@ function showStep() {
   by("reason").textContent = step.sentence || step.reason;
   by("command").textContent = step.command;
   by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
-  chips.build(state, guard(choose), hold);
+  chips.build(state, guard(choose));
   chips.map(state, (from, to) => { charts.zoom(from - 0.2 * (to - from), to + 0.2 * (to - from)); by("charts").scrollIntoView({ block: "nearest" }); });
-  sliders.build(step, moved, settled);
+  sliders.build(step, moved, settled, point);
   showSteps();
   api.effects(step.step).then((all) => by("effects").replaceChildren(...all.map((h) => make("option", { value: h.name, label: h.what }))));
 }
@@ -87,7 +90,7 @@ async function enter(step, keepPast = false) {
   }
   showStep();
   const now = await curvesOf(step.step, state.event);
-  if (state.step === step) charts.animate(now.channels.map((c) => c.modelled), () => charts.shade(windowOf(chipsOf(step, state.event)[state.channel])));
+  if (state.step === step) charts.animate(now.channels.map((c) => c.modelled), () => charts.shade(windows()));
 }
 async function goTo(k) {
   if (k === state.step.step) return;
@@ -106,17 +109,16 @@ async function walk(from, to) {
 async function choose(event, channel = 0) {
   state.event = event;
   state.channel = channel;
-  chips.build(state, guard(choose), hold);
+  chips.build(state, guard(choose));
   chips.map(state, (from, to) => charts.zoom(from, to));
   await showEvent();
-  const window = windowOf(chipsOf(state.step, event)[channel]);
-  charts.shade(window);
 }
 function hold(event, on) {
   const { name } = state.setup.events[event];
   if (on) state.heldOut.add(name); else state.heldOut.delete(name);
-  if (state.heldOut.size >= state.setup.events.length) { state.heldOut.delete(name); fail(new Error("A fit needs an event: leave one that is not held out.")); }
-  chips.build(state, guard(choose), hold);
+  if (state.heldOut.size >= state.setup.events.length) { state.heldOut.delete(name); fail(new Error("Every event would be held out: a fit needs at least one.")); }
+  by("hold").checked = state.heldOut.has(state.setup.events[state.event].name);
+  chips.build(state, guard(choose));
 }
 
 // --- sliders: one preview is under way at a time; a newer value replaces a waiting one
@@ -141,9 +143,21 @@ async function fly() {
   flying = false;
   if (waiting) { waiting = false; fly(); }
 }
+/** Shows what ± 10 % of a parameter does, while the pointer or the keyboard is at it. */
+let pointed = "";
+const point = guard(async (name) => {
+  pointed = name;
+  if (!name) return charts.ribbon(null);
+  const { event } = state, n = chipsOf(state.step, event).length;
+  const samples = await api.ribbon({ step: state.base, event, values: state.values, name });
+  if (pointed !== name || event !== state.event) return;
+  const size = samples.length / (2 * n);
+  charts.ribbon(Array.from({ length: n }, (_, k) => [samples.subarray(2 * k * size, (2 * k + 1) * size), samples.subarray((2 * k + 1) * size, (2 * k + 2) * size)]));
+});
 function moved(name, value) {
   state.values[name] = value;
   by("verdict").textContent = "Trying …";
+  by("verdict").className = "";
   fly();
 }
 const settled = guard(async () => {
@@ -170,10 +184,17 @@ async function start(request) {
 const add = guard((effect) => (effect ? start({ kind: "add", effect }) : undefined));
 const receive = guard(async (m) => {
   if (m.type === "progress") return fits.progress(m);
+  if (m.type === "reached") return fits.reached(m);
   if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, add);
   fits.busy(false);
   state.running = null;
-  if (m.type === "step") { fits.clear(); await enter(m); by("said").textContent = m.sentence; }
+  if (m.type === "step") {
+    const before = state.step.ratio;
+    fits.clear();
+    await enter(m);
+    by("said").textContent = `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise. ` +
+      (m.held_out.length ? `${m.held_out.join(", ")} was not part of the fit. ` : "Tick “hold out of fits” at an event and add again to test it on that event. ") + "Save the model when you are content.";
+  }
   if (m.type === "failed") by("said").textContent = m.text;
 });
 
@@ -201,10 +222,12 @@ by("stop").addEventListener("click", guard(() => (state.running ? api.stop() : u
 by("undo").addEventListener("click", undo);
 by("redo").addEventListener("click", redo);
 by("save").addEventListener("click", save);
+by("hold").addEventListener("change", () => hold(state.event, by("hold").checked));
 by("near").addEventListener("click", near);
 by("whole").addEventListener("click", () => charts.zoom());
 by("copy").addEventListener("click", () => navigator.clipboard.writeText(by("command").textContent));
 by("any").addEventListener("submit", (e) => { e.preventDefault(); add(by("effect").value.trim()); });
+addEventListener("pagehide", () => { if (state.running) api.leave(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", guard(() => choose(state.event, state.channel)));
 
 async function begin() {
@@ -225,4 +248,4 @@ async function begin() {
   api.listen(receive);
   document.body.dataset.ready = "yes";
 }
-begin().catch(fail);
+begin().catch((error) => { by("verdict").textContent = "The model cannot be compared"; by("verdict").className = "bad"; by("reason").textContent = error.message; });

@@ -13,7 +13,7 @@ const value = (p, share) => (p.log ? p.low * (p.high / p.low) ** share : p.low +
 // The thumb's centre moves within the track less one thumb.
 const left = (share) => `calc(${share} * (100% - var(--thumb)) + var(--thumb) / 2)`;
 
-function row(p, moved, settled) {
+function row(p, moved, settled, point) {
   const id = "slider-" + p.name;
   const range = make("input", { type: "range", id, min: 0, max: kSteps, step: 1, value: Math.round(kSteps * place(p, p.value)) });
   range.setAttribute("aria-valuetext", digits(p.value) + " " + p.unit);
@@ -50,12 +50,14 @@ function row(p, moved, settled) {
     if (box.value === "" || !Number.isFinite(v)) return set(p.value, null);
     set(v, box); moved(p.name, v); settled(p.name);
   });
+  label.addEventListener("pointerenter", () => point(p.name));
+  label.addEventListener("pointerleave", () => point(""));
   rows.set(p.name, { set, range });
   return element;
 }
 
-/** Builds the sliders of a step. `moved(name, value)` while dragging, `settled(name)` after it. */
-export function build(step, moved, settled) {
+/** Builds the sliders of a step. `moved(name, value)` while dragging, `settled(name)` after it; `point(name)` at a name. */
+export function build(step, moved, settled, point) {
   const focus = document.activeElement?.id;
   const open = new Map([...by("sliders").querySelectorAll("details")].map((d) => [d.dataset.block, d.open]));
   by("sliders").replaceChildren();
@@ -67,13 +69,13 @@ export function build(step, moved, settled) {
     const group = make("details", {}, make("summary", { textContent: block, title: step.blocks.find((b) => b.name === block).title }));
     group.dataset.block = block;
     group.open = open.get(block) ?? true;
-    for (const p of all.filter((q) => q.fitted)) group.append(row(p, moved, settled));
+    for (const p of all.filter((q) => q.fitted)) group.append(row(p, moved, settled, point));
     const rest = all.filter((q) => !q.fitted);
     if (rest.length) {
       const fold = make("details", {}, make("summary", { textContent: "not fitted: " + rest.map((p) => p.symbol || p.key).join(", ") }));
       fold.dataset.block = block + "/rest";
       fold.open = open.get(fold.dataset.block) ?? false;
-      fold.append(...rest.map((p) => row(p, moved, settled)));
+      fold.append(...rest.map((p) => row(p, moved, settled, point)));
       group.append(fold);
     }
     by("sliders").append(group);

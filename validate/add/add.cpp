@@ -109,6 +109,7 @@ class Adding {
   Adding(const plant::PlantModel& model, Bench& bench, const AddOptions& options, Addition& a)
       : bench_(bench),
         progress_(options.calibrate.progress),
+        better_(options.reached),
         a_(a),
         base_model_{.events = bench.seen(),
                     .plant = model.plant,
@@ -197,7 +198,9 @@ class Adding {
   }
   void keep(const fit::Fit& f) {
     const std::lock_guard guard(lock_);
-    if (!reached_ || fit::penalised(f) < fit::penalised(*reached_)) reached_ = f;
+    if (reached_ && !(fit::penalised(f) < fit::penalised(*reached_))) return;
+    reached_ = f;
+    if (better_) better_(f);
   }
   [[noreturn]] void end() {
     if (a_.with.parameters.empty() && reached_) a_.with = *reached_;
@@ -206,6 +209,7 @@ class Adding {
 
   Bench& bench_;
   const event::Progress& progress_;
+  const std::function<void(const fit::Fit&)>& better_;
   Addition& a_;
   std::mutex lock_;
   std::optional<fit::Fit> reached_;

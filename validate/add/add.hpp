@@ -1,6 +1,8 @@
 #pragma once
 // Addition of one effect to a model: joint fit to the seen events, and comparison with the same structure
 // refitted without the effect, on unseen events too.
+#include <functional>
+
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 
@@ -9,6 +11,8 @@ namespace swingbank::validate::add {
 /// Options of an addition.
 struct AddOptions {
   calibrate::CalibrateOptions calibrate = {};  ///< priors, held-out events, limits, progress
+  /// Called with each fit with the effect that is better than those before, from any thread. May be empty.
+  std::function<void(const fit::Fit&)> reached = {};
 };
 
 /// Scores of one event: reduced chi-square of the given model, of the refit without the effect, and with it.

@@ -135,8 +135,11 @@ calibrate::CalibrateOptions fitting(const Setup& setup, const json& request, con
 
 void run_addition(const Setup& setup, const plant::PlantModel& model, const json& request, const Emit& emit) {
   const std::string effect = request.at("effect");
+  const auto reached = [&](const fit::Fit& f) {
+    if (std::isfinite(f.chi2) && f.values > 0) emit({{"type", "reached"}, {"chi2", f.reduced_chi2()}});
+  };
   const add::Addition a = add::add_effect(model, add::find_hypothesis(model, effect), setup.records,
-                                          {.calibrate = fitting(setup, request, emit)});
+                                          {.calibrate = fitting(setup, request, emit), .reached = reached});
   emit({{"type", "step"},
         {"kind", "added"},
         {"effect", effect},

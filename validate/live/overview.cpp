@@ -231,6 +231,28 @@ std::vector<float> preview_floats(const Preview& preview, const compare::EventCo
   return all;
 }
 
+std::vector<float> ribbon(const Step& step, std::size_t event, const Values& values,
+                          const std::string& name) {
+  const plant::PlantModel model = with_values(step.model, values);
+  const auto id = find_parameter(model.plant, name);
+  const double value = parameter_value(model.plant, id);
+  const sim::Parameter& p = parameter_record(model.plant, id);
+  const double tenth = 0.1 * (value != 0 ? std::abs(value) : p.high - p.low);
+  std::vector<Preview> both;
+  for (const double moved : {value - tenth, value + tenth}) {
+    Values changed = values;
+    std::erase_if(changed, [&](const auto& v) { return v.first == name; });
+    changed.emplace_back(name, moved);
+    both.push_back(preview(step, event, changed));
+  }
+  std::vector<float> all;
+  for (std::size_t k = 0; k < both.front().channels.size(); ++k)
+    for (const Preview& one : both)
+      for (const double v : one.channels[k].modelled)
+        all.push_back(static_cast<float>(v * step.played->events[event].channels[k].scale));
+  return all;
+}
+
 nlohmann::json effects_json(const Step& step) {
   json all = json::array();
   for (const auto& h :

@@ -12,6 +12,9 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number);
 std::vector<float> curves(const Step& step, std::size_t event);
 /// Returns a preview as 32-bit floats: RMS error, noise (both [unit]) and modelled samples of each channel.
 std::vector<float> preview_floats(const Preview& preview, const compare::EventComparison& event);
+/// Returns the response with a tenth less and a tenth more of a parameter than its value: for each channel
+/// the samples of both [unit]. Of a parameter at zero, with a tenth of its usual range.
+std::vector<float> ribbon(const Step& step, std::size_t event, const Values& values, const std::string& name);
 /// Returns the effects that can be added to a step's model, in the order of the library.
 nlohmann::json effects_json(const Step& step);
 

@@ -4,14 +4,10 @@
 #include <omp.h>
 
 #include <algorithm>
-
-#include "sim/plant/parameter_id.hpp"
+#include <cmath>
 
 namespace swingbank::validate::live {
 namespace {
-
-/// Largest number of steps of a session: a step with its comparisons takes about 1 MB.
-constexpr std::size_t kMostSteps = 40;
 
 std::shared_ptr<const compare::Played> played(const Setup& setup, const plant::PlantModel& model,
                                               bool& complete) {
@@ -52,19 +48,21 @@ Step submitted_step(const Setup& setup) {
   return s;
 }
 
+sim::plant::ParameterId find_parameter(const sim::plant::Plant& plant, const std::string& name) {
+  for (int block = 0; block < sim::plant::block_count(plant); ++block)
+    for (const auto id : sim::plant::parameters_of(plant, block))
+      if (parameter_name(plant, id).text() == name) return id;
+  throw InputError(
+      {"parameter " + name, "the live page", "the model has no such parameter", "reload the page"});
+}
+
 plant::PlantModel with_values(plant::PlantModel model, const Values& values) {
-  std::vector<sim::plant::ParameterId> all;
-  for (int block = 0; block < sim::plant::block_count(model.plant); ++block)
-    std::ranges::move(sim::plant::parameters_of(model.plant, block), std::back_inserter(all));
   Problems problems;
   for (const auto& [name, value] : values) {
-    const auto id = std::ranges::find_if(
-        all, [&](const auto& p) { return parameter_name(model.plant, p).text() == name; });
-    if (id == all.end() || !std::isfinite(value))
-      problems.add("parameter " + name, "the live page",
-                   "the model has no such parameter, or the value is no number", "reload the page");
+    if (!std::isfinite(value))
+      problems.add("parameter " + name, "the live page", "its value is no number", "enter a number");
     else
-      parameter_value(model.plant, *id) = value;
+      parameter_value(model.plant, find_parameter(model.plant, name)) = value;
   }
   problems.raise();
   for (int k = 0; k < sim::plant::block_count(model.plant); ++k) {
@@ -77,8 +75,8 @@ plant::PlantModel with_values(plant::PlantModel model, const Values& values) {
   return model;
 }
 
-Session::Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted)
-    : setup_(std::move(setup)), steps_{std::move(submitted)} {}
+Session::Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted, std::size_t most)
+    : setup_(std::move(setup)), most_(most), steps_{std::move(submitted)} {}
 
 std::shared_ptr<const Step> Session::step(int number) const {
   const std::lock_guard guard(lock_);
@@ -97,7 +95,7 @@ int Session::put(std::shared_ptr<const Step> added) {
   const std::lock_guard guard(lock_);
   std::size_t held = 0;
   for (const auto& s : steps_) held += s ? 1 : 0;
-  if (held >= kMostSteps) {  // the oldest manual change that no step builds on
+  if (held >= most_) {  // the oldest manual change that no step builds on
     const auto used = [&](int number) {
       return added->parent == number ||
              std::ranges::any_of(steps_, [&](const auto& s) { return s && s->parent == number; });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "validate/compare/played.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -55,6 +56,8 @@ Step submitted_step(const Setup& setup);
 
 /// Values of parameters by full name ("GENROU.H") [unit of the parameter].
 using Values = std::vector<std::pair<std::string, double>>;
+/// Returns the parameter of a full name. Throws InputError if there is none.
+sim::plant::ParameterId find_parameter(const sim::plant::Plant& plant, const std::string& name);
 /// Returns the model with other parameter values. Throws InputError: unknown name, or a value that the
 /// equations do not allow.
 plant::PlantModel with_values(plant::PlantModel model, const Values& values);
@@ -62,8 +65,9 @@ plant::PlantModel with_values(plant::PlantModel model, const Values& values);
 /// Steps of one open page. All functions may be called from several threads.
 class Session {
  public:
-  /// Begins with the submitted model.
-  Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted);
+  /// Begins with the submitted model. Of more than `most` steps, manual changes that no other step builds on
+  /// are dropped, the oldest first; a step with its comparisons takes about 1 MB.
+  Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted, std::size_t most = 24);
   [[nodiscard]] const Setup& setup() const { return *setup_; }  ///< inputs
   /// Returns a step. Throws InputError if there is none of that number.
   [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
@@ -79,6 +83,7 @@ class Session {
   int put(std::shared_ptr<const Step> step);
 
   std::shared_ptr<const Setup> setup_;
+  std::size_t most_;
   mutable std::mutex lock_;
   std::vector<std::shared_ptr<const Step>> steps_;
 };
