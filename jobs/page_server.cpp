@@ -30,7 +30,7 @@ using nlohmann::json;
 constexpr std::size_t kMostBytes = 1 << 20;    ///< largest body of a request
 constexpr std::size_t kMostSessions = 16;      ///< open pages; the one unused for longest is closed
 constexpr std::size_t kThreads = 256;          ///< connections served at once
-constexpr int kIdle = 5;                       ///< [s] until an idle connection is closed
+constexpr int kIdle = 2;                       ///< [s] until an idle connection is closed
 constexpr std::size_t kMostMessages = 10'000;  ///< messages kept for a page that does not read them
 
 /// Returns a random word of 32 hexadecimal digits from the system's generator.

@@ -44,9 +44,10 @@ def text(name):
 
 
 def chips():
-    return {(int(c.get_attribute("data-event")), int(c.get_attribute("data-channel"))):
-            (c.get_attribute("class"), c.find_element(By.CLASS_NAME, "ratio").text, c.get_attribute("title"))
-            for c in page.find_elements(By.CSS_SELECTOR, ".chip")}
+    """(event, channel) -> class, ratio and title of its chip."""
+    return {(e, c): rest for e, c, *rest in page.execute_script(
+        "return [...document.querySelectorAll('.chip')].map((c) => [Number(c.dataset.event), Number(c.dataset.channel), "
+        "c.className, c.querySelector('.ratio').textContent, c.title])")}
 
 
 def rms(event, channel):
@@ -68,12 +69,12 @@ assert page.execute_script("return document.getElementById('charts').getBounding
 
 # drag a slider with the mouse: the chips of this event follow; after it, the number is that of compare
 slider = one("slider-GENROU.H")
-event = int(next(c for c in page.find_elements(By.CSS_SELECTOR, ".chip.chosen")).get_attribute("data-event"))
+event = next(at[0] for at, c in chips().items() if "chosen" in c[0])
 before = rms(event, 0)
 page.execute_script("document.getElementById('slider-GENROU.H').scrollIntoView({block: 'center'})")
 drag = ActionChains(page).move_to_element(slider).click_and_hold()
 for _ in range(10):
-    drag = drag.move_by_offset(-4, 0)
+    drag = drag.move_by_offset(-2, 0)
 drag.perform()
 until("a preview", lambda: "moving" in chips()[event, 0][0], 20)
 ActionChains(page).release().perform()
