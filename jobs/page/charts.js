@@ -5,6 +5,7 @@ import { by, digits, make } from "./format.js";
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 const sync = uPlot.sync("event");
 const charts = [];
+let moving = 0; // number of the present animation; another number ends it
 
 /** Splits the samples of api.curves() into t and, for each channel, measured and modelled. */
 export function split(samples, channels) {
@@ -78,6 +79,7 @@ function chart(place, of, height) {
 
 /** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, main}. */
 export function show(channels) {
+  ++moving;
   for (const c of charts.splice(0)) { sync.unsub(c.plot); c.plot.destroy(); }
   by("charts").replaceChildren();
   by("others").replaceChildren();
@@ -85,8 +87,12 @@ export function show(channels) {
   for (const of of channels) charts.push(chart(of.main ? by("charts") : by("others"), of, of.main ? tall : 180));
   by("more").hidden = channels.every((c) => c.main);
 }
-/** Replaces the modelled samples of a channel. */
-export function model(channel, samples) {
+/** Replaces the modelled samples of every channel. */
+export function model(samples) {
+  ++moving;
+  samples.forEach((s, k) => put(k, s));
+}
+function put(channel, samples) {
   const c = charts[channel];
   if (!c) return;
   c.of.data = [c.of.data[0], c.of.data[1], c.of.data[2], samples];
@@ -96,18 +102,22 @@ export function model(channel, samples) {
 export function animate(next, done = () => {}) {
   const start = charts.map((c) => c.of.data[3]);
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const own = ++moving;
   const begin = performance.now(), span = still ? 0 : 700;
   const frame = (now) => {
+    if (own !== moving) return;
     const share = span ? Math.min(1, (now - begin) / span) : 1, eased = share * (2 - share);
     next.forEach((to, k) => {
       const from = start[k];
-      if (!from || from.length !== to.length || share === 1) return model(k, to);
-      model(k, to.map((v, i) => from[i] + (v - from[i]) * eased));
+      if (!from || from.length !== to.length || share === 1) return put(k, to);
+      put(k, to.map((v, i) => from[i] + (v - from[i]) * eased));
     });
     if (share < 1) requestAnimationFrame(frame); else done();
   };
   requestAnimationFrame(frame);
 }
+/** The shown data of each chart: t, measured, submitted, this model. For tests. */
+globalThis.charts_of_test = () => charts.map((c) => c.of.data);
 /** Shows the times from..to [s] in every chart; without arguments, the whole record. */
 export function zoom(from, to) {
   for (const c of charts) {

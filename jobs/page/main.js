@@ -131,12 +131,10 @@ async function fly() {
   try {
     const samples = await api.preview({ seq: number, step: state.base, event, values: state.values });
     if (samples && event === state.event && number === state.number) {
-      const n = chipsOf(state.step, event).length, size = samples.length / n, errors = [];
-      for (let k = 0; k < n; ++k) {
-        errors.push({ rms: samples[k * size], noise: samples[k * size + 1] });
-        charts.model(k, samples.subarray(k * size + 2, (k + 1) * size));
-      }
-      chips.moving(event, errors);
+      const n = chipsOf(state.step, event).length, size = samples.length / n;
+      const parts = Array.from({ length: n }, (_, k) => samples.subarray(k * size, (k + 1) * size));
+      charts.model(parts.map((p) => p.subarray(2)));
+      chips.moving(event, parts.map((p) => ({ rms: p[0], noise: p[1] })));
       by("charts").dataset.answered = (performance.now() - begin).toFixed(1);
     }
   } catch (error) { fail(error); }

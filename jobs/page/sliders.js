@@ -17,7 +17,7 @@ function row(p, moved, settled, point) {
   const id = "slider-" + p.name;
   const range = make("input", { type: "range", id, min: 0, max: kSteps, step: 1, value: Math.round(kSteps * place(p, p.value)) });
   range.setAttribute("aria-valuetext", digits(p.value) + " " + p.unit);
-  const box = make("input", { type: "number", step: "any", value: Number(digits(p.value, 6)) });
+  const box = make("input", { type: "number", step: "any", value: Number(digits(p.value, 5)) });
   box.setAttribute("aria-label", p.name + " as a number");
   const track = make("div", { className: "track" });
   if (p.interval && p.interval[0] !== null) {
@@ -39,7 +39,7 @@ function row(p, moved, settled, point) {
   mark(p.value);
   const set = (v, from) => {
     if (from !== range) range.value = Math.round(kSteps * place(p, v));
-    if (from !== box) box.value = Number(digits(v, 6));
+    if (from !== box) box.value = Number(digits(v, 5));
     range.setAttribute("aria-valuetext", digits(v) + " " + p.unit);
     mark(v);
   };

@@ -78,10 +78,10 @@ json candidates_json(const diagnose::Diagnosis& d) {
         all.push_back({hypothesis::full_name(d.ranked[k].hypothesis), d.ranked[k].gain, static_cast<int>(k)});
     all = hypothesis::posterior(std::move(all), 0);
   }
-  constexpr std::size_t kShown = 8;
+  constexpr std::size_t kCandidatesShown = 8;
   json shown = json::array();
   for (const auto& e : all) {
-    if (shown.size() == kShown) break;
+    if (shown.size() == kCandidatesShown) break;
     json one = {{"name", e.name}, {"probability", number(e.probability)}};
     if (e.place >= 0 && e.place < static_cast<int>(d.ranked.size())) {
       const auto& j = d.ranked[static_cast<std::size_t>(e.place)];

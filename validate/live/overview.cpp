@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 /// Slider range of a positive parameter: a thirtieth to thirty times its value, within the usual range.
-constexpr double kReach = 30;
+constexpr double kSliderReach = 30;
 
 /// Returns the sliders of a model: every parameter but codes.
 json sliders(const Setup& setup, const Step& step) {
@@ -33,7 +33,8 @@ json sliders(const Setup& setup, const Step& step) {
       const auto name = parameter_name(plant, id);
       const fit::Axis axis = fit::make_axis(plant, {id, setup.prior_sd});
       double low = std::min(axis.low, value), high = std::max(axis.high, value);
-      if (axis.logarithmic) low = std::max(low, value / kReach), high = std::min(high, value * kReach);
+      if (axis.logarithmic)
+        low = std::max(low, value / kSliderReach), high = std::min(high, value * kSliderReach);
       const auto interval = std::ranges::find(step.intervals, name.text(), &Interval::name);
       const auto submitted = sim::plant::same_parameter(setup.model.plant, plant, id);
       json s = {{"name", name.text()},
