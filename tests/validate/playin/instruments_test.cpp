@@ -8,6 +8,7 @@
 #include "sim/plant/measure.hpp"
 #include "validate/fit/fit.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::playin {
 namespace {

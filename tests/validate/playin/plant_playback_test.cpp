@@ -7,6 +7,7 @@
 #include "sim/plant/block_text.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::playin {
 namespace {

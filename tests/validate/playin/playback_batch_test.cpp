@@ -8,6 +8,7 @@
 #include "sim/library/library.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/switching/voltage_steps.hpp"
 
 namespace swingbank::validate::playin {
 namespace {

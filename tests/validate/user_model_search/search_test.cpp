@@ -11,6 +11,7 @@
 #include "tests/validate/playin/support.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/playin/play_in.hpp"
+#include "validate/switching/voltage_steps.hpp"
 #include "validate/user_model_search/detail/text.hpp"
 #include "validate/user_model_search/detail/time_series.hpp"
 
