@@ -439,12 +439,14 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   }
   step("the residual is evaluated", 2);
   if (no_angle) play_without_angle(model, options.play_in, e);
-  if (!e.prepared)
-    e.prepared = std::make_shared<const event::FitEvent>(
-        event::FitEvent{.record = e.record,
-                        .switchings = e.switchings,
-                        .start = e.playback.start,
-                        .channels = playin::compared_outputs(e.record, true)});
+  if (!e.prepared) {
+    event::FitEvent prepared;
+    prepared.record = e.record;
+    prepared.switchings = e.switchings;
+    prepared.start = e.playback.start;
+    prepared.channels = playin::compared_outputs(e.record, true);
+    e.prepared = std::make_shared<const event::FitEvent>(std::move(prepared));
+  }
   explain(e, step_shape, options.fit_switchings && !no_angle, failed);
   if (options.input == PlaybackInput::power) {  // with the switching times found by the voltage
     if (!no_angle) play(model, PlaybackInput::power, options.play_in, e);

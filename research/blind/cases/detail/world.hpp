@@ -11,6 +11,7 @@
 #include "sim/grid/grid.hpp"
 #include "sim/reference/reference.hpp"
 #include "validate/event/event.hpp"
+#include "validate/noise/noise_model.hpp"
 
 namespace swingbank::research::blind::cases {
 
