@@ -27,7 +27,7 @@ constexpr double kRare = 0.1;
 /// Differential evolution: number of generations without a lower cost that end it, and minimum number of
 /// starts.
 constexpr int kStagnant = 50;
-constexpr std::size_t kFewestToEvolve = 8;
+constexpr std::size_t kMinimumToEvolve = 8;
 /// Moves lead toward this share of the starts, the best, change this share of the parameters, and have a
 /// random length of at least `kShortestMove` (Zhang and Sanderson 2009).
 constexpr double kShareOfBest = 0.15, kShareMoved = 0.9, kShortestMove = 0.4;
@@ -206,7 +206,7 @@ class Identifying {
   /// best and by the difference of two others, and keeps the move if its cost falls. Unlike gradient steps it
   /// crosses the discontinuities at which another event makes a limiter pick up.
   void evolve() {
-    if (starts_.size() < kFewestToEvolve) return;
+    if (starts_.size() < kMinimumToEvolve) return;
     double least = std::numeric_limits<double>::infinity();
     for (int generation = 0, since = 0; since < kStagnant; ++generation) {
       interruption_point();
