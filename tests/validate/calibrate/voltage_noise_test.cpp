@@ -8,7 +8,9 @@
 #include "base/in_parallel.hpp"
 #include "tests/validate/calibrate/example.hpp"
 #include "validate/calibrate/detail/newton.hpp"
+#include "validate/noise/noise_events.hpp"
 #include "validate/noise/pre_event.hpp"
+#include "validate/noise/slow_noise.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::event {
 namespace {
@@ -19,7 +20,7 @@ Played with_exciter(const char* name) {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const sim::Effect* effect = sim::library::compiled().find(name);
   sim::plant::insert_block(model.plant, {effect, effect->default_parameters()});
-  const auto events = prepare_events(
+  const auto events = noise::whitened_events(
       model,
       {record::read_record(test::source("configs/records/record-example/avr_ev1.csv"), model.record_base)},
       {.measured_states = false});

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/validate/playin/support.hpp"
-#include "validate/event/event.hpp"
+#include "validate/fit/fit.hpp"
 #include "validate/noise/level.hpp"
 #include "validate/noise/pre_event.hpp"
 

@@ -10,7 +10,7 @@
 namespace swingbank::validate::noise {
 namespace {
 
-using namespace fit;
+using fit::better, fit::criterion, fit::data_cost, fit::ExciterExample, fit::Fit, fit::gain, fit::penalised;
 
 struct NoiseModels : ::testing::Test {
   const ExciterExample example{0.2};
@@ -20,7 +20,7 @@ struct NoiseModels : ::testing::Test {
       {first.plant, example.model.conventions}, first.events, first.reduced_chi2(), example.events));
 
   [[nodiscard]] Fit fitted_to(const WhitenedEvents& events) const {
-    return fit(example.model.under_test(), events, example.free({"H", "K"}), {.iterations = 2});
+    return fit::fit(example.model.under_test(), events, example.free({"H", "K"}), {.iterations = 2});
   }
 };
 
