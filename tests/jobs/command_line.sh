@@ -51,5 +51,5 @@ awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"
 printf '%s\n' 'Validate a plant:' 'Simulate and generate:' 'Train:' 'Benchmarks:' >"$work/expected"
 grep -vx 'Train:' "$work/groups" | diff <(grep -vx 'Train:' "$work/expected") - || fail "groups of swingbank --help"
 first=$(sed -n '/^Validate a plant:/,/^$/p' "$work/help" | awk '/^  / {print $1}' | xargs)
-[[ $first == 'inventory plant compare diagnose add calibrate export' ]] || fail "validation lists $first"
+[[ $first == 'inventory plant compare diagnose add calibrate serve export' ]] || fail "validation lists $first"
 ! grep -q 'read-hdf5' "$work/help" || fail "an internal command is listed"

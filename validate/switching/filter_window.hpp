@@ -7,9 +7,12 @@ namespace swingbank::validate::switching {
 /// Averaging window: an even weight function with integral 1.
 class FilterWindow {
  public:
+  /// Form of the weight function; class_m: the class M reference filter of IEEE C37.118.1.
   enum class Shape { triangle, box, class_m };
   FilterWindow() = default;
+  /// Makes a window of half-width `half` [s]. `Ffr`: cut-off frequency of a class M filter [Hz].
   FilterWindow(Shape shape, double half, double Ffr = 0);
+  /// Returns the form.
   [[nodiscard]] Shape shape() const { return shape_; }
   /// Returns the half-width of the window [s]; 0: no window.
   [[nodiscard]] double half() const { return half_; }
