@@ -34,7 +34,7 @@ grep -v '^\[network.gru\]' "$SWINGBANK_SOURCE/research/rates.toml" | sed 's/^\[n
   awk '/^\[network.none\]/ {skip = 1} /^\[network.mlp\]/ {skip = 0} !skip' >"$work/rates.toml"
 RATES=$work/rates.toml refuses "no rate" "no rate of 'gru'" plan
 sed -i 's/^epochs = \(.*\)/"epochs" = \1/' "$work/tiny.toml"
-refuses "sizes in another way" 'not understood' plan --hours 1 --name night --out "$work/made"
+refuses "sizes in another way" 'cannot be scaled' plan --hours 1 --name night --out "$work/made"
 refuses "a name with a dot" "night.5" plan --hours 1 --name night.5 --out "$work/made"
 refuses "no name" '--name' plan --hours 1 --out "$work/made"
 echo "ok: plan, seeds, larger, least, refusals"
