@@ -1,19 +1,12 @@
 #!/usr/bin/env bash
 # swingbank serve: the page answers its owner and nobody else, and survives hostile requests.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+# shellcheck source=tests/jobs/serve.bash
+source "$(dirname "${BASH_SOURCE[0]}")/serve.bash"
 
-model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 record=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev4.csv
-cd "$work"
-"$swingbank" serve --model "$model" --records "$record" --power-only --out saved --quiet >url 2>log &
-server=$!
-for ((k = 0; k < 300; ++k)); do
-  [[ -s url ]] && break
-  sleep 0.1
-done
-url=$(<url)
+serve "$record"
 base=${url%/*/} # http://127.0.0.1:PORT
-[[ $url =~ ^http://127\.0\.0\.1:[0-9]+/[0-9a-f]{32}/$ ]] || fail "the address is '$url': $(<log)"
 # answer ARGUMENT...: the status of a request, its content in ./content
 answer() { curl -s --max-time 60 -o content -w '%{http_code}' "$@"; }
 # expect STATUS ARGUMENT...

@@ -1,19 +1,13 @@
 #!/usr/bin/env bash
 # The live page in a browser: the numbers are those of compare, and the saved model those of the page.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+# shellcheck source=tests/jobs/serve.bash
+source "$(dirname "${BASH_SOURCE[0]}")/serve.bash"
 
-model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 records=("$SWINGBANK_SOURCE"/configs/records/record-example/avr_ev*.csv)
 screens=${SWINGBANK_SCREENS:-$work/screens}
 mkdir -p "$screens"
-cd "$work"
-"$swingbank" serve --model "$model" --records "${records[@]}" --power-only --out saved --quiet >url 2>log &
-server=$!
-for ((k = 0; k < 300; ++k)); do
-  [[ -s url ]] && break
-  sleep 0.1
-done
-[[ -s url ]] || fail "no address: $(<log)"
+serve "${records[@]}"
 /usr/bin/python3 "$SWINGBANK_SOURCE/tests/jobs/serve_browser.py" "$(<url)" "$screens" >seen || fail "in the browser: $(<seen) $(<log)"
 cat seen
 
