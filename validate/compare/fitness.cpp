@@ -110,8 +110,6 @@ std::string verdict(const Fitness& f, int exceed) {
                      f.by.name, f.fit ? "Nearest to its limit" : "Largest violation", nearest_text(f));
 }
 
-const std::vector<std::string> kHeader = {"event", "channel", "window", "MXE", "ME", "MAE"};
-
 std::string caption(const Fitness& f) {
   return fmt::format(
       "Errors (modelled − measured) in % of {:g} MVA, each with its limit, as defined in IEC "
@@ -122,9 +120,8 @@ std::string caption(const Fitness& f) {
 }
 
 /// Table cells; each of the three errors comes from its own row in `from`.
-std::vector<report::Cell> cells_of(const std::string& event, const JudgedErrors& of,
-                                   const std::array<const JudgedErrors*, 3>& from) {
-  std::vector<report::Cell> cells = {event, of.channel, std::string(of.window())};
+std::vector<report::Cell> cells_of(const JudgedErrors& of, const std::array<const JudgedErrors*, 3>& from) {
+  std::vector<report::Cell> cells = {of.channel, std::string(of.window())};
   const auto add = [&](double error, double limit, const char* sign) {
     const bool within = std::abs(error) <= limit;
     cells.emplace_back(std::isfinite(error)
@@ -193,15 +190,9 @@ std::string complete_text(bool complete, const std::string& sentence) {
   return fmt::format("Statistically complete: {}. {}", complete ? "yes" : "no", sentence);
 }
 
-report::Table fitness_table(const Fitness& f) {
-  report::Table table{caption(f), kHeader, {}};
-  for (const auto& row : f.rows) table.rows.push_back(cells_of(row.event, row, {&row, &row, &row}));
-  return table;
-}
-
 report::Table worst_fitness_table(const Fitness& f) {
-  report::Table table{caption(f) + " Each value is the worst of all events.", kHeader, {}};
-  table.header.erase(table.header.begin());
+  report::Table table{
+      caption(f) + " Each value is the worst of all events.", {"channel", "window", "MXE", "ME", "MAE"}, {}};
   for (const char* channel : {"P", "Q"})
     for (const Phase phase : thresholds::kPhases) {
       std::array<const JudgedErrors*, 3> worst{};
@@ -219,8 +210,7 @@ report::Table worst_fitness_table(const Fitness& f) {
       if (!worst[0]) continue;
       JudgedErrors named = *worst[0];
       named.switched = switched;
-      table.rows.push_back(cells_of("", named, worst));
-      table.rows.back().erase(table.rows.back().begin());
+      table.rows.push_back(cells_of(named, worst));
     }
   return table;
 }

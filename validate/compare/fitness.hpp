@@ -58,9 +58,7 @@ Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
 /// Fitness without a verdict, for the reason `why`.
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why);
 
-/// Table with one row per event, channel and window: the three errors and their limits.
-report::Table fitness_table(const Fitness& fitness);
-/// The same table with the worst of all events in each row.
+/// Table with one row per channel and window: the worst of the three errors of all events, and their limits.
 report::Table worst_fitness_table(const Fitness& fitness);
 /// Table of the measured deviation of P and Q per event, and the share that the model reproduces.
 report::Table movement_table(const Fitness& fitness);
