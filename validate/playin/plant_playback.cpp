@@ -182,10 +182,7 @@ class Solver {
       } else if (h < kShortestStep) {
         give_up();
       }
-      const double factor =
-          std::isfinite(error) ? std::clamp(0.9 * grown(error + 1e-12, pair_.exponent), 0.2, 5.0) : 0.2;
-      const bool cut_short = reaches && error <= 1;  // shortened by the target time, not by the error
-      h_ = cut_short ? std::max(h_, h * factor) : h * factor;
+      h_ = next_step(h_, h, error, grown(error + 1e-12, pair_.exponent), reaches);
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);

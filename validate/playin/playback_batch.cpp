@@ -115,11 +115,9 @@ class Together {
         fresh_ = any_positive(moved);
       }
       if (error > 1 ? h < kLeastOfAll : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
-      const double factor =
-          std::clamp(0.9 * sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
-                                                         static_cast<float>(kRoughSteps.exponent)),
-                     0.2, 5.0);
-      h_ = reaches && error <= 1 ? std::max(h_, h * factor) : h * factor;
+      const auto power = sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
+                                                       static_cast<float>(kRoughSteps.exponent));
+      h_ = next_step(h_, h, error, power, reaches);
     }
     t_ = std::max(t_, to);
   }

@@ -1,5 +1,8 @@
 #pragma once
-// Runge-Kutta pairs of the playback integrators.
+// Runge-Kutta pairs of the playback integrators, and their step control.
+#include <algorithm>
+#include <cmath>
+
 #include "sim/plant/tableau.hpp"
 
 namespace swingbank::validate::playin {
@@ -19,5 +22,13 @@ inline constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9
 inline constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
 inline constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
 inline constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+
+/// Returns the length of the step after an attempt of length h [s]. `error`: its error relative to the
+/// tolerance, `power`: that raised to the pair's exponent. A step that ended early at a target time
+/// (`reaches`) does not shorten `longest`, the length planned before it.
+inline double next_step(double longest, double h, double error, double power, bool reaches) {
+  const double factor = std::isfinite(error) ? std::clamp(0.9 * power, 0.2, 5.0) : 0.2;
+  return reaches && error <= 1 ? std::max(longest, h * factor) : h * factor;
+}
 
 }  // namespace swingbank::validate::playin

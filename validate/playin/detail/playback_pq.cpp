@@ -11,6 +11,7 @@
 #include "base/stop_signal.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/tableau.hpp"
+#include "validate/playin/detail/pairs.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
@@ -144,9 +145,7 @@ class PowerPlayback {
       } else if (h < 1e-9) {
         give_up();
       }
-      const double factor =
-          std::isfinite(error) ? std::clamp(0.9 * std::pow(error + 1e-12, -0.2), 0.2, 5.0) : 0.2;
-      h_ = reaches && error <= 1 ? std::max(h_, h * factor) : h * factor;
+      h_ = next_step(h_, h, error, std::pow(error + 1e-12, kFineSteps.exponent), reaches);
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
