@@ -132,7 +132,7 @@ struct PageServer::State {
     return found->second;
   }
   std::pair<std::string, std::shared_ptr<Page>> open() {
-    auto submitted = parts.submitted();
+    auto submitted = parts.first();
     auto page = std::make_shared<Page>(parts.setup, std::move(submitted));
     std::shared_ptr<Page> closed;  // destroyed after the lock
     const std::lock_guard guard(lock);
@@ -314,6 +314,13 @@ void PageServer::State::routes() {
                 {"setup", live::setup_json(*parts.setup, *step)},
                 {"step", live::step_json(*parts.setup, *step, 0)}});
   });
+  http.Get(api("submitted"), [this](const Request& r, Response& out) {
+    const auto of = page(r);
+    const auto step = parts.submitted();
+    of->session.compared(step);
+    reply(out, {{"setup", live::setup_json(*parts.setup, *step)},
+                {"step", live::step_json(*parts.setup, *step, 0)}});
+  });
   http.Get(api("step"), [this](const Request& r, Response& out) {
     const int k = whole(r, "k");
     reply(out, live::step_json(*parts.setup, *page(r)->session.step(k), k));
@@ -346,6 +353,7 @@ void PageServer::State::routes() {
 
 PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<State>()) {
   state_->parts = std::move(parts);
+  state_->routes();  // before the socket is made, which takes its options from there
   const char* const here = "127.0.0.1";
   if (port == 0)
     state_->port = state_->http.bind_to_any_port(here);
@@ -354,7 +362,6 @@ PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<Stat
   if (state_->port <= 0)
     throw InputError({fmt::format("port {}", port), "--port", "another program uses it",
                       "choose another one, or leave --port out"});
-  state_->routes();
 }
 
 PageServer::~PageServer() = default;

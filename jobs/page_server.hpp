@@ -14,8 +14,8 @@ namespace swingbank::jobs {
 /// Parts of the page that the command supplies.
 struct PageParts {
   std::shared_ptr<const validate::live::Setup> setup;  ///< inputs
-  /// Returns the submitted step; waits until its comparison is complete.
-  std::function<std::shared_ptr<const validate::live::Step>()> submitted;
+  /// Return the submitted step, provisional and compared; wait until it is complete.
+  std::function<std::shared_ptr<const validate::live::Step>()> first, submitted;
   /// Starts a fit (validate/live/fits.hpp).
   std::function<std::unique_ptr<FitProcess>(const nlohmann::json& request)> start_fit;
   /// Returns the progress text of a message of a fit.

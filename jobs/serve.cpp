@@ -95,12 +95,18 @@ int run(Command& c) {
     c.of.limit_threads();
     live::run_fit(*setup, request, send);
   });
-  std::shared_future<std::shared_ptr<const live::Step>> submitted =
-      std::async(std::launch::async, [&]() -> std::shared_ptr<const live::Step> {
-        return std::make_shared<const live::Step>(live::submitted_step(*setup));
-      });
+  using Submitted = std::shared_future<std::shared_ptr<const live::Step>>;
+  const auto compared = [&](auto step_of) {
+    return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
+  };
+  const Submitted first = std::async(std::launch::async, compared(live::first_step));
+  const Submitted submitted = std::async(std::launch::async, [&] {
+    first.wait();
+    return compared(live::submitted_step)();
+  });
   jobs::PageParts parts;
   parts.setup = setup;
+  parts.first = [&] { return first.get(); };
   parts.submitted = [&] { return submitted.get(); };
   parts.start_fit = [&](const json& request) { return forks.start(request); };
   parts.progress = progress_text;

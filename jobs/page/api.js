@@ -19,6 +19,8 @@ export async function open() {
   session = answer.session;
   return answer;
 }
+/** Waits for the comparison of the submitted model with fitted switching times; returns {setup, step}. */
+export const submitted = async () => (await get("submitted")).json();
 export const step = async (k) => (await get("step", { k })).json();
 export const effects = async (k) => (await get("effects", { k })).json();
 export const curves = async (k, e) => new Float32Array(await (await get("curves", { k, e })).arrayBuffer());

@@ -182,7 +182,12 @@ async function start(request) {
 const add = guard((effect) => (effect ? start({ kind: "add", effect }) : undefined));
 const receive = guard(async (m) => {
   if (m.type === "progress") return fits.progress(m);
-  if (m.type === "reached") return fits.reached(m);
+  if (m.type === "reached") {
+    fits.reached(m);
+    const own = chipsOf(state.step, state.event), event = m.events.find((e) => e.event === state.event);
+    if (event?.channels.length === own.length) charts.animate(event.channels.map((c, k) => Float32Array.from(c, (v) => v * own[k].scale)));
+    return undefined;
+  }
   if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, add);
   fits.busy(false);
   state.running = null;
@@ -245,5 +250,13 @@ async function begin() {
   await showEvent();
   api.listen(receive);
   document.body.dataset.ready = "yes";
+  if (!state.step.provisional) return;
+  const full = await api.submitted();
+  state.setup = full.setup;
+  state.first = full.step;
+  state.known.set(0, full.step);
+  state.curves.clear();
+  if (state.step.step === 0) { state.step = full.step; showStep(); await showEvent(); }
+  document.body.dataset.compared = "yes";
 }
 begin().catch((error) => { by("verdict").textContent = "The model cannot be compared"; by("verdict").className = "bad"; by("reason").textContent = error.message; });

@@ -102,6 +102,9 @@ with tempfile.TemporaryDirectory() as folder:
     while not page.execute_script("return document.body.dataset.ready"):
         time.sleep(0.01)
     print(f"first screen after the start of serve: {time.monotonic() - start:.2f} s, bar 0.5 s")
+    while not page.execute_script("return document.body.dataset.compared"):
+        time.sleep(0.01)
+    print(f"comparison with fitted switching times: {time.monotonic() - start:.2f} s")
     before = memory(server)
     shown("request to response", requests(url), 15)
     shown("slider to pixels", page.execute_async_script(DRAG, DRAGS), 50)
@@ -113,6 +116,9 @@ with tempfile.TemporaryDirectory() as folder:
         page.get(url)
         while not page.execute_script("return document.body.dataset.ready"):
             time.sleep(0.01)
+        while not page.execute_script("return document.body.dataset.compared"):
+            time.sleep(0.01)
+        fitted = None
         start = time.monotonic()
         page.execute_script("document.getElementById('effect').value = arguments[0];"
                             "document.querySelector('#any button').click()", effect)
@@ -121,7 +127,10 @@ with tempfile.TemporaryDirectory() as folder:
             if "swingbank" in text or time.monotonic() - start > 120:
                 print("no result:", text)
                 break
+            if fitted is None and page.execute_script("return document.querySelector('#fall svg') !== null"):
+                fitted = time.monotonic() - start
             time.sleep(0.01)
+        print(f"first fitted curves after {fitted or float('nan'):.2f} s")
         print(f"{'+'.join(['GENROU', *controls])}, add and fit {effect}: {time.monotonic() - start:.2f} s, bar 2 s", flush=True)
         server.terminate()
         server.wait()

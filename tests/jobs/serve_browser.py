@@ -61,6 +61,7 @@ def idle():
 size(1280, 900)
 page.get(url)
 until("the page", lambda: page.execute_script("return document.body.dataset.ready"), 60)
+until("the comparison", lambda: page.execute_script("return document.body.dataset.compared"), 60)
 assert text("verdict") == "Model does not match the records", text("verdict")
 assert all("bad" in c[0] for at, c in chips().items() if at[1] == 1), chips()
 page.save_screenshot(f"{folder}/first.png")

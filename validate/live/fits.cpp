@@ -133,10 +133,30 @@ calibrate::CalibrateOptions fitting(const Setup& setup, const json& request, con
   return o;
 }
 
+/// Returns the modelled curves of each fitted event [pu], rounded to the width of a line.
+json curves_json(const fit::Fit& f, const std::vector<bool>& held_out) {
+  json all = json::array();
+  std::size_t fitted = 0;
+  for (std::size_t e = 0; e < held_out.size() && fitted < f.events.size(); ++e) {
+    if (held_out[e]) continue;
+    json channels = json::array();
+    for (const auto& channel : f.events[fitted].model) {
+      json values = json::array();
+      for (const double v : channel) values.push_back(number(std::round(1e5 * v) / 1e5));
+      channels.push_back(std::move(values));
+    }
+    all.push_back({{"event", e}, {"channels", std::move(channels)}});
+    ++fitted;
+  }
+  return all;
+}
+
 void run_addition(const Setup& setup, const plant::PlantModel& model, const json& request, const Emit& emit) {
   const std::string effect = request.at("effect");
+  const auto out = calibrate::held_out_events(setup.records, fitting(setup, request, emit).held_out);
   const auto reached = [&](const fit::Fit& f) {
-    if (std::isfinite(f.chi2) && f.values > 0) emit({{"type", "reached"}, {"chi2", f.reduced_chi2()}});
+    if (std::isfinite(f.chi2) && f.values > 0)
+      emit({{"type", "reached"}, {"chi2", f.reduced_chi2()}, {"events", curves_json(f, out)}});
   };
   const add::Addition a = add::add_effect(model, add::find_hypothesis(model, effect), setup.records,
                                           {.calibrate = fitting(setup, request, emit), .reached = reached});

@@ -10,7 +10,7 @@ namespace swingbank::validate::live {
 /// Receives the messages of a fit, from any thread. Member "type":
 /// - "progress": phase (event::Phase), item, done, total
 /// - "preliminary": sentence, candidates with probability so far, inferred inputs of each event
-/// - "reached": chi2, reduced chi-square of a fit that is better than those before
+/// - "reached": chi2, reduced chi-square of a fit that is better than those before; events, its curves [pu]
 /// - "diagnosis": the result of a diagnosis
 /// - "step": a new model, for step_of_fit()
 /// - "failed": text

@@ -113,6 +113,7 @@ json chips(const Step& step) {
                      {"channel", k},
                      {"name", c.name},
                      {"unit", c.unit},
+                     {"scale", c.scale},
                      {"rms", number(c.whole.rms * c.scale)},
                      {"noise", number(c.noise * c.scale)},
                      {"ratio", number(c.whole.in_noise)},
@@ -199,7 +200,9 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
           {"command", step.command},
           {"sentence", step.sentence},
           {"verdict", verdict(step)},
-          {"reason", step.played->fitness.sentence},
+          {"reason", step.provisional ? "First look: switching times are being fitted."
+                                      : step.played->fitness.sentence},
+          {"provisional", step.provisional},
           {"complete", step.complete},
           {"fit", step.played->fitness.fit},
           {"ratio", ratio},

@@ -10,10 +10,12 @@ namespace swingbank::validate::live {
 namespace {
 
 std::shared_ptr<const compare::Played> played(const Setup& setup, const plant::PlantModel& model,
-                                              bool& complete) {
+                                              bool& complete, bool fit_switchings = true) {
+  compare::CompareOptions options = setup.compare;
+  options.fit_switchings = fit_switchings;
   if (setup.threads > 0) omp_set_num_threads(setup.threads);  // of this thread
   auto p = std::make_shared<compare::Played>(
-      compare::play_and_judge("model", model, setup.records, setup.compare, setup.by));
+      compare::play_and_judge("model", model, setup.records, options, setup.by));
   if (p->events.empty())
     throw InputError({"the model cannot follow the records", model.origin, p->fitness.not_judged,
                       "return to the values before"});
@@ -37,16 +39,20 @@ std::string label_of(const plant::PlantModel& before, const plant::PlantModel& a
   return text;
 }
 
-}  // namespace
-
-Step submitted_step(const Setup& setup) {
+Step submitted(const Setup& setup, bool provisional) {
   Step s;
   s.label = "submitted model";
   s.model = setup.model;
+  s.provisional = provisional;
   s.command = fmt::format("swingbank compare --model {}{}", setup.plant_file, setup.options);
-  s.played = played(setup, s.model, s.complete);
+  s.played = played(setup, s.model, s.complete, !provisional);
   return s;
 }
+
+}  // namespace
+
+Step submitted_step(const Setup& setup) { return submitted(setup, false); }
+Step first_step(const Setup& setup) { return submitted(setup, true); }
 
 sim::plant::ParameterId find_parameter(const sim::plant::Plant& plant, const std::string& name) {
   for (int block = 0; block < sim::plant::block_count(plant); ++block)
@@ -108,6 +114,11 @@ int Session::put(std::shared_ptr<const Step> added) {
   }
   steps_.push_back(std::move(added));
   return static_cast<int>(steps_.size()) - 1;
+}
+
+void Session::compared(std::shared_ptr<const Step> submitted) {
+  const std::lock_guard guard(lock_);
+  steps_.front() = std::move(submitted);
 }
 
 int Session::change(int from, const Values& values) {

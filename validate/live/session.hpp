@@ -46,13 +46,17 @@ struct Step {
   plant::PlantModel model;                 ///< model of this step
   std::vector<Interval> intervals = {};    ///< of fitted parameters
   std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
-  double evidence = 0;    ///< 2 ln(Bayes factor) of an added effect over the refit without it
-  bool complete = false;  ///< the residual is noise in every bin
+  double evidence = 0;       ///< 2 ln(Bayes factor) of an added effect over the refit without it
+  bool provisional = false;  ///< of first_step()
+  bool complete = false;     ///< the residual is noise in every bin
   std::shared_ptr<const compare::Played> played = {};  ///< comparison with all records
 };
 
 /// Returns the submitted model compared with all records.
 Step submitted_step(const Setup& setup);
+/// Returns the same with the switching times as detected, not fitted: a tenth of the time, for the first
+/// screen.
+Step first_step(const Setup& setup);
 
 /// Values of parameters by full name ("GENROU.H") [unit of the parameter].
 using Values = std::vector<std::pair<std::string, double>>;
@@ -73,6 +77,8 @@ class Session {
   [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
   /// Returns the number of steps.
   [[nodiscard]] int steps() const;
+  /// Replaces the first step, which was provisional.
+  void compared(std::shared_ptr<const Step> submitted);
   /// Compares a step's model with other values with all records, and appends it as a step. Returns the number
   /// of the step; `from` if nothing changes.
   int change(int from, const Values& values);
