@@ -5,7 +5,11 @@ async function checked(answer) {
   if (answer.ok) return answer;
   const text = await answer.text();
   let message = text;
-  try { message = JSON.parse(text).error || text; } catch { /* plain text */ }
+  try {
+    message = JSON.parse(text).error || text;
+  } catch {
+    /* plain text */
+  }
   throw new Error(message || `the server answered ${answer.status}`);
 }
 const query = (values = {}) => "?" + new URLSearchParams({ s: session, ...values });

@@ -2,7 +2,10 @@
 /* global uPlot */
 import { by, digits, make } from "./format.js";
 
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+const colour = (name) =>
+  getComputedStyle(document.documentElement)
+    .getPropertyValue("--" + name)
+    .trim();
 const sync = uPlot.sync("event");
 const charts = [];
 let moving = 0; // number of the present animation; another number ends it
@@ -11,7 +14,10 @@ let moving = 0; // number of the present animation; another number ends it
 export function split(samples, channels) {
   const n = samples.length / (1 + 2 * channels);
   const part = (k) => samples.subarray(k * n, (k + 1) * n);
-  return { t: part(0), channels: Array.from({ length: channels }, (_, c) => ({ measured: part(1 + 2 * c), modelled: part(2 + 2 * c) })) };
+  return {
+    t: part(0),
+    channels: Array.from({ length: channels }, (_, c) => ({ measured: part(1 + 2 * c), modelled: part(2 + 2 * c) })),
+  };
 }
 
 /** Fills the area between two curves. */
@@ -22,7 +28,8 @@ function between(u, t, low, high) {
   ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
   ctx.clip();
   ctx.beginPath();
-  const x = (k) => u.valToPos(t[k], "x", true), y = (v) => u.valToPos(v, "y", true);
+  const x = (k) => u.valToPos(t[k], "x", true),
+    y = (v) => u.valToPos(v, "y", true);
   for (let k = 0; k < t.length; ++k) ctx.lineTo(x(k), y(low[k]));
   for (let k = t.length - 1; k >= 0; --k) ctx.lineTo(x(k), y(high[k]));
   ctx.globalAlpha = 0.3;
@@ -55,13 +62,21 @@ function shades(of) {
 
 function chart(place, of, height) {
   const value = (u, v) => (v === null || v === undefined ? "–" : digits(v) + " " + of.unit);
-  const axis = { stroke: colour("soft"), grid: { stroke: colour("line"), width: 1 }, ticks: { stroke: colour("line") } };
+  const axis = {
+    stroke: colour("soft"),
+    grid: { stroke: colour("line"), width: 1 },
+    ticks: { stroke: colour("line") },
+  };
   const options = {
     title: `${of.name} [${of.unit}]`,
-    width: place.clientWidth || 600, height,
+    width: place.clientWidth || 600,
+    height,
     cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },
     scales: { x: { time: false } },
-    axes: [{ ...axis, size: 34 }, { ...axis, size: 56 }],
+    axes: [
+      { ...axis, size: 34 },
+      { ...axis, size: 56 },
+    ],
     series: [
       { label: "t", value: (u, v) => (v === null || v === undefined ? "–" : v.toFixed(3) + " s") },
       { label: "measured", stroke: colour("measured"), width: 3, value, points: { show: false } },
@@ -80,7 +95,10 @@ function chart(place, of, height) {
 /** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, main}. */
 export function show(channels) {
   ++moving;
-  for (const c of charts.splice(0)) { sync.unsub(c.plot); c.plot.destroy(); }
+  for (const c of charts.splice(0)) {
+    sync.unsub(c.plot);
+    c.plot.destroy();
+  }
   by("charts").replaceChildren();
   by("others").replaceChildren();
   const tall = Math.max(170, Math.min(290, innerHeight * 0.29));
@@ -96,23 +114,29 @@ function put(channel, samples) {
   const c = charts[channel];
   if (!c) return;
   c.of.data = [c.of.data[0], c.of.data[1], c.of.data[2], samples];
-  if (c.plot.root.offsetParent !== null) c.plot.setData(c.of.data, false), c.plot.redraw(true, false);
+  if (c.plot.root.offsetParent !== null) (c.plot.setData(c.of.data, false), c.plot.redraw(true, false));
 }
 /** Moves the modelled curves from where they are to the new samples. */
 export function animate(next, done = () => {}) {
   const start = charts.map((c) => c.of.data[3]);
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const own = ++moving;
-  const begin = performance.now(), span = still ? 0 : 700;
+  const begin = performance.now(),
+    span = still ? 0 : 700;
   const frame = (now) => {
     if (own !== moving) return;
-    const share = span ? Math.min(1, (now - begin) / span) : 1, eased = share * (2 - share);
+    const share = span ? Math.min(1, (now - begin) / span) : 1,
+      eased = share * (2 - share);
     next.forEach((to, k) => {
       const from = start[k];
       if (!from || from.length !== to.length || share === 1) return put(k, to);
-      put(k, to.map((v, i) => from[i] + (v - from[i]) * eased));
+      put(
+        k,
+        to.map((v, i) => from[i] + (v - from[i]) * eased),
+      );
     });
-    if (share < 1) requestAnimationFrame(frame); else done();
+    if (share < 1) requestAnimationFrame(frame);
+    else done();
   };
   requestAnimationFrame(frame);
 }
@@ -127,7 +151,10 @@ export function zoom(from, to) {
 }
 /** Shades a window [from, to] or nothing in each chart. */
 export function shade(windows) {
-  charts.forEach((c, k) => { c.of.window = windows[k]; c.plot.redraw(false); });
+  charts.forEach((c, k) => {
+    c.of.window = windows[k];
+    c.plot.redraw(false);
+  });
 }
 export function choose(channel) {
   charts.forEach((c, k) => c.plot.root.parentElement.classList.toggle("chosen", k === channel));
@@ -135,22 +162,40 @@ export function choose(channel) {
 }
 /** Shows the range of each channel between two responses; null: none. */
 export function ribbon(ranges) {
-  charts.forEach((c, k) => { c.of.range = ranges?.[k]; c.plot.redraw(false); });
+  charts.forEach((c, k) => {
+    c.of.range = ranges?.[k];
+    c.plot.redraw(false);
+  });
 }
 function fitted() {
   for (const c of charts) if (c.place.clientWidth) c.plot.setSize({ width: c.place.clientWidth, height: c.height });
 }
 new ResizeObserver(fitted).observe(by("charts"));
-by("more").addEventListener("toggle", () => { fitted(); for (const c of charts) c.plot.setData(c.of.data, false), c.plot.redraw(true); });
+by("more").addEventListener("toggle", () => {
+  fitted();
+  for (const c of charts) (c.plot.setData(c.of.data, false), c.plot.redraw(true));
+});
 
 /** Small curve of an inferred input. */
 export function small(place, title, t, values) {
   const axis = { stroke: colour("soft"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
   const box = make("div", { className: "chart" });
   place.append(box);
-  new uPlot({
-    title, width: place.clientWidth || 360, height: 120, legend: { show: false }, cursor: { show: false },
-    scales: { x: { time: false } }, axes: [{ ...axis, size: 26 }, { ...axis, size: 44 }],
-    series: [{}, { stroke: colour("model"), width: 2, points: { show: false } }],
-  }, [t, values], box);
+  new uPlot(
+    {
+      title,
+      width: place.clientWidth || 360,
+      height: 120,
+      legend: { show: false },
+      cursor: { show: false },
+      scales: { x: { time: false } },
+      axes: [
+        { ...axis, size: 26 },
+        { ...axis, size: 44 },
+      ],
+      series: [{}, { stroke: colour("model"), width: 2, points: { show: false } }],
+    },
+    [t, values],
+    box,
+  );
 }

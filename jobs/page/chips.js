@@ -4,27 +4,45 @@ import { by, digits, level, make, sign, times } from "./format.js";
 /** Builds the chips. `state`: setup, step, first (the submitted step), event, channel, heldOut; `choose(event, channel)`. */
 export function build(state, choose) {
   const { setup, step, first } = state;
-  by("chips").replaceChildren(...setup.events.map((event, e) => {
-    const unseen = step.held_out.includes(event.name);
-    const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out)" : "";
-    const group = make("div", { className: "group" + (e === state.event ? " now" : "") },
-      make("span", { textContent: `event ${e + 1}${mark}`, title: `${event.name}: ${event.title}` }));
-    step.chips.filter((c) => c.event === e).forEach((c) => {
-      const before = first.chips.find((f) => f.event === e && f.name === c.name);
-      const chip = make("button", { className: "chip " + level(c) + (e === state.event && c.channel === state.channel ? " chosen" : "") });
-      chip.dataset.event = e;
-      chip.dataset.channel = c.channel;
-      const moved = step.step !== first.step && before && times(before.ratio) !== times(c.ratio);
-      chip.append(sign[level(c)] + " ", make("b", { textContent: c.name }), moved ? ` ${times(before.ratio).replace(" ×", "")} → ` : " ",
-        make("span", { className: "ratio", textContent: times(c.ratio) }));
-      chip.title = `${event.name} ${c.name}: RMS error ${digits(c.rms)} ${c.unit}, ${times(c.ratio)} the noise` +
-        (c.limit ? `; ${Math.round(100 * c.limit)} % of its limit` : "") + (unseen ? "; the fit has not seen this event" : "");
-      chip.setAttribute("aria-label", `event ${e + 1} ${c.name}: ${times(c.ratio)} noise, ${{ good: "only noise", warn: "more than noise", bad: "limit exceeded" }[level(c)]}`);
-      chip.addEventListener("click", () => choose(e, c.channel));
-      group.append(chip);
-    });
-    return group;
-  }));
+  by("chips").replaceChildren(
+    ...setup.events.map((event, e) => {
+      const unseen = step.held_out.includes(event.name);
+      const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out)" : "";
+      const group = make(
+        "div",
+        { className: "group" + (e === state.event ? " now" : "") },
+        make("span", { textContent: `event ${e + 1}${mark}`, title: `${event.name}: ${event.title}` }),
+      );
+      step.chips
+        .filter((c) => c.event === e)
+        .forEach((c) => {
+          const before = first.chips.find((f) => f.event === e && f.name === c.name);
+          const chip = make("button", {
+            className: "chip " + level(c) + (e === state.event && c.channel === state.channel ? " chosen" : ""),
+          });
+          chip.dataset.event = e;
+          chip.dataset.channel = c.channel;
+          const moved = step.step !== first.step && before && times(before.ratio) !== times(c.ratio);
+          chip.append(
+            sign[level(c)] + " ",
+            make("b", { textContent: c.name }),
+            moved ? ` ${times(before.ratio).replace(" ×", "")} → ` : " ",
+            make("span", { className: "ratio", textContent: times(c.ratio) }),
+          );
+          chip.title =
+            `${event.name} ${c.name}: RMS error ${digits(c.rms)} ${c.unit}, ${times(c.ratio)} the noise` +
+            (c.limit ? `; ${Math.round(100 * c.limit)} % of its limit` : "") +
+            (unseen ? "; the fit has not seen this event" : "");
+          chip.setAttribute(
+            "aria-label",
+            `event ${e + 1} ${c.name}: ${times(c.ratio)} noise, ${{ good: "only noise", warn: "more than noise", bad: "limit exceeded" }[level(c)]}`,
+          );
+          chip.addEventListener("click", () => choose(e, c.channel));
+          group.append(chip);
+        });
+      return group;
+    }),
+  );
 }
 /** Shows the errors of a preview in an event's chips. */
 export function moving(event, errors) {
@@ -46,16 +64,28 @@ function shade(share) {
 /** Builds the map of one event; `zoom(from, to)` shows a window. */
 export function map(state, zoom) {
   const { setup, step, event } = state;
-  const table = make("table", {}, make("tr", {}, make("th"), make("th"), ...setup.bands.map((b) => make("th", { textContent: b }))));
+  const table = make(
+    "table",
+    {},
+    make("tr", {}, make("th"), make("th"), ...setup.bands.map((b) => make("th", { textContent: b }))),
+  );
   for (const c of step.chips.filter((x) => x.event === event)) {
     c.map.forEach((row, w) => {
-      const tr = make("tr", {}, make("th", { textContent: w ? "" : c.name }), make("th", { textContent: row.window }));
+      const tr = make(
+        "tr",
+        {},
+        make("th", { textContent: w ? "" : c.name }),
+        make("th", { textContent: row.window }),
+      );
       row.bins.forEach((bin, b) => {
-        if (!bin || bin[0] === null) return tr.append(make("td", { className: "none", textContent: "–", title: "the window is too short for this band" }));
+        if (!bin || bin[0] === null)
+          return tr.append(
+            make("td", { className: "none", textContent: "–", title: "the window is too short for this band" }),
+          );
         const [ratio, bound, rms] = bin;
         const cell = make("button", { textContent: times(ratio) + (ratio > bound ? " ★" : "") });
         cell.style.background = shade(ratio / bound);
-        const share = c.size > 0 ? `, ${digits(100 * rms / c.size, 3)} % of ${digits(c.size)} ${c.unit}` : "";
+        const share = c.size > 0 ? `, ${digits((100 * rms) / c.size, 3)} % of ${digits(c.size)} ${c.unit}` : "";
         cell.title = `${c.name}, ${row.window}, ${setup.bands[b]}: RMS ${digits(rms)} ${c.unit}${share}; ${times(ratio)} the noise, which may reach ${times(bound)}`;
         cell.addEventListener("click", () => zoom(row.from, row.to));
         tr.append(make("td", {}, cell));

@@ -14,17 +14,23 @@ export function busy(on) {
 export function progress(message) {
   const share = /^(\d+) % done/.exec(message.text ?? "");
   const bar = by("progress").querySelector("progress");
-  if (share) bar.value = Number(share[1]); else bar.removeAttribute("value");
+  if (share) bar.value = Number(share[1]);
+  else bar.removeAttribute("value");
   by("progress").querySelector("span").textContent = message.text;
 }
 /** Draws the fall of the error: reduced chi-square of each better fit, on a logarithmic axis. */
 const fall = [];
 export function reached(message) {
   fall.push(message.chi2);
-  const w = 360, h = 70, top = Math.log(Math.max(...fall)), bottom = Math.min(0, Math.log(Math.min(...fall)));
-  const x = (k) => 8 + (w - 80) * k / Math.max(1, fall.length - 1), y = (v) => 10 + (h - 20) * (top - Math.log(v)) / (top - bottom || 1);
+  const w = 360,
+    h = 70,
+    top = Math.log(Math.max(...fall)),
+    bottom = Math.min(0, Math.log(Math.min(...fall)));
+  const x = (k) => 8 + ((w - 80) * k) / Math.max(1, fall.length - 1),
+    y = (v) => 10 + ((h - 20) * (top - Math.log(v))) / (top - bottom || 1);
   const points = fall.map((v, k) => `${x(k).toFixed(1)},${y(v).toFixed(1)}`).join(" ");
-  by("fall").innerHTML = `<svg viewBox="0 0 ${w} ${h}" role="img" aria-label="fall of the error">` +
+  by("fall").innerHTML =
+    `<svg viewBox="0 0 ${w} ${h}" role="img" aria-label="fall of the error">` +
     `<polyline points="${points}" fill="none" stroke="currentColor" stroke-width="2"/><text x="${x(fall.length - 1) + 6}" y="${y(fall.at(-1)) + 4}">χ² ${digits(fall.at(-1), 3)}</text></svg>`;
 }
 export function clear() {
@@ -51,24 +57,35 @@ export function result(message, event, add) {
   inputs(message, event, `, event ${event + 1}`);
   candidates = message.candidates ?? [];
   const shown = candidates.filter((c) => c.probability >= 0.01 || (!final && c.effect)).slice(0, 5);
-  by("candidates").replaceChildren(...shown.map((c) => {
-    const fill = make("div", { className: "fill" });
-    fill.style.width = Math.max(1, 100 * c.probability) + "%";
-    const about = /\((.*)\)/.exec(c.what ?? "")?.[1] ?? c.what ?? "an effect that is not in the library";
-    const item = make("li", { title: c.chi2 ? `${c.what}: the fit leaves a reduced chi-square of ${digits(c.chi2, 3)} (1: noise)` : "" },
-      make("span", { className: "share", textContent: final ? percent(c.probability) : "…" }), make("span", {}, c.name, make("small", { textContent: about })));
-    if (c.effect) {
-      const button = make("button", { textContent: "Add and fit", disabled: !final });
-      button.setAttribute("aria-label", `Add ${c.effect} and fit`);
-      button.addEventListener("click", () => add(c.effect));
-      item.append(button);
-    }
-    item.append(fill);
-    return item;
-  }));
+  by("candidates").replaceChildren(
+    ...shown.map((c) => {
+      const fill = make("div", { className: "fill" });
+      fill.style.width = Math.max(1, 100 * c.probability) + "%";
+      const about = /\((.*)\)/.exec(c.what ?? "")?.[1] ?? c.what ?? "an effect that is not in the library";
+      const item = make(
+        "li",
+        { title: c.chi2 ? `${c.what}: the fit leaves a reduced chi-square of ${digits(c.chi2, 3)} (1: noise)` : "" },
+        make("span", { className: "share", textContent: final ? percent(c.probability) : "…" }),
+        make("span", {}, c.name, make("small", { textContent: about })),
+      );
+      if (c.effect) {
+        const button = make("button", { textContent: "Add and fit", disabled: !final });
+        button.setAttribute("aria-label", `Add ${c.effect} and fit`);
+        button.addEventListener("click", () => add(c.effect));
+        item.append(button);
+      }
+      item.append(fill);
+      return item;
+    }),
+  );
   by("decide").replaceChildren();
   if (message.next?.length) {
-    by("decide").append(make("b", { textContent: "Which measurement would decide: " }),
-      message.next.slice(0, 3).map((n) => `${n.what} (${digits(message.now, 2)} → ${digits(n.expected, 2)} candidates)`).join("; "));
+    by("decide").append(
+      make("b", { textContent: "Which measurement would decide: " }),
+      message.next
+        .slice(0, 3)
+        .map((n) => `${n.what} (${digits(message.now, 2)} → ${digits(n.expected, 2)} candidates)`)
+        .join("; "),
+    );
   }
 }

@@ -6,16 +6,40 @@ import * as fits from "./fits.js";
 import { by, digits, level, make, times } from "./format.js";
 import * as sliders from "./sliders.js";
 
-const state = { setup: null, step: null, first: null, event: 0, channel: 0, heldOut: new Set(), past: [], future: [], known: new Map(),
-  base: 0, values: {}, curves: new Map(), running: null, number: 0 };
+const state = {
+  setup: null,
+  step: null,
+  first: null,
+  event: 0,
+  channel: 0,
+  heldOut: new Set(),
+  past: [],
+  future: [],
+  known: new Map(),
+  base: 0,
+  values: {},
+  curves: new Map(),
+  running: null,
+  number: 0,
+};
 
 function fail(error) {
   by("failure").textContent = error.message ?? String(error);
   by("failure").hidden = false;
   clearTimeout(fail.timer);
-  fail.timer = setTimeout(() => { by("failure").hidden = true; }, 9000);
+  fail.timer = setTimeout(() => {
+    by("failure").hidden = true;
+  }, 9000);
 }
-const guard = (action) => async (...words) => { try { return await action(...words); } catch (error) { fail(error); } };
+const guard =
+  (action) =>
+  async (...words) => {
+    try {
+      return await action(...words);
+    } catch (error) {
+      fail(error);
+    }
+  };
 
 async function curvesOf(k, e) {
   const key = k + "/" + e;
@@ -27,38 +51,71 @@ async function curvesOf(k, e) {
   return state.curves.get(key);
 }
 const chipsOf = (step, e) => step.chips.filter((c) => c.event === e);
-const windowOf = (chip) => { const row = level(chip) !== "good" && chip.map[chip.window]; return row ? [row.from, row.to] : null; };
+const windowOf = (chip) => {
+  const row = level(chip) !== "good" && chip.map[chip.window];
+  return row ? [row.from, row.to] : null;
+};
 const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
 /** Shows the event's curves of the present step. */
 async function showEvent() {
   const { event: e, step } = state;
   const [ghost, now] = [await curvesOf(0, e), await curvesOf(step.step, e)];
-  const own = chipsOf(step, e), times_ = step.switchings[e];
-  charts.show(own.map((c, k) => ({
-    name: c.name, unit: c.unit, main: k < 2, window: windowOf(c), fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
-    data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled] })));
+  const own = chipsOf(step, e),
+    times_ = step.switchings[e];
+  charts.show(
+    own.map((c, k) => ({
+      name: c.name,
+      unit: c.unit,
+      main: k < 2,
+      window: windowOf(c),
+      fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
+      data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled],
+    })),
+  );
   near();
   charts.choose(state.channel);
   by("hold").checked = state.heldOut.has(state.setup.events[e].name);
   const about = state.setup.events[e];
   by("title").textContent = `Event ${e + 1}: ${about.title}`;
   by("notes").hidden = !about.notes.length;
-  by("notes").querySelector("ul").replaceChildren(...about.notes.map((n) => make("li", { textContent: n })));
+  by("notes")
+    .querySelector("ul")
+    .replaceChildren(...about.notes.map((n) => make("li", { textContent: n })));
 }
 function near() {
   const at = state.step.switchings[state.event];
-  if (at.length) charts.zoom(at[0] - 1, at.at(-1) + 5); else charts.zoom();
+  if (at.length) charts.zoom(at[0] - 1, at.at(-1) + 5);
+  else charts.zoom();
 }
 
 function showSteps() {
   const shown = [...state.known.values()].filter((s) => s.kind !== "manual" || s.step === state.step.step);
-  by("steps").replaceChildren(...shown.map((s) => {
-    const b = make("button", {}, make("span", {}, s.label, make("small", { textContent: s.evidence ? `evidence ${Math.round(s.evidence).toLocaleString("en")}` + (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "") : "" })),
-      make("span", { className: "error", textContent: times(s.ratio) + " noise" }));
-    b.addEventListener("click", guard(() => goTo(s.step)));
-    return make("li", { className: s.step === state.step.step ? "now" : "" }, b);
-  }));
+  by("steps").replaceChildren(
+    ...shown.map((s) => {
+      const b = make(
+        "button",
+        {},
+        make(
+          "span",
+          {},
+          s.label,
+          make("small", {
+            textContent: s.evidence
+              ? `evidence ${Math.round(s.evidence).toLocaleString("en")}` +
+                (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "")
+              : "",
+          }),
+        ),
+        make("span", { className: "error", textContent: times(s.ratio) + " noise" }),
+      );
+      b.addEventListener(
+        "click",
+        guard(() => goTo(s.step)),
+      );
+      return make("li", { className: s.step === state.step.step ? "now" : "" }, b);
+    }),
+  );
   by("undo").disabled = !state.past.length;
   by("redo").disabled = !state.future.length;
 }
@@ -70,15 +127,25 @@ function showStep() {
   by("command").textContent = step.command;
   by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
   chips.build(state, guard(choose));
-  chips.map(state, (from, to) => { charts.zoom(from - 0.2 * (to - from), to + 0.2 * (to - from)); by("charts").scrollIntoView({ block: "nearest" }); });
+  chips.map(state, (from, to) => {
+    charts.zoom(from - 0.2 * (to - from), to + 0.2 * (to - from));
+    by("charts").scrollIntoView({ block: "nearest" });
+  });
   sliders.build(step, moved, settled, point);
   showSteps();
-  api.effects(step.step).then((all) => by("effects").replaceChildren(...all.map((h) => make("option", { value: h.name, label: h.what }))));
+  api
+    .effects(step.step)
+    .then((all) =>
+      by("effects").replaceChildren(...all.map((h) => make("option", { value: h.name, label: h.what }))),
+    );
 }
 
 /** Makes a step the present one; its curves move from those shown. */
 async function enter(step, keepPast = false) {
-  if (!keepPast) { state.past.push(state.step.step); state.future = []; }
+  if (!keepPast) {
+    state.past.push(state.step.step);
+    state.future = [];
+  }
   state.known.set(step.step, step);
   state.step = step;
   state.base = step.kind === "manual" ? step.parent : step.step;
@@ -90,7 +157,11 @@ async function enter(step, keepPast = false) {
   }
   showStep();
   const now = await curvesOf(step.step, state.event);
-  if (state.step === step) charts.animate(now.channels.map((c) => c.modelled), () => charts.shade(windows()));
+  if (state.step === step)
+    charts.animate(
+      now.channels.map((c) => c.modelled),
+      () => charts.shade(windows()),
+    );
 }
 async function goTo(k) {
   if (k === state.step.step) return;
@@ -103,7 +174,9 @@ async function walk(from, to) {
       const step = await api.step(k);
       to.push(state.step.step);
       return await enter(step, true);
-    } catch { state.known.delete(k); } // an old manual change that the server has dropped
+    } catch {
+      state.known.delete(k);
+    } // an old manual change that the server has dropped
   }
 }
 async function choose(event, channel = 0) {
@@ -115,42 +188,66 @@ async function choose(event, channel = 0) {
 }
 function hold(event, on) {
   const { name } = state.setup.events[event];
-  if (on) state.heldOut.add(name); else state.heldOut.delete(name);
-  if (state.heldOut.size >= state.setup.events.length) { state.heldOut.delete(name); fail(new Error("Every event would be held out: a fit needs at least one.")); }
+  if (on) state.heldOut.add(name);
+  else state.heldOut.delete(name);
+  if (state.heldOut.size >= state.setup.events.length) {
+    state.heldOut.delete(name);
+    fail(new Error("Every event would be held out: a fit needs at least one."));
+  }
   by("hold").checked = state.heldOut.has(state.setup.events[state.event].name);
   chips.build(state, guard(choose));
 }
 
 // --- sliders: one preview is under way at a time; a newer value replaces a waiting one
-let flying = false, waiting = false;
+let flying = false,
+  waiting = false;
 async function fly() {
-  if (flying) { waiting = true; return; }
+  if (flying) {
+    waiting = true;
+    return;
+  }
   flying = true;
-  const number = ++state.number, event = state.event;
+  const number = ++state.number,
+    event = state.event;
   const begin = performance.now();
   try {
     const samples = await api.preview({ seq: number, step: state.base, event, values: state.values });
     if (samples && event === state.event && number === state.number) {
-      const n = chipsOf(state.step, event).length, size = samples.length / n;
+      const n = chipsOf(state.step, event).length,
+        size = samples.length / n;
       const parts = Array.from({ length: n }, (_, k) => samples.subarray(k * size, (k + 1) * size));
       charts.model(parts.map((p) => p.subarray(2)));
-      chips.moving(event, parts.map((p) => ({ rms: p[0], noise: p[1] })));
+      chips.moving(
+        event,
+        parts.map((p) => ({ rms: p[0], noise: p[1] })),
+      );
       by("charts").dataset.answered = (performance.now() - begin).toFixed(1);
     }
-  } catch (error) { fail(error); }
+  } catch (error) {
+    fail(error);
+  }
   flying = false;
-  if (waiting) { waiting = false; fly(); }
+  if (waiting) {
+    waiting = false;
+    fly();
+  }
 }
 /** Shows what ± 10 % of a parameter does, while the pointer or the keyboard is at it. */
 let pointed = "";
 const point = guard(async (name) => {
   pointed = name;
   if (!name) return charts.ribbon(null);
-  const { event } = state, n = chipsOf(state.step, event).length;
+  const { event } = state,
+    n = chipsOf(state.step, event).length;
   const samples = await api.ribbon({ step: state.base, event, values: state.values, name });
   if (pointed !== name || event !== state.event) return;
   const size = samples.length / (2 * n);
-  charts.ribbon(Array.from({ length: n }, (_, k) => [samples.subarray(2 * k * size, (2 * k + 1) * size), samples.subarray((2 * k + 1) * size, (2 * k + 2) * size)]));
+  charts.ribbon(
+    Array.from({ length: n }, (_, k) => [
+      samples.subarray(2 * k * size, (2 * k + 1) * size),
+      samples.subarray((2 * k + 1) * size, (2 * k + 2) * size),
+    ]),
+  );
 });
 function moved(name, value) {
   state.values[name] = value;
@@ -164,7 +261,11 @@ const settled = guard(async () => {
     const step = await api.change({ step: state.base, values: state.values });
     if (number === state.number && step.step !== state.step.step) await enter(step);
     else if (number === state.number) showStep();
-  } catch (error) { showStep(); await showEvent(); throw error; }
+  } catch (error) {
+    showStep();
+    await showEvent();
+    throw error;
+  }
 });
 
 // --- fits
@@ -172,20 +273,27 @@ async function start(request) {
   const held = [...state.heldOut];
   if (request.kind === "diagnose") fits.clear();
   fits.busy(true);
-  by("command").textContent = request.kind === "diagnose"
-    ? `swingbank diagnose --model ${state.step.step ? "model.toml" : state.setup.file}${state.setup.options}` : by("command").textContent;
+  by("command").textContent =
+    request.kind === "diagnose"
+      ? `swingbank diagnose --model ${state.step.step ? "model.toml" : state.setup.file}${state.setup.options}`
+      : by("command").textContent;
   try {
     await api.fit({ ...request, step: state.step.step, held_out: held });
     state.running = request.kind;
-  } catch (error) { fits.busy(false); throw error; }
+  } catch (error) {
+    fits.busy(false);
+    throw error;
+  }
 }
 const add = guard((effect) => (effect ? start({ kind: "add", effect }) : undefined));
 const receive = guard(async (m) => {
   if (m.type === "progress") return fits.progress(m);
   if (m.type === "reached") {
     fits.reached(m);
-    const own = chipsOf(state.step, state.event), event = m.events.find((e) => e.event === state.event);
-    if (event?.channels.length === own.length) charts.animate(event.channels.map((c, k) => Float32Array.from(c, (v) => v * own[k].scale)));
+    const own = chipsOf(state.step, state.event),
+      event = m.events.find((e) => e.event === state.event);
+    if (event?.channels.length === own.length)
+      charts.animate(event.channels.map((c, k) => Float32Array.from(c, (v) => v * own[k].scale)));
     return undefined;
   }
   if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, add);
@@ -195,33 +303,63 @@ const receive = guard(async (m) => {
     const before = state.step.ratio;
     fits.clear();
     await enter(m);
-    by("said").textContent = `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise. ` +
-      (m.held_out.length ? `${m.held_out.join(", ")} was not part of the fit. ` : "Tick “hold out of fits” at an event and add again to test it on that event. ") + "Save the model when you are content.";
+    by("said").textContent =
+      `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise. ` +
+      (m.held_out.length
+        ? `${m.held_out.join(", ")} was not part of the fit. `
+        : "Tick “hold out of fits” at an event and add again to test it on that event. ") +
+      "Save the model when you are content.";
   }
   if (m.type === "failed") by("said").textContent = m.text;
 });
 
 const save = guard(async () => {
   const saved = await api.save(state.step.step);
-  by("saved").replaceChildren("Saved: ", saved.files.join(", "), ". ", ...saved.notes.map((n) => n + ". "), "Check it: ", make("code", { textContent: saved.command }));
+  by("saved").replaceChildren(
+    "Saved: ",
+    saved.files.join(", "),
+    ". ",
+    ...saved.notes.map((n) => n + ". "),
+    "Check it: ",
+    make("code", { textContent: saved.command }),
+  );
   by("command").textContent = saved.command;
 });
 const undo = guard(() => walk(state.past, state.future));
 const redo = guard(() => walk(state.future, state.past));
 
 const actions = {
-  d: () => by("diagnose").click(), f: () => by("fit").click(), a: () => add(fits.best()), z: undo, y: redo, s: save,
-  h: () => hold(state.event, !state.heldOut.has(state.setup.events[state.event].name)), Escape: () => by("stop").click(),
+  d: () => by("diagnose").click(),
+  f: () => by("fit").click(),
+  a: () => add(fits.best()),
+  z: undo,
+  y: redo,
+  s: save,
+  h: () => hold(state.event, !state.heldOut.has(state.setup.events[state.event].name)),
+  Escape: () => by("stop").click(),
 };
 document.addEventListener("keydown", (k) => {
   const typing = k.target.matches?.("input:not([type=range]):not([type=checkbox])");
   if (typing || k.altKey || k.metaKey || (k.ctrlKey && !"zy".includes(k.key))) return;
-  if (/^[1-9]$/.test(k.key) && Number(k.key) <= state.setup.events.length) return void guard(choose)(Number(k.key) - 1);
-  if (actions[k.key]) { k.preventDefault(); actions[k.key](); }
+  if (/^[1-9]$/.test(k.key) && Number(k.key) <= state.setup.events.length)
+    return void guard(choose)(Number(k.key) - 1);
+  if (actions[k.key]) {
+    k.preventDefault();
+    actions[k.key]();
+  }
 });
-by("diagnose").addEventListener("click", guard(() => start({ kind: "diagnose" })));
-by("fit").addEventListener("click", guard(() => start({ kind: "calibrate" })));
-by("stop").addEventListener("click", guard(() => (state.running ? api.stop() : undefined)));
+by("diagnose").addEventListener(
+  "click",
+  guard(() => start({ kind: "diagnose" })),
+);
+by("fit").addEventListener(
+  "click",
+  guard(() => start({ kind: "calibrate" })),
+);
+by("stop").addEventListener(
+  "click",
+  guard(() => (state.running ? api.stop() : undefined)),
+);
 by("undo").addEventListener("click", undo);
 by("redo").addEventListener("click", redo);
 by("save").addEventListener("click", save);
@@ -229,9 +367,17 @@ by("hold").addEventListener("change", () => hold(state.event, by("hold").checked
 by("near").addEventListener("click", near);
 by("whole").addEventListener("click", () => charts.zoom());
 by("copy").addEventListener("click", () => navigator.clipboard.writeText(by("command").textContent));
-by("any").addEventListener("submit", (e) => { e.preventDefault(); add(by("effect").value.trim()); });
-addEventListener("pagehide", () => { if (state.running) api.leave(); });
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", guard(() => choose(state.event, state.channel)));
+by("any").addEventListener("submit", (e) => {
+  e.preventDefault();
+  add(by("effect").value.trim());
+});
+addEventListener("pagehide", () => {
+  if (state.running) api.leave();
+});
+matchMedia("(prefers-color-scheme: dark)").addEventListener(
+  "change",
+  guard(() => choose(state.event, state.channel)),
+);
 
 async function begin() {
   const opened = await api.open();
@@ -256,7 +402,15 @@ async function begin() {
   state.first = full.step;
   state.known.set(0, full.step);
   state.curves.clear();
-  if (state.step.step === 0) { state.step = full.step; showStep(); await showEvent(); }
+  if (state.step.step === 0) {
+    state.step = full.step;
+    showStep();
+    await showEvent();
+  }
   document.body.dataset.compared = "yes";
 }
-begin().catch((error) => { by("verdict").textContent = "The model cannot be compared"; by("verdict").className = "bad"; by("reason").textContent = error.message; });
+begin().catch((error) => {
+  by("verdict").textContent = "The model cannot be compared";
+  by("verdict").className = "bad";
+  by("reason").textContent = error.message;
+});

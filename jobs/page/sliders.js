@@ -15,14 +15,25 @@ const left = (share) => `calc(${share} * (100% - var(--thumb)) + var(--thumb) / 
 
 function row(p, moved, settled, point) {
   const id = "slider-" + p.name;
-  const range = make("input", { type: "range", id, min: 0, max: kSteps, step: 1, value: Math.round(kSteps * place(p, p.value)) });
+  const range = make("input", {
+    type: "range",
+    id,
+    min: 0,
+    max: kSteps,
+    step: 1,
+    value: Math.round(kSteps * place(p, p.value)),
+  });
   range.setAttribute("aria-valuetext", digits(p.value) + " " + p.unit);
   const box = make("input", { type: "number", step: "any", value: Number(digits(p.value, 5)) });
   box.setAttribute("aria-label", p.name + " as a number");
   const track = make("div", { className: "track" });
   if (p.interval && p.interval[0] !== null) {
-    const a = place(p, Math.max(p.interval[0], p.low)), b = place(p, Math.min(p.interval[1], p.high));
-    const band = make("div", { className: "interval", title: `95 % interval: ${digits(p.interval[0])} to ${digits(p.interval[1])} ${p.unit}` });
+    const a = place(p, Math.max(p.interval[0], p.low)),
+      b = place(p, Math.min(p.interval[1], p.high));
+    const band = make("div", {
+      className: "interval",
+      title: `95 % interval: ${digits(p.interval[0])} to ${digits(p.interval[1])} ${p.unit}`,
+    });
     band.style.left = left(a);
     band.style.width = `calc(${b - a} * (100% - var(--thumb)) + 2px)`;
     track.append(band);
@@ -34,7 +45,14 @@ function row(p, moved, settled, point) {
   }
   track.append(range);
   const label = make("label", { htmlFor: id, textContent: p.symbol || p.key, title: `${p.name}: ${p.meaning}` });
-  const element = make("div", { className: "slider" }, label, track, box, make("span", { className: "unit", textContent: p.unit }));
+  const element = make(
+    "div",
+    { className: "slider" },
+    label,
+    track,
+    box,
+    make("span", { className: "unit", textContent: p.unit }),
+  );
   const mark = (v) => element.classList.toggle("changed", p.submitted === undefined || v !== p.submitted);
   mark(p.value);
   const set = (v, from) => {
@@ -43,12 +61,18 @@ function row(p, moved, settled, point) {
     range.setAttribute("aria-valuetext", digits(v) + " " + p.unit);
     mark(v);
   };
-  range.addEventListener("input", () => { const v = Number(digits(value(p, range.value / kSteps), 5)); set(v, range); moved(p.name, v); });
+  range.addEventListener("input", () => {
+    const v = Number(digits(value(p, range.value / kSteps), 5));
+    set(v, range);
+    moved(p.name, v);
+  });
   range.addEventListener("change", () => settled(p.name));
   box.addEventListener("change", () => {
     const v = Number(box.value);
     if (box.value === "" || !Number.isFinite(v)) return set(p.value, null);
-    set(v, box); moved(p.name, v); settled(p.name);
+    set(v, box);
+    moved(p.name, v);
+    settled(p.name);
   });
   label.addEventListener("pointerenter", () => point(p.name));
   label.addEventListener("pointerleave", () => point(""));
@@ -66,13 +90,21 @@ export function build(step, moved, settled, point) {
   for (const block of own) {
     const all = step.sliders.filter((p) => p.block === block);
     if (!all.length) continue;
-    const group = make("details", {}, make("summary", { textContent: block, title: step.blocks.find((b) => b.name === block).title }));
+    const group = make(
+      "details",
+      {},
+      make("summary", { textContent: block, title: step.blocks.find((b) => b.name === block).title }),
+    );
     group.dataset.block = block;
     group.open = open.get(block) ?? true;
     for (const p of all.filter((q) => q.fitted)) group.append(row(p, moved, settled, point));
     const rest = all.filter((q) => !q.fitted);
     if (rest.length) {
-      const fold = make("details", {}, make("summary", { textContent: "not fitted: " + rest.map((p) => p.symbol || p.key).join(", ") }));
+      const fold = make(
+        "details",
+        {},
+        make("summary", { textContent: "not fitted: " + rest.map((p) => p.symbol || p.key).join(", ") }),
+      );
       fold.dataset.block = block + "/rest";
       fold.open = open.get(fold.dataset.block) ?? false;
       fold.append(...rest.map((p) => row(p, moved, settled, point)));
