@@ -87,8 +87,8 @@ class DydReader {
     const auto key = key_of(line);
     if (!key) {  // a section keyword, or a record between two buses
       if (model)
-        problems_.add("a record that cannot be told", where(line.number),
-                      "it is: model bus \"name\" kV \"id\" : values",
+        problems_.add("a record without bus and id", where(line.number),
+                      "the form is: model bus \"name\" kV \"id\" : values",
                       "give the bus by its number, and a ':' before the values");
       return;
     }
@@ -101,9 +101,9 @@ class DydReader {
       // PSS/E's model of the same name may have other columns or another order of columns.
       out.faults.add(
           fmt::format("PSLF's model {}", name), where(line.number),
-          "no public description of its columns is known; known are " + dyd_models_text(),
-          "leave it out with --ignore-model (of one unit: --drop), or say with --map-model (--replace) "
-          "which model of as many parameters it is");
+          "its columns are not documented in public; readable are " + dyd_models_text(),
+          "leave it out with --ignore-model (of one unit: --drop), or map it with --map-model (--replace) "
+          "to a model with as many parameters");
       out_.dyr.records.push_back(std::move(out));
       return;
     }
@@ -141,7 +141,7 @@ class DydReader {
       const auto v = number->quoted ? std::nullopt : psse::parse_number(number->text);
       if (!v)
         faults.add(fmt::format("'{}' of {}", number->text, model.dyd), where(line.number),
-                   "this is no number", "correct the record");
+                   "it is not a number", "correct the record");
       else if (at < values.size())
         values[at] = static_cast<double>(*v);
     }
@@ -151,20 +151,20 @@ class DydReader {
   void check_count(const dyd::Model& model, const Line& line, std::vector<double>& values, bool named,
                    std::size_t unnamed, Problems& faults) const {
     if (unnamed > 0 && !model.in_order) {
-      faults.add(fmt::format("{} with values without names", model.dyd), where(line.number),
-                 "the order of its values is not documented in public", "write each value behind its name");
+      faults.add(fmt::format("{} has values without names", model.dyd), where(line.number),
+                 "the order of its values is not documented in public", "write each value after its name");
       return;
     }
     if (unnamed > values.size())
       faults.add(fmt::format("{} with {} values", model.dyd, unnamed), where(line.number),
-                 fmt::format("{} are known", values.size()), "remove what is too much");
+                 fmt::format("the model has {}", values.size()), "remove the surplus values");
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isnan(values[i])) continue;
       const dyd::Column& column = model.in[i];
       const bool may_lack = column.use == dyd::Use::off || column.use == dyd::Use::open ||
                             column.use == dyd::Use::free || column.use == dyd::Use::again;
       if (!may_lack)
-        faults.add(fmt::format("no {} of {}", column.name, model.dyd), where(line.number),
+        faults.add(fmt::format("{} of {} is missing", column.name, model.dyd), where(line.number),
                    named ? "the model needs it" : fmt::format("{} values are given", unnamed), "give it");
       values[i] = column.off;
     }
@@ -202,8 +202,9 @@ class DydReader {
       return 1.0;
     }
     if (*rating != mva->second)
-      out_.notes[line.number] = fmt::format("{} of line {} is rated {:g} MW: put onto the machine's {:g} MVA",
-                                            model.dyd, line.number, *rating, mva->second);
+      out_.notes[line.number] =
+          fmt::format("{} of line {} is rated {:g} MW: converted to the machine's {:g} MVA", model.dyd,
+                      line.number, *rating, mva->second);
     return *rating / mva->second;
   }
 
@@ -249,11 +250,12 @@ class DydReader {
   }
   void act(const dyd::Model& model, const dyd::Column& column, double v, const Line& line,
            DyrRecord& out) const {
-    out.faults.add(fmt::format("{} = {:g} of {}", column.name, v, model.dyd), where(line.number),
-                   fmt::format("{} has nothing of the kind", model.dyr),
-                   column.use == dyd::Use::off
-                       ? fmt::format("set it to {:g} if that is meant, or leave the model out", column.off)
-                       : "set it wide if that is meant, or leave the model out");
+    out.faults.add(
+        fmt::format("{} = {:g} of {}", column.name, v, model.dyd), where(line.number),
+        fmt::format("{} has no counterpart", model.dyr),
+        column.use == dyd::Use::off
+            ? fmt::format("set it to {:g} if the feature is not needed, or leave the model out", column.off)
+            : "widen it if the limit is not needed, or leave the model out");
   }
 
   std::string name_;
@@ -321,7 +323,7 @@ std::string dyd_line(const DyrRecord& record, const DydMachine& machine, const D
   const auto model = std::ranges::find(all, record.model, &dyd::Model::dyr);
   if (model == all.end()) {
     problems.add("model " + record.model, where,
-                 "no PSLF model is known for it; known are " + dyd_models_text(),
+                 "it has no PSLF counterpart; these models have one: " + dyd_models_text(),
                  "write it as .dyr, or replace the model before writing");
     return {};
   }

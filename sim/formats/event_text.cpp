@@ -26,8 +26,7 @@ double number(const std::string& text, const std::string& where, Problems& probl
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, value);
   if (read.ec == std::errc{} && read.ptr == end && std::isfinite(value)) return value;
-  problems.add("'" + text + "' is not a number", where, "a finite number is needed here",
-               "write it like 2.05");
+  problems.add("'" + text + "' is not a number", where, "it must be a finite number", "write it like 2.05");
   return 0.0;
 }
 
@@ -35,7 +34,7 @@ double event_time(const std::string& text, double t_end, const std::string& wher
   const double t = number(text, where, problems);
   if (t > t_end)
     problems.add(fmt::format("an event at {:g} s in a run of {:g} s", t, t_end), where,
-                 "it would not be played", "choose an earlier instant or raise --t-end");
+                 "it is after the end of the run", "choose an earlier time or raise --t-end");
   return t;
 }
 
@@ -100,10 +99,10 @@ int generator_named(const network::Network& network, const std::string& text, co
   }
   if (count == 1) return found;
   if (count == 0)
-    problems.add("no generator " + text, where, network.origin + " has in service " + names,
+    problems.add("no generator " + text, where, "in service in " + network.origin + " are " + names,
                  "name one of these");
   else
-    problems.add("generator " + text, where, "the bus has " + same, "name one of these");
+    problems.add("generator " + text, where, "several generators match: " + same, "name one of these");
   return -1;
 }
 
@@ -131,7 +130,7 @@ network::BusFault read_fault(const std::string& text, const network::Network& ne
   if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
   if (fault.t_off > t_end)
     problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
-                 "the run ends before the fault does", "shorten the fault or let the run end later");
+                 "the run ends before the fault does", "shorten the fault or raise --t-end");
   return fault;
 }
 
@@ -148,10 +147,10 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
   if (part.size() == 5 && !pair.empty() && !three.empty())
     problems.add(fmt::format("both a branch {}-{} circuit {} and a transformer {}-{}-{} circuit {}", part[0],
                              part[1], part[2], part[0], part[1], part[2], part[3]),
-                 where, "the text may name either", "give T_CLOSE of the transformer, or T_OPEN alone");
+                 where, "the text fits both", "give T_CLOSE of the transformer, or T_OPEN alone");
   if (!whole && pair.size() > 1)
     problems.add(fmt::format("{} transformers {}-{} circuit {}", pair.size(), part[0], part[1], part[2]),
-                 where, "each joins a third bus", "give it too: FROM:TO:THIRD:CKT:T_OPEN");
+                 where, "each has another third bus", "add the third bus: FROM:TO:THIRD:CKT:T_OPEN");
   const std::vector<int>& branches = whole ? three : pair;
   const std::size_t times = whole ? 4 : 3;
   if (branches.empty()) {
@@ -169,8 +168,8 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
   std::optional<double> close;
   if (part.size() > times + 1) close = number(part[times + 1], where, problems);
   if (std::max(open, close.value_or(0.0)) > t_end)
-    problems.add(fmt::format("switching after the run's end at {} s", t_end), where, "it would not be played",
-                 "choose earlier instants or let the run end later");
+    problems.add(fmt::format("switching after the run's end at {} s", t_end), where,
+                 "the switching would be ignored", "choose earlier times or raise --t-end");
   std::vector<network::LineTrip> trips;
   for (const int branch : branches) trips.push_back({branch, open, close});
   return trips;
@@ -185,7 +184,8 @@ Complex read_impedance(const std::string& text, const std::string& where, Proble
 
 network::GeneratorTrip read_generator_trip(const std::string& text, const network::Network& network,
                                            double t_end, const std::string& where, Problems& problems) {
-  const auto part = fields(text, 2, 3, "BUS[/ID]:T[:PART] in s and parts of the whole", where, problems);
+  const auto part =
+      fields(text, 2, 3, "BUS[/ID]:T[:PART], T in s, PART a fraction of the units", where, problems);
   if (part.empty()) return {-1, 0.0};
   const int generator = generator_named(network, part[0], where, problems);
   const double t = event_time(part[1], t_end, where, problems);

@@ -92,7 +92,7 @@ class CaseReader {
     const long double value = one ? a->rows[0].values[0] : 0.0L;
     if (!(value > 0) || !std::isfinite(static_cast<double>(value)) || !(static_cast<double>(value) > 0)) {
       problems_.add("baseMVA = " + (one ? text_of(value) : std::string("no number")), where(*a),
-                    "everything is divided by it", "give a base > 0 MVA");
+                    "all per-unit values refer to it", "give a base > 0 MVA");
       return;
     }
     network_.base_mva = static_cast<double>(value);
@@ -103,7 +103,7 @@ class CaseReader {
     const Assignment* a = require(name);
     if (!a) return;
     if (a->kind != Assignment::matrix || a->rows.empty()) {
-      problems_.add(name + " has no rows", where(*a), "it is a matrix with a row per " + name,
+      problems_.add(name + " has no rows", where(*a), "the matrix has one row for each " + name,
                     "give at least one row");
       return;
     }
@@ -114,7 +114,7 @@ class CaseReader {
       }
       const std::size_t wanted = std::max(columns, a->rows[0].values.size());
       problems_.add("a row of " + name + " with " + std::to_string(row.values.size()) + " columns",
-                    where(row), "it takes " + std::to_string(wanted), "complete the row");
+                    where(row), std::to_string(wanted) + " are required", "complete the row");
     }
   }
 
@@ -162,8 +162,8 @@ class CaseReader {
                     "give a voltage > 0 pu");
     const int index = static_cast<int>(network_.buses.size());
     if (!index_.emplace(b.number, index).second)
-      problems_.add("bus " + std::to_string(b.number) + " appears twice", where(row),
-                    "a bus stands in one row", "remove one or give it another number");
+      problems_.add("bus " + std::to_string(b.number) + " appears twice", where(row), "each bus has one row",
+                    "remove one or give it another number");
     network_.buses.push_back(b);
     const Complex load(pu(row, 2, "Pd"), pu(row, 3, "Qd")), shunt(pu(row, 4, "Gs"), pu(row, 5, "Bs"));
     if (load != Complex{}) network_.loads.push_back({index, "1", load, {}, {}, b.area, b.zone});
@@ -194,7 +194,7 @@ class CaseReader {
                     "the machine's per-unit values refer to it", "give the machine's rating, > 0 MVA");
     if (g.in_service && !(g.vset > 0))
       problems_.add("Vg = " + psse::shortest(g.vset) + " pu", where(row),
-                    "it is the voltage the generator holds", "give a voltage > 0 pu");
+                    "the generator regulates its bus to this voltage", "give a voltage > 0 pu");
     if (g.bus < 0) return;
     g.id = std::to_string(++generators_at_[g.bus]);
     generator_where_.push_back(where(row));
@@ -220,11 +220,11 @@ class CaseReader {
     b.transformer = ratio != 0.0 || b.shift != 0.0;
     b.in_service = row.values[10] > 0;
     if (ratio < 0)
-      problems_.add("ratio = " + psse::shortest(ratio), where(row), "a winding needs turns",
+      problems_.add("ratio = " + psse::shortest(ratio), where(row), "a turns ratio must be positive",
                     "give a ratio > 0, or 0 for a line");
     if (b.from == b.to && b.from >= 0)
       problems_.add("a branch from bus " + text_of(row.values[0]) + " to itself", where(row),
-                    "it joins nothing", "correct the bus numbers");
+                    "a branch connects two buses", "correct the bus numbers");
     if (b.from < 0 || b.to < 0) return;
     b.circuit = std::to_string(++branches_between_[std::minmax(b.from, b.to)]);
     network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + where(row) + ")");
@@ -263,7 +263,7 @@ network::Network read_network(const std::filesystem::path& file, const RawOption
   network::Network network = read_raw(file, options);
   if (options.frequency_hz && *options.frequency_hz != network.frequency)
     throw InputError({"a frequency of " + text_of(*options.frequency_hz) + " Hz", file.string(),
-                      "the file says BASFRQ = " + psse::shortest(network.frequency) + " Hz",
+                      "the file has BASFRQ = " + psse::shortest(network.frequency) + " Hz",
                       "drop the option or correct the file"});
   return network;
 }

@@ -137,7 +137,7 @@ void EpcReader::rows(const char* name, Reads take) {
       ++count;
       if (!line.colon) {
         problems_.add("a record without ':'", place(line.number),
-                      "in the " + s.name + " section a ':' stands between what a record is of and its values",
+                      "in the " + s.name + " section a ':' separates the equipment from its values",
                       "correct the record");
         continue;
       }

@@ -55,7 +55,7 @@ long double nominal(Fields& f, std::size_t column, const char* name, double kv) 
 long double ratio(long double turns, const char* winding, const Fields& f, Problems& problems) {
   if (turns > 0) return turns;
   problems.add("a ratio of " + shortest(static_cast<double>(turns)) + " of the " + winding + " winding",
-               f.where(), "a winding needs turns", "correct its taps");
+               f.where(), "a turns ratio must be positive", "correct its taps");
   return 1.0L;
 }
 long double primary(Fields& f, double kv, Problems& problems) {
@@ -127,8 +127,8 @@ void EpcReader::branch(const Row& row) {
     problems_.add(name + " in ohms", f.where(), "only impedances per unit are read",
                   "save the case per unit");
   if (b.from == b.to && b.from >= 0)
-    problems_.add("a branch from bus " + std::to_string(from) + " to itself", of.where(), "it joins nothing",
-                  "correct the bus numbers");
+    problems_.add("a branch from bus " + std::to_string(from) + " to itself", of.where(),
+                  "a branch connects two buses", "correct the bus numbers");
   if (b.from < 0 || b.to < 0) return;
   raise_impedance(b, f);
   const std::tuple key{b.from, b.to, b.circuit};
@@ -184,7 +184,7 @@ void EpcReader::transformer(const Row& row) {
   const auto circuit = identities_.id(itself, identity + " circuit", id_of(of, 6), "", of);
   if (!circuit) return;
   if (table > 0)
-    network_.remark("impedance correction of transformers is left out",
+    network_.remark("impedance corrections of transformers are ignored",
                     ends_text(from, to) + ", table " + std::to_string(table) + " (" + of.where() + ")");
   if (f.integer(kOhms, "ohm", 0) != 0)
     problems_.add(identity + " in ohms", f.where(), "only impedances per unit are read",

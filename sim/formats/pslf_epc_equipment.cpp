@@ -32,14 +32,14 @@ void EpcReader::bus(const Row& row) {
                                  : network::BusType::load;
   if (type != 1 && type != 0 && std::abs(type) != 2)
     problems_.add("ty = " + std::to_string(type), of.where(),
-                  "known are 0 (swing), 1 (load), 2 and -2 (generators hold its voltage)",
+                  "bus types are 0 (swing), 1 (load), 2 and -2 (regulated by generators)",
                   "give one of these");
   if (f.integer(13, "st", 0) != 0) {
     b.type = network::BusType::isolated;
     network_.remark("buses whose st is not 0 are out of service", where);
   }
   if (b.type != network::BusType::isolated && !(b.vm > 0)) {
-    network_.remark("voltages of a bus that are not above 0 are taken as 1 pu", where);
+    network_.remark("bus voltages of 0 pu or below are replaced by 1 pu", where);
     b.vm = 1.0;
   }
   if (!(vsched > 0)) vsched = 0.0;
@@ -104,7 +104,7 @@ void EpcReader::line_shunt(Fields& of, Fields& f, Complex y) {
   const bool first = id[0] == 'f' || id[0] == 'F', second = id[0] == 't' || id[0] == 'T';
   if (!first && !second)
     problems_.add("shunt '" + id + "' of a branch", f.where(),
-                  "its id begins with f or t, for the end it stands at", "correct the id");
+                  "its id must begin with f or t, the end of the branch", "correct the id");
   for (const bool turned : {false, true}) {
     const auto found = parts_.find({turned ? to : from, turned ? from : to, circuit});
     if (found == parts_.end()) continue;
@@ -137,7 +137,7 @@ void EpcReader::svd(const Row& row) {
   if (type == 1)
     steps_of(row, s, regulated, f);
   else if (type != 0)
-    network_.remark("controlled shunts (svd) that do not step stay at b",
+    network_.remark("shunts (svd) with a control type other than discrete steps stay at b",
                     "bus " + std::to_string(number) + " (" + of.where() + ")");
   network_.shunts.push_back(std::move(s));
 }
@@ -153,7 +153,7 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
   if (const auto found = index_.find(regulated); found != index_.end())
     regulated_bus = found->second;
   else if (regulated > 0)
-    network_.remark("switched shunts that hold a bus that is not there hold their own",
+    network_.remark("switched shunts that regulate a missing bus regulate their own",
                     "bus " + std::to_string(at(shunt.bus).number) + ": regulated bus " +
                         std::to_string(regulated) + " (" + f.where() + ")");
   network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), regulated_bus, 0.0, 0.0, {0.0}};
@@ -162,7 +162,7 @@ void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regula
     const double each = static_cast<double>(f.number(first + 2 * k + 1, "b of a step", 0.0L));
     constexpr int most = 1000;  // maximum steps of a block; more is an error
     if (steps < 0 || steps > most)
-      problems_.add("a block of " + std::to_string(steps) + " steps", f.where(), "a bank has 0 to 1000",
+      problems_.add("a block of " + std::to_string(steps) + " steps", f.where(), "0 to 1000 are allowed",
                     "correct the number");
     for (int i = 0; i < std::min(steps, most) && each != 0.0; ++i)
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
@@ -204,27 +204,27 @@ void EpcReader::generator(const Row& row) {
                   "the machine's per-unit values refer to it", "give a base > 0 MVA");
   } else if (!(g.mva > 0)) {
     if (g.in_service)
-      network_.remark("machine bases that are not above 0 are taken as sbase",
+      network_.remark("machine bases of 0 MVA or below are replaced by sbase",
                       where + ": mbase = " + shortest(g.mva) + " MVA");
     g.mva = static_cast<double>(base_);
   }
   const bool step_up = g.rt != 0.0 || g.xt != 0.0;
   if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
     problems_.add("rtran = " + shortest(g.rt) + " pu, xtran = " + shortest(g.xt) + " pu", f.where(),
-                  "a step-up transformer has losses and leakage", "give rtran >= 0 and xtran >= 0");
+                  "resistance and leakage reactance cannot be negative", "give rtran >= 0 and xtran >= 0");
   if (g.in_service && step_up && tap != 1.0)
-    network_.remark("step-up transformers inside a generator's record are at their nominal ratio",
+    network_.remark("step-up transformers inside a generator's record are modelled at nominal ratio",
                     where + ": gtap = " + shortest(tap));
   int regulated_bus = g.bus;
   if (const auto found = index_.find(regulated); found != index_.end())
     regulated_bus = found->second;
   else if (regulated > 0 && g.in_service && !units_only_)
-    network_.remark("generators that hold a bus that is not there hold their own", where);
+    network_.remark("generators that regulate a missing bus regulate their own", where);
   g.regulated = regulated_bus == g.bus ? -1 : regulated_bus;
   g.vset = vsched_[static_cast<std::size_t>(regulated_bus)];
   if (!(g.vset > 0)) {
     if (g.in_service && !units_only_)
-      network_.remark("generators that hold a voltage that is not above 0 hold that of the file", where);
+      network_.remark("generators with a set-point of 0 pu or below regulate to the file's voltage", where);
     g.regulated = -1;
     g.vset = at(g.bus).vm;
   }

@@ -16,7 +16,7 @@ std::vector<Record> RawReader::following(const Record& first, std::size_t count,
       put_back(*record);
       problems_.add(std::string(what) + " with " + std::to_string(rows.size() + 1) + " lines",
                     Fields(first, file_, problems_).where(),
-                    "it takes " + std::to_string(count + 1) + " lines", "complete the record");
+                    std::to_string(count + 1) + " lines are required", "complete the record");
       break;
     }
     rows.push_back(std::move(*record));

@@ -84,7 +84,7 @@ class DyrReader {
       write_out_repeats(piece.fields);
       if (is_end(piece, open.fields.empty())) {
         if (const int line = next_content(i + 1); line > 0)
-          problems_.add("records behind the end of the file", name_ + ":" + std::to_string(line),
+          problems_.add("records after the end of the file", name_ + ":" + std::to_string(line),
                         "line " + std::to_string(i + 1) + " ends it", "remove that line, or what follows it");
         break;
       }
@@ -140,7 +140,7 @@ class DyrReader {
     if (fields.size() < (by_name ? 2 : 3)) {
       problems_.add("incomplete record", fields.where(),
                     std::string("a record is: bus number, 'MODEL', id, parameters, /") +
-                        (unended ? "; none ends this one: the file may be cut off there" : ""),
+                        (unended ? "; this record has no '/': the file may be truncated there" : ""),
                     "complete the record or remove it");
       return;
     }
@@ -222,7 +222,7 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
   }
   const std::string from = capitals(text.substr(0, cut));
   if (!options.map.emplace(from, text.substr(cut + 1)).second)
-    problems.add("model " + from + " is mapped twice", where, "a model can stand for one other only",
+    problems.add("model " + from + " is mapped twice", where, "a model can be mapped to one other model only",
                  "keep one of the mappings");
 }
 

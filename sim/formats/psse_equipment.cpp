@@ -28,7 +28,7 @@ void RawReader::bus(const Record& record) {
     problems_.add("IDE = " + std::to_string(type), f.where(), "bus types are 1 to 4",
                   "give 1 (load), 2 (generator), 3 (slack) or 4 (isolated)");
   if (type != 4 && !(b.vm > 0)) {
-    network_.remark("voltages of a bus that are not above 0 are taken as 1 pu",
+    network_.remark("bus voltages of 0 pu or below are replaced by 1 pu",
                     "bus " + std::to_string(b.number) + " (" + f.where() + ")");
     b.vm = 1.0;
   }
@@ -93,7 +93,7 @@ void RawReader::load(const Record& record) {
   if (version_ >= 34 && f.integer(16, "DGENM", 0) != 0 && on) {
     const Complex inside{pu(f.number(14, "DGENP", 0.0L)), pu(f.number(15, "DGENQ", 0.0L))};
     if (inside != Complex{})
-      network_.remark("distributed generation inside a load is taken off its P and Q",
+      network_.remark("distributed generation inside a load is subtracted from its P and Q",
                       "load '" + l.id + "' at bus " + f.text(0, "") + " (" + f.where() + ")");
     l.power -= inside;
   }
@@ -142,7 +142,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
   const std::string place = "bus " + std::to_string(at(shunt.bus).number);
   if (mode == 0) return;
   if (mode != 1) {
-    network_.remark("controlled switched shunts that do not step stay at BINIT", place);
+    network_.remark("switched shunts with a control mode other than discrete steps stay at BINIT", place);
     return;
   }
   const std::size_t band = columns_.switched_status == kNoColumn ? 2 : columns_.switched_status + 1;
@@ -153,7 +153,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
     if (const auto found = index_.find(std::abs(remote)); found != index_.end())
       s.regulated = found->second;
     else
-      network_.remark("switched shunts that hold a bus that is not there hold their own",
+      network_.remark("switched shunts that regulate a missing bus regulate their own",
                       place + ": SWREG = " + std::to_string(remote) + " (" + f.where() + ")");
   }
   if (s.least > s.most && options_.drop_refused) {
@@ -162,8 +162,8 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
     return;
   }
   if (s.least > s.most)
-    problems_.add(place + ": VSWLO above VSWHI", f.where(), "no voltage lies in that band",
-                  "swap them, or leave the shunt at BINIT with --drop-refused");
+    problems_.add(place + ": VSWLO above VSWHI", f.where(), "the voltage band is empty",
+                  "swap them, or keep the shunt at BINIT with --drop-refused");
   // Version 35 has a status before each block.
   const std::size_t stride = columns_.switched_id ? 3 : 2, blocks = 8;
   double inductive = 0.0, capacitive = 0.0;
@@ -175,7 +175,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
     constexpr int most = 1000;  // maximum steps of a block; more is an error
     if (steps < 0 || steps > most)
       problems_.add(place + ": a block of " + std::to_string(steps) + " steps", f.where(),
-                    "a bank has 0 to 1000", "correct N");
+                    "0 to 1000 are allowed", "correct N");
     for (int i = 0; on && i < std::min(steps, most) && each != 0.0; ++i)
       s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
   }
@@ -214,24 +214,24 @@ void RawReader::generator(const Record& record) {
                   "the machine's per-unit values refer to it", "give a base > 0 MVA");
   } else if (!(g.mva > 0)) {
     if (g.in_service)
-      network_.remark("machine bases that are not above 0 are taken as SBASE",
+      network_.remark("machine bases of 0 MVA or below are replaced by SBASE",
                       place + ": MBASE = " + shortest(g.mva) + " MVA");
     g.mva = static_cast<double>(base_);
   }
   if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
     problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
-                  "a step-up transformer has losses and leakage", "give RT >= 0 and XT >= 0");
+                  "resistance and leakage reactance cannot be negative", "give RT >= 0 and XT >= 0");
   if (units_only_ && g.in_service && step_up && tap != 1.0)
     problems_.add("GTAP = " + shortest(tap), f.where(),
                   "a step-up transformer inside the generator record is modelled at its nominal ratio",
                   "enter it as a transformer between two buses");
   else if (g.in_service && step_up && tap != 1.0)
-    network_.remark("step-up transformers inside a generator's record are at their nominal ratio",
+    network_.remark("step-up transformers inside a generator's record are modelled at nominal ratio",
                     place + ": GTAP = " + shortest(tap));
   g.share = static_cast<double>(f.number(columns_.gen_status + 1, "RMPCT", 100.0L));
   if (g.bus < 0) return;
   if (g.in_service && !units_only_ && !(g.vset > 0))
-    regulate_own_bus(g, "generators that hold a voltage that is not above 0 hold that of the file",
+    regulate_own_bus(g, "generators with a set-point of 0 pu or below regulate to the file's voltage",
                      f.where());
   regulated_.push_back(regulated == number ? 0 : regulated);
   if (!record.place.empty()) places_.push_back(record.place);
@@ -265,8 +265,8 @@ void RawReader::branch(const Record& record) {
   if (!circuit) return;
   b.circuit = *circuit;
   if (b.from == b.to && b.from >= 0)
-    problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
-                  "correct the bus numbers");
+    problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(),
+                  "a branch connects two buses", "correct the bus numbers");
   if (version_ < 28) {  // branches include transformers: RATIO (0: none), ANGLE
     const double ratio = value(9, "RATIO", 0.0L);
     b.shift = static_cast<double>(f.number(10, "ANGLE", 0.0L) / kDegrees);
@@ -296,8 +296,8 @@ void RawReader::switching_device(const Record& record) {
   if (!circuit) return;
   b.circuit = *circuit;
   if (b.from == b.to && b.from >= 0)
-    problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(), "it joins nothing",
-                  "correct the bus numbers");
+    problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(),
+                  "a branch connects two buses", "correct the bus numbers");
   raise_impedance(b, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
 }

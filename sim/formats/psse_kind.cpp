@@ -49,9 +49,9 @@ void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::p
   const bool no_raw = network && is_of_dyr(*network), no_dyr = dynamics && is_of_raw(*dynamics);
   if (no_raw && no_dyr)
     throw InputError(
-        {"the two files are in each other's place", place(raw, *network),
-         "a record of a dynamic model begins the one that should be the .raw, and a .raw's header "
-         "the one that should be the .dyr",
+        {"the two files are exchanged", place(raw, *network),
+         "the file given as .raw begins with a record of a dynamic model, the file given as .dyr "
+         "with the header of a .raw",
          "exchange --raw and --dyr"});
   if (no_raw)
     throw InputError({"no .raw", place(raw, *network),
@@ -100,7 +100,7 @@ std::optional<Problem> other_version(const std::vector<std::string>& lines, cons
                      (least == 0 ? std::string("none") : std::to_string(least)) +
                      "; the first: " + faults[0].what + " at " + faults[0].where,
                  options.version == read_as
-                     ? "say --raw-version " + std::to_string(best)
+                     ? "give --raw-version " + std::to_string(best)
                      : "correct REV in the header, in a copy, to " + std::to_string(best)};
 }
 

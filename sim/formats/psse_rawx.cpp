@@ -68,7 +68,7 @@ class Table {
               true};
     }
     if (value.is_number()) return {value.dump(), false};
-    wrong("row " + std::to_string(row + 1) + " holds something else than numbers and texts");
+    wrong("row " + std::to_string(row + 1) + " contains values other than numbers and texts");
     return {};
   }
   Record record(std::size_t row, const Names& names, const std::string& suffix = "") {
@@ -117,8 +117,8 @@ void RawReader::read_json() {
   Fields f(header, file_, problems_);
   base_ = static_cast<double>(f.number(1, "SBASE", 100.0L));
   if (f.text(5, "").empty() && !options_.frequency_hz && options_.needs_frequency)
-    throw InputError({"BASFRQ is missing", f.where(), "the rotors turn at this frequency",
-                      "say it with --frequency-hz, 50 or 60 Hz"});
+    throw InputError({"BASFRQ is missing", f.where(), "the swing equations need the system frequency",
+                      "give it with --frequency-hz, 50 or 60 Hz"});
   check_header(f, f.integer(0, "IC", 0),
                static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0))));
   network_.title = (head.size() ? head.field(0, "title1").text : "") + "\n" +

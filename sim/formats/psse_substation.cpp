@@ -54,7 +54,7 @@ void RawReader::substation(const Record& first) {
                            status(f.integer(3, "STATUS", 1), "STATUS", f);
                            if (!station.nodes.emplace(node, Substation::Node{bus, node, record.line}).second)
                              problems_.add("node " + std::to_string(node) + " appears twice", f.where(),
-                                           "a node of a substation stands once",
+                                           "node numbers are unique within a substation",
                                            "remove one or give it another number");
                          }) &&
       part_of_substation("switches",
@@ -84,13 +84,13 @@ void RawReader::check_substation(const Substation& read) {
     if (!fresh && piece->second != root)
       problems_.add("open switches split bus " + std::to_string(bus), where(line),
                     "sections of a bus in substation '" + station.name + "' are not modelled",
-                    "close the switches or make the sections buses of their own");
+                    "close the switches or enter the sections as separate buses");
     const auto [owner, first] = bus_of.emplace(root, bus);
     if (!first && owner->second != bus)
       problems_.add(
           "closed switches join buses " + std::to_string(owner->second) + " and " + std::to_string(bus),
           where(line), "a connection without impedance in substation '" + station.name + "' is not modelled",
-          "open a switch or make the two buses one");
+          "open a switch or combine the two buses");
   }
 }
 

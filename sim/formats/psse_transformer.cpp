@@ -19,7 +19,7 @@ namespace {
 
 void unknown_code(const char* name, int value, int last, const Fields& f, Problems& problems) {
   problems.add(std::string(name) + " = " + std::to_string(value), f.where(),
-               "the codes are 1 to " + std::to_string(last), "give one of them");
+               "the codes range from 1 to " + std::to_string(last), "give one of them");
 }
 
 /// Returns the turns ratio of one winding in per unit of its bus voltage. Fields: WINDV, NOMV.
@@ -34,7 +34,7 @@ long double turns(int cw, long double kv, Fields& f, const char* name, Problems&
   const long double nominal = f.number(1, "NOMV", 0.0L);
   if (!(winding > 0)) {
     problems.add(std::string(name) + " = " + shortest(static_cast<double>(winding)), f.where(),
-                 "a winding needs turns", "give a value > 0");
+                 "a turns ratio must be positive", "give a value > 0");
     return 1.0L;
   }
   if (cw == 2) return winding / kv;
@@ -51,7 +51,7 @@ Impedance series(int cz, long double base, Fields& f, std::size_t first, const s
   if (!(mva > 0)) {
     const std::string given = "SBASE" + pair + " = " + shortest(static_cast<double>(mva)) + " MVA";
     if (cz == 1)
-      network.remark("winding bases that are not above 0 are taken as SBASE", given + " (" + f.where() + ")");
+      network.remark("winding bases of 0 MVA or below are replaced by SBASE", given + " (" + f.where() + ")");
     else
       problems.add(given, f.where(), "the impedance refers to it", "give a base > 0 MVA");
     mva = base;
@@ -60,7 +60,7 @@ Impedance series(int cz, long double base, Fields& f, std::size_t first, const s
     r = r / 1e6L / mva;
     if (std::abs(x) < r) {
       problems.add("X" + pair + " = " + shortest(static_cast<double>(x)) + " pu", f.where(),
-                   "the load loss alone makes a larger impedance",
+                   "the load loss alone requires a larger impedance",
                    "correct the loss in W or the impedance in pu");
     } else {
       x = std::copysign(std::sqrt(x * x - r * r), x);
@@ -83,7 +83,7 @@ void RawReader::transformer(const Record& first) {
     if (record->fields.size() == 1 && (ends_section(*record) || ends_file(*record))) {
       put_back(*record);  // section() handles the end of the section
       problems_.add("a transformer with " + std::to_string(rows.size()) + " lines", f.where(),
-                    k == 0 ? "one with two windings takes 4" : "one with three windings takes 5",
+                    k == 0 ? "one with two windings has 4" : "one with three windings has 5",
                     "complete the record");
       return;
     }
@@ -163,7 +163,7 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   b.shunt_from = magnetising(head, w1, code, mva, at(from));
   if (from == to)
     problems_.add("a transformer from bus " + std::to_string(at(from).number) + " to itself", head.where(),
-                  "it joins nothing", "correct the bus numbers");
+                  "a branch connects two buses", "correct the bus numbers");
   network_.branches.push_back(std::move(b));
 }
 
@@ -180,7 +180,7 @@ int RawReader::star_point(const std::string& circuit, Fields& impedances, const 
   star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
   star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
   if (!(star.vm > 0)) {  // affects only the initial guess of the power flow
-    network_.remark("voltages of a star point that are not above 0 are taken as 1 pu",
+    network_.remark("star-point voltages of 0 pu or below are replaced by 1 pu",
                     star.name + ": VMSTAR = " + shortest(star.vm) + " pu (" + impedances.where() + ")");
     star.vm = 1.0;
   }
@@ -268,7 +268,7 @@ void RawReader::correction_table(const Record& first) {
   }
   if (!std::ranges::is_sorted(points, {}, [](const auto& p) { return p.first; }))
     problems_.add("the points of correction table " + std::to_string(head.integer(0, "table number", 0)),
-                  head.where(), "their T must ascend", "put them in order");
+                  head.where(), "T must ascend", "sort them by T");
 }
 
 /// Corrects impedances at the present tap or angle. Points between 0.5 and 1.5 are ratios, others angles in
@@ -278,11 +278,11 @@ void RawReader::correct_impedances() {
     const auto found = tables_.find(c.table);
     if (found == tables_.end() || found->second.empty()) {
       if (options_.drop_refused)
-        network_.remark("impedance correction tables that are not there are passed over, as asked",
+        network_.remark("missing impedance correction tables are ignored, as asked",
                         c.name + " = " + std::to_string(c.table) + " (" + c.where + ")");
       else if (!units_only_)
         problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",
-                      "add the table, set TAB to 0, or pass over it with --drop-refused");
+                      "add the table, set TAB to 0, or ignore it with --drop-refused");
       continue;
     }
     const auto& points = found->second;
@@ -303,7 +303,7 @@ void RawReader::correct_impedances() {
     }
     b.r = z.real();
     b.x = z.imag();
-    network_.remark("impedances are corrected for the present tap or angle, which stays",
+    network_.remark("impedances are corrected for the present tap or angle, which is fixed",
                     network_.branch_text(b) + " by " + shortest(factor.real()) + " (" + c.where + ")");
   }
 }

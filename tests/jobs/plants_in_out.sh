@@ -81,7 +81,7 @@ grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(c
 # A header without a frequency: a count of rotors has none either.
 sed '1s/, 60$/,/' "$raw" >"$work/silent.raw"
 "$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 wholly covered' || fail "inventory without a frequency"
-refuses "no frequency" 'say it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
+refuses "no frequency" 'give it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | holds -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --json | python3 -c "
 import json, sys
@@ -89,7 +89,7 @@ j = json.load(sys.stdin)
 assert (j['units'], j['covered']) == (10, 5)
 assert [m['not_covered'] for m in j['models'] if m['name'] == 'STRANGE'] == [4]" || fail "inventory --json"
 
-# Several names with commas; files in each other's place; a truncated file; records that are too short.
+# Several names with commas; exchanged files; a truncated file; records that are too short.
 "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --ignore-model STRANGE,ESAC9Z --t-end 0.1 --out "$work/x.csv" >/dev/null 2>&1 ||
   fail "--ignore-model with commas"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z,STRANGE >/dev/null 2>"$work/notes" || fail "--drop with commas"

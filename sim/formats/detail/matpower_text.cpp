@@ -71,8 +71,8 @@ class Splitter {
     if (c != ']' && c != '}' && c != ')') return;
     const char wanted = c == ']' ? '[' : c == '}' ? '{' : '(';
     if (open_.empty() || open_.back().first != wanted)
-      problems_.add("'" + std::string(1, c) + "' without its '" + std::string(1, wanted) + "'", where(line_),
-                    "brackets must match", "correct the brackets");
+      problems_.add("'" + std::string(1, c) + "' without a matching '" + std::string(1, wanted) + "'",
+                    where(line_), "every bracket needs its counterpart", "correct the brackets");
     if (!open_.empty()) open_.pop_back();
   }
   void end() {
@@ -89,8 +89,8 @@ class Splitter {
     const int first = line_;
     for (int depth = 1; depth > 0;) {  // nested block comments
       if (at_ >= text_.size()) {
-        problems_.add("a block comment is not closed", where(first), "the rest of the file is in it",
-                      "close it with %}");
+        problems_.add("a block comment is not closed", where(first),
+                      "the comment extends to the end of the file", "close it with %}");
         return;
       }
       ++at_;
@@ -170,7 +170,7 @@ std::vector<Row> read_rows(const std::string& text, int line, const std::string&
     const auto value = number(word);
     if (!value)
       problems.add("'" + word + "'", file + ":" + std::to_string(line),
-                   "a matrix of a case holds numbers only", "write the number out");
+                   "a matrix of a case contains only numbers", "write the value as a number");
     if (row.values.empty()) row.line = line;
     row.values.push_back(value.value_or(0.0L));
   }
@@ -192,7 +192,7 @@ void not_understood(const Statement& s, const std::string& file, Problems& probl
   std::string shown = s.text.substr(0, s.text.find('\n'));
   if (shown.size() > 40) shown = shown.substr(0, 40) + "...";
   problems.add("'" + shown + "'", file + ":" + std::to_string(s.line),
-               "only plain assignments of numbers, texts and matrices are read, nothing is computed",
+               "only assignments of numbers, texts and matrices are read; expressions are not evaluated",
                "save the case with savecase, which writes plain numbers");
 }
 

@@ -31,7 +31,7 @@ std::vector<Token> tokens_of(const std::string& text, const std::string& where, 
     } else if (text[i] == '"') {
       const auto end = text.find('"', i + 1);
       if (end == std::string::npos)
-        problems.add("a text without an end", where, "a quote opens and none closes", "close it");
+        problems.add("a quote is not closed", where, "the text has no end", "close it");
       tokens.push_back({text.substr(i + 1, end == std::string::npos ? end : end - i - 1), true});
       i = end == std::string::npos ? text.size() : end + 1;
     } else {

@@ -103,7 +103,7 @@ void RawReader::read_sections() {
   constexpr std::string_view mark = "\xEF\xBB\xBF";
   if (!lines_.empty() && lines_[0].starts_with(mark)) {
     lines_[0].erase(0, mark.size());
-    network_.remark("a byte-order mark before the first line is passed over", file_ + ":1");
+    network_.remark("a byte-order mark before the first line is ignored", file_ + ":1");
   }
   if (is_rawx(file_)) return read_json();
   header();
@@ -113,7 +113,7 @@ void RawReader::read_sections() {
     area_behind = area_behind || std::string_view(s.name) == "area";
     if (!section(s, area_behind)) break;
     while (!s.row && again(s)) {
-      network_.remark("a section that its title begins a second time is read as the same once more",
+      network_.remark("sections whose title appears a second time are continued",
                       std::string(s.name) + " section after " + file_ + ":" + std::to_string(at_));
       if (!section(s, false)) break;
     }
@@ -162,13 +162,14 @@ void RawReader::header() {
   if (const auto slash = lines_[at_].find('/'); slash != std::string::npos)
     comment = "; the line says \"" + without_return(lines_[at_].substr(slash + 1)) + "\"";
   if (f.text(2, "").empty() && options_.version == 0)
-    problems_.add("REV is missing", f.where(), "fields and sections lie where the version has them" + comment,
-                  "say it with --raw-version, 23 to 35");
+    problems_.add("REV is missing", f.where(),
+                  "the order of fields and sections depends on the version" + comment,
+                  "give it with --raw-version, 23 to 35");
   else
     version_ = forced_ != 0 ? forced_ : f.integer(2, "REV", options_.version);
   if (f.text(5, "").empty() && !options_.frequency_hz && options_.needs_frequency)
-    problems_.add("BASFRQ is missing", f.where(), "the rotors turn at this frequency",
-                  "say it with --frequency-hz, 50 or 60 Hz");
+    problems_.add("BASFRQ is missing", f.where(), "the swing equations need the system frequency",
+                  "give it with --frequency-hz, 50 or 60 Hz");
   const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
   problems_.raise();  // the rest requires these values
   if (version_ < 23 || version_ > 35)
@@ -212,14 +213,14 @@ void RawReader::check_titles() {
 
 void RawReader::check_header(const Fields& f, int change, double frequency) {
   if (change != 0)
-    problems_.add("IC = " + std::to_string(change), f.where(), "the file adds to a case that is not here",
+    problems_.add("IC = " + std::to_string(change), f.where(), "the file contains changes to another case",
                   "save the whole case (IC = 0)");
   if (!(base_ > 0))
     problems_.add("SBASE = " + shortest(static_cast<double>(base_)) + " MVA", f.where(),
-                  "everything is divided by it", "give a base > 0 MVA");
+                  "all per-unit values refer to it", "give a base > 0 MVA");
   if (!(frequency > 0))
-    problems_.add("BASFRQ = " + shortest(frequency) + " Hz", f.where(), "the rotors turn at this frequency",
-                  "give 50 or 60 Hz");
+    problems_.add("BASFRQ = " + shortest(frequency) + " Hz", f.where(),
+                  "the swing equations need the system frequency", "give 50 or 60 Hz");
   network_.base_mva = static_cast<double>(base_);
   network_.frequency = frequency;
 }
@@ -307,8 +308,7 @@ void RawReader::finish() {
     if (network::Generator& g = network_.generators[i]; regulated_[i] != 0 && g.in_service) {
       const auto found = index_.find(std::abs(regulated_[i]));
       if (found == index_.end())
-        regulate_own_bus(g,
-                         "generators that hold a bus that is not there hold their own at the file's voltage",
+        regulate_own_bus(g, "generators that regulate a missing bus regulate their own at the file's voltage",
                          generator_place(i));
       else if (found->second != g.bus)
         g.regulated = found->second;

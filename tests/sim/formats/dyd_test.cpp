@@ -92,8 +92,8 @@ TEST(Dyd, ErrorsNameTheirLine) {
       "genrou 1 \"GEN1\" 22.00 \"1 \" : #9 6.5 x\nhygov 1 \"G\" 22 \"1\" : #9 .05 .5 7\ngenrou GEN1 : 1\n",
       "f.dyd"));
   EXPECT_THAT(all, HasSubstr("'x' of genrou at f.dyd:1"));
-  EXPECT_THAT(all, HasSubstr("no tf of hygov at f.dyd:2"));
-  EXPECT_THAT(all, HasSubstr("a record that cannot be told at f.dyd:3"));
+  EXPECT_THAT(all, HasSubstr("tf of hygov is missing at f.dyd:2"));
+  EXPECT_THAT(all, HasSubstr("a record without bus and id at f.dyd:3"));
 }
 
 TEST(Dyd, SkipsMetersAndLoadsAndKeepsOthers) {
@@ -166,7 +166,7 @@ TEST(Dyd, RoundTripKeepsAllValues) {
   EXPECT_EQ(back.machines.at(1).resistance, 0.003);
   Problems none;
   dyd_line({1, "IEEEX9", "1", {}, 1}, {}, {}, "x.dyd", none);
-  EXPECT_THAT(none.list().at(0).sentence(), HasSubstr("no PSLF model is known"));
+  EXPECT_THAT(none.list().at(0).sentence(), HasSubstr("it has no PSLF counterpart"));
 }
 
 }  // namespace

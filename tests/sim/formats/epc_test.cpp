@@ -258,7 +258,7 @@ TEST(Epc, ReportsAllErrorsWithTheirLines) {
   EXPECT_THAT(faults, HasSubstr("a transformer inside branch 102-103 circuit '1' section 2"));
   EXPECT_THAT(faults, HasSubstr("ty = 3 at " + at("103 \"SOUTH       \" 138.00 :")));
   EXPECT_THAT(faults, HasSubstr("a record without ':'"));
-  EXPECT_THAT(faults, HasSubstr("a text without an end"));
+  EXPECT_THAT(faults, HasSubstr("a quote is not closed"));
 }
 
 TEST(Epc, ReportsAWrongRecordCount) {

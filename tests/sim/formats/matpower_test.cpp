@@ -133,7 +133,7 @@ TEST(Matpower, ReportsAllErrorsWithTheirLines) {
   expect(16, "Vg = 0 pu");
   expect(20, "to itself");
   expect(22, "ratio = -1");
-  expect(24, "nothing is computed");
+  expect(24, "expressions are not evaluated");
   expect(25, "a dc line in service");
   expect(26, "gen is assigned twice");
   expect(27, "'x = 3'");

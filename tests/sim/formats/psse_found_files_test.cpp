@@ -192,7 +192,7 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   const network::Network own = c.read();
   EXPECT_EQ(own.generators[1].regulated, -1);
   EXPECT_EQ(own.generators[1].vset, 1.02);  // the file's voltage
-  EXPECT_THAT(places(own, "a bus that is not there"), ::testing::SizeIs(1));
+  EXPECT_THAT(places(own, "a missing bus"), ::testing::SizeIs(1));
   c.generators.replace(c.generators.find("199"), 3, "105");
   c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // isolated, hence out of service
   const network::Network alone = c.read();
@@ -210,7 +210,8 @@ TEST(FoundFiles, ReplacesImpossibleValuesWithARemark) {
   EXPECT_EQ(n.buses[2].vm, 1.0);
   EXPECT_EQ(n.generators[0].mva, 100.0);
   EXPECT_EQ(n.generators[1].vset, 1.02);
-  for (const char* what : {"taken as 1 pu", "taken as SBASE", "hold that of the file", "nominal ratio"})
+  for (const char* what :
+       {"replaced by 1 pu", "replaced by SBASE", "regulate to the file's voltage", "nominal ratio"})
     EXPECT_THAT(places(n, what), ::testing::SizeIs(1)) << what;
 }
 

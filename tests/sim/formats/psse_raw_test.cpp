@@ -157,8 +157,8 @@ TEST(PsseRaw, StepsOfSwitchedShuntsKeepTheOrderOfReactorsAndCapacitors) {
   EXPECT_EQ(s.least, 0.97);
   EXPECT_EQ(s.most, 1.03);
   EXPECT_EQ(s.steps, (std::vector<double>{-0.3, 0.0, 0.1, 0.2, 0.25, 0.3, 0.35}));
-  ASSERT_EQ(n.remarks.size(), 1u);  // about the shunt that does not step
-  EXPECT_NE(n.remarks[0].what.find("do not step"), std::string::npos);
+  ASSERT_EQ(n.remarks.size(), 1u);  // about the shunt with another control mode
+  EXPECT_NE(n.remarks[0].what.find("a control mode other"), std::string::npos);
 }
 
 TEST(PsseRaw, RefusesABandWithoutVoltagesAndABlockOfNegativeSteps) {

@@ -157,7 +157,7 @@ TEST(MissingReference, IsReplacedAndNamed) {
   const network::Network n = c.read();
   ASSERT_THAT(n.switched, SizeIs(1));
   EXPECT_EQ(n.switched[0].regulated, 2);
-  EXPECT_THAT(places(n, "switched shunts that hold a bus that is not there"),
+  EXPECT_THAT(places(n, "switched shunts that regulate a missing bus"),
               ElementsAre(HasSubstr("SWREG = 199")));
   c.other["switched shunt"] = "103,1,0,1,0.9,1.1,0,100,'',5.0,1,5.0\n";
   c.transformers = "101,102,0,'T',1,1,1\n0.02,0.1,100\n1.05,0,0,0,0,0,0,0,0,0,0,0,0,3\n1.0\n";
@@ -167,7 +167,7 @@ TEST(MissingReference, IsReplacedAndNamed) {
   EXPECT_EQ(dropped.shunts.back().admittance.imag(), 0.05);
   EXPECT_EQ(dropped.branches[2].x, 0.1);
   EXPECT_THAT(places(dropped, "stay at BINIT, as asked"), SizeIs(1));
-  EXPECT_THAT(places(dropped, "passed over, as asked"), ElementsAre(HasSubstr("TAB1 = 3")));
+  EXPECT_THAT(places(dropped, "correction tables are ignored, as asked"), ElementsAre(HasSubstr("TAB1 = 3")));
 }
 
 TEST(ThreeWindings, StarVoltageAndBaseOfZeroAreReplacedAndNamed) {
@@ -179,7 +179,7 @@ TEST(ThreeWindings, StarVoltageAndBaseOfZeroAreReplacedAndNamed) {
     return c;
   };
   const network::Network n = with("0.0", "0.0", 1).read(), whole = with("100.0", "1.0", 1).read();
-  EXPECT_THAT(places(n, "voltages of a star point"), ElementsAre(HasSubstr("VMSTAR = 0 pu")));
+  EXPECT_THAT(places(n, "star-point voltages of 0 pu or below"), ElementsAre(HasSubstr("VMSTAR = 0 pu")));
   EXPECT_THAT(places(n, "winding bases"), SizeIs(3));
   const auto a = network::solve_power_flow(n), b = network::solve_power_flow(whole);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-9) << i;
