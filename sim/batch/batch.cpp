@@ -42,13 +42,13 @@ namespace {
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {
-    problems.add(what + " in lanes of float", "option lanes", why, "choose 8 lanes, or 0");
+    problems.add(what + " in single-precision lanes", "option lanes", why, "choose 8 lanes, or 0");
   };
   for (const plant::Plant& plant : grid.plants) {
     const Effect& machine = *plant.machine.effect;
     if (machine.get<double>().machine.current != nullptr)
       refuse(fmt::format("{} at {}", machine.name, plant.name),
-             "its current is no linear function of the voltage");
+             "its current is not a linear function of the voltage");
     std::vector<const Effect*> effects{&machine};
     for (const plant::Block& block : plant.controls) effects.push_back(block.effect);
     for (const Effect* effect : effects)
@@ -58,7 +58,7 @@ void refuse_in_float(const grid::Grid& grid) {
   }
   for (const plant::Consumer& load : grid.loads)
     refuse(fmt::format("{} at {}", load.block.effect->name, load.name),
-           "its current is no linear function of the voltage");
+           "its current is not a linear function of the voltage");
   problems.raise();
 }
 
@@ -70,7 +70,7 @@ void refuse_far_regulation(const grid::Grid& grid) {
       problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
                                grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
                    grid.network.origin, "the batch computes voltages only at machines and modelled loads",
-                   "use the reference integrator, or let it regulate its own bus");
+                   "use the reference integrator, or set its own bus as regulated bus");
   problems.raise();
 }
 }  // namespace
@@ -97,7 +97,7 @@ Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_uni
   if (options.sensitivities) {
     if (options.lanes != kDualLanes)
       throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
-                        fmt::format("sensitivities are built for {} on this processor", kDualLanes),
+                        fmt::format("sensitivities are compiled for {} lanes on this processor", kDualLanes),
                         fmt::format("choose {}, or 0", kDualLanes)});
     impl_->engine = std::make_unique<detail::EngineOf<DualPack>>(grid, options);
     return;
@@ -118,7 +118,7 @@ Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_uni
       break;
     default:
       throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
-                        "the kernel is built for 1, 4, 8 and, in float, 16",
+                        "the kernel is compiled for 1, 4 and 8 lanes in double and 16 in float",
                         "choose one of these, or 0 for the widest in double"});
   }
 }

@@ -385,7 +385,7 @@ template <class M>
 Effect make_effect() {
   static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
                             [](const Parameter& p) { return p.default_from.given(); }),
-                "a standard value has no source: give standards_from, or one in the parameter's record");
+                "a default has no source: give defaults_from, or one in the parameter's record");
   static_assert(std::all_of(kSourced<M>.begin(), kSourced<M>.end(),
                             [](const Parameter& p) { return p.bounds_from.given(); }),
                 "bounds have no source: give bounds_from, or one in the parameter's record");

@@ -10,9 +10,10 @@ namespace {
 /// Locates the remote measurements of an added effect; a missing bus or branch becomes a problem.
 void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, Problems& problems) {
   for (const NotThere& missing : look_far(grid, plant))
-    problems.add(fmt::format("no {} for {} of plant {}", missing.what, missing.control, plant.name), where,
-                 "its control is to measure there, and the network has nothing of that name in service",
-                 "name what is in service, or 0 to measure at the plant");
+    problems.add(fmt::format("no {} for the remote measurement of {} at plant {}", missing.what,
+                             missing.control, plant.name),
+                 where, "the network has none in service",
+                 "name equipment in service, or 0 to measure at the plant");
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ constexpr Missing kMissing[] = {
     {"CMPLD", "composite load, not modelled"},
     {"SVSMO2", "static var system of stepped branches, not modelled"},
     {"SVSMO3", "static var system of a converter, not modelled"},
-    {"VSCHVDC", "STEPS's own, no PSS/E model"},
-    {"VSG1", "STEPS's own, no PSS/E model"},
+    {"VSCHVDC", "a model of STEPS, not of PSS/E"},
+    {"VSG1", "a model of STEPS, not of PSS/E"},
     {"ESURRY", "the order of its parameters is not public"},
 };
 std::string why_missing(std::string_view name) {

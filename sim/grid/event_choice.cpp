@@ -53,10 +53,10 @@ void check_followers(const Grid& grid, const EventPlace& place, const network::E
     };
     if (step.dVref != 0 && lacks(Slot::exciter))
       problems.add("a step of Vref at plant " + plant->name, place(EventPart::vref_step, ""),
-                   "it has no exciter", "choose a plant with one, or add one to the .dyr");
+                   "the plant has no exciter", "choose a plant with one, or add one to the .dyr");
     if (step.dPref != 0 && lacks(Slot::governor))
       problems.add("a step of Pref at plant " + plant->name, place(EventPart::pref_step, ""),
-                   "it has no governor", "choose a plant with one, or add one to the .dyr");
+                   "the plant has no governor", "choose a plant with one, or add one to the .dyr");
   }
 }
 
@@ -90,7 +90,7 @@ network::Event read_event(const EventTexts& texts, const Grid& grid, double t_en
 
 void note_shed_loads(Grid& grid, const network::Event& event) {
   network::Network& n = grid.network;
-  network::Remark remark{"buses that the event cuts off from every generator lose their voltage and loads",
+  network::Remark remark{"buses that the event separates from every generator lose their voltage and loads",
                          {}};
   std::vector<int> before;
   for (const network::Segment& segment : network::segments(event, n)) {

@@ -82,18 +82,18 @@ class GridMaker {
     if (!given.equipment.empty())
       return problems_.add(
           given.model + " at '" + given.equipment + "'", where,
-          "no bus, or more than one, of " + grid_.network.origin + " has this name and base voltage",
+          "not exactly one bus of " + grid_.network.origin + " has this name and base voltage",
           "give the bus number in its place");
     if (given.unended)
       grid_.network.remark(
-          "records without an end, '/', end where the next one begins or the file does",
+          "records without a final '/' end at the next record or at the end of the file",
           given.model + " of '" + given.id + "' at bus " + std::to_string(given.bus) + " (" + where + ")");
     Problems refused;
     take(*effect, reach, plain(given, *effect), where, refused);
     if (!refused.empty() && !options_.drop_refused && effect->slot == Slot::machine) refused_.insert(key);
     for (const Problem& p : refused.list()) {
       if (options_.drop_refused)
-        grid_.network.remark("records that their model cannot take are left out, as asked",
+        grid_.network.remark("records with values that their model does not accept are left out, as asked",
                              p.what + " (" + p.where + ")");
       else
         refuse(p, given.line);
@@ -146,7 +146,7 @@ class GridMaker {
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
       grid_.network.remark(
-          "records for generators that the network has not are left out",
+          "records for generators that the network does not have are left out",
           record.model + " of '" + record.id + "' at bus " + std::to_string(record.bus) + " (" + where + ")");
       return;
     }
@@ -156,14 +156,15 @@ class GridMaker {
     plant::Block block = values_of(effect, record);
     take_from_raw(block, g);
     if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
-      grid_.network.remark("values that the equations take in their own way, or not at all", left_out);
+      grid_.network.remark("values that the equations interpret differently or ignore", left_out);
     for (const std::string& text : plant::unusual_texts(block, where))
       grid_.network.remark("values outside the range that is usual for them", text);
     const plant::Plant before = plant;
     const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems);
     if (!problems.empty()) plant = before;
     if (!warning.empty())
-      grid_.network.remark("the reactance of the .dyr counts where ZX of the network is another", warning);
+      grid_.network.remark("where the reactance of the .dyr differs from ZX, that of the .dyr is used",
+                           warning);
   }
   void report_empty(const formats::DyrRecord& record, const std::string& where) {
     for (const int i : record.empty)
@@ -189,8 +190,8 @@ class GridMaker {
                     "leave it out with --ignore-model " + name +
                         (one.parameters == 0
                              ? std::string()
-                             : ", or let another with as many parameters (" + std::to_string(one.parameters) +
-                                   ") stand for it with --map-model " + name + "=OTHER"));
+                             : ", or map it to a model with as many parameters (" +
+                                   std::to_string(one.parameters) + ") by --map-model " + name + "=OTHER"));
     }
   }
   /// Adds a model for one load, or with id * for every load, of a bus, owner, zone, area or of the grid.
@@ -235,8 +236,7 @@ class GridMaker {
         problems.add("a second model, " + what, where,
                      "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
     }
-    if (!any)
-      grid_.network.remark("models of loads that are not in service are left out", what + " (" + where + ")");
+    if (!any) grid_.network.remark("models of loads out of service are left out", what + " (" + where + ")");
   }
   /// Adds a model of a switched shunt; a record without an id applies to the first one at its bus.
   void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
@@ -253,7 +253,7 @@ class GridMaker {
     };
     const auto shunt = std::ranges::find_if(grid_.network.shunts, is_its);
     if (shunt == grid_.network.shunts.end()) {
-      grid_.network.remark("models of switched shunts that are not in service are left out",
+      grid_.network.remark("models of switched shunts out of service are left out",
                            what + " (" + where + ")");
       return;
     }
@@ -265,7 +265,7 @@ class GridMaker {
     if (!problems.empty()) return;
     if (const std::string left_out = effect.remark ? effect.remark(model.block.p.data()) : std::string();
         !left_out.empty())
-      grid_.network.remark("values that the equations take in their own way, or not at all",
+      grid_.network.remark("values that the equations interpret differently or ignore",
                            where + ": " + what + ": " + left_out);
     shunt_models_.push_back(std::move(model));
   }
@@ -296,7 +296,7 @@ class GridMaker {
     check_fit(plant, dyr_, problems_);
     sort_controls(plant);
     for (const std::string& text : idle_controls(plant))
-      grid_.network.remark("controls of the field voltage that do nothing", text);
+      grid_.network.remark("controls of the field voltage without effect", text);
   }
   [[nodiscard]] std::string unit_text(int generator) const {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
@@ -306,12 +306,12 @@ class GridMaker {
   /// network.
   [[nodiscard]] std::string cut_off_text() const {
     if (cut_off_at_ > 0)
-      return fmt::format("; no '/' ends the last record, of line {}: the file may be cut off", cut_off_at_);
+      return fmt::format("; no '/' ends the last record, on line {}: the file may be truncated", cut_off_at_);
     const auto modelled = std::ranges::max_element(
         grid_.plants, {}, [](const plant::Plant& p) { return p.machine.effect ? p.generator : -1; });
     const bool at_the_end = modelled != grid_.plants.end() && modelled->machine.effect &&
                             modelled->generator < std::ranges::min(unmodelled_);
-    return at_the_end ? "; all generators before them have one: the .dyr may be cut off" : "";
+    return at_the_end ? "; all generators before them have one: the .dyr may be truncated" : "";
   }
   /// Reports all generators without a machine model in one problem.
   void report_unmodelled() {
@@ -327,7 +327,7 @@ class GridMaker {
             : "no machine model for " + std::to_string(unmodelled_.size()) + " generators: " + list,
         dyr_, (one ? "it is" : "they are") + (" in service in " + grid_.network.origin) + cut_off_text(),
         "add records with one of " + machine_names() +
-            ", take them out of service, or go on with --net-generators, which makes them negative loads");
+            ", take them out of service, or continue with --net-generators, which makes them negative loads");
   }
   void solve() {
     if (options_.start_from_file)
@@ -337,7 +337,7 @@ class GridMaker {
     switched_shunts();
     compare_with_file();
     for (const int bus : grid_.flow.at_limit)
-      grid_.network.remark("generators at a reactive limit do not hold their voltage", bus_text(bus));
+      grid_.network.remark("generators at a reactive limit do not regulate their voltage", bus_text(bus));
     for (plant::Plant& plant : grid_.plants)
       plant.generation = grid_.flow.generation[static_cast<std::size_t>(plant.generator)];
   }
@@ -347,8 +347,8 @@ class GridMaker {
     if (!options_.flow.step_shunts || options_.start_from_file) {
       for (const network::SwitchedShunt& s : n.switched)
         n.remark(options_.start_from_file
-                     ? "switched shunts stay at BINIT, which the file's own voltages are the solution of"
-                     : "switched shunts stay at BINIT (--switched-shunts step lets them step)",
+                     ? "switched shunts stay at BINIT, for which the file's voltages were solved"
+                     : "switched shunts stay at BINIT (--switched-shunts step makes them step)",
                  bus_text(s.bus));
       return;
     }
@@ -359,11 +359,11 @@ class GridMaker {
         n.remark("switched shunts were stepped, as asked",
                  bus_text(s.bus) + " " + mvar(s.present) + " to " + mvar(stepped.susceptance));
       if (!stepped.in_band)
-        n.remark(
-            "switched shunts have no step that brings their voltage into its band",
-            bus_text(s.bus) +
-                fmt::format(" holds {} within {:g} to {:g} pu, {:.4f} pu", bus_text(s.regulated), s.least,
-                            s.most, std::abs(grid_.flow.voltage[static_cast<std::size_t>(s.regulated)])));
+        n.remark("switched shunts have no step within their voltage band",
+                 bus_text(s.bus) +
+                     fmt::format(" regulates {} within {:g} to {:g} pu, reached: {:.4f} pu",
+                                 bus_text(s.regulated), s.least, s.most,
+                                 std::abs(grid_.flow.voltage[static_cast<std::size_t>(s.regulated)])));
       std::erase_if(n.shunts, [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; });
       s.present = stepped.susceptance;
       n.shunts.push_back({s.bus, s.id, {0.0, s.present}});
@@ -383,7 +383,7 @@ class GridMaker {
     std::ranges::sort(far, std::greater{}, [](const auto& f) { return std::abs(f.first); });
     for (const auto& [by, i] : far)
       grid_.network.remark(
-          "the solution differs from the file's voltages by more than 1e-3 pu (--start file keeps the file's), "
+          "the solution differs from the file's voltages by more than 1e-3 pu (--start file keeps them), "
           "largest first",
           bus_text(static_cast<int>(i)) + fmt::format(" {:.4f} pu, file {:.4f} pu",
                                                       std::abs(grid_.flow.voltage[i]),

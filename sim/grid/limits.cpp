@@ -87,7 +87,7 @@ class Widener {
     value(l) = l.given + l.way * far;
     const plant::Block& block = plant_.controls[l.block];
     const Parameter& p = block.effect->parameters[l.parameter];
-    grid_.network.remark("limits are moved to the operating point, as asked",
+    grid_.network.remark("limits are widened to the operating point, as asked",
                          fmt::format("{} of {} at generator {}: {:g} becomes {:.6g} {}", p.name,
                                      block.effect->name, plant_.name, l.given, value(l), p.unit));
   }
@@ -105,7 +105,7 @@ void settle_limits(Grid& grid, bool widen) {
     std::vector<Problem> found = hindrances(grid, plant);
     if (!found.empty() && widen) found = Widener(grid, plant).widen();
     for (Problem& p : found) {
-      if (!widen) p.remedy += ", or let --widen-limits move the limit";
+      if (!widen) p.remedy += ", or widen the limit with --widen-limits";
       problems.add(p.what, p.where, p.why, p.remedy);
     }
   }

@@ -49,8 +49,8 @@ std::vector<int> loads_without_model(const Grid& grid, const std::string& where,
         consumption(grid.network.loads[i], grid.flow) != Complex{})
       list.push_back(static_cast<int>(i));
   if (list.empty())
-    problems.add("no load without a model", where, "* means the loads that have none yet",
-                 "name the loads, BUS or BUS/ID, or leave this out");
+    problems.add("no load without a model", where, "* selects the loads without a model",
+                 "name the loads, BUS or BUS/ID, or drop the option");
   return list;
 }
 
@@ -101,8 +101,8 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
     if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
       return;
     problems.add(fmt::format("the parts of {} cancel", name), where,
-                 fmt::format("{} takes them as fractions of their sum", block.effect->name),
-                 "split the load into two with their own ids");
+                 fmt::format("{} needs fractions of their sum", block.effect->name),
+                 "split the load into two with different ids");
   };
   cancels(l.power.real(), current.real(), admittance.real(), total.real(), "P");
   cancels(l.power.imag(), current.imag(), admittance.imag(), total.imag(), "Q");

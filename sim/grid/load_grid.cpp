@@ -29,7 +29,7 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
   for (const formats::DyrRecord& record : dyd.dyr.records) {
     const std::string where = name + ":" + std::to_string(record.line);
     if (const auto note = dyd.notes.find(record.line); note != dyd.notes.end())
-      network.remark("values of the .dyd on a rating of their own are put onto the machine's base",
+      network.remark("values of the .dyd on their own rating are converted to the machine's base",
                      note->second);
     const auto machine = dyd.machines.find(record.line);
     if (machine == dyd.machines.end()) continue;
@@ -40,7 +40,7 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
     g->zr = machine->second.resistance;
     g->zx = machine->second.reactance.value_or(0);  // 0: no value to compare with
     if (machine->second.mva == g->mva || !(machine->second.mva > 0)) continue;
-    network.remark("machine bases of the .dyd count where those of the network are others",
+    network.remark("where machine bases of the .dyd and the network differ, those of the .dyd are used",
                    fmt::format("'{}' at bus {}: {:g} MVA, not {:g} ({})", record.id, record.bus,
                                machine->second.mva, g->mva, where));
     g->rt *= machine->second.mva / g->mva;

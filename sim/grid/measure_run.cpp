@@ -13,7 +13,7 @@ int channel_index(const Trajectory& run, Channel channel) {
   if (at == run.channels.end())
     throw InputError(
         {"channel " + std::string(kChannels[static_cast<std::size_t>(channel)].name) + " missing", "the run",
-         "an instrument sees V, theta, P and Q", "record all four"});
+         "an instrument measures V, theta, P and Q", "record all four"});
   return static_cast<int>(at - run.channels.begin());
 }
 

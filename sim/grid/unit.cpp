@@ -68,8 +68,8 @@ class UnitReader {
   void find_generator() {
     const int bus = net().bus_index(choice_.bus);
     if (bus < 0)
-      return problems_.add(fmt::format("no bus {}", choice_.bus), net().origin, "the bus section has none",
-                           "correct the bus number");
+      return problems_.add(fmt::format("no bus {}", choice_.bus), net().origin,
+                           "the bus section does not contain it", "correct the bus number");
     std::vector<std::size_t> units, running;
     std::string ids;
     for (std::size_t i = 0; i < net().generators.size(); ++i) {
@@ -88,7 +88,7 @@ class UnitReader {
     if (units.size() > 1 && running.size() != 1)
       return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
                            "their ids are " + ids,
-                           "say which one with its id (--id); for a record of both make a plant file of each "
+                           "choose one by its id (--id); for a record of both make a plant file of each "
                            "and a point file for --point (configs/plants/README.md)");
     const std::size_t at = units.size() == 1 ? units[0] : running[0];
     generator_ = static_cast<int>(at);
@@ -175,7 +175,7 @@ class UnitReader {
     check_fit(unit_.plant, choice_.dyr.string(), problems_);
     sort_controls(unit_.plant);
     for (const std::string& text : idle_controls(unit_.plant))
-      unit_.notes.push_back(text + ": it does nothing");
+      unit_.notes.push_back(text + ": it has no effect");
   }
   /// Adds a note if the model cannot hold the operating point of the .raw, because records probably start
   /// there.
@@ -190,14 +190,14 @@ class UnitReader {
                                    Conventions::psse(net().frequency));
     } catch (const InputError& error) {
       const Problem& p = error.problems().front();  // the others are consequences
-      unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that begins there is refused",
+      unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that starts there is refused",
                                         net().origin, p.what, p.why));
     }
   }
   /// Returns a possible reason for a missing machine record.
   [[nodiscard]] std::string lost_text() const {
-    if (dynamics_.faults.empty()) return "it has no record that makes a machine";
-    return "it has no record that makes a machine; the file has a fault: " + dynamics_.faults[0].sentence();
+    if (dynamics_.faults.empty()) return "it has no machine record";
+    return "it has no machine record; the file has a fault: " + dynamics_.faults[0].sentence();
   }
   bool dropped(const formats::DyrRecord& record) {
     for (const auto& name : choice_.models.ignore)
@@ -226,19 +226,19 @@ class UnitReader {
           fmt::format("unknown model '{}' of unit '{}' at bus {}", name_of(record), unit_.id, unit_.bus),
           where,
           choice_.dyd ? "available are " + formats::dyd_models_text() : lacking_text(choice_.dyr.string()),
-          fmt::format("leave it out with --drop {0}, or let another stand for it with --replace {0}=OTHER "
+          fmt::format("leave it out with --drop {0}, or replace it with --replace {0}=OTHER "
                       "(under [grid] of a plant file: ignore_models, map_models)",
                       given));
     plant::Block block;
     if (record.unended)
       unit_.notes.push_back(fmt::format(
-          "{}: {} has no end, '/': it ends where the next record begins or the file does", where, given));
+          "{}: {} has no final '/': it ends at the next record or at the end of the file", where, given));
     record = plain(record, *effect);
     if (other && record.values.size() != effect->dyr_columns.size()) {
       block = {effect, effect->default_parameters()};
       unit_.defaults.emplace_back(effect->name);
       unit_.notes.push_back(fmt::format(
-          "{} of line {} replaced by {} with its standard values: {} parameters are not the {} of {}", given,
+          "{} of line {} replaced by {} with its defaults: {} parameters do not match the {} of {}", given,
           record.line, effect->dyr_name, record.values.size(), effect->dyr_columns.size(), effect->dyr_name));
     } else {
       problems_.add(record.faults);
@@ -272,7 +272,7 @@ class UnitReader {
     g.zx = at->second.reactance.value_or(0);  // 0: no value to compare with
     if (at->second.mva == unit_.plant.mva) return g;
     unit_.notes.push_back(
-        fmt::format("the .dyd has the machine on {:g} MVA, {} on {:g} MVA: the former is used",
+        fmt::format("the machine base is {0:g} MVA in the .dyd and {2:g} MVA in {1}: the .dyd is used",
                     at->second.mva, net().origin, unit_.plant.mva));
     if (plant::Block& transformer = unit_.plant.transformer; transformer.effect)
       for (const char* name : {"R", "X"})
@@ -315,7 +315,7 @@ class UnitReader {
     const std::set<int> ends = transformers_to();
     if (ends.empty() || ends.size() > 2) return;
     unit_.notes.push_back(fmt::format(
-        "a transformer joins bus {} to bus {}; the model covers the unit up to bus {}: for records from bus {} "
+        "a transformer connects bus {} with bus {}; the model covers the unit up to bus {}: for records from bus {} "
         "give --measured-at {} (under [grid] of a plant file: measured_at)",
         unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
   }
@@ -333,7 +333,7 @@ class UnitReader {
       const std::set<int> ends = transformers_to();
       return problems_.add(
           fmt::format("no transformers lead from bus {} to bus {}", unit_.bus, measured_at), net().origin,
-          ends.empty() ? "no transformer stands at the unit's bus"
+          ends.empty() ? "no transformer is connected to the unit's bus"
                        : fmt::format("those at the unit's bus lead to {}", fmt::join(ends, ", ")),
           "give a bus behind the unit's transformers, or take the records at the unit's own bus");
     }
@@ -363,8 +363,8 @@ class UnitReader {
       const int bus = number_in(block, at.bus), from = number_in(block, at.from);
       if ((bus == 0 || bus == recorded) && (from == 0 || from == recorded)) continue;
       unit_.notes.push_back(fmt::format(
-          "{} measures at bus {}; in a plant file that is where the records are taken: take them there, and "
-          "give what lies between by --measured-at or as [collector] of a point file",
+          "{} measures at bus {}; in a plant file it measures where the records are taken: take them at that "
+          "bus, and give the network in between by --measured-at or as [collector] of a point file",
           block.effect->name, bus != 0 && bus != recorded ? bus : from));
     }
   }
@@ -375,20 +375,20 @@ class UnitReader {
     for (std::size_t i = 0; i < net().generators.size(); ++i) {
       const auto& g = net().generators[i];
       if (g.bus == bus && g.in_service && static_cast<int>(i) != generator_)
-        problems_.add(fmt::format("generator '{}' at bus {} too", g.id, unit_.bus),
+        problems_.add(fmt::format("second generator, '{}', at bus {}", g.id, unit_.bus),
                       line_of(survey_.generator_line, i),
-                      fmt::format("what is measured at bus {} is the current of both", measured_at), kOfBoth);
+                      fmt::format("the current at bus {} is the sum of both", measured_at), kOfBoth);
     }
     for (const auto& l : net().loads)
       if (l.bus == bus)
         unit_.notes.push_back(
-            fmt::format("load '{}' at bus {} is part of what is measured at bus {}; the model "
+            fmt::format("load '{}' at bus {} is part of the measurement at bus {}; the model "
                         "has none",
                         l.id, unit_.bus, measured_at));
     for (const auto& s : net().shunts)
       if (s.bus == bus && s.admittance != Complex{})
         unit_.notes.push_back(
-            fmt::format("shunt '{}' at bus {} is part of what is measured at bus {}; the "
+            fmt::format("shunt '{}' at bus {} is part of the measurement at bus {}; the "
                         "model has none",
                         s.id, unit_.bus, measured_at));
   }
@@ -396,13 +396,13 @@ class UnitReader {
   void passed(const StepUp& way, int measured_at) {
     for (std::size_t k = 1; k + 1 < way.buses.size(); ++k)
       if (const std::string other = joins_on_the_way(net(), way, way.buses[k]); !other.empty())
-        problems_.add(
-            fmt::format("{} between bus {} and bus {}", other, unit_.bus, measured_at), net().origin,
-            fmt::format("what is measured at bus {} is not the unit's current alone", measured_at), kOfBoth);
+        problems_.add(fmt::format("{} between bus {} and bus {}", other, unit_.bus, measured_at),
+                      net().origin, fmt::format("the current at bus {} is not only the unit's", measured_at),
+                      kOfBoth);
     if (!way.same_ratio)
       problems_.add(fmt::format("parallel transformers of different ratios between bus {} and bus {}",
                                 unit_.bus, measured_at),
-                    net().origin, "they carry a current in circle, which the model does not have",
+                    net().origin, "their circulating current is not modelled",
                     "take the records at the unit's own bus");
   }
   /// Adds the effect STEPUP, with its impedance on the machine's side and base.
@@ -424,7 +424,7 @@ class UnitReader {
     at(block, "ratio") = way.ratio;
     if (way.magnetising)
       unit_.notes.push_back("the transformer's magnetising current is left out (" + where + ")");
-    unit_.notes.push_back("the transformer is that of " + where);
+    unit_.notes.push_back("the transformer is taken from " + where);
     block.effect->check(nullptr, block.p.data(), where, problems_);
   }
   static double& at(plant::Block& block, const char* name) {
@@ -433,7 +433,7 @@ class UnitReader {
 
   static constexpr int kTransformerLines = 4;
   static constexpr const char* kOfBoth =
-      "make a plant file of each unit, and of all of them a point file for --point "
+      "make a plant file of each unit and one point file of all for --point "
       "(configs/plants/README.md), or take the records at the unit's own bus";
   const UnitChoice& choice_;
   formats::RawSurvey survey_;

@@ -21,7 +21,7 @@ std::string unit_dyd(const plant::Plant& plant, int bus, const std::string& id,
                                     .reactance = of_raw(effect.raw_reactance)};
   std::string text;
   if (plant.transformer.effect) {
-    text += "# The case holds the step-up transformer, on the machine's base:";
+    text += "# The case contains the step-up transformer, on the machine's base:";
     for (std::size_t i = 0; i < plant.transformer.p.size(); ++i)
       text += fmt::format(" {} = {}", plant.transformer.effect->parameters[i].name,
                           formats::psse::shortest(plant.transformer.p[i]));

@@ -20,7 +20,7 @@ std::string dyr_record(const plant::Block& block, const std::string& owner, int 
   const Effect& effect = *block.effect;
   const std::string where = file + ", " + owner;
   if (effect.dyr_name.empty()) {
-    problems.add("model " + std::string(effect.name), where, "it has no form in a .dyr",
+    problems.add("model " + std::string(effect.name), where, "it has no .dyr form",
                  "remove it before writing");
     return {};
   }
@@ -58,7 +58,7 @@ std::string plant_record(const Grid& grid, const plant::Plant& plant, const plan
                    file + ", generator " + plant.name,
                    "the network has " + std::string(field) + " = " + formats::psse::shortest(value) +
                        " pu, and PSS/E keeps it in the .raw",
-                   "set it in the network too");
+                   "set the same value in the network");
   };
   in_raw(effect.raw_resistance, g.zr, "ZR");
   in_raw(effect.raw_reactance, g.zx, "ZX");
@@ -90,8 +90,8 @@ void write_transformer(const Grid& grid, const plant::Plant& plant, const std::s
   const network::Generator& g = grid.network.generators[static_cast<std::size_t>(plant.generator)];
   const plant::Block raw = transformer_of(g);
   if (plant.transformer.effect == raw.effect && plant.transformer.p == raw.p) return;
-  problems.add("a step-up transformer that is not the network's", file + ", generator " + plant.name,
-               "PSS/E keeps it in the .raw (RT, XT), a .dyr has no form of it",
+  problems.add("a step-up transformer that differs from the network's", file + ", generator " + plant.name,
+               "PSS/E keeps it in the .raw (RT, XT), a .dyr cannot contain it",
                "set the generator's RT and XT in the network, or remove it before writing");
 }
 
@@ -136,12 +136,13 @@ std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, 
     return index < 0 ? std::string() : shortest(plant.machine.p[static_cast<std::size_t>(index)]);
   };
   const Effect& machine = *plant.machine.effect;
-  std::string text = fmt::format("// The .raw holds of this generator: MBASE = {} MVA", shortest(plant.mva));
+  std::string text =
+      fmt::format("// Values of this generator in the .raw: MBASE = {} MVA", shortest(plant.mva));
   if (machine.raw_resistance >= 0) text += ", ZR = " + raw(machine.raw_resistance);
   if (machine.raw_reactance >= 0) text += ", ZX = " + raw(machine.raw_reactance);
   text += "\n";
   if (plant.transformer.effect) {
-    text += "// The .raw holds the step-up transformer, on MBASE:";
+    text += "// Step-up transformer in the .raw, on MBASE:";
     for (std::size_t i = 0; i < plant.transformer.p.size(); ++i)
       text += fmt::format(" {} = {}", plant.transformer.effect->parameters[i].name,
                           shortest(plant.transformer.p[i]));

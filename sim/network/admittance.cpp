@@ -51,11 +51,11 @@ void check_supplied(const Network& network, const Topology& topology, const std:
   const auto live =
       std::ranges::count_if(network.buses, [](const Bus& b) { return b.type != BusType::isolated; });
   if (tripped && static_cast<std::ptrdiff_t>(dead.size()) < live) return;
-  throw InputError({bus_list(network, dead) + (dead.size() == 1 ? " is" : " are") + " islanded",
-                    network.origin,
-                    tripped ? "with what is tripped no generator is left"
-                            : "no path through branches in service leads to a generator",
-                    tripped ? "trip less" : "close a branch, or remove what is cut off"});
+  throw InputError(
+      {bus_list(network, dead) + (dead.size() == 1 ? " is" : " are") + " islanded", network.origin,
+       tripped ? "the trips leave no generator in service"
+               : "no path through branches in service leads to a generator",
+       tripped ? "trip fewer generators or branches" : "close a branch, or remove the islanded buses"});
 }
 
 }  // namespace

@@ -219,9 +219,10 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
     if (!at_load_bus(g)) continue;
     const Complex with = left[static_cast<std::size_t>(g.bus)], without = with + given[g.bus];
     const bool shown = std::abs(with) < std::abs(without);
-    n.remark(shown ? "generators at a bus of type 1 deliver their P and Q, as the file's voltages show"
-                   : "generators at a bus of type 1 are out of service, as in PSS/E",
-             unit_text(n, g) + " (" + where(i) + ")");
+    n.remark(
+        shown ? "generators at a bus of type 1 deliver their P and Q, because the file's voltages confirm it"
+              : "generators at a bus of type 1 are out of service, as in PSS/E",
+        unit_text(n, g) + " (" + where(i) + ")");
     if (!shown) g.in_service = false;
   }
 }
@@ -229,7 +230,7 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
 /// A generator whose regulated bus is out of service regulates its own bus.
 void regulate_own_bus(Network& n, Generator& g, const std::string& place) {
   if (g.regulated < 0 || at(n, g.regulated).type != BusType::isolated) return;
-  n.remark("generators that hold a bus out of service hold their own at the file's voltage", place);
+  n.remark("generators that regulate a bus out of service regulate their own at the file's voltage", place);
   g.regulated = -1;
   g.vset = at(n, g.bus).vm;
 }
@@ -241,7 +242,7 @@ void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, boo
   if (duplicates.empty()) return;
   if (!by_voltages) {
     for (const Duplicate& d : duplicates)
-      n.remark("equipment that appears a second time is kept under a new id, as asked", kept_as(d));
+      n.remark("duplicate equipment is kept under a new id, as asked", kept_as(d));
     return;
   }
   const FileBalance balance(n, duplicates, devices);
@@ -250,17 +251,15 @@ void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, boo
     const auto k = static_cast<Eigen::Index>(i);
     const auto [with, without] = balance.with_and_without(k, kept);
     const std::string numbers =
-        ": its buses are off balance by " + mva(n, with) + " with it, " + mva(n, without) + " without it";
+        ": the imbalance of its buses is " + mva(n, with) + " with it, " + mva(n, without) + " without it";
     if (std::abs(with - without) < kSameImbalance)
-      n.remark(
-          "equipment that appears a second time is kept under a new id; the file's voltages do not "
-          "depend on it",
-          kept_as(duplicates[i]));
+      n.remark("duplicate equipment is kept under a new id; the file's voltages do not depend on it",
+               kept_as(duplicates[i]));
     else if (kept[k] > 0.0)
-      n.remark("equipment that appears a second time is kept under a new id, as the file's voltages show",
+      n.remark("duplicate equipment is kept under a new id, because the file's voltages confirm it",
                kept_as(duplicates[i]) + numbers);
     else
-      n.remark("equipment that appears a second time is left out, as the file's voltages show",
+      n.remark("duplicate equipment is left out, because the file's voltages contradict it",
                duplicates[i].text + numbers);
   }
   erase_equipment(n, [&]<class E>(Duplicate::Kind kind, const E& e) {
@@ -283,13 +282,13 @@ void settle_generators(Network& n, const std::function<std::string(std::size_t)>
     if (g.regulated == g.bus) g.regulated = -1;
     regulate_own_bus(n, g, place);
     if (g.q_min > g.q_max) {
-      n.remark("reactive limits with QB above QT are taken as none", place);
+      n.remark("reactive limits with QB above QT are ignored", place);
       g.q_min = -99.99;
       g.q_max = 99.99;
     }
     const Generator& other = *first.emplace(g.bus, &g).first->second;
     if (other.vset == g.vset && other.regulated == g.regulated) continue;
-    n.remark("generators of one bus that hold different voltages hold that of the first",
+    n.remark("generators of one bus with different set-points take that of the first",
              place + ": " + pu(g.vset) + " pu becomes " + pu(other.vset) + " pu");
     g.vset = other.vset;
     g.regulated = other.regulated;
@@ -317,7 +316,7 @@ void settle_islands(Network& n) {
     const int largest = *std::ranges::max_element(buses, {}, size);
     if (size(largest) > 0.0) {
       n.buses[static_cast<std::size_t>(largest)].type = BusType::slack;
-      n.remark("islands without a slack bus get that of their largest generator",
+      n.remark("islands without a slack bus get one at their largest generator",
                "bus " + std::to_string(at(n, largest).number) + " of " + bus_list(n, buses));
       continue;
     }
@@ -379,7 +378,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   if (at_bus.empty() || !problems.empty()) return;
   if (how == DeviceReplacement::none) {
     for (const auto& [b, names] : at_bus)
-      n.remark("equipment without a model here is left out, as asked",
+      n.remark("equipment without a model is left out, as asked",
                names + " at bus " + std::to_string(at(n, b).number));
     return;
   }
@@ -393,11 +392,12 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   const bool finite = std::ranges::all_of(
       left, [](const Complex& c) { return std::isfinite(c.real()) && std::isfinite(c.imag()); });
   if (!finite || (worst > most && how == DeviceReplacement::checked)) {
-    problems.add(at_bus.begin()->second + " without a model here", where,
-                 "the file's voltages would say what it draws, but they are no solution: they leave " +
-                     pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),
-                 "solve the case before it is saved, or go on with --devices file, which takes them all the "
-                 "same, or with --devices none, which leaves the equipment out");
+    problems.add(
+        at_bus.begin()->second + " without a model", where,
+        "its power follows from the file's voltages, but they are not a solution: the mismatch is " +
+            pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),
+        "solve the case before saving it, or continue with --devices file, which accepts the mismatch, "
+        "or with --devices none, which leaves the equipment out");
     return;
   }
   for (const auto& [bus_of, names] : at_bus) {
@@ -408,14 +408,14 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
     while (std::ranges::any_of(n.loads, [&](const Load& l) { return l.bus == b && l.id == id; })) id += "~";
     const Bus& of = at(n, b);
     n.loads.push_back({b, id, draws, {}, {}, of.area, of.zone, of.owner, LoadKind::device});
-    n.remark("equipment without a model here draws what the file's voltages say, as a constant P and Q",
+    n.remark("equipment without a model draws constant P and Q, computed from the file's voltages",
              names + " at bus " + std::to_string(of.number) + ": " + power_text(draws, n.base_mva));
     constexpr double far = 0.1;  // of the schedule, in addition to the file's rounding
     if (const double scheduled = schedule.at(b);
         sharing[pool[i]] == 1 && std::abs(draws.real() - scheduled) > most + far * std::abs(scheduled))
       n.remark(
-          "equipment without a model here draws far from what it is scheduled to: solve the case, or "
-          "correct the schedule or the voltages",
+          "equipment without a model draws a power far from its schedule: solve the case, or correct "
+          "the schedule or the voltages",
           names + " at bus " + std::to_string(of.number) + ": " + megawatts(draws.real(), n) +
               " by the file's voltages, " + megawatts(scheduled, n) + " scheduled");
   }
@@ -425,8 +425,7 @@ void check_finite(const Network& n, const std::string& file, Problems& problems)
   const auto report = [&](const std::string& what, int bus, std::initializer_list<double> values) {
     if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) return;
     problems.add(what + " at " + n.bus_text(bus) + " is beyond the range of numbers", file,
-                 "a value or a base it is divided by is absurdly large or small",
-                 "correct the value or the base");
+                 "a value is extremely large, or its base extremely small", "correct the value or the base");
   };
   for (const Load& l : n.loads)
     report("load '" + l.id + "'", l.bus,

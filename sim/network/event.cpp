@@ -24,7 +24,7 @@ void check_times(const Interval& i, const std::string& where, Problems& problems
     problems.add("start = " + seconds(i.start), where, "a run starts at 0 s", "give a start of 0 s or later");
   if (!(i.end > i.start))
     problems.add("end = " + seconds(i.end) + " with start = " + seconds(i.start), where,
-                 "it ends before it has started", "give an end after the start");
+                 "the end must follow the start", "give an end after the start");
 }
 
 void check_overlap(const std::vector<Interval>& list, const std::string& noun, const auto& name,
@@ -98,7 +98,7 @@ bool known_generator(int generator, const Network& network, Problems& problems) 
   if (generator >= 0 && generator < static_cast<int>(network.generators.size())) {
     if (network.generators[static_cast<std::size_t>(generator)].in_service) return true;
     problems.add("event of a generator out of service", generator_name(network, generator),
-                 "nothing runs there", "choose a generator in service");
+                 "it is not connected", "choose a generator in service");
     return false;
   }
   problems.add("generator index " + std::to_string(generator), "event",
@@ -115,8 +115,8 @@ std::vector<Interval> generator_intervals(const Event& event, const Network& net
     const std::string where = generator_name(network, t.generator);
     check_times({t.generator, t.time, kForGood}, where, problems);
     if (!(t.part > 0.0 && t.part <= 1.0))
-      problems.add("a trip of " + std::to_string(t.part) + " of its units", where,
-                   "it is a part of the whole", "give more than 0 and at most 1");
+      problems.add("a trip of " + std::to_string(t.part) + " of the units", where,
+                   "it must be a fraction of the units", "give more than 0 and at most 1");
     if (t.part >= 1.0) list.push_back({t.generator, t.time, kForGood});
   }
   check_overlap(
@@ -138,8 +138,8 @@ void check_parts(const Event& event, const Network& network, Problems& problems)
   for (const auto& [generator, left] : partly_tripped_at(event, kForGood, {}))
     if (left < least && generator >= 0 && generator < static_cast<int>(network.generators.size()))
       problems.add("partial trips that leave " + std::to_string(left) + " of the units",
-                   generator_name(network, generator), "some must stay",
-                   "lower the parts, or trip the whole generator");
+                   generator_name(network, generator), "a part must stay connected",
+                   "lower the fractions, or trip the whole generator");
 }
 
 std::vector<Interval> load_intervals(const Event& event, const Network& network, Problems& problems) {
@@ -154,7 +154,7 @@ std::vector<Interval> load_intervals(const Event& event, const Network& network,
     const std::string where = bus_name(network, step.bus);
     check_times({step.bus, step.t_on, step.t_off.value_or(kForGood)}, where, problems);
     if (!std::isfinite(step.power.real()) || !std::isfinite(step.power.imag()))
-      problems.add("a load step that is no number", where, "P and Q must be finite", "give P and Q in pu");
+      problems.add("a load step that is not finite", where, "P and Q must be finite", "give P and Q in pu");
     list.push_back({step.bus, step.t_on, step.t_off.value_or(kForGood)});
   }
   return list;
@@ -166,7 +166,8 @@ void check_setpoints(const Event& event, const Network& network, Problems& probl
     const std::string where = generator_name(network, step.generator);
     check_times({step.generator, step.time, kForGood}, where, problems);
     if (!std::isfinite(step.dVref) || !std::isfinite(step.dPref))
-      problems.add("a reference step that is no number", where, "it must be finite", "give it in pu");
+      problems.add("a reference step that is not finite", where, "it must be a finite number",
+                   "give it in pu");
   }
 }
 

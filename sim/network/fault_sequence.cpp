@@ -34,7 +34,7 @@ void check_zero_sequence(FaultType type, bool given, Problems& problems) {
     problems.add("no zero-sequence impedance", "--fault-type", "the fault's current returns through ground",
                  "give --z0 R:X, of the grid at the faulted bus in pu on the network's base");
   if (!to_ground(type) && given)
-    problems.add("a zero-sequence impedance", "--z0", "a fault without ground does not read it",
+    problems.add("a zero-sequence impedance", "--z0", "a fault without ground has no zero-sequence current",
                  "leave it out, or choose --fault-type slg or llg");
 }
 
@@ -85,7 +85,7 @@ void make_unbalanced(Event& event, FaultType type, std::optional<Complex> z0, co
   if (type == FaultType::three_phase) return;
   if (event.faults.size() != 1) {
     problems.add(fmt::format("{} faults", event.faults.size()), "--fault-type",
-                 "an unbalanced fault is played alone", "give one --fault");
+                 "an unbalanced fault must be the only one", "give one --fault");
     return;
   }
   if (!problems.empty()) return;

@@ -109,7 +109,7 @@ PowerFlow flow_of_file(Network& network) {
   }
   std::ranges::sort(sizes, std::greater{});
   for (const auto& [size, i] : sizes)
-    network.remark("what the file's voltages leave unbalanced is drawn as constant admittance, largest first",
+    network.remark("imbalances of the file's voltages are balanced by constant admittances, largest first",
                    network.bus_text(static_cast<int>(i)) + " " + std::to_string(size) + " MVA");
   return flow;
 }

@@ -354,10 +354,9 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
   }
   const double size = newton.mismatch();
   if (size <= options.tolerance)
-    throw InputError(
-        {"the power flow balances only with voltages near 0", network.origin,
-         "that is no operating point: the grid cannot carry its loads",
-         "check loads and impedances, or start from the file's voltages as they stand (--start file)"});
+    throw InputError({"the power flow balances only with voltages near 0", network.origin,
+                      "this is not an operating point: the grid cannot supply its loads",
+                      "check loads and impedances, or keep the file's voltages (--start file)"});
   throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
                         " with a mismatch of " + std::to_string(size) + " pu (" +
                         std::to_string(size * network.base_mva) + " MVA)" +
@@ -366,8 +365,8 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
                     std::to_string(options.limit) +
                         " iterations from the file's voltages and from a flat start did not balance it",
                     std::string("check loads, dispatch and impedances near that bus") +
-                        (limited ? ", leave the limits out (--q-limits ignore)" : "") +
-                        ", or start from the file's voltages as they stand (--start file)"});
+                        (limited ? ", ignore the limits (--q-limits ignore)" : "") +
+                        ", or keep the file's voltages (--start file)"});
 }
 
 /// Shares the power of a bus among its generators, without limits. If the solution is that of the file, the

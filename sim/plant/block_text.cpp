@@ -28,7 +28,7 @@ void set_parameters(Block& block, const std::string& text, const std::string& wh
     const char* end = one.data() + one.size();
     const auto read = std::from_chars(one.data() + equal + 1, end, value);
     if (read.ec != std::errc{} || read.ptr != end || !std::isfinite(value))
-      problems.add("'" + one + "'", where, "its value is no number", "write it like Pp=0.4");
+      problems.add("'" + one + "'", where, "its value is not a number", "write it like Pp=0.4");
     block.p[static_cast<std::size_t>(index)] = value;
   }
 }
@@ -47,7 +47,7 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
   }
   if (!is_control(effect.slot) && effect.slot != Slot::measurement)
     return Problem{std::string(effect.name) + " for plant " + plant.name, where,
-                   "it is a " + std::string(slot_name(effect.slot)) + ", not something to add to a plant",
+                   "it is a " + std::string(slot_name(effect.slot)) + ", which cannot be added to a plant",
                    effect.slot == Slot::load ? "use --load BUS:EFFECT" : "give it in the .dyr"};
   if (plant.machine.effect)
     if (const std::string why = slot_conflict(*plant.machine.effect, effect); !why.empty())
@@ -77,7 +77,7 @@ Attachment read_attachment(const std::string& text, const library::EffectLibrary
   if (!effect) {
     std::vector<std::string> names;
     for (const Effect* e : library.all()) names.emplace_back(e->name);
-    problems.add("no effect '" + name + "'", where, "the library has none of that name",
+    problems.add("no effect '" + name + "'", where, "the library has no effect of that name",
                  suggestion(name, names, "use one of " + library.names() + ", or give its file with --law"));
     return {};
   }

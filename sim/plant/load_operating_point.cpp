@@ -60,12 +60,12 @@ OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& 
   Signals<T> s = o.s;
   equations.current(o.c.data(), o.x.data(), s);
   const double gap = std::hypot(value_of(s.Ir) - current.real(), value_of(s.Ii) - current.imag());
-  if (!(gap < tolerance)) refuse(fmt::format("its current would be off by {:.3g} pu", gap));
+  if (!(gap < tolerance)) refuse(fmt::format("its current would differ by {:.3g} pu", gap));
   std::vector<T> dx(o.x.size(), T(0.0));
   equations.derivative(o.c.data(), o.x.data(), s, dx.data());
   for (std::size_t k = 0; k < dx.size(); ++k)
     if (!(std::abs(value_of(dx[k])) < tolerance))
-      refuse(fmt::format("state {} moves at {:.3g} per second", effect.states[k].name, value_of(dx[k])));
+      refuse(fmt::format("state {} changes by {:.3g} per second", effect.states[k].name, value_of(dx[k])));
   problems.raise();
   return o;
 }

@@ -17,8 +17,8 @@ Phasors phasors_of(const TerminalRecord& record, double rate, double frequency, 
   for (std::size_t k = 0; k < record.V.size(); ++k) {
     if (record.V[k] == 0.0)
       throw InputError({fmt::format("V = 0 pu after {:g} s", static_cast<double>(k) / rate), where,
-                        "P and Q do not tell the current there, so no instrument can be put on it",
-                        "let the fault have an impedance, or measure another plant"});
+                        "P and Q do not determine the current there, so no instrument can be applied",
+                        "give the fault an impedance, or measure another plant"});
     const Complex v = std::polar(record.V[k], record.theta[k]);
     phasors.V.push_back(v);
     phasors.I.push_back(std::conj(Complex(record.P[k], record.Q[k]) / v));
@@ -61,7 +61,7 @@ std::optional<Block> read_measurement(const std::string& text, const library::Ef
   const Effect* effect = library.find(text.substr(0, colon));
   if (!effect || effect->slot != Slot::measurement) {
     problems.add("no measurement effect '" + text.substr(0, colon) + "'", where,
-                 "there are " + library.names(Slot::measurement),
+                 "the measurement effects are " + library.names(Slot::measurement),
                  "write EFFECT[:PARAM=VALUE,...] with one of these");
     return {};
   }

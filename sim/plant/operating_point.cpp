@@ -149,7 +149,7 @@ class Initialiser {
     const double gap =
         std::hypot(value_of(again.Ir) - value_of(o_.s.Ir), value_of(again.Ii) - value_of(o_.s.Ii));
     if (!(gap * std::hypot(value_of(j[joint_rm]), value_of(j[joint_xm])) < kTolerance))
-      problems_.add(fmt::format("terminal current off by {:.3g} pu", gap), where(),
+      problems_.add(fmt::format("terminal current differs by {:.3g} pu", gap), where(),
                     std::string(plant_.machine.effect->name) + " does not reproduce the operating point",
                     "check its parameters");
   }
@@ -183,16 +183,16 @@ class Initialiser {
       if (!(std::abs(value_of(is) - value_of(should)) < kTolerance))
         problems_.add(fmt::format("{} = {:.6g} pu", signal, value_of(is)), where(),
                       fmt::format("the machine needs {:.6g} pu at its operating point", value_of(should)),
-                      "check the limits of the model that makes it");
+                      "check the limits of the model that outputs it");
     };
     off("Efd", s.Efd, o_.Efd);
     off("Tm", s.Tm, o_.Tm);
     for (const auto& p : places_)
       for (std::size_t k = 0; k < p.effect->states.size(); ++k)
         if (!(std::abs(value_of(dx[p.x + k])) < kTolerance))
-          problems_.add(fmt::format("state {} of {} moves at {:.3g} per second", p.effect->states[k].name,
+          problems_.add(fmt::format("state {} of {} changes by {:.3g} per second", p.effect->states[k].name,
                                     p.effect->name, value_of(dx[p.x + k])),
-                        where(), "the operating point must be steady to 1e-9",
+                        where(), "derivatives at the operating point must be below 1e-9",
                         "check the model's parameters");
   }
 

@@ -99,7 +99,7 @@ for command in "simulate --out $work/x.csv" "plant --bus 32" inventory; do
   (($(wc -l <"$work/stderr") == 1)) || fail "$command: more than one sentence: $(cat "$work/stderr")"
 done
 head -c $(($(wc -c <"$dyr") * 2 / 3)) "$dyr" >"$work/cut.dyr"
-refuses "cut off" "may be cut off" "$swingbank" simulate --raw "$raw" --dyr "$work/cut.dyr" --out "$work/x.csv"
+refuses "cut off" "may be truncated" "$swingbank" simulate --raw "$raw" --dyr "$work/cut.dyr" --out "$work/x.csv"
 {
   cat "$dyr"
   echo "32 'SEXS' 1 0.1 10 100 0.1 -500 /"

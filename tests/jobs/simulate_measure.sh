@@ -76,7 +76,7 @@ refuses "no such instrument" "no measurement effect 'SEXS' at --measure SEXS \(t
   simulate --measure SEXS --out "$work/x.csv"
 refuses "no such parameter" "CTERROR has gain, phase" simulate --measure CTERROR:gian=1 --out "$work/x.csv"
 refuses "a dead instrument" "the current would be zero" simulate --measure CTERROR:gain=-1 --out "$work/x.csv"
-refuses "a bolted terminal" "V = 0 pu after 1.+ s at plant 2 \(P and Q do not tell the current there" \
+refuses "a bolted terminal" "V = 0 pu after 1.+ s at plant 2 \(P and Q do not determine the current there" \
   "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 2 --rate 60 \
   --fault 2:1:1.05 --plants 2 --measure CTERROR:gain=0.1 --out "$work/x.csv"
 [[ ! -e $work/x.csv ]] || fail "a refused run left a file"

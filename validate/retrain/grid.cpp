@@ -24,8 +24,7 @@ void require_expressible(const plant::PlantModel& model) {
   const auto& machine = *model.plant.machine.effect;
   const std::string remedy = "give --dataset FILE, a dataset about this plant (configs/datasets)";
   if (machine.dyr_name.empty())
-    problems.add("a plant with " + std::string(machine.name), model.origin, "it has no form in a .dyr",
-                 remedy);
+    problems.add("a plant with " + std::string(machine.name), model.origin, "it has no .dyr form", remedy);
   const auto& c = model.conventions;
   const auto standard = c.mechanical_power ? sim::Conventions::psse() : sim::Conventions::andes();
   if (c.speed_voltage != standard.speed_voltage)

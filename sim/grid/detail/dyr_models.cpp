@@ -151,7 +151,7 @@ void find_named_buses(std::vector<formats::DyrRecord>& records, const network::N
 }
 
 std::string lacking_text(const std::string& dyr) {
-  return "there is no such model here; 'swingbank effects --coverage " + dyr + "' lists those that there are";
+  return "Swingbank has no such model; 'swingbank effects --coverage " + dyr + "' lists the available ones";
 }
 std::string machine_names() {
   std::string names;
@@ -165,7 +165,7 @@ std::string columns_text(const Effect& effect) {
   for (const int column : effect.dyr_columns)
     text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
   if (effect.at_shunt)
-    text += fmt::format(", and behind the first {} of {} switched shunts whether it is switched and its id",
+    text += fmt::format(", and after the first {} a flag and an id for each of {} switched shunts",
                         effect.at_shunt->columns, effect.at_shunt->beside);
   return text;
 }
@@ -263,7 +263,7 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
     const bool cut = record.unended && has < takes;
     problems.add(record.model + " with " + std::to_string(has) + " parameters", where,
                  "it takes " + columns_text(effect) +
-                     (cut ? "; no '/' ends the record: the file may be cut off there" : ""),
+                     (cut ? "; no '/' ends the record: the file may be truncated there" : ""),
                  (cut ? "restore the file, or give" : "give") +
                      std::string(" every parameter, in this order, or let --complete-records do it"));
     return {};
@@ -271,12 +271,12 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
   const std::string record_text = fmt::format("{} of '{}' at bus {} has {} of {} values", record.model,
                                               record.id, record.bus, has, takes);
   if (has < takes)
-    return {true, "values that records lack at their end are zero or standard, as asked",
+    return {true, "missing values at the end of records are zero or defaults, as asked",
             fmt::format("{}: {} ({})", record_text, fill(effect, record.values, lacking), where)};
   const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
                                     record.values.end());
   record.values.resize(takes);
-  return {true, "values that records have beyond those of their model are left out, as asked",
+  return {true, "surplus values at the end of records are left out, as asked",
           fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {
@@ -380,7 +380,7 @@ void check_fit(const plant::Plant& plant, const std::string& where, Problems& pr
   for (const plant::Block& block : plant.controls)
     if (const std::string why = slot_conflict(*plant.machine.effect, *block.effect); !why.empty())
       problems.add(fmt::format("{} for generator {}", block.effect->name, plant.name), where, why,
-                   "remove the record, or correct the source's");
+                   "remove the record, or correct the record of the source");
 }
 
 }  // namespace swingbank::sim::grid

@@ -153,9 +153,9 @@ ReferenceSystem::ReferenceSystem(const grid::Grid& grid, const ReferencePlants& 
       if (move.generator == generator) setpoint_[u] = move;
   }
   if (const std::vector<int> lost = cut_off(grid, segment.topology); !lost.empty())
-    throw InputError({"cut off: " + network::bus_list(grid.network, lost), grid.network.origin,
-                      "no machine and no fault is left in that part of the grid",
-                      "keep a branch to it closed, or take it out of the network"});
+    throw InputError({"islanded converters: " + network::bus_list(grid.network, lost), grid.network.origin,
+                      "that part of the grid has neither machine nor fault",
+                      "keep a branch to it closed, or remove it from the network"});
   build_network(grid, segment.topology);
 }
 
@@ -334,8 +334,8 @@ bool ReferenceSystem::search_voltages(double t, double* y) const {
 void ReferenceSystem::solve_voltages(double t, double* y) const {
   if (search_voltages(t, y)) return;
   throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),
-                    "the loads and sources have no common solution after this switching",
-                    "use load models that give way at low voltage, or another event"});
+                    "loads and sources have no solution after this switching",
+                    "use load models whose power decreases at low voltage, or another event"});
 }
 
 void ReferenceSystem::derivatives(double t, const double* y, double* yp) const {

@@ -245,7 +245,7 @@ TEST(CutOffBus, LosesItsLoadWithARemark) {
   };
   EXPECT_NEAR(total(60) - total(61), 1.5, 0.1);
   grid::note_shed_loads(grid, event);
-  EXPECT_THAT(formats::places(grid.network, "cuts off from every generator"),
+  EXPECT_THAT(formats::places(grid.network, "separates from every generator"),
               ElementsAre("bus 104 at 1 s: 150.00 MW, 30.00 Mvar"));
 }
 
@@ -254,8 +254,10 @@ TEST(CutOffBus, IsRefused_WhenNoGeneratorIsLeft) {
   grid::EventTexts texts;
   texts.generator_trips = {"101:1", "102:1"};
   const network::Event event = event_of(grid, texts);
-  EXPECT_THAT(formats::sentences_of([&] { in_reference(grid, event); }), HasSubstr("no generator is left"));
-  EXPECT_THAT(formats::sentences_of([&] { in_batch(grid, event); }), HasSubstr("no generator is left"));
+  EXPECT_THAT(formats::sentences_of([&] { in_reference(grid, event); }),
+              HasSubstr("the trips leave no generator"));
+  EXPECT_THAT(formats::sentences_of([&] { in_batch(grid, event); }),
+              HasSubstr("the trips leave no generator"));
 }
 
 }  // namespace

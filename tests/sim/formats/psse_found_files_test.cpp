@@ -175,7 +175,7 @@ TEST(FoundFiles, GeneratorsOfOneBusShareAVoltageSetpoint) {
   c.generators += "102,'2',1,0,1,-1,1.03,0,100,0,0.3\n";
   const network::Network n = c.read();
   EXPECT_EQ(n.generators[2].vset, 1.02);
-  EXPECT_THAT(places(n, "hold different voltages"),
+  EXPECT_THAT(places(n, "with different set-points"),
               ::testing::ElementsAre(HasSubstr("1.03 pu becomes 1.02 pu")));
 }
 

@@ -57,7 +57,7 @@ TEST(RepeatedBranch, IsKeptUnderANewId_WhenTheVoltagesShowIt) {
   ASSERT_THAT(n.branches, SizeIs(3));
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_TRUE(n.branches[2].in_service);
-  EXPECT_THAT(places(n, "kept under a new id, as the file's voltages show"),
+  EXPECT_THAT(places(n, "kept under a new id, because the file's voltages confirm it"),
               ElementsAre(AllOf(HasSubstr("branch 101-103 circuit '1'"), HasSubstr("as 'R1'"))));
   const auto a = network::solve_power_flow(n), b = network::solve_power_flow(reference);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
@@ -70,7 +70,7 @@ TEST(RepeatedBranch, IsOmitted_WhenTheVoltagesShowIt) {
   const network::Network n = read(c, repeated(Repeated::voltages));
   ASSERT_THAT(n.branches, SizeIs(3));
   EXPECT_FALSE(n.branches[2].in_service);
-  EXPECT_THAT(places(n, "left out, as the file's voltages show"), SizeIs(1));
+  EXPECT_THAT(places(n, "left out, because the file's voltages contradict it"), SizeIs(1));
   const auto a = network::solve_power_flow(n), b = network::solve_power_flow(RawCase{}.read());
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
@@ -116,8 +116,8 @@ TEST(RepeatedEquipment, OfEveryKindIsDecidedByTheVoltages) {
     RawCase stored = twice(once);
     store_voltages(stored, with ? read(stored, repeated(Repeated::kept)) : once.read());
     const network::Network n = read(stored, repeated(Repeated::voltages));
-    EXPECT_THAT(places(n, with ? "kept under a new id, as the file's voltages show"
-                               : "left out, as the file's voltages show"),
+    EXPECT_THAT(places(n, with ? "kept under a new id, because the file's voltages confirm it"
+                               : "left out, because the file's voltages contradict it"),
                 SizeIs(4))
         << with;
     EXPECT_EQ(n.loads.size(), with ? 3u : 2u);
@@ -225,17 +225,17 @@ TEST(DcLine, FarFromItsScheduleIsNamed) {
   c.other["two-terminal dc line"] = line("1", "100.0");
   const network::Network n = read(c, file);
   EXPECT_THAT(
-      places(n, "far from what it is scheduled"),
+      places(n, "far from its schedule"),
       ::testing::Contains(AllOf(HasSubstr("dc line 'DC1' at bus 103"), HasSubstr("-98.00 MW scheduled"))));
   // 500 A at 200 kV are the same 100 MW; a negative value is the inverter's power.
   c.other["two-terminal dc line"] = line("2", "500.0");
-  EXPECT_THAT(places(read(c, file), "far from what it is scheduled"),
+  EXPECT_THAT(places(read(c, file), "far from its schedule"),
               ::testing::Contains(HasSubstr("-98.00 MW scheduled")));
   c.other["two-terminal dc line"] = line("1", "-100.0");
-  EXPECT_THAT(places(read(c, file), "far from what it is scheduled"),
+  EXPECT_THAT(places(read(c, file), "far from its schedule"),
               ::testing::Contains(HasSubstr("-100.00 MW scheduled")));
   c.other["two-terminal dc line"] = line("1", "0.0");
-  for (const std::string& place : places(read(c, file), "far from what it is scheduled"))
+  for (const std::string& place : places(read(c, file), "far from its schedule"))
     EXPECT_THAT(place, ::testing::Not(HasSubstr("at bus 103")));
 }
 

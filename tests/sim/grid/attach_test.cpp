@@ -41,12 +41,12 @@ TEST(Attach, ReportsErrors) {
       {"3:NOTHING", "no effect 'NOTHING'"},
       {"9:FORCEDOSC", "no plant 9 at --attach 9:FORCEDOSC (the plants are 1, 3)"},
       {"3:FORCEDOSC:size=1", "FORCEDOSC has amplitude, frequency"},
-      {"3:FORCEDOSC:amplitude=big", "its value is no number"},
-      {"3:FORCEDOSC:amplitude=nan", "its value is no number"},
+      {"3:FORCEDOSC:amplitude=big", "its value is not a number"},
+      {"3:FORCEDOSC:amplitude=nan", "its value is not a number"},
       {"3:FORCEDOSC:frequency=-1", "an oscillation has a period"},
       {"3:EXST1", "a second exciter, EXST1, for plant 3"},
       {"3:SEXS", "it already has SEXS"},
-      {"3:GENROU", "it is a machine, not something to add to a plant"},
+      {"3:GENROU", "it is a machine, which cannot be added to a plant"},
       {"3:ZIP", "use --load BUS:EFFECT"}};
   for (const auto& [text, expected] : cases) {
     const auto list = said(grid, text);

@@ -46,7 +46,7 @@ TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
   // The model of the generator out of service may be unknown; the other two are named.
   const Grid grid =
       make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
-  EXPECT_THAT(places(grid, "has not are left out"),
+  EXPECT_THAT(places(grid, "does not have are left out"),
               ElementsAre(HasSubstr("GENCLS of '1' at bus 103 (case.dyr:4)"), HasSubstr("case.dyr:5")));
 }
 
@@ -63,7 +63,7 @@ TEST(FoundCase, NamesASolutionThatDiffersFromTheFile) {
   options.start_from_file = true;
   const Grid file = make(raw, kBoth, options);
   EXPECT_EQ(file.flow.voltage[2], std::polar(0.99, -8.7 * std::acos(-1.0) / 180.0));
-  EXPECT_THAT(places(file, "leave unbalanced"), ElementsAre(HasSubstr("bus 103 ")));
+  EXPECT_THAT(places(file, "imbalances of the file's voltages"), ElementsAre(HasSubstr("bus 103 ")));
   EXPECT_TRUE(places(file, "differs").empty());
 }
 
@@ -89,7 +89,7 @@ TEST(FoundCase, ReportsViolatedLimitsTogetherOrMovesThem) {
   for (const char* part : {"generator 101", "generator 102", "--widen-limits"})
     EXPECT_THAT(all, HasSubstr(part));
   settle_limits(grid, true);
-  EXPECT_THAT(places(grid, "limits are moved"),
+  EXPECT_THAT(places(grid, "limits are widened"),
               ElementsAre(HasSubstr("VMAX of TGOV1 at generator 101: 0.5 becomes"),
                           HasSubstr("VMAX of TGOV1 at generator 102: 0.5 becomes 1")));
   const plant::Block& governor = grid.plants[1].controls[0];
@@ -106,7 +106,7 @@ TEST(FoundCase, CeilingsOfExcitersAreMovedToo) {
                      "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n101 " +
                      std::string(exciter) + " /\n");
     settle_limits(grid, true);
-    EXPECT_THAT(places(grid, "limits are moved"), ElementsAre(HasSubstr("0.3 becomes"))) << exciter;
+    EXPECT_THAT(places(grid, "limits are widened"), ElementsAre(HasSubstr("0.3 becomes"))) << exciter;
   }
 }
 
@@ -117,9 +117,11 @@ TEST(FoundCase, CompletesOrCutsRecordsOfAnotherLengthOnRequest) {
   options.complete_records = Lacking::zero;
   const Grid grid = make({}, dyr, options);
   EXPECT_EQ(grid.plants[0].machine.p[1], 0.0);
-  EXPECT_THAT(places(grid, "lack at their end"), ElementsAre(HasSubstr("has 1 of 2 values: D = 0 (")))
+  EXPECT_THAT(places(grid, "missing values at the end of records"),
+              ElementsAre(HasSubstr("has 1 of 2 values: D = 0 (")))
       << "each value that was filled in is named";
-  EXPECT_THAT(places(grid, "beyond those of their model"), ElementsAre(HasSubstr("has 3 of 2 values: 7 (")));
+  EXPECT_THAT(places(grid, "surplus values at the end of records"),
+              ElementsAre(HasSubstr("has 3 of 2 values: 7 (")));
   options.complete_records = Lacking::standard;
   const Grid standard = make({}, dyr, options);
   const plant::Block& machine = standard.plants[0].machine;
@@ -151,7 +153,7 @@ TEST(FoundCase, DropsRefusedRecordsOnRequest) {
 TEST(FoundCase, AcceptsGenrouWithoutQAxisTransientCircuitWithARemark) {
   const Grid grid = make({}, "101 'GENROU' 1 8.0 0.03 0 0.05 6.5 0 1.8 1.7 0.3 1.7 0.25 0.2 0.05 0.3 /\n" +
                                  kBoth.substr(kBoth.find('\n') + 1));
-  EXPECT_THAT(places(grid, "in their own way"), ElementsAre(HasSubstr("T'qo = 0")));
+  EXPECT_THAT(places(grid, "the equations interpret differently"), ElementsAre(HasSubstr("T'qo = 0")));
   EXPECT_NO_THROW(plant::operating_point(grid.plants[0], grid.flow.voltage[0], 100.0, grid.conventions));
 }
 
@@ -168,20 +170,21 @@ TEST(FoundCase, ReportsAnIneffectiveExciter) {
                          "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n"
                          "102 'GENCLS' 1 3 0 /\n101" +
                              sexs + "102" + sexs);
-  EXPECT_THAT(places(grid, "do nothing"), ElementsAre("SEXS of generator 102: GENCLS has no field winding"));
+  EXPECT_THAT(places(grid, "without effect"),
+              ElementsAre("SEXS of generator 102: GENCLS has no field winding"));
 }
 
 TEST(FoundCase, RecognisesTruncatedFiles) {
   const auto said = [](const std::string& dyr) { return formats::sentences_of([&] { make({}, dyr); }); };
   const std::string genrou = "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8";
   EXPECT_THAT(said(kBoth.substr(kBoth.find('\n') + 1) + genrou),
-              ::testing::AllOf(HasSubstr("GENROU with 7 parameters"), HasSubstr("may be cut off there")));
+              ::testing::AllOf(HasSubstr("GENROU with 7 parameters"), HasSubstr("may be truncated there")));
   EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n102 'GENC"), HasSubstr("a quote is not closed"));
   EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n101 'SEXS' 1 0.1 10 100 0.1 0 3"),
               ::testing::AllOf(HasSubstr("no machine model for generator '1' at bus 102"),
-                               HasSubstr("no '/' ends the last record, of line 2")));
+                               HasSubstr("no '/' ends the last record, on line 2")));
   EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n"), HasSubstr("all generators before them have one"));
-  EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("cut off")));
+  EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("truncated")));
 }
 
 TEST(FoundCase, RefusedMachineIsNotReportedAsMissing) {
@@ -195,7 +198,7 @@ TEST(FoundCase, RefusedMachineIsNotReportedAsMissing) {
 
 TEST(FoundCase, ReportsUnknownModels) {
   EXPECT_THAT(formats::sentences_of([&] { make({}, kBoth + "101 'EXDC9' 1 1 2 /\n"); }),
-              ::testing::AllOf(HasSubstr("unknown model 'EXDC9'"), HasSubstr("there is no such model here"),
+              ::testing::AllOf(HasSubstr("unknown model 'EXDC9'"), HasSubstr("Swingbank has no such model"),
                                HasSubstr("swingbank effects --coverage case.dyr"),
                                ::testing::Not(HasSubstr("EXDC2"))));
 }

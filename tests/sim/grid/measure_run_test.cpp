@@ -82,7 +82,7 @@ TEST(Measure, ReadsAChainAndReportsErrors) {
        std::vector<std::pair<const char*, const char*>>{{"GENROU", "no measurement effect 'GENROU'"},
                                                         {"", "no measurement effect ''"},
                                                         {"CTERROR:gian=1", "CTERROR has gain, phase"},
-                                                        {"CTERROR:gain=x", "its value is no number"},
+                                                        {"CTERROR:gain=x", "its value is not a number"},
                                                         {"CTERROR:gain=-2", "the current would be zero"}}) {
     Problems problems;
     EXPECT_FALSE(plant::read_measurement(text, library::compiled(), "--measure", problems)) << text;

@@ -47,7 +47,7 @@ TEST(SwitchedShunts, StepsAreKeptInTheNetwork) {
 }
 
 TEST(SwitchedShunts, ReportsAnUnreachableBand) {
-  EXPECT_TRUE(says(with_bank(1.3, 1.4, true), "no step that brings"));
+  EXPECT_TRUE(says(with_bank(1.3, 1.4, true), "no step within their voltage band"));
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
   EXPECT_LT((reduced.y * v - by_hand(t, v)).cwiseAbs().maxCoeff(), kRounding);
   for (std::size_t k = 0; k < network.generators.size(); ++k) t.tripped.push_back(static_cast<int>(k));
   EXPECT_THAT(formats::sentences_of([&] { reduce(network, flow, t, kept); }),
-              HasSubstr("with what is tripped no generator is left"));
+              HasSubstr("the trips leave no generator in service"));
 }
 
 TEST_F(Reduction, IslandWithAGeneratorContinues) {

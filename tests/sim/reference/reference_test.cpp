@@ -252,7 +252,7 @@ TEST(Reference, RefusesATripThatCutsOffABus) {
     run_reference(grid, {}, {});
     FAIL() << "a bus without connection was accepted";
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("cut off: bus 3"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("islanded converters: bus 3"));
   }
 }
 
