@@ -23,8 +23,8 @@ struct Model {
   static constexpr Source defaults_from = literature::andes("WTARA1, but 0.007 for its gain");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
-      {"Ka", "Ka", "pu/deg^2", 0.007, 0.0, 1.0, 0.0, "power taken from the wind less, by the blades' angle"},
-      {"Theta0", "Theta0", "deg", 0.0, -5.0, 30.0, kNoNullValue, "the blades' angle at the start"}};
+      {"Ka", "Ka", "pu/deg^2", 0.007, 0.0, 1.0, 0.0, "reduction of the aerodynamic power by the pitch angle"},
+      {"Theta0", "Theta0", "deg", 0.0, -5.0, 30.0, kNoNullValue, "initial pitch angle"}};
   static constexpr int dyr_columns[] = {Ka, Theta0};
   enum C { ka, theta0, p0, coefficients };
 

@@ -18,7 +18,7 @@ struct Model {
 )";
   enum P { RC, XC };
   static constexpr Source defaults_from =
-      literature::own("no resistance; half the reactance of the standard step-up transformer");
+      literature::own("no resistance; half the reactance of the default step-up transformer");
   static constexpr Source bounds_from =
       literature::own("half of the 1 pu at which the compensated voltage vanishes");
   static constexpr Parameter parameters[] = {

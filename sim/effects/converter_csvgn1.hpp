@@ -28,20 +28,20 @@ struct Model : shared::ControlledCurrent<Model> {
   enum P { K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE, Tfreq };
   static constexpr Source defaults_from = literature::psid("CSVGN1, in its test 49");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kWider = literature::own("wider than the reactor's range, which then is the limit");
+  static constexpr Source kWider = literature::own("wider than the reactor's range, which is then the limit");
   static constexpr Parameter parameters[] = {
-      {"K", "K", "pu/pu", 20.0, 0.01, 1000.0, kNoNullValue, "gain, susceptance by voltage"},
+      {"K", "K", "pu/pu", 20.0, 0.01, 1000.0, kNoNullValue, "gain, susceptance per voltage"},
       {"T1", "T1", "s", 0.0, 0.0, 10.0, 0.0, "first lead"},
       {"T2", "T2", "s", 1.0, 0.0, 10.0, kNoNullValue, "second lead"},
       {"T3", "T3", "s", 0.154833, 0.0, 50.0, kNoNullValue, "first lag (0: bypass)"},
       {"T4", "T4", "s", 1.0, 0.0, 50.0, kNoNullValue, "second lag (0: bypass)"},
       {"T5", "T5", "s", 0.005167, 0.001, 10.0, kNoNullValue, "thyristors"},
       {"RMIN", "RMIN", "Mvar", 0.0, -10000.0, 10000.0, kNoNullValue,
-       "least that the reactor draws at rated voltage"},
+       "smallest reactive power of the reactor at rated voltage"},
       {"VMAX", "VMAX", "pu", 2.0, -10.0, 99.0, kNoNullValue, "upper limit of the regulator", kWider},
       {"VMIN", "VMIN", "pu", -1.0, -99.0, 10.0, kNoNullValue, "lower limit of the regulator", kWider},
       {"CBASE", "CBASE", "Mvar", 60.0, 0.0, 10000.0, kNoNullValue,
-       "what the capacitor delivers at rated voltage"},
+       "reactive power of the capacitor at rated voltage"},
       kTfreq};
   static constexpr int dyr_columns[] = {K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE};
   enum C {
@@ -85,7 +85,8 @@ struct Model : shared::ControlledCurrent<Model> {
     for (const int i : {K, T5, Tfreq})
       if (!(p[i] > 0)) problems.add(says(i), where, "CSVGN1 divides by it", "give a value > 0");
     for (const int i : {T1, T2, T3, T4, CBASE})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a time or a rating", "give a value >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "times and ratings cannot be negative", "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
       problems.add(says(VMAX) + " with " + says(VMIN), where, "the range of the regulator must not be empty",
                    "give VMAX > VMIN");

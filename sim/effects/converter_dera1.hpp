@@ -34,18 +34,18 @@ struct Model : shared::ControlledCurrent<Model> {
   1 - f --> [ fdbd1, fdbd2 ] --> x Ddn below 0, x Dup above --> + Pref + dPref - Pf within femin, femax
       --> [ Kpg + Kig/s, Pmin to Pmax ] (freqFlag 1);  Pref + dPref (freqFlag 0)
       --> [ rate dPmin to dPmax ] --> [ 1/(1 + s Tpord), Pmin to Pmax ] --Pord--> /Vf --> Ipcmd
-  |Ipcmd + j Iqcmd| <= Imax; the one that yields: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
   Ipcmd >= 0 (genFlag 1); down to minus its upper limit (genFlag 0: a battery)
   Ipcmd, Iqcmd x M --> [ 1/(1 + s Tg) ] --> Ip, Iq        Ip rises by rrpwr at most
   M = Mv Mf behind 1/(1 + s Tv)
-  Mv (vtripFlag 1): 1 above Vl1, 0 below Vl0, straight between. Below Vl1 for tvl1: of what is then lost by the
-      lowest Vf the share Vrfrac comes back. Below Vl0 for tvl0: nothing does. Vh1, Vh0, tvh1, tvh0 likewise.
-  Mf (ftripFlag 1): 0 for good once f was below fl for tfl or above fh for tfh while V > Vpr
+  Mv (vtripFlag 1): 1 above Vl1, 0 below Vl0, linear between. After tvl1 below Vl1: of the units tripped at
+      the lowest Vf the fraction Vrfrac reconnects. After tvl0 below Vl0: none. Vh1, Vh0, tvh1, tvh0 likewise.
+  Mf (ftripFlag 1): 0 permanently after f was below fl for tfl or above fh for tfh while V > Vpr
 
   I = (Ip - j Iq) V/|V|, below |V| = 0.01 pu in proportion to |V|
-  Beside a bolted fault there is no voltage along which the grid takes the whole of Ip: |V| falls below 0.01 pu.
+  Near a bolted fault the grid cannot accept the whole of Ip at any voltage angle: |V| falls below 0.01 pu.
   Vref0 = 0: the voltage at the operating point.
-  It takes no commands: no converter control may accompany it. What is added to Tm and Efd is added to the
+  It takes no commands: no converter control may accompany it. Additions to Tm and Efd are added to the
   commands.
 )";
   enum P {
@@ -100,65 +100,66 @@ struct Model : shared::ControlledCurrent<Model> {
   };
   static constexpr Source defaults_from = literature::psid("DERA, in its test 42");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr Source kActs = literature::own("narrow enough for a fault to leave it");
-  static constexpr Source kTrips = literature::own("where IEEE Std 1547-2018 has category II trip");
+  static constexpr Source kActs = literature::own("narrow enough that faults exceed it");
+  static constexpr Source kTrips = literature::own("trip settings of category II in IEEE Std 1547-2018");
   static constexpr Source kHertz = literature::own("around 50 and 60 Hz; 0 and 999: never");
   static constexpr Parameter parameters[] = {
-      {"pfFlag", "pfFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: holds the power factor, 0: holds Q",
+      {"pfFlag", "pfFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: constant power factor, 0: constant Q",
        kAsEffect, renewable::kFlag},
-      {"freqFlag", "freqFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: the power follows the frequency",
+      {"freqFlag", "freqFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: active power depends on frequency",
        kAsEffect, renewable::kFlag},
-      {"pqFlag", "pqFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "at Imax 0: P yields, 1: Q yields", kAsEffect,
-       renewable::kFlag},
+      {"pqFlag", "pqFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "current priority at Imax: 0 Q, 1 P",
+       kAsEffect, renewable::kFlag},
       {"genFlag", "genFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: generators, 0: batteries", kAsEffect,
        renewable::kFlag},
-      {"vtripFlag", "vtripFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: voltage takes a part off",
-       shared::kNothing, renewable::kFlag},
-      {"ftripFlag", "ftripFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: frequency takes all off",
-       shared::kNothing, renewable::kFlag},
-      {"Trv", "Trv", "s", 0.02, 0.0, 1.0, kNoNullValue, "measurement of the voltage (0: none)"},
-      {"Trf", "Trf", "s", 0.02, 1e-3, 1.0, kNoNullValue, "measurement of the frequency"},
+      {"vtripFlag", "vtripFlag", "code", 0.0, 0.0, 1.0, kNoNullValue,
+       "1: voltage protection trips a fraction", shared::kNothing, renewable::kFlag},
+      {"ftripFlag", "ftripFlag", "code", 0.0, 0.0, 1.0, kNoNullValue,
+       "1: frequency protection trips all units", shared::kNothing, renewable::kFlag},
+      {"Trv", "Trv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of the voltage measurement (0: none)"},
+      {"Trf", "Trf", "s", 0.02, 1e-3, 1.0, kNoNullValue, "lag of the frequency measurement"},
       {"dbd1", "dbd1", "pu", -0.05, -99.0, 0.0, 0.0, "lower edge of the voltage's dead-band", kActs},
       {"dbd2", "dbd2", "pu", 0.05, 0.0, 99.0, 0.0, "upper edge of the voltage's dead-band", kActs},
       {"Kqv", "Kqv", "pu/pu", 5.0, 0.0, 100.0, 0.0, "reactive current per voltage error"},
-      {"Vref0", "Vref0", "pu", 0.0, 0.0, 1.5, kNoNullValue,
-       "reference of the voltage (0: that at the start)"},
-      {"Tp", "Tp", "s", 0.02, 0.0, 10.0, kNoNullValue, "measurement of the ordered power (0: none)"},
+      {"Vref0", "Vref0", "pu", 0.0, 0.0, 1.5, kNoNullValue, "voltage reference (0: initial voltage)"},
+      {"Tp", "Tp", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the ordered-power measurement (0: none)"},
       {"Tiq", "Tiq", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the reactive current (0: none)"},
       {"Ddn", "Ddn", "pu/pu", 20.0, 0.0, 200.0, 0.0, "power per frequency above the dead-band"},
-      {"Dup", "Dup", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency below it"},
+      {"Dup", "Dup", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency below the dead-band"},
       {"fdbd1", "fdbd1", "pu", -0.0006, -1.0, 0.0, 0.0, "lower edge of the frequency's dead-band"},
       {"fdbd2", "fdbd2", "pu", 0.0006, 0.0, 1.0, 0.0, "upper edge of the frequency's dead-band"},
-      {"femax", "femax", "pu", 99.0, 0.0, 99.0, kNoNullValue, "highest error of the power's regulator"},
-      {"femin", "femin", "pu", -99.0, -99.0, 0.0, kNoNullValue, "lowest error of the power's regulator"},
+      {"femax", "femax", "pu", 99.0, 0.0, 99.0, kNoNullValue, "upper limit of the power regulator's error"},
+      {"femin", "femin", "pu", -99.0, -99.0, 0.0, kNoNullValue, "lower limit of the power regulator's error"},
       {"Pmax", "Pmax", "pu", 1.1, 0.0, 99.0, kNoNullValue, "highest Pord"},
       {"Pmin", "Pmin", "pu", 0.0, -99.0, 1.0, kNoNullValue, "lowest Pord"},
-      {"dPmax", "dPmax", "pu/s", 0.5, 0.0, 999.0, kNoNullValue, "fastest rise of the power's reference"},
-      {"dPmin", "dPmin", "pu/s", -0.5, -999.0, 0.0, kNoNullValue, "fastest fall of the power's reference"},
+      {"dPmax", "dPmax", "pu/s", 0.5, 0.0, 999.0, kNoNullValue, "fastest rise of the power reference"},
+      {"dPmin", "dPmin", "pu/s", -0.5, -999.0, 0.0, kNoNullValue, "fastest fall of the power reference"},
       {"Tpord", "Tpord", "s", 0.02, 0.0, 99.0, kNoNullValue, "lag of Pord (0: none)"},
-      {"Kpg", "Kpg", "pu/pu", 0.1, 0.0, 100.0, 0.0, "regulator of the power, proportional gain"},
-      {"Kig", "Kig", "1/s", 10.0, 0.0, 500.0, 0.0, "regulator of the power, integral gain"},
+      {"Kpg", "Kpg", "pu/pu", 0.1, 0.0, 100.0, 0.0, "power regulator, proportional gain"},
+      {"Kig", "Kig", "1/s", 10.0, 0.0, 500.0, 0.0, "power regulator, integral gain"},
       {"Imax", "Imax", "pu", 1.2, 0.1, 99.0, kNoNullValue, "largest current"},
-      {"Vl0", "Vl0", "pu", 0.44, 0.0, 1.0, kNoNullValue, "voltage below which all are off"},
-      {"Vl1", "Vl1", "pu", 0.49, 0.0, 1.0, kNoNullValue, "voltage below which a part is off"},
-      {"Vh0", "Vh0", "pu", 1.2, 0.5, 99.0, kNoNullValue, "voltage above which all are off"},
-      {"Vh1", "Vh1", "pu", 1.15, 0.5, 99.0, kNoNullValue, "voltage above which a part is off"},
-      {"tvl0", "tvl0", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long below Vl0 until none comes back"},
-      {"tvl1", "tvl1", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long below Vl1 until a part stays off"},
-      {"tvh0", "tvh0", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long above Vh0 until none comes back"},
-      {"tvh1", "tvh1", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long above Vh1 until a part stays off"},
-      {"Vrfrac", "Vrfrac", "-", 0.7, 0.0, 1.0, 1.0, "share that comes back with the voltage", kAsEffect,
+      {"Vl0", "Vl0", "pu", 0.44, 0.0, 1.0, kNoNullValue, "voltage below which all units trip"},
+      {"Vl1", "Vl1", "pu", 0.49, 0.0, 1.0, kNoNullValue, "voltage below which units begin to trip"},
+      {"Vh0", "Vh0", "pu", 1.2, 0.5, 99.0, kNoNullValue, "voltage above which all units trip"},
+      {"Vh1", "Vh1", "pu", 1.15, 0.5, 99.0, kNoNullValue, "voltage above which units begin to trip"},
+      {"tvl0", "tvl0", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below Vl0 until no unit reconnects"},
+      {"tvl1", "tvl1", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below Vl1 until tripped units stay off"},
+      {"tvh0", "tvh0", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above Vh0 until no unit reconnects"},
+      {"tvh1", "tvh1", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above Vh1 until tripped units stay off"},
+      {"Vrfrac", "Vrfrac", "-", 0.7, 0.0, 1.0, 1.0, "fraction that reconnects with the voltage", kAsEffect,
        shared::kShare},
-      {"fl", "fl", "Hz", 56.5, 0.0, 60.0, kNoNullValue, "frequency below which all trip", kTrips, kHertz},
-      {"fh", "fh", "Hz", 62.0, 50.0, 999.0, kNoNullValue, "frequency above which all trip", kTrips, kHertz},
-      {"tfl", "tfl", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long below fl until they trip", kTrips},
-      {"tfh", "tfh", "s", 0.16, 0.0, 999.0, kNoNullValue, "how long above fh until they trip", kTrips},
+      {"fl", "fl", "Hz", 56.5, 0.0, 60.0, kNoNullValue, "frequency below which all units trip", kTrips,
+       kHertz},
+      {"fh", "fh", "Hz", 62.0, 50.0, 999.0, kNoNullValue, "frequency above which all units trip", kTrips,
+       kHertz},
+      {"tfl", "tfl", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below fl until they trip", kTrips},
+      {"tfh", "tfh", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above fh until they trip", kTrips},
       {"Tg", "Tg", "s", 0.02, 1e-3, 0.5, kNoNullValue, "time constant of the converters"},
       {"rrpwr", "rrpwr", "pu/s", 99.0, 0.01, 999.0, kNoNullValue, "fastest rise of the active current"},
-      {"Tv", "Tv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of what is taken off (0: none)"},
-      {"Vpr", "Vpr", "pu", 0.8, 0.0, 1.0, kNoNullValue, "voltage below which frequency trips none"},
-      {"Iqh1", "Iqh1", "pu", 1.0, 0.0, 99.0, kNoNullValue, "highest reactive current of the voltage error"},
-      {"Iql1", "Iql1", "pu", -1.0, -99.0, 0.0, kNoNullValue, "lowest reactive current of the voltage error"}};
+      {"Tv", "Tv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of the tripped fraction (0: none)"},
+      {"Vpr", "Vpr", "pu", 0.8, 0.0, 1.0, kNoNullValue, "voltage below which frequency does not trip"},
+      {"Iqh1", "Iqh1", "pu", 1.0, 0.0, 99.0, kNoNullValue, "upper limit of the voltage control's current"},
+      {"Iql1", "Iql1", "pu", -1.0, -99.0, 0.0, kNoNullValue, "lower limit of the voltage control's current"}};
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   static constexpr double kRateLag = 0.01;        ///< time constant of the reference's rate limiter [s]
   static constexpr double kFrequencyBand = 1e-5;  ///< width beyond fl and fh over which a trip sets in [pu]
@@ -216,18 +217,18 @@ struct Model : shared::ControlledCurrent<Model> {
     return std::array{State{"Vf", "pu", "measured voltage"},
                       State{"Pf", "pu", "measured ordered power"},
                       State{"Iqlag", "pu", "lagged reactive current"},
-                      kinked("PI", "integral of the power's regulator"),
-                      kinked("Pset", "reference of the power, its rate limited"),
+                      kinked("PI", "integral of the power regulator"),
+                      kinked("Pset", "rate-limited power reference"),
                       State{"Pord", "pu", "ordered power", 1.0, Pmin, Pmax},
-                      State{"M", "-", "share that is on"},
+                      State{"M", "-", "connected fraction"},
                       State{"Ip", "pu", "active current"},
                       State{"Iq", "pu", "reactive current"},
                       timer("low1", "time below Vl1"),
                       timer("low0", "time below Vl0"),
-                      kinked("least", "lowest voltage since a part stays off"),
+                      kinked("least", "lowest voltage since units stay off"),
                       timer("high1", "time above Vh1"),
                       timer("high0", "time above Vh0"),
-                      kinked("most", "highest voltage since a part stays off"),
+                      kinked("most", "highest voltage since units stay off"),
                       timer("under", "time below fl"),
                       timer("over", "time above fh"),
                       kVrlag,
@@ -238,7 +239,7 @@ struct Model : shared::ControlledCurrent<Model> {
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double* p) {
     return p[vtripFlag] == 1 && !(p[Vl0] < p[Vl1] && p[Vl1] < p[Vh1] && p[Vh1] < p[Vh0])
-               ? "Vl0 < Vl1 < Vh1 < Vh0 does not hold: a part is off before all are"
+               ? "Vl0 < Vl1 < Vh1 < Vh0"
                : "";
   }
 
@@ -360,19 +361,19 @@ std::string Model::steady(const T*, T* c, Signals<T>& s, T* x) {
   if (active * active + reactive * reactive > total * total)
     return renewable::beyond_imax(active, reactive, total);
   if (active < 0 && value_of(c[genFlag]) == 1.0)
-    return "it would draw power, and genFlag = 1 has generators only";
+    return "it would draw power, and genFlag = 1 allows only generators";
   if (value_of(c[vtripFlag]) == 1.0 && (value_of(V) < value_of(c[Vl1]) || value_of(V) > value_of(c[Vh1])))
-    return fmt::format("at V = {:.4f} pu a part of it is off: Vl1 = {:g} pu, Vh1 = {:g} pu", value_of(V),
-                       value_of(c[Vl1]), value_of(c[Vh1]));
+    return fmt::format("at V = {:.4f} pu a part of its units is tripped: Vl1 = {:g} pu, Vh1 = {:g} pu",
+                       value_of(V), value_of(c[Vl1]), value_of(c[Vh1]));
   if (value_of(c[ftripFlag]) == 1.0 && (value_of(c[f_under]) > 0.0 || value_of(c[f_over]) < 0.0))
-    return fmt::format("rated frequency trips it: fl and fh lie {:g} and {:g} pu beside it",
+    return fmt::format("rated frequency trips it: fl and fh differ from it by {:g} and {:g} pu",
                        value_of(c[f_under]), value_of(c[f_over]));
   x[Vf] = V;
   x[Pf] = x[PI] = x[Pset] = x[Pord] = c[pref] = P;
   x[Iqlag] = q - of_voltage(c, V, zero);
   c[qref] = x[Iqlag] * V;
   if (value_of(c[pfFlag]) == 1.0 && value_of(P) == 0.0 && value_of(c[qref]) != 0.0)
-    return "there is no power to have a factor: P = 0 pu";
+    return "the power factor is undefined: P = 0 pu";
   c[tangent] = value_of(P) == 0.0 ? zero : c[qref] / P;
   x[M] = T(1.0);
   x[Ip] = c[start_p] = s.Tm = p;
@@ -399,12 +400,12 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
       problems.add(Core::value(parameters, p, i), where,
                    "the equations divide by it, or are constant without it", "give a value > 0");
   if (!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1))
-    problems.add(Core::value(parameters, p, Vrfrac), where, "it is a share", "give 0 to 1");
+    problems.add(Core::value(parameters, p, Vrfrac), where, "it is a fraction", "give 0 to 1");
   if (p[vtripFlag] == 0) return;
   for (const auto& [high, low] : {std::pair<int, int>{Vl1, Vl0}, {Vh0, Vh1}, {Vh1, Vl1}})
     if (!(p[high] > p[low]))
       problems.add(Core::value(parameters, p, high) + " with " + Core::value(parameters, p, low), where,
-                   "between them a part is taken off", "give Vl0 < Vl1 < Vh1 < Vh0, or vtripFlag = 0");
+                   "units trip gradually between them", "give Vl0 < Vl1 < Vh1 < Vh0, or vtripFlag = 0");
 }
 
 }  // namespace swingbank::sim::effects::converter_dera1

@@ -19,14 +19,14 @@ struct Model : shared::ControlledCurrent<Model> {
                                     dyr_name = "REGCA1";
   static constexpr std::string_view description = R"(
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] <= LVPL --Ip--> x G(V) --> active current
-      LVPL: 0 below Zerox, Lvpl1 above Brkpt, straight between, of V/(1 + s Tfltr)        (Lvplsw = 1)
-      G(V): 0 below Lvpnt0, 1 above Lvpnt1, straight between
+      LVPL: 0 below Zerox, Lvpl1 above Brkpt, linear between, of V/(1 + s Tfltr)        (Lvplsw = 1)
+      G(V): 0 below Lvpnt0, 1 above Lvpnt1, linear between
   Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --Iq-->
       Iq - Khv max(V - Volim, 0) >= Iolim --> reactive current, positive while it delivers Q
 
   I = (active - j reactive) V/|V|, below |V| = 0.01 pu in proportion to |V|
   speed: frequency of the terminal voltage, measured with the lag Tfreq
-  Accel belongs to the iteration of the network in PSS/E and has no part here.
+  Accel belongs to PSS/E's network iteration and is not used.
 )";
   enum P {
     Lvplsw,
@@ -56,19 +56,19 @@ struct Model : shared::ControlledCurrent<Model> {
       {"Brkpt", "Brkpt", "pu", 0.9, 0.0, 1.5, kNoNullValue, "voltage above which LVPL is Lvpl1"},
       {"Zerox", "Zerox", "pu", 0.4, 0.0, 1.0, kNoNullValue, "voltage below which LVPL is 0"},
       {"Lvpl1", "Lvpl1", "pu", 1.22, 0.0, 5.0, kNoNullValue, "limit of the active current at Brkpt"},
-      {"Volim", "Volim", "pu", 1.2, 0.8, 2.0, kNoNullValue, "voltage above which Q is drawn"},
+      {"Volim", "Volim", "pu", 1.2, 0.8, 2.0, kNoNullValue, "voltage above which Q is absorbed"},
       {"Lvpnt1", "Lvpnt1", "pu", 0.8, 0.0, 1.5, kNoNullValue, "voltage above which G is 1",
        literature::psse("REGCA1")},
       {"Lvpnt0", "Lvpnt0", "pu", 0.4, -1.0, 1.0, kNoNullValue, "voltage below which G is 0",
        literature::psse("REGCA1")},
-      {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNullValue, "lowest reactive current"},
+      {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNullValue, "lower limit of the reactive current"},
       {"Tfltr", "Tfltr", "s", 0.2, 0.0, 1.0, kNoNullValue, "measurement of the voltage for LVPL (0: none)"},
       {"Khv", "Khv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage above Volim"},
       {"Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNullValue, "fastest rise of the reactive current"},
       {"Iqrmin", "Iqrmin", "pu/s", -100.0, -9999.0, 0.0, kNoNullValue,
        "fastest fall of the reactive current"},
       {"Accel", "Accel", "code", 0.0, 0.0, 2.0, kNoNullValue,
-       "of the network's iteration in PSS/E: not used"},
+       "acceleration of PSS/E's network iteration: not used"},
       kTfreq};
   static constexpr int dyr_columns[] = {Lvplsw, Tg,    Rrpwr, Brkpt, Zerox,  Lvpl1,  Volim, Lvpnt1,
                                         Lvpnt0, Iolim, Tfltr, Khv,   Iqrmax, Iqrmin, Accel};
@@ -95,7 +95,7 @@ struct Model : shared::ControlledCurrent<Model> {
   };
   enum X { Ip, Iq, Vmeas, Vrlag, Vilag };
   static constexpr State states[] = {{"Ip", "pu", "active current before G"},
-                                     {"Iq", "pu", "reactive current before Volim's"},
+                                     {"Iq", "pu", "reactive current before its reduction above Volim"},
                                      {"Vmeas", "pu", "voltage measured for LVPL"},
                                      kVrlag,
                                      kVilag};
@@ -173,7 +173,7 @@ struct Model : shared::ControlledCurrent<Model> {
     steady_voltage(s, x);
     const T ceiling = low_voltage_limit(c, x, V);
     if (value_of(x[Ip]) > value_of(ceiling))
-      return fmt::format("it would need an active current of {:.4f} pu, and LVPL ends at {:.4f} pu",
+      return fmt::format("it would need an active current of {:.4f} pu, and LVPL limits it to {:.4f} pu",
                          value_of(x[Ip]), value_of(ceiling));
     if (value_of(x[Iq] - drawn) < value_of(c[iolim]))
       return fmt::format("it would need a reactive current of {:.4f} pu, below Iolim = {:.4f} pu",
@@ -199,7 +199,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   bad(p[Lvplsw] != 0 && p[Lvplsw] != 1, value(Lvplsw), "it is a switch", "give 0 or 1");
   for (const int i : {Tg, Tfreq, Rrpwr})
     bad(!(p[i] > 0), value(i), "the equations divide by it, or are constant without it", "give a value > 0");
-  bad(!(p[Tfltr] >= 0), value(Tfltr), "it is a time", "give 0 for none, or more");
+  bad(!(p[Tfltr] >= 0), value(Tfltr), "a time constant cannot be negative", "give 0 for none, or more");
   bad(!(p[Brkpt] > p[Zerox]), value(Brkpt) + " with " + value(Zerox), "LVPL must rise with the voltage",
       "give Brkpt > Zerox");
   bad(!(p[Lvpnt1] > p[Lvpnt0]), value(Lvpnt1) + " with " + value(Lvpnt0), "G must rise with the voltage",

@@ -18,14 +18,14 @@ struct Model : shared::BehindImpedance<Model> {
       dyr_name = "REGCB1";
   static constexpr std::string_view variant_of = "REGCA1";
   static constexpr std::string_view description = R"(
-  Ipcmd, Iqcmd within Imax; the one that yields: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
+  Ipcmd, Iqcmd within Imax; reduced first: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] --> Ip (rateFlag 0)
   Ipcmd Vf --> [ 1/(1 + s Tg), rise <= rrpwr ] --> /Vf --> Ip (rateFlag 1)          Vf = V/(1 + s Tfltr)
   Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq
   V + Re Ip + Xe Iq --> [ 1/(1 + s Te) ] --> Ed          Xe Ip - Re Iq --> [ 1/(1 + s Te) ] --> Eq
   I = ((Ed - V) + j Eq) V/|V|/(Re + j Xe), within Imax as the commands are; below |V| = 0.01 pu in proportion to |V|
-      What the leading current leaves of Imax to the other does not fall below 0.025 Imax, so that the current has a
-      slope where the leading one takes all.
+      The limit of the current without priority is at least 0.025 Imax, so that it stays differentiable where the
+      other current uses all of Imax.
   speed: frequency of the terminal voltage, measured with the lag Tfreq
   Re and Xe are given in the .raw: ZSORCE.
 )";

@@ -23,23 +23,23 @@ struct Model : shared::BehindImpedance<Model> {
   Phase-locked loop (GridPACK; limits of the integral too: Dynawo), phi: its angle
       V exp(-j phi) = Vd + j Vq          I exp(-j phi) = Id - j Iout
       Vq --> [ Kppll + Kipll/s, within wmin..wmax ] --> [ 1/s ] --> phi
-      both stand still where |V| < Vpllfrz (Dynawo's UPllFrz; 0: never)
-  Ipcmd, Iqcmd within Imax; the one that yields: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
+      both are frozen while |V| < Vpllfrz (Dynawo's UPllFrz; 0: never)
+  Ipcmd, Iqcmd within Imax; reduced first: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] --> Ip (rateFlag 0)
   Ipcmd Vf --> [ 1/(1 + s Tg), rise <= rrpwr ] --> /Vf --> Ip (rateFlag 1)          Vf = V/(1 + s Tfltr)
   Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq
-  Current control (GridPACK; within Imax: Dynawo, which of both yields: as REGCB1)
+  Current control (GridPACK; within Imax: Dynawo; priority: as in REGCB1)
       Ip - Id --> [ Kip + Kii/s ] --> up          Iq - Iout --> [ Kip + Kii/s ] --> uq
       Vd + Re up + Xe uq --> [ 1/(1 + s Te) ] --> Ed          Vq + Xe up - Re uq --> [ 1/(1 + s Te) ] --> Eq
   I = ((Ed - Vd) + j (Eq - Vq)) exp(j phi)/(Re + j Xe), within Imax along and across phi as the commands are
-      What the leading current leaves of Imax to the other does not fall below 0.025 Imax, as REGCB1's.
-      Te 0: the currents are up and uq, without a loop to be solved: (Kip Ip + integral)/(1 + Kip), within Imax.
+      The limit of the current without priority is at least 0.025 Imax, as in REGCB1.
+      Te = 0: the currents are up and uq, in closed form (Kip Ip + integral)/(1 + Kip), within Imax.
   speed: frequency of the terminal voltage, measured with the lag Tfreq
   Re and Xe are given in the .raw: ZSORCE. The order of the .dyr is GridPACK's: REGCB1's columns, then Kip to wmin.
       PSS/E's own order is not public; Vpllfrz has no column and is given in plant files.
-  WECC's model has no Tg: PowerWorld takes four of its steps there (so GridPACK, whose Tg it is).
-  The current settles as Te s^2 + (1 + Kip) s + Kii: with the standard values in 20 ms, damped by 0.7, as fast
-      as behind Tg; with Kip 10 its fastest part in 1.8 ms. Te 0 leaves (1 + Kip) s + Kii.
+  WECC's model has no Tg: PowerWorld uses four time steps instead; Tg is GridPACK's.
+  Characteristic polynomial of the current: Te s^2 + (1 + Kip) s + Kii. With the defaults it settles in 20 ms with
+      damping 0.7, as fast as Tg; with Kip = 10 its fastest mode takes 1.8 ms. Te = 0: (1 + Kip) s + Kii.
 )";
   enum P {
     rateFlag,
@@ -63,8 +63,8 @@ struct Model : shared::BehindImpedance<Model> {
     Vpllfrz
   };
   static constexpr Source kTypical = literature::own(
-      "of the typical values in Dynawo's REGCcParameters (Kip 1 to 10, Kii 20 to 100, Kppll 1 to 10, Kipll 500 "
-      "to 3000, limits of 1 to 10 rad/s) those that damp best");
+      "best damping within the typical values in Dynawo's REGCcParameters (Kip 1 to 10, Kii 20 to 100, Kppll "
+      "1 to 10, Kipll 500 to 3000, limits of 1 to 10 rad/s)");
   static constexpr Parameter parameters[] = {
       kRateFlag,
       kPqFlag,
@@ -84,10 +84,10 @@ struct Model : shared::BehindImpedance<Model> {
        "proportional gain of the phase-locked loop", kTypical},
       {"Kipll", "Kipll", "rad/s^2/pu", 500.0, 0.0, 10000.0, kNoNullValue,
        "integral gain of the phase-locked loop", kTypical},
-      {"wmax", "wmax", "rad/s", 10.0, 0.0, 100.0, kNoNullValue,
-       "highest speed of the loop's angle less nominal", kTypical},
-      {"wmin", "wmin", "rad/s", -10.0, -100.0, 0.0, kNoNullValue,
-       "lowest speed of the loop's angle less nominal", kTypical},
+      {"wmax", "wmax", "rad/s", 10.0, 0.0, 100.0, kNoNullValue, "upper limit of the loop's speed deviation",
+       kTypical},
+      {"wmin", "wmin", "rad/s", -10.0, -100.0, 0.0, kNoNullValue, "lower limit of the loop's speed deviation",
+       kTypical},
       kRe,
       kXe,
       kTfreq,

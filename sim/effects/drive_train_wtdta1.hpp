@@ -19,8 +19,8 @@ struct Model {
   static constexpr std::string_view description = R"(
   2 Ht dwt/dt = Paero/(1 + wt) - T      Ht = Htfrac H, Hg = H - Ht
   2 Hg dwg/dt = T - P/(1 + wg) - DAMP (wg - wg0)
-  T = K twist + Dshaft (wt - wg)        d twist/dt = 2 pi f0 (wt - wg)      K: Freq1 is the frequency of the two
-  Htfrac = 0: one mass. Without WTARA1 the wind's power stays; without WTTQA1 the speed is rated at the start.
+  T = K twist + Dshaft (wt - wg)        d twist/dt = 2 pi f0 (wt - wg)      K: such that the masses swing at Freq1
+  Htfrac = 0: one mass. Without WTARA1 the aerodynamic power is constant; without WTTQA1 the initial speed is rated.
 )";
   enum P { H, DAMP, Htfrac, Freq1, Dshaft };
   static constexpr Source defaults_from = literature::andes("WTDTA1");
@@ -36,17 +36,17 @@ struct Model {
   static constexpr int dyr_columns[] = {H, DAMP, Htfrac, Freq1, Dshaft};
   enum C { two, iTt, iTg, damp, stiff, dshaft, w0, base, coefficients };
   enum X { wt, wg, twist };
-  static constexpr State states[] = {{"wt", "pu", "speed of the turbine, less 1"},
-                                     {"wg", "pu", "speed of the generator, less 1"},
+  static constexpr State states[] = {{"wt", "pu", "speed of the turbine, minus 1"},
+                                     {"wg", "pu", "speed of the generator, minus 1"},
                                      {"twist", "rad", "twist of the shaft"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[H] > 0)) problems.add(Core::value(parameters, p, H), where, "the shaft turns", "give H > 0");
+    if (!(p[H] > 0)) problems.add(Core::value(parameters, p, H), where, "a shaft has inertia", "give H > 0");
     if (!(p[Htfrac] >= 0 && p[Htfrac] < 1))
-      problems.add(Core::value(parameters, p, Htfrac), where, "the generator has a part of the inertia too",
+      problems.add(Core::value(parameters, p, Htfrac), where, "the generator needs a part of the inertia",
                    "give 0 for one mass, or a part below 1");
     if (p[Htfrac] > 0 && !(p[Freq1] > 0))
-      problems.add(Core::value(parameters, p, Freq1), where, "nothing joins the two masses",
+      problems.add(Core::value(parameters, p, Freq1), where, "the shaft between the masses needs a stiffness",
                    "give Freq1 > 0, or Htfrac = 0 for one mass");
     Core::check_signs(parameters, p, {DAMP, Dshaft}, {}, where, problems);
   }

@@ -29,9 +29,9 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv       Iqcmd = Iq + Iqv in a dip, and for |Thld|
       after it Iq + Iqv (Thld < 0) or Iq + Iqfrz (Thld > 0); otherwise Iq
   Pext (x (1 + wg) if PFLAG = 1) --> [ 1/(1 + s Tpord), rate dPmin to dPmax, PMIN to PMAX ] --Pord--> /Vf --> Ipcmd
-  Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): straight between the points (Vq, Iq) and (Vp, Ip), as far as their
-      voltages rise; all 0: none. Ipcmd's limit stays for Thld2 after a dip.
-  |Ipcmd + j Iqcmd| <= Imax; the one that yields: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
+      rising voltage; all 0: no limit. Ipcmd's limit is kept for Thld2 after a dip.
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
   enum P {

@@ -23,10 +23,10 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
   Qin/Vf --> [ 1/(1 + s Tiq) ] --> Iq (QFLAG 0)
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv          Iqcmd = Iq + Iqv
   Pext --> [ 1/(1 + s Tpord), rate dPmin to dPmax, Pmin to Pmax ] --Pord--> /Vf --> Ipcmd
-  |Ipcmd + j Iqcmd| <= Imax; the one that yields: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
-  Iqcmd within VDL1(Vf), Ipcmd within +-VDL2(Vf): straight between the points (Vq, Iq) and (Vp, Ip), as far as their
-      voltages rise; all 0: none
-  The state of charge stays what it is at the start: a battery at SOCmin does not deliver, one at SOCmax does not draw.
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  Iqcmd within VDL1(Vf), Ipcmd within +-VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
+      rising voltage; all 0: no limit
+  The state of charge is constant: a battery at SOCmin does not deliver, one at SOCmax does not draw.
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
   enum P {
@@ -50,16 +50,14 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
                                         renewable::record::PQFLAG};
   static constexpr std::array kBehind = {
       Parameter{"T", "T", "s", 14400.0, 1.0, 1e6, kNoNullValue,
-                "time in which rated power empties it: longer than any run",
+                "discharge time at rated power: longer than any run",
                 literature::own("a battery of four hours")},
-      Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNullValue, "state of charge at the start",
-                literature::own("half full"), literature::derived("a part of the whole")},
+      Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNullValue, "initial state of charge",
+                literature::own("half full"), literature::derived("a fraction")},
       Parameter{"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNullValue, "largest state of charge",
-                literature::own("WECC's typical range, 0.8 to 1"),
-                literature::derived("a part of the whole")},
+                literature::own("WECC's typical range, 0.8 to 1"), literature::derived("a fraction")},
       Parameter{"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNullValue, "smallest state of charge",
-                literature::own("WECC's typical range, 0 to 0.2"),
-                literature::derived("a part of the whole")}};
+                literature::own("WECC's typical range, 0 to 0.2"), literature::derived("a fraction")}};
   static constexpr auto parameters = [] {
     auto all = renewable::joined(kCodes, ride_through, regulators, orders,
                                  renewable::limit_points<4>(1.11, 1.11), kBehind);

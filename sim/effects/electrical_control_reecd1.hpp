@@ -30,12 +30,12 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   Vcmd within Vmin, Vmax - Vc --> [ Kvp + Kvi/s, Iqmin to Iqmax ] --> Iq (QFLAG 1)
   Qin/Vf --> [ 1/(1 + s Tiq) ] --> Iq (QFLAG 0)
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv       Iqcmd = Iq + Iqv; for |Thld| after a dip
-      what it was at the dip's end (Thld > 0) or Iqfrz (Thld < 0)
+      its value at the dip's end (Thld > 0) or Iqfrz (Thld < 0)
   Pext (x (1 + wg) if PFLAG = 1) --> [ 1/(1 + s Tpord), rate dPmin to dPmax, Pmin to Pmax ] --Pord--> /Vf --> Ipcmd;
-      for Thld2 after a dip Ipcmd and its limit stay as they were at its end
-  Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): straight between the points (Vq, Iq) and (Vp, Ip), as far as their
-      voltages rise; all 0: none. Ipcmd >= -Ke times its upper limit.
-  |Ipcmd + j Iqcmd| <= Imax; the one that yields: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+      for Thld2 after a dip Ipcmd and its limit keep their values at its end
+  Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
+      rising voltage; all 0: no limit. Ipcmd >= -Ke times its upper limit.
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
   Vf < Vblkl or Vf > Vblkh blocks both currents, until Tblk after it.
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
@@ -74,28 +74,30 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
       renewable::record::PFLAG,
       renewable::record::PQFLAG,
       Parameter{"VCMPFLAG", "VCMPFLAG", "code", 1.0, 0.0, 1.0, kNoNullValue,
-                "1: the voltage behind Rc + jXc is held, 0: V + Kc Q", kOff, renewable::kFlag}};
+                "regulated voltage: 1 behind Rc + jXc, 0 V + Kc Q", kOff, renewable::kFlag}};
   static constexpr std::array kAfterDip = {
       Parameter{"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip, where Thld < 0"},
       Parameter{"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0,
-                "how long after a dip Iqcmd stays (> 0) or is Iqfrz (< 0)"},
-      Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip Ipcmd and its limit stay"}};
+                "time after a dip for which Iqcmd is kept (> 0) or Iqfrz (< 0)"},
+      Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0,
+                "time after a dip for which Ipcmd and its limit are kept"}};
   static constexpr std::array kBias = {
       Parameter{"Vref1", "Vref1", "pu", 0.0, -2.0, 2.0, kNoNullValue, "added to a Qext that is a voltage"}};
   static constexpr std::array kBehind = {
       Parameter{"Rc", "Rc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating resistance", kOff},
       Parameter{"Xc", "Xc", "pu", 0.0, -1.0, 1.0, 0.0, "compensating reactance", kOff},
-      Parameter{"Tr1", "Tr1", "s", 0.02, 0.0, 10.0, kNoNullValue,
-                "measurement of the voltage that is held (0: none)", literature::own("as Trv")},
+      Parameter{"Tr1", "Tr1", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the regulated voltage (0: none)",
+                literature::own("as Trv")},
       Parameter{"Kc", "Kc", "pu", 0.0, 0.0, 1.0, 0.0, "reactive droop", kOff},
       Parameter{"Ke", "Ke", "pu", 0.0, 0.0, 1.0, 0.0,
                 "lower limit of Ipcmd over its upper one, negative (a battery: 1)", kOff,
-                literature::derived("a part of the whole")},
+                literature::derived("a fraction")},
       Parameter{"Vblkl", "Vblkl", "pu", 0.0, -99.0, 1.0, kNoNullValue,
                 "voltage below which the converter is blocked", kOff},
       Parameter{"Vblkh", "Vblkh", "pu", 99.0, 0.8, 99.0, kNoNullValue, "voltage above which it is blocked",
                 kOff},
-      Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "how long after that it stays blocked", kOff}};
+      Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "time after that for which it stays blocked",
+                kOff}};
   static constexpr auto parameters =
       renewable::joined(kCodes, ride_through, kAfterDip, regulators, kBias, orders,
                         renewable::limit_points<kTablePoints>(1.11, 1.11), kBehind);
@@ -127,7 +129,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   static constexpr auto states = [] {
     std::array<State, count> all{};
     std::copy(Core::states.begin(), Core::states.end(), all.begin());
-    all[Vcomp] = {"Vcomp", "pu", "measured voltage that is held"};
+    all[Vcomp] = {"Vcomp", "pu", "measured regulated voltage"};
     constexpr auto left = [](std::string_view name, std::string_view meaning) {
       return State{.name = name, .unit = "s", .meaning = meaning, .low = none, .bends = true};
     };
@@ -147,7 +149,8 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
     Core::check_ranges(parameters, p, {{Vblkh, Vblkl}}, where, problems);
     for (int i = Vq1 + 1; i < Rc; i += 2) Core::check_signs(parameters, p, {i}, {}, where, problems);
     if (!(p[Ke] >= 0 && p[Ke] <= 1))
-      problems.add(Core::value(parameters, p, Ke), where, "it is a part of the upper limit", "give 0 to 1");
+      problems.add(Core::value(parameters, p, Ke), where, "it is a fraction of the upper limit",
+                   "give 0 to 1");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -70,14 +70,15 @@ struct Model : shared::Alternator<Model> {
       {"VRMIN", "VRMIN", "pu", -36.0, -1000.0, 0.0, kNoNullValue,
        "lower limit of the field voltage at rated voltage"},
       {"TE", "TE", "s", 1.0, 0.01, 5.0, kNoNullValue, "alternator's time constant"},
-      {"VFELIM", "VFELIM", "pu", 19.0, 0.0, 1000.0, kNoNullValue, "field current that the limiter begins at"},
+      {"VFELIM", "VFELIM", "pu", 19.0, 0.0, 1000.0, kNoNullValue,
+       "field current at which the limiter begins"},
       {"KH", "KH", "pu", 92.0, 0.0, 1000.0, 0.0, "gain of the field limiter"},
-      {"VHMAX", "VHMAX", "pu", 75.0, 0.0, 1000.0, kNoNullValue, "most that the limiter takes away"},
+      {"VHMAX", "VHMAX", "pu", 75.0, 0.0, 1000.0, kNoNullValue, "largest reduction by the limiter"},
       {"TH", "TH", "s", 0.08, 0.0, 10.0, kNoNullValue, "limiter's lag (0: bypass)"},
       {"TJ", "TJ", "s", 0.02, 0.0, 10.0, kNoNullValue, "limiter's lead"},
       {"KC", "KC", "pu", 0.173, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
       {"KD", "KD", "pu", 1.91, 0.0, 5.0, 0.0, "alternator's armature reaction"},
-      {"KE", "KE", "pu", 1.6, 0.0, 5.0, kNoNullValue, "alternator's own field"},
+      {"KE", "KE", "pu", 1.6, 0.0, 5.0, kNoNullValue, "self-excitation constant"},
       {"E1", "E1", "pu", 7.4, 0.0, 50.0, kNoNullValue, "first point of saturation"},
       {"SE1", "SE(E1)", "-", 0.214, 0.0, 2.0, 0.0, "saturation there"},
       {"E2", "E2", "pu", 5.55, 0.0, 50.0, kNoNullValue, "second point of saturation"},
@@ -131,10 +132,11 @@ struct Model : shared::Alternator<Model> {
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     check_alternator(p, where, problems);
-    bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
-    for (int i : {TR, TA, TB, TH}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
+    for (int i : {TR, TA, TB, TH})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     for (int i : {KH, VHMAX})
-      bad(!(p[i] >= 0), says(i), "it can only take from the exciter's voltage", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i), "it only reduces the exciter's voltage", "give a value >= 0");
     for (const auto& [most, least] : {std::pair{VAMAX, VAMIN}, {VRMAX, VRMIN}})
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
           "the range must not be empty",

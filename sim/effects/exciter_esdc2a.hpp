@@ -18,11 +18,11 @@ struct Model {
   As EXDC2, with Efd >= 0, non-windup:
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
-         Vr: [V VRMIN, V VRMAX]; its lag follows a limit within 2 ms, so it does not wind up
+         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit within 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd), Efd >= 0         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE left out unless positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
+  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
+  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
 )";
   static constexpr std::span<const Parameter> parameters{B::parameters};
   static constexpr std::span<const int> dyr_columns{B::dyr_columns};

@@ -21,7 +21,7 @@ struct Model {
          --> [ (1 + s TC1)/(1 + s TB1) ] --> [ KA/(1 + s TA) ] --> Va, [VAMIN, VAMAX] non-windup
   u = Va + Vs (VOS = 2) - max(KLR (Ifd - ILR), 0)
   u --> [V VRMIN, V VRMAX - KC Ifd] --> Efd         Vf = s KF/(1 + s TF) u
-  An under-excitation limiter adds to the error (UEL = 1); gates of other limiters (UEL = 2, 3) are not there.
+  An under-excitation limiter adds to the error (UEL = 1); gates of other limiters (UEL = 2, 3) are not modelled.
 )";
   enum P {
     UEL,
@@ -45,14 +45,14 @@ struct Model {
     KLR,
     ILR
   };
-  static constexpr Source kNone = literature::own("off; 999 stands for none in the case files");
+  static constexpr Source kNone = literature::own("off; 999 means none in the case files");
   static constexpr Source defaults_from = literature::own("as EXST1's");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNullValue, "where an under-excitation limiter enters",
-       kAsEffect, shared::kCode},
+      {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNullValue, "input of an under-excitation limiter", kAsEffect,
+       shared::kCode},
       {"VOS", "VOS", "code", 1.0, 1.0, 2.0, kNoNullValue,
-       "where the stabiliser enters: 1 at the error, 2 behind the regulator", kAsEffect, shared::kCode},
+       "input of the stabiliser: 1 voltage error, 2 after the regulator", kAsEffect, shared::kCode},
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
       {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"},
       {"VIMIN", "VIMIN", "pu", -5.0, -1000.0, 0.0, kNoNullValue, "lower limit of the voltage error"},
@@ -72,7 +72,7 @@ struct Model {
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},
       {"KLR", "KLR", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the field-current limiter", kNone},
-      {"ILR", "ILR", "pu", 4.4, 0.0, 100.0, kNoNullValue, "field current that it begins at",
+      {"ILR", "ILR", "pu", 4.4, 0.0, 100.0, kNoNullValue, "field current at which it begins",
        literature::openipsl("ESST1A, defaults")}};
   static constexpr int dyr_columns[] = {UEL, VOS,   TR,    VIMAX, VIMIN, TC, TB, TC1, TB1, KA,
                                         TA,  VAMAX, VAMIN, VRMAX, VRMIN, KC, KF, TF,  KLR, ILR};
@@ -122,11 +122,12 @@ struct Model {
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     bad(p[UEL] != 1 && p[UEL] != 2 && p[UEL] != 3, says(UEL), "it is a code", "give 1, 2 or 3");
     bad(p[VOS] != 1 && p[VOS] != 2, says(VOS), "it is a code", "give 1 or 2");
-    bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
-    for (int i : {TR, TB, TB1, TA}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
+    for (int i : {TR, TB, TB1, TA})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     bad(p[KF] != 0 && !(p[TA] > 0), says(KF) + " with " + says(TA) + " s",
-        "the rate feedback would act on itself", "give TA > 0, or KF = 0");
+        "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
     bad(!(p[KLR] >= 0), says(KLR), "it would raise the field current", "give KLR >= 0");
     for (const auto& [most, least] : {std::pair{VIMAX, VIMIN}, {VAMAX, VAMIN}, {VRMAX, VRMIN}})
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",

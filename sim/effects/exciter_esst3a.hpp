@@ -25,7 +25,7 @@ struct Model {
   Vr - min(KG Efd, VGMAX) --> [ KM/(1 + s TM) ] --> Vmr, [VMMIN, VMMAX] non-windup
   Efd = Vmr VB         VB = VE FEX(KC Ifd/VE), at most VBMAX
   VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP         (V, I: phasors at the terminal)
-  The gate of an under-excitation limiter is not there: limiters add to the error.
+  The gate of an under-excitation limiter is not modelled: limiters add to the error.
 )";
   enum P {
     TR,
@@ -115,14 +115,14 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    for (const int i : {KA, KM}) bad(!(p[i] > 0), says(i), "no gain, no exciter", "give a value > 0");
+    for (const int i : {KA, KM}) bad(!(p[i] > 0), says(i), "an exciter needs a gain", "give a value > 0");
     for (const int i : {KG, KC})
       bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
     for (const int i : {TR, TB, TA, TM})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     bad(!(p[KP] > 0) && !(p[KI] > 0), fmt::format("{} with {}", says(KP), says(KI)),
-        "the source delivers nothing", "give KP > 0 or KI > 0");
-    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source delivers nothing", "give VBMAX > 0");
+        "the source would deliver no voltage", "give KP > 0 or KI > 0");
+    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source would deliver no voltage", "give VBMAX > 0");
     for (const auto& [high, low] : {std::pair{VIMAX, VIMIN}, {VRMAX, VRMIN}, {VMMAX, VMMIN}})
       bad(!(p[high] > p[low]), says(high) + " pu with " + says(low) + " pu", "the range must not be empty",
           fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));

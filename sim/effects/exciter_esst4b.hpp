@@ -101,15 +101,16 @@ struct Model {
       bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
     for (const auto& [proportional, integral] : {std::pair{KPR, KIR}, {KPM, KIM}})
       bad(p[proportional] == 0.0 && p[integral] == 0.0,
-          fmt::format("{} with {}", says(proportional), says(integral)), "no gain, no regulator",
+          fmt::format("{} with {}", says(proportional), says(integral)), "a regulator needs a gain",
           "give one of them");
-    for (int i : {TR, TA}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    for (int i : {TR, TA})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     bad(!(p[KP] > 0) && !(p[KI] > 0), fmt::format("{} with {}", says(KP), says(KI)),
-        "the source delivers nothing", "give KP > 0 or KI > 0");
-    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source delivers nothing", "give VBMAX > 0");
+        "the source would deliver no voltage", "give KP > 0 or KI > 0");
+    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source would deliver no voltage", "give VBMAX > 0");
     for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VMMAX, VMMIN}})
       bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the range of the regulator must not be empty", "give a range");
+          "the range of the regulator must not be empty", "give an upper limit above the lower one");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -68,8 +68,8 @@ struct Model : shared::AlternatorRectifier<Model> {
                 0.0,
                 1000.0,
                 kNoNullValue,
-                "field current that the limiter ends at",
-                literature::own("beyond what the standard alternator needs to force")};
+                "field current at which the limiter ends",
+                literature::own("beyond the forcing of the default alternator")};
     return all;
   }();
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, KB, VRMAX, VRMIN, TE, KL,
@@ -90,7 +90,7 @@ struct Model : shared::AlternatorRectifier<Model> {
     if (!(p[VRMAX] > p[VRMIN]))
       problems.add(says(VRMAX) + " pu with " + says(VRMIN) + " pu", where,
                    "the range of the alternator's field must not be empty", "give VRMAX > VRMIN");
-    if (!(p[KB] > 0)) problems.add(says(KB), where, "no gain, no exciter", "give KB > 0");
+    if (!(p[KB] > 0)) problems.add(says(KB), where, "an exciter needs a gain", "give KB > 0");
     if (!(p[KL] > 0))
       problems.add(says(KL), where, "the limiter's gate would stay at zero",
                    "give KL > 0, and a large VLR for no limiter");

@@ -17,11 +17,11 @@ struct Model : shared::DcBehindLeadLag<Model> {
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
-         Vr: [V VRMIN, V VRMAX]; its lag follows a limit within 2 ms, so it does not wind up
+         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit within 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE left out unless positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
+  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
+  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
 )";
   static constexpr bool ends_at_zero = false;
   static constexpr Source defaults_from = literature::andes("EXDC2, commit 29076bd");
@@ -33,11 +33,11 @@ struct Model : shared::DcBehindLeadLag<Model> {
       {"TA", "TA", "s", 0.05, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)",
        literature::griddyn("dynamicsWECC.dyr")},
       {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNullValue, "lag (0: bypass)",
-       literature::own("half the gain in transients; the case files have hardly any")},
+       literature::own("half the transient gain; the case files have hardly any")},
       {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNullValue, "lead",
-       literature::own("half the gain in transients; the case files have hardly any")},
+       literature::own("half the transient gain; the case files have hardly any")},
       {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNullValue,
-       "upper limit of Vr at rated voltage (0: by saturation at E2)"},
+       "upper limit of Vr at rated voltage (0: from saturation at E2)"},
       {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr at rated voltage"},
       kKE,
       kTE,

@@ -26,7 +26,7 @@ struct Model {
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ KA (1 + s TA1)/s, VR2 to VR1 ]
          --> [ (1 + s TA3)/((1 + s TA2)(1 + s TA4)) ] --> Vr, [VRMIN, VRMAX]
-         VR2, VR1: the integral stops while its regulator stands at a limit
+         VR2, VR1: the integral stops while its regulator is at a limit
   E0 = Vr VB within [EFDMIN, EFDMAX]          VB = VE FEX(KC Ifd/VE), VE = |KP V + j KI I|; KP = KI = 0: VB = 1
   TE dEfd/dt = E0 - KE Efd - Efd Se(Efd)      TE = 0: Efd = E0
   Vf = s KF/((1 + s TF1)(1 + s TF2)) Vr
@@ -60,7 +60,7 @@ struct Model {
   };
   static constexpr Source defaults_from = literature::cim("ExcPIC");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kUsed = literature::own("an exciter of its kind, where TE > 0 uses it; CIM has 0");
+  static constexpr Source kUsed = literature::own("a typical exciter, used if TE > 0; CIM has 0");
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
        literature::own("none; CIM has no such parameter")},
@@ -79,7 +79,7 @@ struct Model {
        "second time constant of the rate feedback (0: none)"},
       {"EFDMAX", "EFDMAX", "pu", 8.0, 0.0, 1000.0, kNoNullValue, "upper limit of the bridge"},
       {"EFDMIN", "EFDMIN", "pu", -0.87, -1000.0, 0.0, kNoNullValue, "lower limit of the bridge"},
-      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "exciter's own field", kUsed},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant", kUsed},
       {"TE", "TE", "s", 0.0, 0.0, 5.0, kNoNullValue, "exciter's time constant (0: no exciter)"},
       {"E1", "E1", "pu", 0.0, 0.0, 50.0, kNoNullValue, "first point of saturation"},
       {"SE1", "SE(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation there"},
@@ -150,8 +150,8 @@ struct Model {
   static std::string remark(const double* p) {
     return p[KF] == 0.0
                ? ""
-               : "its rate feedback is that of the regulator's output, as OPAL-RT draws it; others take the "
-                 "field voltage's";
+               : "the rate feedback is taken from the regulator's output, as in OPAL-RT's diagram; other "
+                 "sources take it from the field voltage";
   }
 
   template <class T>
@@ -246,19 +246,18 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   const auto says = [&](int i) {
     return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
   };
-  bad(!(p[KA] > 0), says(KA), "no gain, no exciter", "give KA > 0");
+  bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
   for (const int i : {TR, TA1, TA2, TA3, TA4, TF1, TF2, TE})
-    bad(!(p[i] >= 0), says(i), "a time constant", "give a value >= 0");
+    bad(!(p[i] >= 0), says(i), "a time constant cannot be negative", "give a value >= 0");
   for (const int i : {KF, KP, KI, KC, SE1, SE2})
-    bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
+    bad(!(p[i] >= 0), says(i), "it cannot be negative", "give a value >= 0");
   bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " with the same E2",
-      "one voltage cannot have two saturations", "give two points");
+      "one voltage cannot have two saturation factors", "give two points");
   bad(p[KF] > 0 && p[TF1] == 0 && p[TF2] == 0, says(KF) + " with " + says(TF1) + " and " + says(TF2),
-      "no derivative without a lag", "give TF1 > 0, or KF = 0 for no feedback");
+      "a derivative needs a lag", "give TF1 > 0, or KF = 0 for no feedback");
   const bool at_once = p[TA4] > 0 ? p[TA2] == 0 && p[TA3] > 0 : p[TA2] == 0 || p[TA3] > 0;
   bad(p[KF] > 0 && at_once && (p[TF1] == 0) != (p[TF2] == 0),
-      says(KF) + " with " + says(TF1) + " and " + says(TF2),
-      "the regulator's output would feed itself without a lag",
+      says(KF) + " with " + says(TF1) + " and " + says(TF2), "the rate feedback would form an algebraic loop",
       "give TF1 and TF2 > 0, or lags TA2, TA4 without a lead");
   for (const auto& [high, low] : {std::pair{VR1, VR2}, {VRMAX, VRMIN}, {EFDMAX, EFDMIN}})
     bad(!(p[high] > p[low]), says(high) + " with " + says(low), "the range must not be empty",

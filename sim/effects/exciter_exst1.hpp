@@ -36,7 +36,7 @@ struct Model {
       {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNullValue, "regulator time constant (0: none)"},
       {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage", kCase},
       {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage",
-       literature::own("a bridge inverts a little less than it rectifies")},
+       literature::own("a bridge inverts slightly less than it rectifies")},
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};
@@ -59,11 +59,11 @@ struct Model {
     };
     shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     bad(p[KF] != 0 && p[TA] == 0, fmt::format("TA = 0 s with KF = {:g}", p[KF]),
-        "the rate feedback would act on itself", "give TA > 0, or KF = 0");
-    bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
+        "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
+    bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "an exciter needs a gain", "give KA > 0");
     for (int i : {TR, TB, TA})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
-          "give a value >= 0");
+      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]),
+          "a time constant cannot be negative", "give a value >= 0");
     bad(!(p[VIMAX] > p[VIMIN]), fmt::format("VIMAX = {:g} pu with VIMIN = {:g} pu", p[VIMAX], p[VIMIN]),
         "the range of the error must not be empty", "give VIMAX > VIMIN");
     bad(!(p[VRMAX] > p[VRMIN]), fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]),

@@ -17,8 +17,8 @@ struct Model : shared::RotatingDc<Model> {
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ KA/(1 + s TA) ] --> Vr, [VRMIN, VRMAX] non-windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/((1 + s TF1)(1 + s TF2)) Vr
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE left out unless positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
+  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
+  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
 )";
   enum P { TR, KA, TA, VRMAX, VRMIN, KE, TE, KF, TF, TF2, E1, SE1, E2, SE2 };
   static constexpr Source defaults_from = literature::andes("IEEET1, commit 066781b");
@@ -36,7 +36,7 @@ struct Model : shared::RotatingDc<Model> {
       {"TF1", "TF1", "s", 1.0, 0.02, 20.0, kNoNullValue,
        "first time constant of the rate feedback (0: with KF = 0)"},
       {"TF2", "TF2", "s", 0.8, 0.0, 20.0, kNoNullValue, "second time constant of the rate feedback (0: none)",
-       literature::own("that of the exciter, which it stands for")},
+       literature::own("that of the exciter, which it represents")},
       kE1,
       kSE1,
       kE2,
@@ -53,7 +53,7 @@ struct Model : shared::RotatingDc<Model> {
   static void check(const double* p, const std::string& where, Problems& problems) {
     RotatingDc::check_with({TR, TF2}, p, where, problems);
     if (!(p[TA] > 0))
-      problems.add(fmt::format("TA = {:g} s", p[TA]), where, "the rate feedback is that of a lagged Vr",
+      problems.add(fmt::format("TA = {:g} s", p[TA]), where, "the rate feedback needs a lagged Vr",
                    "give TA > 0");
   }
   template <class T>

@@ -28,8 +28,8 @@ struct Model {
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ KA/(1 + s TA) ] --> Vr, [VRMIN, VRMAX] non-windup
-  VB = Vr + sqrt(VE^2 - (0.78 Ifd)^2) within [0, VBMAX]     VE = |KP V + j KI I|; 0.78 Ifd >= VE: VB = 0, which
-       it reaches while the last hundredth of VE^2 goes
+  VB = Vr + sqrt(VE^2 - (0.78 Ifd)^2) within [0, VBMAX]     VE = |KP V + j KI I|; 0.78 Ifd >= VE: VB = 0,
+       with a smooth transition over the last hundredth of VE^2
   TE dEfd/dt = VB - KE Efd                                  Vf = s KF/(1 + s TF) Efd
 )";
   enum P { TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE };
@@ -47,8 +47,8 @@ struct Model {
       {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
       {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "source, from voltage"},
       {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
-      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of what feeds the field"},
-      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "exciter's own field"}};
+      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of the field supply"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"}};
   static constexpr int dyr_columns[] = {TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE};
   enum C {
     iTR,
@@ -87,7 +87,8 @@ struct Model {
     shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     for (const int i : {KA, VBMAX})
       bad(!(p[i] > 0), says(i), "there would be no exciter", "give a value > 0");
-    for (const int i : {TR, TA, KF, KI, KE}) bad(!(p[i] >= 0), says(i), "not negative", "give a value >= 0");
+    for (const int i : {TR, TA, KF, KI, KE})
+      bad(!(p[i] >= 0), says(i), "it cannot be negative", "give a value >= 0");
     bad(!(p[KP] > 0), says(KP), "the terminal's voltage feeds the exciter", "give KP > 0");
     bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " with " + says(VRMIN), "the range of Vr must not be empty",
         "give VRMAX > VRMIN");
@@ -135,8 +136,8 @@ struct Model {
     const T added = supply(c, s, share);
     const T VB = p[KE] * s.Efd;
     if (value_of(share) < 1.0)
-      return fmt::format("0.78 Ifd = {:.4f} pu leaves nothing of VE = {:.4f} pu", 0.78 * value_of(s.Ifd),
-                         value_of(Feed::voltage(c + source_first, s)));
+      return fmt::format("0.78 Ifd = {:.4f} pu consumes the source voltage VE = {:.4f} pu",
+                         0.78 * value_of(s.Ifd), value_of(Feed::voltage(c + source_first, s)));
     if (value_of(VB) < 0.0 || value_of(VB) > value_of(p[VBMAX]))
       return fmt::format("VB = {:.4f} pu is needed and its limits are 0, {:g} pu", value_of(VB),
                          value_of(p[VBMAX]));

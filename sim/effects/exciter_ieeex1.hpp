@@ -17,9 +17,9 @@ struct Model : shared::DcTypeOne<Model> {
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
          Vr: [VRMIN, VRMAX], non-windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/(1 + s TF) Efd
-  Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2); GridPACK itself takes an exponential there
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE left out unless positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, which puts Vr at a tenth of VRMAX
+  Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2); GridPACK uses an exponential instead
+  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
+  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
   A record of EXDC1 in a .dyr has the same columns and is read as this model.
 )";
   static constexpr bool ends_at_zero = false;

@@ -29,9 +29,9 @@ struct Model : shared::Alternator<Model> {
   e = Vref + dVref - Vm + Vs + Vlimiter - Vf within [-VIMAX, VIMAX]
   e --> [ KVP + KVI/s ] --> [ (1 + s TC1)/(1 + s TB1) ] --> [ (1 + s TC2)/(1 + s TB2) ] --> [ 1/(1 + s TA) ] --> Vr
   Vr - KH Vfe --> [ KIP + KII/s ] --> [ 1/(1 + s TP) ] --> Vfield
-         Vr: F [VRMIN, VRMAX], Vfield: F [VFMIN, VFMAX], F = 1 + FLIMF (V - 1); both lags follow a limit
-         within 2 ms, and KII stops integrating while its regulator stands at one (InterPSS; OpenIPSL and
-         OPAL-RT let it wind up). KVI has no limit but that of its input.
+         Vr: F [VRMIN, VRMAX], Vfield: F [VFMIN, VFMAX], F = 1 + FLIMF (V - 1); both lags return to a limit
+         within 2 ms, and KII stops integrating while its regulator is at one (InterPSS; OpenIPSL and
+         OPAL-RT allow windup). KVI is limited only through its input.
   TE dVe/dt = Vfield - Vfe, Ve >= 0                Vfe = KE Ve + Ve Se(Ve) + KD Ifd
   Vf = s KF/(1 + s TF) (1 + s TF1)/(1 + s TF2) of Vr (FBF = 0), Vfe (1) or Efd (2)
   Efd = Ve FEX(IN), IN = KC Ifd/Ve                 FEX = 1 - IN/sqrt(3)         IN <= sqrt(3)/4
@@ -39,7 +39,7 @@ struct Model : shared::Alternator<Model> {
                                                          sqrt(3) (1 - IN)       IN <= 1, 0 beyond
   Ve Se(Ve) = B (Ve - A)^2 above A through (E1, SE1), (E2, SE2)
   FLIMF = 0: fixed limits, 1: in proportion to V.
-  Left out, for their equations are not public: PSLF's limiter of V/Hz (NVPHZ, KVPHZ), its compounding (XC,
+  Not modelled, because their equations are not public: PSLF's limiter of V/Hz (NVPHZ, KVPHZ), its compounding (XC,
   VCMAX), KEFD, LIMFLG, and CIM's KS.
 )";
   enum P {
@@ -95,15 +95,15 @@ struct Model : shared::Alternator<Model> {
       {"TF1", "TF1", "s", 0.0, 0.0, 20.0, kNoNullValue, "rate feedback's lead"},
       {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNullValue, "rate feedback's lag (0: bypass)"},
       {"FBF", "FBF", "code", 1.0, 0.0, 2.0, kNoNullValue,
-       "what is fed back: 0 regulator's output, 1 alternator's field current, 2 field voltage", kAsEffect,
-       shared::kCode},
+       "source of the rate feedback: 0 regulator's output, 1 alternator's field current, 2 field voltage",
+       kAsEffect, shared::kCode},
       {"KIP", "KIP", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "field current regulator, proportional"},
       {"KII", "KII", "1/s", 0.0, 0.0, 1000.0, kNoNullValue, "field current regulator, integral"},
       {"TP", "TP", "s", 0.0, 0.0, 10.0, kNoNullValue, "bridge's time constant (0: none)"},
       {"VFMAX", "VFMAX", "pu", 47.0, 0.0, 1000.0, kNoNullValue, "upper limit of the alternator's field"},
       {"VFMIN", "VFMIN", "pu", -20.0, -1000.0, 0.0, kNoNullValue, "lower limit of the alternator's field"},
       {"KH", "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current"},
-      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "alternator's own field"},
+      {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"},
       {"TE", "TE", "s", 1.2, 0.01, 5.0, kNoNullValue, "alternator's time constant"},
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
       {"KD", "KD", "pu", 2.0, 0.0, 5.0, 0.0, "alternator's armature reaction"},
@@ -111,7 +111,8 @@ struct Model : shared::Alternator<Model> {
       {"SE1", "SE(E1)", "-", 0.0001, 0.0, 2.0, 0.0, "saturation there"},
       {"E2", "E2", "pu", 4.0, 0.0, 50.0, kNoNullValue, "second point of saturation"},
       {"SE2", "SE(E2)", "-", 0.001, 0.0, 2.0, 0.0, "saturation there"},
-      {"FLIMF", "FLIMF", "-", 0.0, 0.0, 1.0, 0.0, "how far the limits follow V", kAsEffect, shared::kShare}};
+      {"FLIMF", "FLIMF", "-", 0.0, 0.0, 1.0, 0.0, "dependence of the limits on V", kAsEffect,
+       shared::kShare}};
   static constexpr auto dyr_columns = shared::columns_to<FLIMF>();
   enum C {
     iTR,
@@ -185,22 +186,22 @@ struct Model : shared::Alternator<Model> {
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     check_alternator(p, where, problems);
     for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF1, TF2, TP})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     for (int i : {KVP, KVI, KIP, KII, KH, KF})
       bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
     for (const auto& [proportional, integral] : {std::pair{KVP, KVI}, {KIP, KII}})
       bad(p[proportional] == 0.0 && p[integral] == 0.0,
-          fmt::format("{} with {}", says(proportional), says(integral)), "no gain, no regulator",
+          fmt::format("{} with {}", says(proportional), says(integral)), "a regulator needs a gain",
           "give one of them");
     bad(!(p[VIMAX] > 0), says(VIMAX) + " pu", "the regulator would see no error", "give VIMAX > 0");
     shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
     bad(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0,
         fmt::format("{} s with {} and {}", says(TA), says(FBF), says(KF)),
-        "the regulator's output would feed itself without a lag", "give TA > 0");
-    bad(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, says(FBF), "0, 1 and 2 are the signals there are",
+        "the rate feedback would form an algebraic loop", "give TA > 0");
+    bad(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, says(FBF), "the signals are 0, 1 and 2",
         "give one of them");
-    bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF), "0 is for fixed limits, 1 for limits as V",
-        "give a value from 0 to 1");
+    bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF),
+        "0 is for fixed limits, 1 for limits proportional to V", "give a value from 0 to 1");
     for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VFMAX, VFMIN}})
       bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
           "the range must not be empty",

@@ -27,11 +27,11 @@ struct Model : shared::SimplifiedExciter<Model> {
       kK,
       shared::with(kTE, 0.02, literature::cim("ExcSCRX")),
       {"EMIN", "EMIN", "pu", -5.0, -100.0, 0.0, kNoNullValue, "lower limit at rated voltage",
-       literature::own("half of what it forces; OpenIPSL has -10")},
+       literature::own("half of OpenIPSL's -10")},
       {"EMAX", "EMAX", "pu", 5.0, 0.5, 100.0, kNoNullValue, "upper limit at rated voltage",
        literature::cim("ExcSCRX")},
-      {"CSWITCH", "CSWITCH", "code", 0.0, 0.0, 1.0, kNoNullValue,
-       "0 fed from the terminal, 1 from a source of its own", kAsEffect, shared::kCode},
+      {"CSWITCH", "CSWITCH", "code", 0.0, 0.0, 1.0, kNoNullValue, "supply: 0 terminal, 1 independent source",
+       kAsEffect, shared::kCode},
       {"rcrfd", "rc/rfd", "-", 0.0, 0.0, 100.0, 0.0,
        "crowbar's resistance over the field's (0: negative field current can flow)",
        literature::cim("ExcSCRX")}};
@@ -68,7 +68,7 @@ struct Model : shared::SimplifiedExciter<Model> {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     if (value_of(s.Ifd) < 0.0 && value_of(p[RATIO]) > 0.0)
-      return fmt::format("Ifd = {:.4f} pu is negative and rc/rfd > 0 lets none flow", value_of(s.Ifd));
+      return fmt::format("Ifd = {:.4f} pu is negative, which rc/rfd > 0 does not allow", value_of(s.Ifd));
     rest(p, c, s, s.Efd / supply(c, s), x);
     return {};
   }

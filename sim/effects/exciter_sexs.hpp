@@ -22,7 +22,7 @@ struct Model : shared::SimplifiedExciter<Model> {
       kK,
       shared::with(kTE, 0.1, literature::powerful_cases("ACTIVSg2000.dyr")),
       {"EMIN", "EMIN", "pu", -4.0, -100.0, 0.0, kNoNullValue, "lower ceiling of Efd",
-       literature::own("a bridge inverts a little less than it rectifies; CIM has -5")},
+       literature::own("a bridge inverts slightly less than it rectifies; CIM has -5")},
       {"EMAX", "EMAX", "pu", 5.0, 0.5, 100.0, kNoNullValue, "upper ceiling of Efd"}};
   static constexpr int dyr_columns[] = {TAoverTB, TB, K, TE, EMIN, EMAX};
   enum { coefficients = own_coefficients };

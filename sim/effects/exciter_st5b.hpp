@@ -22,8 +22,8 @@ struct Model {
   Vref + dVref - Vm + Vs + Vlimiter --> [ (1 + s TC1)/(1 + s TB1) ] --> [ (1 + s TC2)/(1 + s TB2) ] --> u
          both lead-lags: [VRMIN/KR, VRMAX/KR] non-windup
   KR u --> [VRMIN, VRMAX] --> - KC Ifd --> [ 1/(1 + s T1) ] --> Efd, [V VRMIN, V VRMAX]
-         Efd's state is drawn back to a limit it has passed, within 2 ms
-  The gates of other limiters are not there, which leaves their lead-lags (TUC, TUB, TOC, TOB) without effect:
+         Efd's state returns to a crossed limit within 2 ms
+  The gates of other limiters are not modelled, so that their lead-lags (TUC, TUB, TOC, TOB) have no effect:
   limiters add to the error.
 )";
   enum P { TR, TC1, TB1, TC2, TB2, KR, VRMAX, VRMIN, T1, KC, TUC1, TUB1, TUC2, TUB2, TOC1, TOB1, TOC2, TOB2 };
@@ -85,10 +85,10 @@ struct Model {
       if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(!(p[KR] > 0), says(KR), "no gain, no exciter", "give KR > 0");
+    bad(!(p[KR] > 0), says(KR), "an exciter needs a gain", "give KR > 0");
     for (const int i : {TR, TC1, TB1, TC2, TB2, T1})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
-    bad(!(p[KC] >= 0), says(KC), "a rectifier's drop", "give KC >= 0");
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
+    bad(!(p[KC] >= 0), says(KC), "a voltage drop cannot be negative", "give KC >= 0");
     bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " pu with " + says(VRMIN) + " pu",
         "the range must not be empty", "give VRMAX > VRMIN");
   }

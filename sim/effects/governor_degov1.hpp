@@ -17,12 +17,12 @@ struct Model : shared::Diesel<Model> {
          --> [ K (1 + s T4)/(s (1 + s T5)(1 + s T6)) ] --> throttle; it and the integral: [TMIN, TMAX], non-windup
   f: throttle (M = 0), electrical power behind 1/(1 + s TE) (M = 1)
   Pm = (1 + w) exp(-s TD) throttle
-  exp(-s TD): Pade's ratio of the orders 3 and 4; T1 = 0: no control box; T5 = 0: neither that lag nor the lead
+  exp(-s TD): Pade approximation of orders 3 and 4; T1 = 0: no control box; T5 = 0: neither this lag nor the lead
 )";
   enum P { M, T1, T2, T3, K, T4, T5, T6, TD, TMAX, TMIN, DROOP, TE };
   static constexpr Parameter parameters[] = {
-      {"M", "M", "code", 0.0, 0.0, 1.0, kNoNullValue, "droop of: 0 throttle, 1 electrical power", kAsEffect,
-       shared::kCode},
+      {"M", "M", "code", 0.0, 0.0, 1.0, kNoNullValue, "droop feedback: 0 throttle, 1 electrical power",
+       kAsEffect, shared::kCode},
       kT1,
       kT2,
       kT3,
@@ -50,10 +50,11 @@ struct Model : shared::Diesel<Model> {
     if (p[M] != 0 && p[M] != 1)
       problems.add(fmt::format("M = {:g}", p[M]), where, "it is a code", "give 0 or 1");
     if (!(p[DROOP] >= 0))
-      problems.add(fmt::format("DROOP = {:g} pu", p[DROOP]), where, "power would rise with the speed",
+      problems.add(fmt::format("DROOP = {:g} pu", p[DROOP]), where, "power would rise with speed",
                    "give DROOP >= 0");
     if (!(p[TE] >= 0))
-      problems.add(fmt::format("TE = {:g} s", p[TE]), where, "a time constant", "give TE >= 0");
+      problems.add(fmt::format("TE = {:g} s", p[TE]), where, "a time constant cannot be negative",
+                   "give TE >= 0");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

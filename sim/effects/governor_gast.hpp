@@ -55,8 +55,8 @@ struct Model {
                      "GAST divides by it", "give a value > 0");
     for (const int t : {T2, T3})
       if (!(p[t] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where, "a time constant",
-                     "give a value >= 0");
+        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where,
+                     "a time constant cannot be negative", "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
       problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
                    "the range of the valve must not be empty", "give VMAX > VMIN");
@@ -64,7 +64,7 @@ struct Model {
       problems.add(fmt::format("KT = {:g} pu", p[KT]), where, "a hotter exhaust must lower the limit",
                    "give KT >= 0");
     if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "half the width of a band", "give db >= 0");
+      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

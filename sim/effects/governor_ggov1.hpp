@@ -73,10 +73,10 @@ struct Model {
   };
   static constexpr Source defaults_from = literature::openipsl("test of GGOV1");
   static constexpr Source bounds_from = literature::own(
-      "the sign the equations need; at the far end five times CIM's GovCT1 or more, or 99 and 999 (none)");
+      "the sign that the equations need; at least five times CIM's GovCT1, or 99 and 999 (none)");
   static constexpr Parameter parameters[] = {
       {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNullValue,
-       "droop of: 1 electrical power, 0 nothing, -1 valve, -2 requested stroke", literature::cim("GovCT1"),
+       "droop feedback: 1 electrical power, 0 none, -1 valve, -2 requested stroke", literature::cim("GovCT1"),
        shared::kCode},
       {"Flag", "Flag", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: fuel flow in proportion to speed", kAsEffect,
        shared::kCode},
@@ -290,7 +290,7 @@ struct Model {
     };
     if (stroke > value_of(p[Vmax])) return refuse("above Vmax", value_of(p[Vmax]));
     if (stroke < value_of(p[Vmin])) return refuse("below Vmin", value_of(p[Vmin]));
-    if (stroke > kFullLoad) return refuse("above the load limiter's largest", kFullLoad);
+    if (stroke > kFullLoad) return refuse("above the load limiter's largest output", kFullLoad);
     if (stroke > value_of(c[limit]))
       return fmt::format("it would need {:.4g} pu of power, above its load limit Ldref = {:.4g} pu",
                          value_of(s.Tm * c[base] + c[loss]), value_of(p[Ldref]));
@@ -314,20 +314,21 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     if (wrong) problems.add(what, where, why, remedy);
   };
   bad(p[Rselect] != 1 && p[Rselect] != 0 && p[Rselect] != -1 && p[Rselect] != -2, value(Rselect),
-      "it is the code of the droop's signal", "give 1, 0, -1 or -2");
+      "it selects the droop's signal", "give 1, 0, -1 or -2");
   bad(p[Flag] != 0 && p[Flag] != 1, value(Flag), "it is a switch", "give 0 or 1");
-  bad(p[Teng] != 0, value(Teng), "a transport delay is no part of this model",
-      "give Teng = 0; GGOV1 without it is as fast as its actuator");
+  bad(p[Teng] != 0, value(Teng), "a transport delay is not modelled",
+      "give Teng = 0; the response is then as fast as the actuator");
   for (const int i : {Tact, Kturb, Ropen, Rup})
-    bad(!(p[i] > 0), value(i), "nothing would move", "give a value > 0");
-  for (const int i : {Rclose, Rdown}) bad(!(p[i] < 0), value(i), "nothing would move", "give a value < 0");
+    bad(!(p[i] > 0), value(i), "the output would be constant", "give a value > 0");
+  for (const int i : {Rclose, Rdown})
+    bad(!(p[i] < 0), value(i), "the output would be constant", "give a value < 0");
   for (const int i : {R, Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tb, Tc, Tfload, Kpload, Kiload, Kimw, Aset, Ka,
                       Trate, db, Tsa, Tsb})
-    bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
-  bad(!(p[minerr] <= 0), value(minerr), "the lower limit of an error", "give a value <= 0");
+    bad(!(p[i] >= 0), value(i), "it is a magnitude", "give a value >= 0");
+  bad(!(p[minerr] <= 0), value(minerr), "a lower limit of the error cannot be positive", "give a value <= 0");
   bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the range of the valve must not be empty",
       "give Vmax > Vmin");
-  bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output ends at 1 pu", "give Vmin < 1");
+  bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output is at most 1 pu", "give Vmin < 1");
   shared::check_time_constant(name, "Tdgov", p[Tdgov], p[Kdgov] > 0, "Kdgov = 0", where, problems);
   shared::check_time_constant(name, "Ta", p[Ta], p[Ka] > 0, "Ka = 0", where, problems);
   for (const int i : {Wfnl, Ldref, Dm})

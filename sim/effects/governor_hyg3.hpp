@@ -37,8 +37,8 @@ struct Model {
            u - Rgate CV - y --> [ Ki/s ] --> CV
   CV, and what Ki integrates: Pmin to Pmax
   CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ play ] --> GV
-  play: GV follows the gate when that is db2 away (0: at once); within 20 ms, so that it can be integrated
-  PGV: straight lines through (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends where they go on rising; no
+  play: GV follows the gate at the distance db2 (0: no backlash), within 20 ms to be integrable
+  PGV: linear between (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends only if the curve rises there; no
        points: PGV = GV
   TW dq/dt = H0 - h            h = (q/PGV)^2, PGV not below 0.01
   Pm = At h (q - qNL) - Dturb w GV
@@ -88,15 +88,15 @@ struct Model {
   static constexpr Source defaults_from = literature::cim("GovHydro3");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kCurve = literature::own("nearly straight; CIM has none");
-  static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any band a governor is given");
+  static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any governor's dead-band");
   static constexpr Source kOfPid =
-      literature::own("a proportional gain of the PID; CIM has a double derivative's");
+      literature::own("proportional gain of the PID; CIM's is that of the double derivative");
   static constexpr Parameter parameters[] = {
       {"FLAG", "flag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: PID, 0: double derivative", kAsEffect,
        shared::kCode},
       {"RGATE", "Rgate", "pu", 0.0, 0.0, 1.0, kNoNullValue, "permanent droop by the governor's output"},
       {"RELEC", "Relec", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop by the electrical power"},
-      {"TT", "Tt", "s", 0.2, 0.0, 20.0, 0.0, "lag of the power fed back (0: none)"},
+      {"TT", "Tt", "s", 0.2, 0.0, 20.0, 0.0, "lag of the power feedback (0: none)"},
       {"TD", "Td", "s", 0.05, 0.0, 10.0, 0.0, "input filter (0: none)"},
       {"K2", "K2", "pu", 2.5, 0.0, 100.0, kNoNullValue,
        "proportional gain (flag 1), double derivative (flag 0) [s2]", kOfPid},
@@ -272,9 +272,8 @@ struct Model {
     x[flow] = c[base] * s.Tm / (p[AT] * p[H0]) + p[QNL];
     const T pgv = x[flow] / c[root];
     if (value_of(pgv) < kShut)
-      return fmt::format(
-          "it would need a flow of {:.4g} pu, and a gate that passes less than {:g} pu is shut",
-          value_of(x[flow]), kShut);
+      return fmt::format("it would need a flow of {:.4g} pu, and a gate with less than {:g} pu is shut",
+                         value_of(x[flow]), kShut);
     x[gate] = x[position] = Curve::opening(c + curve, pgv);
     x[velocity] = x[second] = T(0.0);
     x[measured] = c[base] * s.P;
@@ -294,10 +293,10 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   bad(p[FLAG] != 0 && p[FLAG] != 1, says(FLAG), "it is a code", "give 1 for PID or 0 for double derivative");
   bad(p[EPS] != 0 && (p[DBH] != 0 || p[DBL] != 0), says(EPS) + " with " + says(DBH) + ", " + says(DBL),
       "a dead-band with a step and hysteresis at its edge is not modelled", "give eps = 0");
-  bad(!(p[DBL] <= 0 && p[DBH] >= 0), says(DBH) + " with " + says(DBL), "the band lies about rated speed",
-      "give dbH >= 0 and dbL <= 0");
+  bad(!(p[DBL] <= 0 && p[DBH] >= 0), says(DBH) + " with " + says(DBL),
+      "the dead-band must contain rated speed", "give dbH >= 0 and dbL <= 0");
   for (const int i : {RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE})
-    bad(!(p[i] >= 0), says(i), "a gain, a time or a width", "give a value >= 0");
+    bad(!(p[i] >= 0), says(i), "gains, times and widths cannot be negative", "give a value >= 0");
   for (const int i : {KG, H0, AT})
     bad(!(p[i] > 0), says(i), "HYG3 divides by it, or is constant without it", "give a value > 0");
   Pid::check(says(K2), p[FLAG] == 0 ? 0.0 : p[K2], says(KI), p[KI], says(K1),
@@ -307,7 +306,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
       "give Pmax > Pmin");
   if (p[GV1] < 0)
-    bad(true, says(GV1), "it stands for a curve built into PSLF", "give the curve's points");
+    bad(true, says(GV1), "it selects a curve built into PSLF", "give the curve's points");
   else
     shared::GatePower<6>::check(p, kGates, kPowers, says, where, problems);
 }

@@ -59,12 +59,12 @@ struct Model {
     for (const int i : {r, Tr, Tf, Tg, VELM, TW, At})
       if (!(p[i] > 0))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "HYGOV divides by it or cannot move without it", "give a value > 0");
+                     "HYGOV divides by it, or is constant without it", "give a value > 0");
     if (!(p[GMAX] > p[GMIN] && p[GMIN] >= 0))
       problems.add(fmt::format("GMAX = {:g} pu with GMIN = {:g} pu", p[GMAX], p[GMIN]), where,
                    "the range of the gate must not be empty or negative", "give GMAX > GMIN >= 0");
     if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "half the width of a band", "give db >= 0");
+      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
   }
   static std::string_view unphysical(const double* p) { return p[r] > p[R] ? "" : "r > R"; }
 
@@ -100,7 +100,7 @@ struct Model {
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     x[flow] = s.Tm / p[At] + p[qNL];
     if (value_of(x[flow]) < kLeak)
-      return fmt::format("it would need the gate at {:.4g} pu, and a gate below {:g} pu is shut",
+      return fmt::format("it would need a gate of {:.4g} pu, and a gate below {:g} pu is shut",
                          value_of(x[flow]), kLeak);
     x[gate] = x[desired] = x[flow];
     x[filter] = T(0.0);

@@ -29,13 +29,13 @@ struct Model {
   enum P { JBUS, M, K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, K2, T5, K3, K4, T6, K5, K6, T7, K7, K8, db };
   static constexpr Source kNone = literature::derived("there is no low-pressure generator");
   static constexpr Source kStageShare =
-      literature::own("a share, half as much again where shares do not make 1");
+      literature::own("a fraction, up to 1.5 because the sum may differ from 1");
   static constexpr Source defaults_from = literature::cim("GovSteamIEEE1");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: there is none)",
-       kNone, shared::kNotModelled},
-      {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: there is none)", kNone,
+      {"JBUS", "JBUS", "code", 0.0, 0.0, 0.0, 0.0, "bus of the low-pressure generator (0: none)", kNone,
+       shared::kNotModelled},
+      {"M", "M", "code", 0.0, 0.0, 0.0, 0.0, "number of the low-pressure generator (0: none)", kNone,
        shared::kNotModelled},
       {"K", "K", "pu", 20.0, 1.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::andes("IEEEG1, commit 073cb96")},
@@ -54,22 +54,22 @@ struct Model {
       {"T4", "T4", "s", 0.3, 0.0, 10.0, kNoNullValue, "steam bowl time constant (0: none)"},
       {"K1", "K1", "pu", 0.3, 0.0, 1.5, 0.0, "share of power before the first reheater",
        literature::steps("IEEE39.dyr"), kStageShare},
-      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T5", "T5", "s", 7.0, 0.0, 60.0, kNoNullValue, "time constant of the first reheater (0: none)",
        literature::own("near the case files' 7.5 to 8.3 s")},
       {"K3", "K3", "pu", 0.4, 0.0, 1.5, 0.0, "share of power after the first reheater",
-       literature::own("with K1 the shares make 1"), kStageShare},
-      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       literature::own("so that the shares sum to 1"), kStageShare},
+      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T6", "T6", "s", 0.5, 0.0, 60.0, kNoNullValue, "time constant of the crossover (0: none)"},
       {"K5", "K5", "pu", 0.3, 0.0, 1.5, 0.0, "share of power after the crossover",
-       literature::own("with K1 the shares make 1"), kStageShare},
-      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+       literature::own("so that the shares sum to 1"), kStageShare},
+      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T7", "T7", "s", 0.0, 0.0, 60.0, kNoNullValue, "time constant of the last stage (0: none)"},
       {"K7", "K7", "pu", 0.0, 0.0, 1.5, 0.0, "share of power after the last stage", kAsEffect, kStageShare},
-      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same, of the low-pressure generator", kAsEffect,
+      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand}};
@@ -171,7 +171,7 @@ inline void Model::check_as(std::string_view model, const double* p, const std::
   };
   if (!(p[T3] > 0)) problems.add(text(T3), where, std::string(model) + " divides by it", "give T3 > 0");
   for (const int t : {T1, T2, T4, T5, T6, T7})
-    if (!(p[t] >= 0)) problems.add(text(t), where, "a time constant", "give a value >= 0");
+    if (!(p[t] >= 0)) problems.add(text(t), where, "a time constant cannot be negative", "give a value >= 0");
   if (!(p[UO] > 0 && p[UC] < 0))
     problems.add(text(UO) + " with " + text(UC), where, "the valve must be able to open and to close",
                  "give UO > 0 and UC < 0");
@@ -180,12 +180,12 @@ inline void Model::check_as(std::string_view model, const double* p, const std::
                  "give PMAX > PMIN");
   if (!(p[K1] + p[K3] + p[K5] + p[K7] > 0))
     problems.add(text(K1) + ", " + text(K3) + ", " + text(K5) + ", " + text(K7), where,
-                 "the stages share out the turbine's power", "give shares with a sum > 0");
+                 "the stages share the turbine's power", "give shares with a sum > 0");
   for (const int i : {JBUS, M, K2, K4, K6, K8})
     if (p[i] != 0)
-      problems.add(text(i), where, "a second, low-pressure generator on the steam is not modelled",
+      problems.add(text(i), where, "a second, low-pressure generator is not modelled",
                    "give 0 and put its share into K1, K3, K5 or K7");
-  if (!(p[db] >= 0)) problems.add(text(db), where, "half the width of a band", "give db >= 0");
+  if (!(p[db] >= 0)) problems.add(text(db), where, "a width cannot be negative", "give db >= 0");
 }
 
 }  // namespace swingbank::sim::effects::governor_ieeeg1

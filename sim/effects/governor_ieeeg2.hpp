@@ -54,7 +54,8 @@ struct Model {
       return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
     };
     for (const int i : {K, T1, T2, T3, T4})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a gain or a time", "give a value >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "gains and times cannot be negative", "give a value >= 0");
     if (!(p[PMAX] > p[PMIN]))
       problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of the gate must not be empty",
                    "give PMAX > PMIN");

@@ -76,7 +76,7 @@ struct Model {
     };
     for (const int i : {TG, A23}) bad(!(p[i] > 0), says(i), "IEEEG3 divides by it", "give a value > 0");
     for (const int i : {TP, SIGMA, DELTA, TR, TW})
-      bad(!(p[i] >= 0), says(i), "a droop or a time", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i), "droops and times cannot be negative", "give a value >= 0");
     bad(!(p[UO] > 0 && p[UC] < 0), says(UO) + " with " + says(UC),
         "the gate must be able to open and to close", "give UO > 0 and UC < 0");
     bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",

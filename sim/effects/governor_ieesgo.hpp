@@ -25,7 +25,7 @@ struct Model {
   enum P { T1, T2, T3, T4, T5, T6, K1, K2, K3, PMAX, PMIN, db };
   static constexpr Source defaults_from = literature::andes("IEESGO, commit 0cbe377");
   static constexpr Source bounds_from = shared::kBeyondCases;
-  static constexpr Source kSteam = literature::own("IEEEG1's stages as fractions of what is left");
+  static constexpr Source kSteam = literature::own("IEEEG1's stages as fractions of the remaining power");
   static constexpr Parameter parameters[] = {
       {"T1", "T1", "s", 0.2, 0.0, 100.0, kNoNullValue, "controller's lag (0: none)",
        literature::own("as IEEEG1's")},
@@ -66,12 +66,13 @@ struct Model {
       return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
     };
     for (const int i : {T1, T2, T3, T4, T5, T6})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a time constant", "give a value >= 0");
-    if (!(p[K1] >= 0)) problems.add(says(K1), where, "power would rise with the speed", "give K1 >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "a time constant cannot be negative", "give a value >= 0");
+    if (!(p[K1] >= 0)) problems.add(says(K1), where, "power would rise with speed", "give K1 >= 0");
     if (!(p[PMAX] > p[PMIN]))
       problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of power must not be empty",
                    "give PMAX > PMIN");
-    if (!(p[db] >= 0)) problems.add(says(db), where, "half the width of a band", "give db >= 0");
+    if (!(p[db] >= 0)) problems.add(says(db), where, "a width cannot be negative", "give db >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

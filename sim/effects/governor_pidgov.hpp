@@ -26,7 +26,7 @@ struct Model {
   e --> [ KD s/(1 + s TA) ] ----------------(+)
   c - gate --> [ 1/TB ] --> [VELMIN, VELMAX] --> [ 1/s ] --> gate, [GMIN, GMAX] non-windup
   gate --> [ curve ] --> [ (1 - s ATW TW)/(1 + s ATW TW/2) ] --> - DTURB w --> Pm
-  curve: straight lines through (G0, 0), (G1, P1), (G2, P2), (1, P3), going on straight beyond them
+  curve: linear between (G0, 0), (G1, P1), (G2, P2), (1, P3), extrapolated beyond them
 )";
   enum P {
     FLAG,
@@ -57,8 +57,8 @@ struct Model {
   static constexpr Source defaults_from = kTuned;
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
-      {"FLAG", "Flag", "code", 1.0, 0.0, 1.0, kNoNullValue,
-       "what the droop acts on: 0 electrical power, 1 gate", kTuned, shared::kCode},
+      {"FLAG", "Flag", "code", 1.0, 0.0, 1.0, kNoNullValue, "droop feedback: 0 electrical power, 1 gate",
+       kTuned, shared::kCode},
       {"RPERM", "Rperm", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop"},
       {"TREG", "Treg", "s", 0.05, 0.0, 10.0, 0.0, "lag of the droop (0: none)"},
       {"KP", "Kp", "pu", 2.0, 0.0, 100.0, kNoNullValue, "proportional gain"},
@@ -107,7 +107,7 @@ struct Model {
       {"integral", "pu", "integral of the error"},
       {"first", "pu", "regulator after its first lag"},
       {"derivative", "pu", "error, lagged"},
-      {"asked", "pu", "gate that the regulator asks for"},
+      {"asked", "pu", "gate requested by the regulator"},
       {.name = "gate", .unit = "pu", .meaning = "gate opening", .low = low, .high = high, .bends = true},
       {"water", "pu", "state of the water column", 1.0, -1, -1, {water_lag}}};
   static constexpr int kOpenings[] = {0, 1, 2, 3}, kAtOpenings[] = {4, 5, 6, 7};
@@ -126,18 +126,18 @@ struct Model {
     };
     bad(p[FLAG] != 0 && p[FLAG] != 1, says(FLAG), "it is a code", "give 0 or 1");
     for (const int i : {TA, TB, VELMAX})
-      bad(!(p[i] > 0), says(i), "PIDGOV divides by it or cannot move without it", "give a value > 0");
+      bad(!(p[i] > 0), says(i), "PIDGOV divides by it, or is constant without it", "give a value > 0");
     bad(!(p[VELMIN] < 0), says(VELMIN), "the gate closes with a negative velocity", "give Velmin < 0");
     for (const int i : {RPERM, TREG, KP, KI, KD, ATW, TW})
-      bad(!(p[i] >= 0), says(i), "a gain or a time", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i), "gains and times cannot be negative", "give a value >= 0");
     bad(!(p[KI] > 0) && !(p[KP] > 0 && p[RPERM] > 0), says(KI) + " with " + says(KP) + ", " + says(RPERM),
-        "no gate could be held", "give Ki > 0, or Kp and Rperm > 0");
+        "no gate position would be steady", "give Ki > 0, or Kp and Rperm > 0");
     bad(!(p[GMAX] > p[GMIN]), says(GMAX) + " with " + says(GMIN), "the range of the gate must not be empty",
         "give Gmax > Gmin");
     bad(!(p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && 0.0 < p[P1] && p[P1] < p[P2] && p[P2] < p[P3]),
         says(G0) + ", " + says(G1) + ", " + says(G2) + " with " + says(P1) + ", " + says(P2) + ", " +
             says(P3),
-        "more opening must give more, up to full opening", "give G0 < G1 < G2 < 1 and 0 < P1 < P2 < P3");
+        "power must rise with the opening, up to full opening", "give G0 < G1 < G2 < 1 and 0 < P1 < P2 < P3");
   }
   static std::string_view unphysical(const double* p) {
     return p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && p[P1] < p[P2] && p[P2] < p[P3]

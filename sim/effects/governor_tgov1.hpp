@@ -47,13 +47,13 @@ struct Model {
       problems.add(fmt::format("R = {:g} pu", p[R]), where, "TGOV1 divides by R", "give R > 0");
     for (const int t : {T1, T2, T3})
       if (!(p[t] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where, "a time constant",
-                     "give a value >= 0");
+        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where,
+                     "a time constant cannot be negative", "give a value >= 0");
     if (!(p[VMAX] > p[VMIN]))
       problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
                    "the range of the valve must not be empty", "give VMAX > VMIN");
     if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "half the width of a band", "give db >= 0");
+      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
   }
   static std::string_view unphysical(const double* p) { return p[T3] >= p[T2] ? "" : "T3 >= T2"; }
 

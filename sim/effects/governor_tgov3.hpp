@@ -19,9 +19,9 @@ struct Model {
                                                        UO       PMAX
   w --> [ K (1 + s T2)/(1 + s T1) ] --(-)--> (+) --> [ 1/T3 ]--> [ 1/s ] --valve--> [ 1/(1 + s T4) ] --x4-->
                         Pref + dPref --(+)   -valve    UC       PMIN
-  T5 dx5/dt = x4 - x5, x5 <= PRMAX non-windup      (reheater; the intercept valve stands open)
+  T5 dx5/dt = x4 - x5, x5 <= PRMAX non-windup      (reheater; the intercept valve stays open)
   x5 --> [ 1/(1 + s T6) ] --x6                     Pm = K1 x4 + K2 x5 + K3 x6
-  TA, TB and TC time a fast closing of the intercept valve that a person starts: kept for files, without effect.
+  TA, TB and TC are the times of a manual fast closing of the intercept valve: columns without effect.
 )";
   enum P { K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, T5, K2, T6, K3, TA, TB, TC, PRMAX, parameter_count };
   static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;

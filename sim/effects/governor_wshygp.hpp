@@ -31,9 +31,9 @@ struct Model {
          back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it the distance to the edge
   CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ play ] --> GV
   GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
-  play: GV follows the gate when that is db2 away (0: at once); within 20 ms, so that it can be integrated
-  NGV: straight lines through (GV1, PGV1) to (GV5, PGV5), which end where they no longer ascend; none: GV itself
-  Power and gate are per unit of TRATE (0: the machine's base). VELclose counts by its magnitude: files write either sign.
+  play: GV follows the gate at the distance db2 (0: no backlash), within 20 ms to be integrable
+  NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: GV
+  Power and gate are per unit of TRATE (0: the machine's base). VELclose: only the magnitude counts.
 )";
   enum P {
     DB1,
@@ -74,7 +74,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"db1", "db1", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand},
-      {"err", "err", "pu", 0.0, 0.0, 0.02, 0.0, "step at the dead-band's edge: 0 or db1, for none",
+      {"err", "err", "pu", 0.0, 0.0, 0.02, 0.0, "step at the dead-band's edge (0 or db1: none)",
        shared::kNothing, shared::kDeadBand},
       {"TD", "TD", "s", 0.0, 0.0, 10.0, 0.0, "input filter (0: none)"},
       {"KI", "KI", "1/s", 0.36, 0.0, 100.0, kNoNullValue, "integral gain"},
@@ -82,12 +82,12 @@ struct Model {
       {"KD", "KD", "s", 1.11, 0.0, 100.0, 0.0, "derivative gain"},
       {"KP", "KP", "pu", 0.1, 0.0, 100.0, kNoNullValue, "proportional gain"},
       {"R", "R", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop"},
-      {"TT", "TT", "s", 0.02, 0.0, 20.0, kNoNullValue, "lag of the power fed back (0: CV is fed back)"},
+      {"TT", "TT", "s", 0.02, 0.0, 20.0, kNoNullValue, "lag of the power feedback (0: feedback of CV)"},
       {"KG", "KG", "1/s", 2.5, 0.01, 500.0, kNoNullValue, "gate servo gain"},
       {"TP", "TP", "s", 0.35, 0.0, 10.0, 0.0, "gate servo lag (0: none)"},
       {"VELOPEN", "VELopen", "pu/s", 0.09, 0.0001, 100.0, kNoNullValue, "fastest opening"},
       {"VELCLOSE", "VELclose", "pu/s", 0.14, -100.0, 100.0, kNoNullValue,
-       "fastest closing; its magnitude counts"},
+       "fastest closing; only its magnitude counts"},
       {"PMAX", "PMAX", "pu", 1.0, 0.0, 5.0, kNoNullValue, "upper limit of the gate"},
       {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate"},
       {"db2", "db2", "pu", 0.0, 0.0, 0.1, 0.0, "half width of the gate's backlash", shared::kNothing,
@@ -149,8 +149,8 @@ struct Model {
     bad(p[ERR] != 0.0 && p[ERR] != p[DB1], says(ERR) + " with " + says(DB1),
         "a dead-band with a step and hysteresis at its edge is not modelled", "give err = 0 or err = db1");
     for (const int i : {DB1, TD, KI, KD, KP, R, TT, TP, DB2, BTURB, TTURB, TRATE})
-      bad(!(p[i] >= 0), says(i), "a gain, a time or a width", "give a value >= 0");
-    bad(!(p[KG] > 0), says(KG), "no servo without a gain", "give KG > 0");
+      bad(!(p[i] >= 0), says(i), "gains, times and widths cannot be negative", "give a value >= 0");
+    bad(!(p[KG] > 0), says(KG), "a servo needs a gain", "give KG > 0");
     Pid::check(says(KP), p[KP], says(KI), p[KI], says(KD), p[KD], says(TF), p[TF], where, problems);
     bad(!(p[VELOPEN] > 0) || p[VELCLOSE] == 0.0, says(VELOPEN) + " with " + says(VELCLOSE),
         "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");

@@ -23,9 +23,9 @@ struct Model {
   gate --> [ NGV ] --> [ 1/(1 + s T4) ] --x4--> [ 1/(1 + s T5) ] --x5--> [ 1/(1 + s T6) ] --x6--> [ 1/(1 + s T7) ] --x7
   Pm = K1 x4 + K3 x5 + K5 x6 + K7 x7
   b(w): 0 within +-db1, beyond it the distance to the edge (err = 0 or db1: no step at the edge)
-  play: the gate follows the valve when that is db2 away (0: at once); within 20 ms, so that it can be integrated
-  NGV: straight lines through (GV1, PGV1) to (GV5, PGV5), which end where they no longer ascend; none: PGV = gate
-  IBLOCK: 1 no closing, 2 no opening, 3 neither below and above the operating point, where PMIN, PMAX are 0
+  play: the gate follows the valve at the distance db2 (0: no backlash), within 20 ms to be integrable
+  NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: PGV = gate
+  IBLOCK: 1 no closing, 2 no opening, 3 neither, beyond the operating point, if PMIN, PMAX are 0
   One shaft only: JBUS, M and the shares K2, K4, K6, K8 of a second generator are zero.
 )";
   /// The parameters of IEEEG1 with its dead-band, then these.
@@ -61,7 +61,7 @@ struct Model {
                 0.0,
                 0.02,
                 0.0,
-                "step at the dead-band's edge: 0 or db1, for none",
+                "step at the dead-band's edge (0 or db1: none)",
                 shared::kNothing,
                 shared::kDeadBand};
     all[DB2] = {"db2",
@@ -85,9 +85,9 @@ struct Model {
           0.0,
           99.0,
           kNoNullValue,
-          (i - GV1) % 2 == 0 ? "opening of the valve (0: point not used)" : "power there",
+          (i - GV1) % 2 == 0 ? "opening of the valve (0: point not used)" : "power at that point",
           shared::kNothing,
-          literature::own("99 stands for a point beyond reach")};
+          literature::own("99 marks a point that is never reached")};
     all[IBLOCK] = {"IBLOCK",
                    "IBLOCK",
                    "code",
@@ -124,7 +124,7 @@ struct Model {
       problems.add(text(ERR) + " with " + text(B::db), where,
                    "a dead-band with a step and hysteresis at its edge is not modelled",
                    "give err = 0 or err = db1");
-    if (!(p[DB2] >= 0.0)) problems.add(text(DB2), where, "half the width of a play", "give db2 >= 0");
+    if (!(p[DB2] >= 0.0)) problems.add(text(DB2), where, "a width cannot be negative", "give db2 >= 0");
     if (p[IBLOCK] != 0 && p[IBLOCK] != 1 && p[IBLOCK] != 2 && p[IBLOCK] != 3)
       problems.add(text(IBLOCK), where, "it is a code", "give 0, 1, 2 or 3");
     Curve::check(p, kGates, kPowers, text, where, problems);

@@ -22,7 +22,7 @@ struct Model {
   T(e): straight through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
   d timer/dt = 1/T(e)       while e > EFD1 and timer < 1      (at constant e it takes T(e))
              = -10/s timer  while e <= EFD1 and timer < 1     (reset, within 0.1 s)
-             = 1/s          from timer = 1 on, up to 2        (operated: it stays so)
+             = 1/s          from timer = 1 on, up to 2        (operated, permanently)
   Voel = KMX (EFDDES - e) EFDRATED within [VLOW, 0] once operated; it fades in within 0.01 s
   Vlimiter = Vlimiter + Voel
 )";
@@ -40,15 +40,14 @@ struct Model {
       shared::kTimeAtMiddle,
       shared::kUpper,
       shared::kTimeAtUpper,
-      {"EFDDES", "EFDDES", "-", 0.9, 0.5, 5.0, kNoNullValue, "field voltage it aims at, of rated"},
+      {"EFDDES", "EFDDES", "-", 0.9, 0.5, 5.0, kNoNullValue, "target field voltage, relative to rated"},
       {"KMX", "KMX", "pu/pu", 0.01, 0.0, 10.0, 0.0, "gain"},
       shared::kLowest};
   static constexpr int dyr_columns[] = {EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW};
   enum C { timing, wanted = timing + Timing::size, gain, low, zero, top, coefficients };
   enum X { timer, Em };
-  static constexpr State states[] = {
-      {"timer", "-", "how far the pickup has come (1: operated)", 1.0, zero, top},
-      {"Em", "pu", "measured field voltage"}};
+  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: operated)", 1.0, zero, top},
+                                     {"Em", "pu", "measured field voltage"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     Timing::check(p + EFDRATED, name, "voltage", where, problems);

@@ -16,7 +16,7 @@ namespace swingbank::sim::effects::limiter_oel1 {
 struct Model {
   static constexpr std::string_view
       name = "OEL1",
-      title = "over-excitation limiter that runs the reference back",
+      title = "over-excitation limiter with runback of the reference",
       source =
           "PowerWorld, OEL1 (equations, as of PSLF's oel1); J. Eisenbarth, oel1_dyd.m (columns of PSLF's "
           "oel1; github.com/JEisenbarth/MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR, 593d84e)",
@@ -30,12 +30,12 @@ struct Model {
              = 0                     while Ifcont < i <= Ifdset and timer < 1
              = 1/s                   while i > Ifcont from timer = 1 on, up to 2    (operated)
              = -20/s timer           while i <= Ifcont                             (reset, within 0.1 s)
-  d Voel/dt = -1/Runback             while operated and i > Ifcont, Runback > 0    (held where that ends)
+  d Voel/dt = -1/Runback             while operated and i > Ifcont, Runback > 0    (otherwise constant)
   0.01 s d Voel/dt = Runback - Voel  while operated, Runback < 0                   (stays)
   Vlimiter = Vlimiter + Voel (Alarm = 0), unchanged (Alarm = 1)
-  Not there, and told: the hard limit of the exciter's output at Ifdmax, or at Ifcont for Runback = 0 (no public
-  source says how it acts on an exciter), and the trips of the generator after Tmax and Tset.
-  A .dyr is read in the order of PSLF's .dyd, the only one that is public.
+  Not modelled, with a remark: the hard limit of the exciter's output at Ifdmax, or at Ifcont for Runback = 0 (its
+  action on an exciter is not public), and the trips of the generator after Tmax and Tset.
+  A .dyr is read in the order of PSLF's .dyd, the only public one.
 )";
   enum P { Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm };
   static constexpr Source defaults_from = literature::own("no public file has the model");
@@ -46,25 +46,25 @@ struct Model {
       {"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNullValue, "hard limit (no effect)",
        literature::own("1.5 times the rated field current of MAXEX2")},
       {"Tpickup", "Tpickup", "s", 10.0, -1000.0, 1000.0, kNoNullValue,
-       "time to operate 1 pu beyond the pickup; < 0: definite time",
+       "operating time at 1 pu above the pickup; < 0: definite time",
        literature::own("a few tens of seconds at a moderate overload")},
       {"Runback", "Runback", "s/pu", 100.0, -1.0, 10000.0, kNoNullValue,
-       "> 0: 1/Runback is the rate of the reference; < 0: what is added to it [pu]",
+       "> 0: 1/Runback is the rate of the reference; < 0: the addition to it [pu]",
        literature::own("a hundredth of the voltage each second")},
       {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNullValue, "time beyond Ifdmax to a trip (no effect)"},
       {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue, "time beyond Ifdset to a trip (no effect)"},
-      {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNullValue, "what may last",
+      {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNullValue, "permissible continuous value",
        literature::own("rated field current of MAXEX2")},
       {"Vfdflag", "Vfdflag", "code", 0.0, 0.0, 1.0, kNoNullValue,
-       "limited quantity: 0 field current, 1 field voltage", literature::own("what heats the field"),
-       shared::kCode},
+       "limited quantity: 0 field current, 1 field voltage",
+       literature::own("the field current heats the field"), shared::kCode},
       {"Alarm", "Alarm", "code", 0.0, 0.0, 1.0, 1.0, "1: a message only, no action", shared::kNothing,
        shared::kCode}};
   static constexpr int dyr_columns[] = {Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm};
   enum C { pickup, lasting, inverse_rate, definite_rate, ramp, bias, voltage, zero, top, coefficients };
   enum X { timer, Voel };
-  static constexpr State states[] = {
-      {"timer", "-", "how far the pickup has come (1: operated)", 1.0, zero, top}, {"Voel", "pu", "output"}};
+  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: operated)", 1.0, zero, top},
+                                     {"Voel", "pu", "output"}};
   static constexpr double kOperatedReset =
       -20.0;  ///< reset rate of the timer below the permanent limit [1/s]
 
@@ -131,14 +131,15 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   };
   const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
   const std::string order =
-      "; the values stand as in PSLF's .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
+      "; the order is that of PSLF's .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
       "Tset, Ifcont, Vfdflag, Alarm";
   bad(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), says(Ifcont) + " pu with " + says(Ifdset) + " pu",
-      "it runs back from the pickup to what may last", "give 0 < Ifcont <= Ifdset" + order);
-  bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "it is a time, and by its sign inverse or definite",
+      "the runback leads from the pickup to the continuous value", "give 0 < Ifcont <= Ifdset" + order);
+  bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "its sign selects inverse or definite time",
       "give Tpickup > 0 or < 0" + order);
   for (int i : {Vfdflag, Alarm}) bad(p[i] != 0.0 && p[i] != 1.0, says(i), "a code", "give 0 or 1" + order);
-  for (int i : {Tmax, Tset}) bad(!(p[i] >= 0), says(i) + " s", "a time", "give a value >= 0" + order);
+  for (int i : {Tmax, Tset})
+    bad(!(p[i] >= 0), says(i) + " s", "a time cannot be negative", "give a value >= 0" + order);
 }
 inline std::string Model::remark(const double* p) {
   std::string text = p[Runback] == 0.0

@@ -30,7 +30,7 @@ struct Model {
       {"KUR", "KUR", "pu", 1.95, 0.0, 100.0, kNoNullValue, "radius"},
       {"KUC", "KUC", "pu", 1.38, 0.0, 100.0, kNoNullValue, "centre on the Q axis"},
       {"KUF", "KUF", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's rate feedback (only 0)",
-       literature::derived("0 only is modelled; CIM has 3.3")},
+       literature::derived("only 0 is modelled; CIM has 3.3")},
       {"VURMAX", "VURMAX", "pu", 5.8, 0.0, 100.0, kNoNullValue, "upper limit of KUR V"},
       {"VUCMAX", "VUCMAX", "pu", 5.8, 0.0, 100.0, kNoNullValue, "upper limit of |KUC V - j I|"},
       {"KUI", "KUI", "1/s", 0.5, 0.0, 1000.0, 0.0, "integral gain",
@@ -40,7 +40,7 @@ struct Model {
       {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the integrator",
        literature::own("a quarter of the voltage; CIM has 18 for VULMAX")},
       {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the integrator",
-       literature::derived("it may only raise the voltage")},
+       literature::derived("it only raises the voltage")},
       {"TU1", "TU1", "s", 0.0, 0.0, 20.0, kNoNullValue, "first lead"},
       {"TU2", "TU2", "s", 0.05, 0.0, 20.0, kNoNullValue, "first lag (0: bypass)"},
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lead"},
@@ -48,7 +48,7 @@ struct Model {
       {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output",
        literature::own("a quarter of the voltage; CIM has 18 for VULMAX")},
       {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)",
-       literature::derived("it may only raise the voltage")}};
+       literature::derived("it only raises the voltage")}};
   static constexpr int dyr_columns[] = {KUR,    KUC, KUF, VURMAX, VUCMAX, KUI,    KUL,   VUIMAX,
                                         VUIMIN, TU1, TU2, TU3,    TU4,    VULMAX, VULMIN};
   enum C {
@@ -79,7 +79,8 @@ struct Model {
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
     for (int i : {KUR, KUC, VURMAX, VUCMAX})
-      bad(!(p[i] > 0), says(i) + " pu", "the circle needs a radius, a centre and room", "give a value > 0");
+      bad(!(p[i] > 0), says(i) + " pu", "the circle needs a radius, a centre and limits above 0",
+          "give a value > 0");
     Regulator::check(p, where, problems);
   }
   static std::string_view unphysical(const double* p) { return p[KUC] < p[KUR] ? "" : "KUC < KUR"; }

@@ -30,7 +30,7 @@ struct Model {
   V --> [ 1/(1 + s TUV) ] --> Vf        Q --> [ 1/(1 + s TUQ) ] --> Qf
   P / Vf^K1 --> [ 1/(1 + s TUP) ] --> P' --> [ through (P0, Q0) ... (P10, Q10) ] --> Q'
   Qref = Q' Vf^K2        e = Qref - Qf            above zero below the lines
-  Qquad = 0: of -P' as of P'; 1: the first line goes on to its left. Beyond the last point Q' stays.
+  Qquad = 0: mirrored for P' < 0; 1: first line extended to P' < 0. Beyond the last point Q' is constant.
   d Vui/dt = KUI e within [VUIMIN, VUIMAX], non-windup
   Vui + KUL e -> (1 + s TU1)/(1 + s TU2) -> (1 + s TU3)/(1 + s TU4) -> [VULMIN, VULMAX] -> Vuel
   Vlimiter = Vlimiter + Vuel            (at the exciter's summing point; a time constant of 0: bypass)
@@ -64,14 +64,14 @@ struct Model {
   };
   static constexpr Source defaults_from = literature::cim("UnderexcLimIEEE2");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kUnused = literature::derived("a point that is not used");
+  static constexpr Source kUnused = literature::derived("an unused point");
   static constexpr Parameter parameters[] = {
       {"K1", "K1", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage, of P", kAsEffect,
        shared::kCode},
       {"K2", "K2", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage, of Q", kAsEffect,
        shared::kCode},
-      {"Qquad", "Qquad", "code", 0.0, 0.0, 1.0, kNoNullValue, "P' < 0: 0 as of -P', 1 the first line goes on",
-       literature::derived("no matter for a generator"), shared::kCode},
+      {"Qquad", "Qquad", "code", 0.0, 0.0, 1.0, kNoNullValue, "P' < 0: 0 mirrored, 1 first line extended",
+       literature::derived("irrelevant for a generator"), shared::kCode},
       {"TUV", "TUV", "s", 5.0, 0.0, 60.0, kNoNullValue, "lag of the voltage (0: none)"},
       {"TUP", "TUP", "s", 5.0, 0.0, 60.0, kNoNullValue, "lag of the power (0: none)"},
       {"TUQ", "TUQ", "s", 0.0, 0.0, 60.0, kNoNullValue, "lag of the reactive power (0: none)"},
@@ -87,27 +87,27 @@ struct Model {
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lead"},
       {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       {"P0", "P0", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 0"},
-      {"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power there"},
+      {"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
       {"P1", "P1", "pu", 0.3, -2.0, 2.0, kNoNullValue, "power of point 1"},
-      {"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power there"},
+      {"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
       {"P2", "P2", "pu", 0.6, -2.0, 2.0, kNoNullValue, "power of point 2"},
-      {"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power there"},
+      {"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
       {"P3", "P3", "pu", 0.9, -2.0, 2.0, kNoNullValue, "power of point 3"},
-      {"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power there"},
+      {"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
       {"P4", "P4", "pu", 1.02, -2.0, 2.0, kNoNullValue, "power of point 4"},
-      {"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there"},
+      {"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
       {"P5", "P5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 5", kUnused},
-      {"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"P6", "P6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 6", kUnused},
-      {"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"P7", "P7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 7", kUnused},
-      {"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"P8", "P8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 8", kUnused},
-      {"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"P9", "P9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 9", kUnused},
-      {"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"P10", "P10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 10", kUnused},
-      {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power there", kUnused},
+      {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
       {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output"},
       {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)"}};
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
@@ -216,9 +216,10 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
   for (int i : {K1, K2})
     bad(p[i] != 0.0 && p[i] != 1.0 && p[i] != 2.0, says(i), "an exponent of the voltage", "give 0, 1 or 2");
-  bad(p[Qquad] != 0.0 && p[Qquad] != 1.0, says(Qquad), "what holds left of P' = 0", "give 0 or 1");
+  bad(p[Qquad] != 0.0 && p[Qquad] != 1.0, says(Qquad), "it selects the characteristic for P' < 0",
+      "give 0 or 1");
   for (int i : {TUV, TUP, TUQ, TUL})
-    bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+    bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
   bad(p[KFB] != 0.0, says(KFB), "the exciter's feedback is not passed to UEL2", "give KFB = 0");
   Regulator::check(p, where, problems);
   bad(!(p[P0 + 2] > p[P0]), says(P0) + " with " + says(P0 + 2), "the limit is a line through two points",
@@ -227,11 +228,11 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     const int here = P0 + 2 * k;
     const bool ends = !(p[here] > p[here - 2]), unused = p[here] == 0.0 && p[here + 1] == 0.0;
     bad(ends && !unused, says(here) + " pu with " + says(here + 1) + " pu",
-        "its power is not above that of the point before",
-        "give points in ascending order of the power, those that are not used as 0");
+        "the power must exceed that of the preceding point",
+        "give points in ascending order of the power, unused ones as 0");
     bad(k + 1 < kLinePoints && ends && unused && (p[here + 2] != 0.0 || p[here + 3] != 0.0),
         says(here + 2) + " pu with " + says(here + 3) + " pu", "a point follows the end of the lines",
-        "give points in ascending order of the power, those that are not used as 0");
+        "give points in ascending order of the power, unused ones as 0");
   }
 }
 inline std::string Model::remark(const double* p) {
@@ -239,8 +240,8 @@ inline std::string Model::remark(const double* p) {
   for (int k = 1; k < kLinePoints && p[P0 + 2 * k] > p[end]; ++k) end = P0 + 2 * k;
   if (p[end + 1] == 0.0) return {};
   return fmt::format(
-      "beyond its last point, P' = {:g} pu, the least reactive power stays {:g} pu; OPAL-RT's UEL2 lets it "
-      "go to 0 there",
+      "beyond its last point, P' = {:g} pu, the least reactive power stays {:g} pu; in OPAL-RT's UEL2 it "
+      "goes to 0 there",
       p[end], p[end + 1]);
 }
 

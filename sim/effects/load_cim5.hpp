@@ -44,8 +44,8 @@ struct Model {
       type 2: jXm parallel to jX1 + (R1/s parallel to R2/s + jX2);         R2 = X2 = 0: one cage, R1/s + jX1
   Se = B (psi - A)^2/psi through S(E1), S(E2)
   2H ds/dt = TL - Te    Te = Re(j psi'' conj I)    TL = T0 (A w^2 + B w + C0 + D w^E), w = 1 - s >= 0
-  The slip and T0 are those at which the motor draws the load's P; a shunt draws Q less the motor's.
-  Motor base: Mbase, or where that is 0 Pmult times the load's MW. CIM5BL has D = 1 and no A, B, C0; its
+  The slip and T0 are those at which the motor draws the load's P; a shunt draws the remaining Q.
+  Motor base: Mbase, or Pmult times the load's MW if Mbase = 0. CIM5BL has D = 1 and no A, B, C0; its
   column D is E. Its undervoltage relay (VI > 0) is not modelled.
 )";
   enum P {
@@ -75,13 +75,13 @@ struct Model {
     D
   };
   static constexpr Source kMotor = literature::task_force("motor data, large industrial motor");
-  static constexpr Source kSquare = literature::own("a load torque with the square of the speed");
-  static constexpr Source kNoRelay = literature::derived("without effect, for the relay is not modelled");
-  static constexpr Source kSteep = literature::own("twice the flux, and steeper than a motor saturates");
+  static constexpr Source kSquare = literature::own("a load torque proportional to the squared speed");
+  static constexpr Source kNoRelay = literature::derived("without effect, because the relay is not modelled");
+  static constexpr Source kSteep = literature::own("twice the flux, and steeper than a motor's saturation");
   static constexpr Source kTorque = literature::own("five times the torque; the fifth power");
   static constexpr Source defaults_from = literature::own("off: no second cage, no saturation, no relay");
   static constexpr Source bounds_from = literature::own(
-      "the sign the equations need; the far end several times that of the task force's motors");
+      "the sign that the equations need; several times the values of the task force's motors");
   static constexpr Parameter parameters[] = {
       {"IT", "IT", "code", 1.0, 1.0, 2.0, kNoNullValue, "circuit of the two cages",
        literature::own("with one cage both are the same"), shared::kCode},
@@ -98,7 +98,7 @@ struct Model {
       {"E2", "E2", "pu", 1.2, 0.0, 2.0, kNoNullValue, "flux of the second saturation factor", kAsEffect,
        kSteep},
       {"S2", "S(E2)", "-", 0.0, 0.0, 5.0, 0.0, "saturation factor at E2 (both 0: none)", kAsEffect, kSteep},
-      {"Mbase", "MBASE", "MVA", 0.0, 0.0, 100000.0, kNoNullValue, "motor base (0: by PMULT)",
+      {"Mbase", "MBASE", "MVA", 0.0, 0.0, 100000.0, kNoNullValue, "motor base (0: from PMULT)",
        literature::own("PMULT gives it"), literature::own("larger than any load")},
       {"Pmult", "PMULT", "MVA/MW", 1.25, 0.1, 10.0, kNoNullValue, "motor base per load",
        literature::cim("LoadMotor: 1/Lfac"), literature::own("loaded from a tenth to ten times")},
@@ -106,17 +106,18 @@ struct Model {
        literature::own("twice CIM's 0.4 (LoadMotor)")},
       {"VI", "VI", "pu", 0.0, 0.0, 0.0, 0.0, "voltage of the relay that trips the motor: 0 (none) only",
        kAsEffect, shared::kNotModelled},
-      {"TI", "TI", "cycles", 0.0, 0.0, 999.0, kNoNullValue, "time of that relay", kAsEffect, kNoRelay},
+      {"TI", "TI", "cycles", 0.0, 0.0, 999.0, kNoNullValue, "delay of that relay", kAsEffect, kNoRelay},
       {"TB", "TB", "cycles", 0.0, 0.0, 999.0, kNoNullValue, "time of its breaker", kAsEffect, kNoRelay},
       {"E", "E", "-", 2.0, 0.0, 5.0, kNoNullValue, "exponent of the speed in the load torque", kSquare,
        kTorque},
       {"Tnom", "TNOM", "pu", 0.0, 0.0, 5.0, kNoNullValue, "load torque at rated speed, for starting only",
        kAsEffect, kTorque},
-      {"A", "A", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the square of the speed", kAsEffect, kTorque},
-      {"B", "B", "-", 0.0, -5.0, 5.0, 0.0, "load torque with the speed", kAsEffect, kTorque},
+      {"A", "A", "-", 0.0, -5.0, 5.0, 0.0, "load torque, coefficient of the squared speed", kAsEffect,
+       kTorque},
+      {"B", "B", "-", 0.0, -5.0, 5.0, 0.0, "load torque, coefficient of the speed", kAsEffect, kTorque},
       {"C0", "C0", "-", 0.0, -5.0, 5.0, 0.0, "constant load torque", kAsEffect, kTorque},
-      {"D", "D", "-", 1.0, -5.0, 5.0, kNoNullValue, "load torque with the speed to the power E", kSquare,
-       kTorque}};
+      {"D", "D", "-", 1.0, -5.0, 5.0, kNoNullValue, "load torque, coefficient of the speed to the power E",
+       kSquare, kTorque}};
   static constexpr int dyr_columns[] = {IT, Ra, Xa,    Xm,    R1, X1, R2, X2, E1, S1,
                                         E2, S2, Mbase, Pmult, H,  VI, TI, TB, E,  Tnom};
   enum X { psi1r, psi1i, psi2r, psi2i, slip };
@@ -376,8 +377,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   for (const int i : {Xm, R1, X1, H})
     bad(!(p[i] > 0), value(i), "the motor divides by it", "give a value > 0");
   for (const int i : {Ra, Xa, R2, X2, E1, S1, E2, S2, Mbase, Pmult, TI, TB, E, Tnom})
-    bad(!(p[i] >= 0), value(i), "a size, not a direction", "give a value >= 0");
-  bad((p[R2] > 0) != (p[X2] > 0), value(R2) + " with " + value(X2), "a second cage has both",
+    bad(!(p[i] >= 0), value(i), "it is a magnitude", "give a value >= 0");
+  bad((p[R2] > 0) != (p[X2] > 0), value(R2) + " with " + value(X2), "a second cage needs both",
       "give both > 0, or both 0 for one cage");
   bad(p[Mbase] == 0 && !(p[Pmult] > 0), value(Mbase) + " with " + value(Pmult), "the motor has no base",
       "give MBASE or PMULT > 0");

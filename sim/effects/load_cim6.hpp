@@ -8,7 +8,7 @@ struct Model : load_cim5::Model {
   static constexpr std::string_view name = "CIM6", title = "induction motor, load torque by its polynomial",
                                     source = "PSS/E CIM6BL; equations as of CIM5", dyr_name = "CIM6BL";
   static constexpr std::string_view description = R"(
-  The motor of CIM5 (swingbank effects CIM5); what its load asks for is in the .dyr:
+  The motor of CIM5 (swingbank effects CIM5) with the load torque polynomial of the .dyr:
 
   TL = T0 (A w^2 + B w + C0 + D w^E), w = 1 - slip >= 0, T0 such that the motor draws the load's P
   Its undervoltage relay (VI > 0) is not modelled.

@@ -23,22 +23,21 @@ struct Model : shared::StaticLoad<Model> {
   static constexpr std::string_view description = R"(
   P = PL (a1 V^n1 + a2 V^n2 + a3 V^n3)(1 + a7 df)    Q = QL (a4 V^n4 + a5 V^n5 + a6 V^n6)(1 + a8 df)
   PL and QL such that P and Q are the load's at the voltage of the power flow
-  A term with n < 1 goes on below Vp, one with 1 <= n < 2 below Vi as the impedance it has there.
-  df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
+  Below Vp a term with n < 1, and below Vi one with 1 <= n < 2, is a constant impedance.
+  df: frequency deviation of the bus, from its voltage and the lagged voltage x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6, Vp, Vi, Tf };
   static constexpr Source defaults_from =
       literature::own("a constant impedance; the other exponents are those of current and power");
-  static constexpr Source bounds_from =
-      literature::own("more than ten times the load, and powers beyond 10, are no load");
+  static constexpr Source bounds_from = literature::own("no load has fractions or exponents beyond 10");
   static constexpr Parameter parameters[] = {
-      {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNullValue, "part of P with V to the power n1"},
-      {"a2", "a2", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n2"},
-      {"a3", "a3", "-", 0.0, -10.0, 10.0, 0.0, "part of P with V to the power n3"},
-      {"a4", "a4", "-", 1.0, -10.0, 10.0, kNoNullValue, "part of Q with V to the power n4"},
-      {"a5", "a5", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n5"},
-      {"a6", "a6", "-", 0.0, -10.0, 10.0, 0.0, "part of Q with V to the power n6"},
+      {"a1", "a1", "-", 1.0, -10.0, 10.0, kNoNullValue, "fraction of P with V to the power n1"},
+      {"a2", "a2", "-", 0.0, -10.0, 10.0, 0.0, "fraction of P with V to the power n2"},
+      {"a3", "a3", "-", 0.0, -10.0, 10.0, 0.0, "fraction of P with V to the power n3"},
+      {"a4", "a4", "-", 1.0, -10.0, 10.0, kNoNullValue, "fraction of Q with V to the power n4"},
+      {"a5", "a5", "-", 0.0, -10.0, 10.0, 0.0, "fraction of Q with V to the power n5"},
+      {"a6", "a6", "-", 0.0, -10.0, 10.0, 0.0, "fraction of Q with V to the power n6"},
       {"a7", "a7", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency"},
       {"a8", "a8", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency"},
       {"n1", "n1", "-", 2.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage"},
@@ -51,7 +50,7 @@ struct Model : shared::StaticLoad<Model> {
        shared::kPowerThreshold, shared::kThreshold},
       {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which terms with n < 2 are impedances",
        shared::kCurrentThreshold, shared::kThreshold},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag of the frequency measurement",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};
   enum C {
@@ -119,7 +118,7 @@ struct Model : shared::StaticLoad<Model> {
       T sum(0.0);
       for (int k = 3 * side; k < 3 * side + 3; ++k) {
         if (value_of(p[a1 + k]) != 0.0 && value_of(v) < value_of(c[lowest + k]))
-          return fmt::format("{} = {:g} pu: the part with {} = {:g} is an impedance there already",
+          return fmt::format("{} = {:g} pu: the part with {} = {:g} is already an impedance there",
                              value_of(p[n1 + k]) < 1.0 ? "Vp" : "Vi", value_of(c[lowest + k]),
                              parameters[n1 + k].symbol, value_of(p[n1 + k]));
         sum = sum + p[a1 + k] * to_the_power(v, p[n1 + k]);

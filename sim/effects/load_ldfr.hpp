@@ -22,31 +22,31 @@ struct Model : shared::LoadOfParts<Model> {
   v = V/V0, f = 1 + df, with P0, Q0, V0 those of the power flow
   P = P0 ((1 - Pi - Pp) v^2 + Pi v f^r + Pp f^m)
   Q = Q0 ((1 - Qi - Qp) v^2 + Qi v f^s + Qp f^n)
-  Of a .dyr: the parts are those of which the .raw composes the load.
+  For a .dyr the fractions follow from the load's components in the .raw.
   Below Vp the power part is P0 Pp times 2 x^2 (x = V/Vp up to 1/2), 1 - 2 (1 - x)^2 (up to 1), below Vi the
-  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; so that of Q.
-  df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
+  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; likewise for Q.
+  df: frequency deviation of the bus, from its voltage and the lagged voltage x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { m, n, r, s, Pi, Pp, Qi, Qp, Vp, Vi, Tf };
   static constexpr Source defaults_from =
-      literature::own("half of the load at constant power, each part with its own power of the frequency");
+      literature::own("half of the load at constant power, each part with its own frequency exponent");
   static constexpr Source bounds_from =
-      literature::own("at 1.05 of the frequency the power 20 is 2.7 times the load");
+      literature::own("at 1.05 pu frequency the exponent 20 gives 2.7 times the load");
   static constexpr Parameter parameters[] = {
-      {"m", "m", "-", 1.5, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of P"},
-      {"n", "n", "-", -1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant power part of Q"},
-      {"r", "r", "-", 1.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of P"},
-      {"s", "s", "-", 0.0, -20.0, 20.0, 0.0, "power of the frequency in the constant current part of Q"},
-      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current", kAsEffect, shared::kShare},
-      {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "part of P at constant power", kAsEffect, shared::kShare},
-      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current", kAsEffect, shared::kShare},
-      {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "part of Q at constant power", kAsEffect, shared::kShare},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part falls",
+      {"m", "m", "-", 1.5, -20.0, 20.0, 0.0, "frequency exponent of the constant-power part of P"},
+      {"n", "n", "-", -1.0, -20.0, 20.0, 0.0, "frequency exponent of the constant-power part of Q"},
+      {"r", "r", "-", 1.0, -20.0, 20.0, 0.0, "frequency exponent of the constant-current part of P"},
+      {"s", "s", "-", 0.0, -20.0, 20.0, 0.0, "frequency exponent of the constant-current part of Q"},
+      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "fraction of P at constant current", kAsEffect, shared::kShare},
+      {"Pp", "Pp", "-", 0.5, 0.0, 1.0, 0.0, "fraction of P at constant power", kAsEffect, shared::kShare},
+      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "fraction of Q at constant current", kAsEffect, shared::kShare},
+      {"Qp", "Qp", "-", 0.5, 0.0, 1.0, 0.0, "fraction of Q at constant power", kAsEffect, shared::kShare},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part is reduced",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part falls",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part is reduced",
        shared::kCurrentThreshold, shared::kThreshold},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag of the frequency measurement",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {m, n, r, s};
   enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, per_angle, coefficients };

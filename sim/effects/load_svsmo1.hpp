@@ -35,14 +35,14 @@ struct Model {
   V --> [ (1 + s Tc1)/(1 + s Tb1) ] --> Vm        V: of the regulated bus; Vt: at the compensator
   Vref - Vm - Xc1 Vt B --> [ dead-band ] --> [ Vemin to Vemax ] --> [ (1 + s Tc2)/(1 + s Tb2) ]
       --> [ Kpv + Kiv/s, Bmin to Btop ] --> [ 1/(1 + s T2) ] --> B        Q = B Vt^2
-  dead-band: 0 until the error is beyond Vdbd1; then the error, until it was within Vdbd2 for Tdbd
-  Btop = Bshrt; Bmax once what is asked was above it for Tshrt, until it no longer is; at most UVSBmax once V was
-      below UV1 for UVtm1, and for PLLdelay after that
-  B = 0 for good once V was below UVT for UVtm2, above OV1 for OVtm1 or above OV2 for OVtm2
-  Susceptances on the system's base. P/Vt^2: a conductance, where it stands for a load that draws P.
-  Not there, and told where a record asks for it: mechanically switched shunts (Flag1), which stay as they are; a
-  slope in three parts (Flag2), which is Xc1 everywhere; the slow susceptance regulator (Kps, Kis), which stands
-  still; what UV2 does at once, on which the sources are silent or of two minds.
+  dead-band: 0 until the error exceeds Vdbd1; then the error, until it has been within Vdbd2 for Tdbd
+  Btop = Bshrt; Bmax after the request has exceeded it for Tshrt, as long as it does; at most UVSBmax after V has
+      been below UV1 for UVtm1, and for PLLdelay after that
+  B = 0 permanently after V was below UVT for UVtm2, above OV1 for OVtm1 or above OV2 for OVtm2
+  Susceptances on the system's base. P of the load that it models is a conductance P/Vt^2.
+  Not modelled, with a remark if a record requests it: switching of mechanically switched shunts (Flag1); a slope in
+  three parts (Flag2), which is Xc1 everywhere; the slow susceptance regulator (Kps, Kis); the immediate action
+  below UV2, on which the sources are silent or disagree.
 )";
   enum P {
     RemoteBus,
@@ -103,12 +103,11 @@ struct Model {
   static constexpr Source defaults_from =
       literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kUnread = literature::derived("nothing here reads it");
+  static constexpr Source kUnread = literature::derived("not used by the equations");
   static constexpr Source kRange = literature::own("so that a load's Q lies within");
   static constexpr Parameter parameters[] = {
       {"RemoteBus", "J", "code", 0.0, 0.0, 999997.0, kNoNullValue,
-       "bus whose voltage it regulates (0: its own); the network's plan says it", shared::kNothing,
-       shared::kBusNumber},
+       "bus whose voltage it regulates (0: its own)", shared::kNothing, shared::kBusNumber},
       {"Flag1", "Flag1", "code", 0.0, 0.0, 1.0, 0.0, "1: shunts are switched mechanically (not modelled)",
        kAsEffect, renewable::kFlag},
       {"Flag2", "Flag2", "code", 0.0, 0.0, 1.0, 0.0, "1: a slope in three parts (not modelled)", kAsEffect,
@@ -120,12 +119,11 @@ struct Model {
       {"UVT", "UVT", "pu", 0.48, 0.0, 1.0, 0.0, "voltage below which it trips"},
       {"OV1", "OV1", "pu", 1.8, 1.0, 99.0, kNoNullValue, "voltage above which it trips"},
       {"OV2", "OV2", "pu", 2.0, 1.0, 99.0, kNoNullValue, "voltage above which it trips sooner"},
-      {"UVtm1", "UVtm1", "s", 0.93, 0.0, 999.0, kNoNullValue,
-       "how long below UV1 until UVSBmax is the limit"},
-      {"UVtm2", "UVtm2", "s", 6.7, 0.0, 999.0, kNoNullValue, "how long below UVT until it trips"},
-      {"OVtm1", "OVtm1", "s", 0.91, 0.0, 999.0, kNoNullValue, "how long above OV1 until it trips"},
-      {"OVtm2", "OVtm2", "s", 0.27, 0.0, 999.0, kNoNullValue, "how long above OV2 until it trips"},
-      {"Xc1", "Xc1", "pu/pu", 0.023, 0.0, 1.0, 0.0, "slope: voltage by current"},
+      {"UVtm1", "UVtm1", "s", 0.93, 0.0, 999.0, kNoNullValue, "time below UV1 until UVSBmax is the limit"},
+      {"UVtm2", "UVtm2", "s", 6.7, 0.0, 999.0, kNoNullValue, "time below UVT until it trips"},
+      {"OVtm1", "OVtm1", "s", 0.91, 0.0, 999.0, kNoNullValue, "time above OV1 until it trips"},
+      {"OVtm2", "OVtm2", "s", 0.27, 0.0, 999.0, kNoNullValue, "time above OV2 until it trips"},
+      {"Xc1", "Xc1", "pu/pu", 0.023, 0.0, 1.0, 0.0, "slope, voltage per current"},
       {"Xc2", "Xc2", "pu/pu", 0.0, 0.0, 1.0, kNoNullValue, "slope's second part (not modelled)", kAsEffect,
        kUnread},
       {"Xc3", "Xc3", "pu/pu", 0.0, 0.0, 1.0, kNoNullValue, "slope's third part (not modelled)", kAsEffect,
@@ -138,15 +136,16 @@ struct Model {
       {"Tb1", "Tb1", "s", 0.012, 0.0, 10.0, kNoNullValue, "lag of the measurement (0: none)"},
       {"Tc2", "Tc2", "s", 0.0, 0.0, 10.0, 0.0, "lead of the transient gain reduction"},
       {"Tb2", "Tb2", "s", 0.0, 0.0, 50.0, kNoNullValue, "lag of the transient gain reduction (0: none)"},
-      {"Kpv", "Kpv", "pu/pu", 42.0, 0.0, 1000.0, kNoNullValue, "proportional gain, susceptance by voltage"},
-      {"Kiv", "Kiv", "pu/(pu s)", 210.0, 0.0, 10000.0, kNoNullValue, "integral gain, susceptance by voltage"},
+      {"Kpv", "Kpv", "pu/pu", 42.0, 0.0, 1000.0, kNoNullValue, "proportional gain, susceptance per voltage"},
+      {"Kiv", "Kiv", "pu/(pu s)", 210.0, 0.0, 10000.0, kNoNullValue,
+       "integral gain, susceptance per voltage"},
       {"Vemax", "Vemax", "pu", 0.45, 0.0, 99.0, kNoNullValue, "largest voltage error"},
       {"Vemin", "Vemin", "pu", -0.45, -99.0, 0.0, kNoNullValue, "least voltage error"},
       {"T2", "T2", "s", 0.012, 1e-3, 10.0, kNoNullValue, "delay of the firing"},
-      {"Bshrt", "Bshrt", "pu", 3.3, 0.0, 99.0, kNoNullValue, "upper limit for a short time", kRange},
-      {"Bmax", "Bmax", "pu", 3.0, -10.0, 99.0, kNoNullValue, "upper limit that lasts", kRange},
+      {"Bshrt", "Bshrt", "pu", 3.3, 0.0, 99.0, kNoNullValue, "short-time upper limit", kRange},
+      {"Bmax", "Bmax", "pu", 3.0, -10.0, 99.0, kNoNullValue, "continuous upper limit", kRange},
       {"Bmin", "Bmin", "pu", -3.0, -99.0, 10.0, kNoNullValue, "lower limit", kRange},
-      {"Tshrt", "Tshrt", "s", 0.35, 0.0, 999.0, kNoNullValue, "how long above Bmax"},
+      {"Tshrt", "Tshrt", "s", 0.35, 0.0, 999.0, kNoNullValue, "permissible time above Bmax"},
       {"Kps", "Kps", "pu/pu", 0.0, 0.0, 99.0, 0.0, "proportional gain of the slow regulator (not modelled)",
        kAsEffect, kUnread},
       {"Kis", "Kis", "pu/(pu s)", 0.0, 0.0, 99.0, 0.0, "integral gain of the slow regulator (not modelled)",
@@ -156,10 +155,10 @@ struct Model {
       {"Vrmin", "Vrmin", "pu", 0.0, -99.0, 0.0, kNoNullValue, "lowest output of the slow regulator",
        kAsEffect, kUnread},
       {"Vdbd1", "Vdbd1", "pu", 0.0, 0.0, 0.5, 0.0, "error beyond which it begins to act (0: no dead-band)"},
-      {"Vdbd2", "Vdbd2", "pu", 0.0, 0.0, 0.5, kNoNullValue, "error within which it ends to act"},
-      {"Tdbd", "Tdbd", "s", 0.0, 0.0, 999.0, kNoNullValue, "how long within Vdbd2 until it ends to act"},
+      {"Vdbd2", "Vdbd2", "pu", 0.0, 0.0, 0.5, kNoNullValue, "error within which it stops acting"},
+      {"Tdbd", "Tdbd", "s", 0.0, 0.0, 999.0, kNoNullValue, "time within Vdbd2 until it stops acting"},
       {"PLLdelay", "PLLdelay", "s", 0.13, 0.0, 99.0, kNoNullValue,
-       "how long UVSBmax stays after a low voltage"},
+       "time for which UVSBmax is kept after a low voltage"},
       {"Eps", "Eps", "Mvar", 0.4, 0.0, 999.0, kNoNullValue, "width added to the slow regulator's band",
        kAsEffect, kUnread},
       {"Blcs", "Blcs", "Mvar", 37.0, -9999.0, 9999.0, kNoNullValue, "large threshold, capacitive", kAsEffect,
@@ -328,14 +327,15 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     problems.add(says(RemoteBus), where, "there is no such bus number", "give 0 to 999997");
   for (int i = 0; i < parameter_count; ++i)
     if (parameters[i].unit == "s" && !(p[i] >= 0.0))
-      problems.add(says(i), where, "a time is not negative", "give a value >= 0");
+      problems.add(says(i), where, "a time cannot be negative", "give a value >= 0");
   for (const int i : {Kpv, Kiv, Xc1, Vdbd2})
-    if (!(p[i] >= 0.0)) problems.add(says(i), where, "it would run away", "give a value >= 0");
+    if (!(p[i] >= 0.0)) problems.add(says(i), where, "the control would be unstable", "give a value >= 0");
   if (p[T2] == 0.0)
-    problems.add(says(T2), where, "the voltage would be a function of itself", "give a value > 0");
+    problems.add(says(T2), where, "the voltage would form an algebraic loop", "give a value > 0");
   for (const auto& [high, low_one] : {std::pair<int, int>{Bmax, Bmin}, {Bshrt, Bmax}, {Vdbd1, Vdbd2}})
     if (!(p[high] >= p[low_one]))
-      problems.add(says(high) + " with " + says(low_one), where, "the first is the wider limit", "swap them");
+      problems.add(says(high) + " with " + says(low_one), where, "the first must be the wider limit",
+                   "swap them");
   if (!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0))
     problems.add(says(Vemax) + " with " + says(Vemin), where, "an error of 0 lies between them",
                  "give Vemax >= 0 >= Vemin");
@@ -347,10 +347,10 @@ inline std::string Model::remark(const double* p) {
   const auto add = [&](bool asked, const std::string& what) {
     if (asked) text += (text.empty() ? "" : "; ") + what;
   };
-  add(p[Flag1] == 1.0, "Flag1 = 1: mechanically switched shunts stay as they are");
+  add(p[Flag1] == 1.0, "Flag1 = 1: mechanically switched shunts are not switched");
   add(p[Flag2] == 1.0, "Flag2 = 1: the slope is Xc1 everywhere");
   add(p[Kps] != 0.0 || p[Kis] != 0.0, "the slow susceptance regulator (Kps, Kis) is not modelled");
-  add(p[UV2] > 0.0, fmt::format("below UV2 = {:g} pu nothing happens at once", p[UV2]));
+  add(p[UV2] > 0.0, fmt::format("the immediate action below UV2 = {:g} pu is not modelled", p[UV2]));
   return text;
 }
 

@@ -24,27 +24,27 @@ struct Model : shared::LoadOfParts<Model> {
   P = P0 ((1 - Pi - Pp) v^2 + Pi v + Pp) (1 + Kpf df)
   Q = Q0 ((1 - Qi - Qp) v^2 + Qi v + Qp) (1 + Kqf df)
   Below Vp the power part is P0 Pp times 2 x^2 (x = V/Vp up to 1/2), 1 - 2 (1 - x)^2 (up to 1), below Vi the
-  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; so that of Q.
-  df: frequency deviation of the bus from its voltage and the same behind a lag x = V/(1 + s Tf),
+  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; likewise for Q.
+  df: frequency deviation of the bus, from its voltage and the lagged voltage x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { Pi, Pp, Qi, Qp, Vp, Vi, Kpf, Kqf, Tf };
   static constexpr Source defaults_from = literature::own("a constant impedance");
   static constexpr Source bounds_from = shared::kShare;
   static constexpr Parameter parameters[] = {
-      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant current"},
-      {"Pp", "Pp", "-", 0.0, 0.0, 1.0, 0.0, "part of P at constant power"},
-      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant current"},
-      {"Qp", "Qp", "-", 0.0, 0.0, 1.0, 0.0, "part of Q at constant power"},
-      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part falls",
+      {"Pi", "Pi", "-", 0.0, 0.0, 1.0, 0.0, "fraction of P at constant current"},
+      {"Pp", "Pp", "-", 0.0, 0.0, 1.0, 0.0, "fraction of P at constant power"},
+      {"Qi", "Qi", "-", 0.0, 0.0, 1.0, 0.0, "fraction of Q at constant current"},
+      {"Qp", "Qp", "-", 0.0, 0.0, 1.0, 0.0, "fraction of Q at constant power"},
+      {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which the power part is reduced",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part falls",
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which the current part is reduced",
        shared::kCurrentThreshold, shared::kThreshold},
       {"Kpf", "Kpf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of P per change of frequency", kAsEffect,
-       literature::own("ten per cent of load for each of frequency")},
+       literature::own("10 % of load per 1 % of frequency")},
       {"Kqf", "Kqf", "pu/pu", 0.0, -10.0, 10.0, 0.0, "change of Q per change of frequency", kAsEffect,
-       literature::own("ten per cent of load for each of frequency")},
-      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag behind which the frequency is measured",
+       literature::own("10 % of load per 1 % of frequency")},
+      {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag of the frequency measurement",
        shared::kThreeCycles, shared::kFrequencyLag}};
   enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, per_angle, coefficients };
 

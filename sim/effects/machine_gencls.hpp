@@ -20,7 +20,7 @@ struct Model {
   static constexpr std::string_view description = R"(
    2H dw/dt = Tm - D w - Te          (Conventions::mechanical_power: (Pm - D w - Pe)/(1 + w))
    d delta/dt = 2 pi f0 w            Te, Pe = Re(E conj(I))
-  H = 0 is PSS/E's infinite bus: angle and speed stay where they are.
+  H = 0 is PSS/E's infinite bus: angle and speed are constant.
 )";
   enum P { H, D, Ra, Xdp };
   static constexpr Source defaults_from = literature::kundur("within table 4.2");

@@ -63,7 +63,8 @@ struct Model {
   };
   static constexpr Source defaults_from = J::defaults_from, bounds_from = J::bounds_from;
   static constexpr Source kElsewhere = literature::derived("0 only: IEEEVC is the compensator");
-  static constexpr Source kActs = literature::own("not 0, so that the current acts on the field's");
+  static constexpr Source kActs =
+      literature::own("not 0, so that the stator current acts on the field current");
   static constexpr auto parameters = [] {
     std::array<Parameter, parameter_count> all{};
     for (int i = 0; i < Ra; ++i) all[static_cast<std::size_t>(i)] = J::parameters[i];
@@ -76,7 +77,7 @@ struct Model {
                "pu/pu", 0.1,
                0.0,     1.0,
                0.0,     "field current's correction by Id",
-               kActs,   literature::own("beyond 0.4 of Kw Id it is held")};
+               kActs,   literature::own("clamped beyond Kw Id = 0.4")};
     all[SatFunc] = {"SatFunc",
                     "SatFunc",
                     "code",
@@ -225,9 +226,9 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     bad(!(p[i] > p[Xl]), says(i) + " with " + says(Xl), "GENQEC divides by their difference",
         "give a reactance > Xl");
   for (const int i : {Xdpp, Xqpp})
-    bad(!(p[i] >= p[Xl]), says(i) + " with " + says(Xl), "only what exceeds Xl saturates",
+    bad(!(p[i] >= p[Xl]), says(i) + " with " + says(Xl), "only the part above Xl saturates",
         "give a reactance >= Xl");
-  bad(!(p[Tqop] >= 0), says(Tqop), "a time constant", "give a value >= 0");
+  bad(!(p[Tqop] >= 0), says(Tqop), "a time constant cannot be negative", "give a value >= 0");
   bad(p[Tqop] == 0 && p[Xqp] != p[Xq], says(Tqop) + " with " + says(Xqp) + " and " + says(Xq),
       "without the circuit X'q is Xq", "give X'q = Xq, or T'qo > 0");
   bad(!(p[Kw] >= 0), says(Kw), "the correction grows with the current", "give Kw >= 0");

@@ -68,7 +68,7 @@ struct Model {
        shared::kMildSaturation, shared::kSaturation},
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux", shared::kMildSaturation,
        shared::kSaturation},
-      {"Kis", "Kis", "pu/pu", 0.05, 0.0, 0.5, 0.0, "flux that a stator current stands for in the saturation",
+      {"Kis", "Kis", "pu/pu", 0.05, 0.0, 0.5, 0.0, "equivalent flux of the stator current in the saturation",
        literature::own("not 0, so that the current acts on the saturation; CIM has 0"),
        literature::own("half of the current as flux")},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected}};
@@ -278,9 +278,10 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
                    fmt::format("give {} > {}", parameters[wide].symbol, parameters[narrow].symbol));
   for (const int i : {Xdpp, Xqpp})
     if (!(p[i] >= p[Xl]))
-      problems.add(value(i) + " with " + value(Xl), where, "only what exceeds Xl saturates",
+      problems.add(value(i) + " with " + value(Xl), where, "only the part above Xl saturates",
                    fmt::format("give {} >= Xl", parameters[i].symbol));
-  if (!(p[Tqop] >= 0)) problems.add(value(Tqop), where, "a time constant", "give a value >= 0");
+  if (!(p[Tqop] >= 0))
+    problems.add(value(Tqop), where, "a time constant cannot be negative", "give a value >= 0");
   if (p[Tqop] == 0 && p[Xqp] != p[Xq])
     problems.add(value(Tqop) + " with " + value(Xqp) + " and " + value(Xq), where,
                  "without the circuit X'q is Xq", "give X'q = Xq, or T'qo > 0");

@@ -14,15 +14,15 @@ struct Model {
   static constexpr std::string_view description = R"(
   I --( 1 + gain )--( e^{j phase} )-- I'
 
-  I' = I (1 + gain) exp(j phase): constant, so it shows before the event as well.
+  I' = I (1 + gain) exp(j phase): constant, and therefore also visible before the event.
   Class 0.5 allows gain = 0.005 pu and phase = 0.0087 rad (30 minutes of arc) at rated current.
-  On P and Q alone gain is a wrong machine base; only the phase is told apart from it.
+  In P and Q alone, gain has the effect of a wrong machine base; only phase is distinguishable.
 )";
   enum P { gain, phase };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kBeyondClass;
   static constexpr Parameter parameters[] = {
-      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the current's magnitude, of itself"},
+      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "relative error of the current's magnitude"},
       {"phase", "dphi", "rad", 0.0, -0.5, 0.5, 0.0, "error of the current's angle, positive: leading"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

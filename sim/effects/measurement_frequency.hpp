@@ -19,22 +19,22 @@ struct Model {
   static constexpr std::string_view description = R"(
   angle V --[ difference over `span` ]--[ average over `smoothing` ]-- df
 
-  df(t) = (theta(t + span/2) - theta(t - span/2)) / (2 pi f0 span)      span = 0: df as it came
+  df(t) = (theta(t + span/2) - theta(t - span/2)) / (2 pi f0 span)      span = 0: df unchanged
   df'   = average of df over smoothing, centred                         smoothing = 0: none
-  V and I are not touched. At the record's ends the difference is taken over what there is.
+  V and I are unchanged. At the record's ends the difference spans the available samples.
 )";
   enum P { span, smoothing };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
-      literature::own("longer than an instrument may take; no time is negative");
+      literature::own("longer than any instrument's; a time cannot be negative");
   static constexpr Parameter parameters[] = {
       {"span", "Td", "s", 0.0, 0.0, 2.0, 0.0, "time over which the angle is differenced"},
-      {"smoothing", "Ts", "s", 0.0, 0.0, 5.0, 0.0, "length of the average after it"}};
+      {"smoothing", "Ts", "s", 0.0, 0.0, 5.0, 0.0, "length of the subsequent average"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     for (const P i : {span, smoothing})
       if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "it is a length of time",
+        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
                      "give 0 or more");
   }
   static std::string_view unphysical(const double*) { return ""; }

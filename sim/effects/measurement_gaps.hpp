@@ -17,25 +17,26 @@ struct Model {
                                         "of a burst-noise channel\", Bell Syst. Tech. J. 39 (1960)";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
-  there --( rate dt )--> missing --( dt / length )--> there          chance at each sample, dt apart
+  valid --( rate dt )--> missing --( dt / length )--> valid          probability per sample, dt apart
 
-  A missing sample loses V, I and df together (NaN). A gap is one sample long at least; the first sample is
-  there.
+  A missing sample loses V, I and df together (NaN). A gap is at least one sample long; the first sample is
+  valid.
 )";
   enum P { rate, length };
   static constexpr Source defaults_from = shared::kNothing;
-  static constexpr Source bounds_from = literature::own("more and longer than a record that can be used has");
+  static constexpr Source bounds_from = literature::own("more and longer gaps than in any usable record");
   static constexpr Parameter parameters[] = {
-      {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps that begin per second of good record"},
+      {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps per second of valid record"},
       {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNullValue, "mean length of a gap",
        literature::own("six samples of 60 a second")}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[rate] >= 0))
-      problems.add(fmt::format("rate = {:g} 1/s", p[rate]), where, "it is a number of gaps",
+      problems.add(fmt::format("rate = {:g} 1/s", p[rate]), where, "a frequency of gaps cannot be negative",
                    "give 0 or more");
     if (!(p[length] > 0))
-      problems.add(fmt::format("length = {:g} s", p[length]), where, "a gap has a length", "give length > 0");
+      problems.add(fmt::format("length = {:g} s", p[length]), where, "a gap needs a length",
+                   "give length > 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -16,17 +16,17 @@ struct Model {
                                         "quantifying noise in PMU data\", IEEE PESGM 2016";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
-  V --( 1 + relative g1 )--( e^{j angle g2} )--( + V (g3 + j g4) )-- V'       I alike with its own g
+  V --( 1 + relative g1 )--( e^{j angle g2} )--( + V (g3 + j g4) )-- V'       I likewise with its own g
   df' = df + frequency g / f0
 
-  Every g is standard normal and independent: of channel, of sample, of the record's length. The same seed
-  gives the same noise. White at the rate of the samples it is applied to: a filter after it colours it.
+  Every g is standard normal, independent between channels and samples. The same seed gives the same noise,
+  whatever the record's length. It is white at the sampling rate; a subsequent filter colours it.
 )";
   enum P { relative, V, I, angle, frequency };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kNoMeasurement;
   static constexpr Parameter parameters[] = {
-      {"relative", "sr", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of either magnitude, of itself"},
+      {"relative", "sr", "pu", 0.0, 0.0, 0.1, 0.0, "relative standard deviation of either magnitude"},
       {"V", "sV", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of the voltage's real and imaginary part"},
       {"I", "sI", "pu", 0.0, 0.0, 0.1, 0.0, "standard deviation of the current's real and imaginary part"},
       {"angle", "sa", "rad", 0.0, 0.0, 0.1, 0.0, "standard deviation of either angle"},

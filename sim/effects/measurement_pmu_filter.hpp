@@ -24,19 +24,18 @@ struct Model {
                which restores the magnitude off nominal frequency
   class 1 (M): w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / L)),  |t| < L,  x = 4 pi Ffr t / scale
                Ffr and L = scale N / (32 f0) from the standard's table for the reports per second
-  The same w for V and I. The window is integrated over a cubic through the samples, whatever their rate;
-  outside the record the phasors stand still. At 60/s without oversampling a jump is as sharp as the samples
-  are.
+  The same w for V and I. The window is integrated over a cubic through the samples, independent of their rate;
+  outside the record the phasors are constant. At 60/s without oversampling a step is as sharp as the samples.
 )";
   enum P { klass, scale, reports, compensation };
-  static constexpr Source defaults_from = literature::own("class P, as it is without a choice");
+  static constexpr Source defaults_from = literature::own("class P, the default");
   static constexpr Source bounds_from = shared::kCode;
   static constexpr Parameter parameters[] = {
       {"class", "class", "code", 0.0, 0.0, 1.0, kNoNullValue, "0: class P, 1: class M"},
       {"scale", "s", "-", 1.0, 0.0, 10.0, 0.0, "length of the window over that of the standard",
        literature::c37("annex C"), literature::own("0: no filter; ten times the standard")},
       {"reports", "Fs", "code", 60.0, 10.0, 120.0, kNoNullValue,
-       "reports per second, which choose the window of class M", literature::c37("reporting rates at 60 Hz"),
+       "reports per second, which select the window of class M", literature::c37("reporting rates at 60 Hz"),
        literature::c37("reporting rates, 10 to 120")},
       {"compensation", "comp", "code", 1.0, 0.0, 1.0, kNoNullValue,
        "1: class P corrects the magnitude off nominal frequency, 0: it does not",
@@ -51,7 +50,8 @@ struct Model {
     either(klass);
     either(compensation);
     if (!(p[scale] >= 0))
-      problems.add(fmt::format("scale = {:g}", p[scale]), where, "a window has a length", "give scale >= 0");
+      problems.add(fmt::format("scale = {:g}", p[scale]), where, "a length cannot be negative",
+                   "give scale >= 0");
     if (p[klass] == 1.0 && !pmu_window::find(50.0, p[reports]) && !pmu_window::find(60.0, p[reports]))
       problems.add(
           fmt::format("reports = {:g} per second", p[reports]), where,

@@ -14,14 +14,14 @@ struct Model {
   static constexpr std::string_view description = R"(
   V --( 1 + gain )--( e^{j phase} )-- V'
 
-  V' = V (1 + gain) exp(j phase): constant, so it shows before the event as well.
+  V' = V (1 + gain) exp(j phase): constant, and therefore also visible before the event.
   Class 0.5 allows gain = 0.005 pu and phase = 0.0058 rad (20 minutes of arc) at rated voltage.
 )";
   enum P { gain, phase };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kBeyondClass;
   static constexpr Parameter parameters[] = {
-      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "error of the voltage's magnitude, of itself"},
+      {"gain", "eps", "pu", 0.0, -0.5, 0.5, 0.0, "relative error of the voltage's magnitude"},
       {"phase", "dphi", "rad", 0.0, -0.5, 0.5, 0.0, "error of the voltage's angle, positive: leading"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

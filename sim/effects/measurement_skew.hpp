@@ -15,17 +15,17 @@ struct Model {
   static constexpr std::string_view description = R"(
   I --[ delay of `skew` ]-- I'
 
-  I'(t) = I(t - skew), of the phasor in the synchronous frame: a whole channel that is late. (What a late
-  sampling clock does besides, it turns the phasor by 2 pi f0 skew, is CTERROR's phase.)
-  Between samples: a cubic, and a straight line across a jump, so that nothing but the sample inside the
-  jump is smeared. Outside the record the current stands still.
+  I'(t) = I(t - skew), of the phasor in the synchronous frame: the whole channel is delayed. (A late
+  sampling clock also turns the phasor by 2 pi f0 skew; that is CTERROR's phase.)
+  Between samples: a cubic, and a straight line across a step, so that only the sample inside the
+  step is filtered. Outside the record the current is constant.
 )";
   enum P { skew };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
       literature::own("beyond a second two records are of different events");
   static constexpr Parameter parameters[] = {
-      {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "by how much the current is late"}};
+      {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "delay of the current"}};
 
   static void check(const double*, const std::string&, Problems&) {}
   static std::string_view unphysical(const double*) { return ""; }

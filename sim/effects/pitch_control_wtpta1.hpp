@@ -20,18 +20,18 @@ struct Model {
   wt - wref + Kcc (Pord - Pext) --> [ Kpw + Kiw/s, TetaMin to TetaMax ] --+
   Pord - Pext --------------------> [ Kpc + Kic/s, TetaMin to TetaMax ] --+--> [ 1/(1 + s Tpi), rate RTetaMin to
       RTetaMax, TetaMin to TetaMax ] --> pitch
-  Both integrals move within the limits; the second one begins at 0 or the limit that is nearest to it.
+  Both integrals stay within the limits; the second one starts at 0 or at the limit nearest to 0.
 )";
   enum P { Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin };
   static constexpr Source defaults_from = literature::andes("WTPTA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
-      {"Kiw", "Kiw", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the speed, integral gain"},
-      {"Kpw", "Kpw", "deg/pu", 0.0, 0.0, 999.0, 0.0, "of the speed, proportional gain"},
-      {"Kic", "Kic", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "of the power, integral gain"},
-      {"Kpc", "Kpc", "deg/pu", 0.0, 0.0, 999.0, 0.0, "of the power, proportional gain"},
-      {"Kcc", "Kcc", "pu/pu", 0.0, 0.0, 100.0, 0.0, "power that counts as speed"},
-      {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNullValue, "response of the blades (0: none)"},
+      {"Kiw", "Kiw", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "speed control, integral gain"},
+      {"Kpw", "Kpw", "deg/pu", 0.0, 0.0, 999.0, 0.0, "speed control, proportional gain"},
+      {"Kic", "Kic", "deg/s/pu", 0.1, 0.0, 999.0, 0.0, "power control, integral gain"},
+      {"Kpc", "Kpc", "deg/pu", 0.0, 0.0, 999.0, 0.0, "power control, proportional gain"},
+      {"Kcc", "Kcc", "pu/pu", 0.0, 0.0, 100.0, 0.0, "gain from power error to speed error"},
+      {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNullValue, "time constant of the blades (0: none)"},
       {"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNullValue, "largest angle"},
       {"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNullValue, "smallest angle"},
       {"RTetaMax", "RTetaMax", "deg/s", 5.0, 0.0, 99.0, kNoNullValue, "fastest rise"},
@@ -82,7 +82,7 @@ struct Model {
     c[pord0] = s.Pord;
     const double turned = value_of(x[by_speed]);
     if (turned < value_of(c[least]) || turned > value_of(c[most]))
-      return fmt::format("the blades would begin at {:.4g} degrees, beyond {:g} to {:g}", value_of(s.pitch),
+      return fmt::format("the initial pitch would be {:.4g} degrees, outside {:g} to {:g}", value_of(s.pitch),
                          value_of(c[least]), value_of(c[most]));
     return {};
   }

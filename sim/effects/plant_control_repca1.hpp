@@ -21,10 +21,10 @@ struct Model {
       [ Kp + Ki/s, Qmin to Qmax, frozen while V < Vfrz ] --> [ (1 + s Tft)/(1 + s Tfv) ] --> Qext
   - speed --> [ fdbd1, fdbd2 ] --> x Ddn where it is negative, x Dup where it is positive --droop
   Pref - P/(1 + s Tp) + droop --> within femin, femax --> [ Kpg + Kig/s, Pmin to Pmax ] --> [ 1/(1 + s Tg) ] --> Pext
-      (FrqFlag 1; with 0 Pext stays where it is)
+      (FrqFlag 1; 0: Pext is constant)
   V is that of the remote bus, I, P and Q are those of the branch, from its first bus to its second, on the unit's
-  base; 0: those of the unit's own terminal. In a plant file, which knows no other bus, they are those of the point
-  where the record was taken. Moves of the reference of V (or Q) and P add to ref and Pref.
+  base; 0: those of the unit's own terminal. In a plant file, which has no other bus, they are those of the recorded
+  point. Changes of the references of V (or Q) and P are added to ref and Pref.
 )";
   enum P {
     RemoteBus,
@@ -68,16 +68,18 @@ struct Model {
       {"RemoteBus", "remote bus", "code", 0.0, 0.0, 999997.0, 0.0, "regulated bus (0: the terminal)",
        kAsEffect, renewable::kBus},
       {"FromBus", "from bus", "code", 0.0, 0.0, 999997.0, 0.0,
-       "of the branch whose P and Q count (0: the unit)", kAsEffect, renewable::kBus},
-      {"ToBus", "to bus", "code", 0.0, 0.0, 999997.0, 0.0, "of the same branch", kAsEffect, renewable::kBus},
-      {"Circuit", "circuit", "code", 0.0, 0.0, 99.0, 0.0, "of the same branch", kAsEffect, renewable::kBus},
+       "first bus of the measured branch (0: the unit)", kAsEffect, renewable::kBus},
+      {"ToBus", "to bus", "code", 0.0, 0.0, 999997.0, 0.0, "second bus of that branch", kAsEffect,
+       renewable::kBus},
+      {"Circuit", "circuit", "code", 0.0, 0.0, 99.0, 0.0, "circuit of that branch", kAsEffect,
+       renewable::kBus},
       {"VCFlag", "VCFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: line drop, 0: reactive droop", kAsEffect,
        renewable::kFlag},
       {"RefFlag", "RefFlag", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: regulates V, 0: Q", kAsEffect,
        renewable::kFlag},
-      {"FrqFlag", "FrqFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: regulates P, 0: leaves it", kAsEffect,
-       renewable::kFlag},
-      {"Tfltr", "Tfltr", "s", 0.02, 0.0, 10.0, kNoNullValue, "measurement of V or Q (0: none)"},
+      {"FrqFlag", "FrqFlag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: regulates P, 0: constant Pext",
+       kAsEffect, renewable::kFlag},
+      {"Tfltr", "Tfltr", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the measurement of V or Q (0: none)"},
       {"Kp", "Kp", "pu/pu", 18.0, 0.0, 200.0, 0.0, "proportional gain"},
       {"Ki", "Ki", "1/s", 5.0, 0.0, 200.0, 0.0, "integral gain"},
       {"Tft", "Tft", "s", 0.0, 0.0, 10.0, 0.0, "lead of Qext"},
@@ -94,13 +96,13 @@ struct Model {
       {"Qmin", "Qmin", "pu", -0.43, -999.0, 1.0, kNoNullValue, "lowest Qext"},
       {"Kpg", "Kpg", "pu/pu", 1.0, 0.0, 100.0, 0.0, "regulator of P, proportional gain"},
       {"Kig", "Kig", "1/s", 0.05, 0.0, 100.0, 0.0, "regulator of P, integral gain"},
-      {"Tp", "Tp", "s", 0.25, 0.0, 10.0, kNoNullValue, "measurement of P (0: none)"},
+      {"Tp", "Tp", "s", 0.25, 0.0, 10.0, kNoNullValue, "lag of the measurement of P (0: none)"},
       {"fdbd1", "fdbd1", "pu", -0.0006, -1.0, 0.0, 0.0, "lower edge of the frequency's dead-band",
        literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
       {"fdbd2", "fdbd2", "pu", 0.0006, 0.0, 1.0, 0.0, "upper edge of the frequency's dead-band",
        literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
-      {"femax", "femax", "pu", 99.0, 0.0, 999.0, kNoNullValue, "highest error of P"},
-      {"femin", "femin", "pu", -99.0, -999.0, 0.0, kNoNullValue, "lowest error of P"},
+      {"femax", "femax", "pu", 99.0, 0.0, 999.0, kNoNullValue, "upper limit of the error of P"},
+      {"femin", "femin", "pu", -99.0, -999.0, 0.0, kNoNullValue, "lower limit of the error of P"},
       {"Pmax", "Pmax", "pu", 1.0, 0.0, 999.0, kNoNullValue, "highest Pext"},
       {"Pmin", "Pmin", "pu", 0.0, -999.0, 1.0, kNoNullValue, "lowest Pext"},
       {"Tg", "Tg", "s", 0.1, 0.0, 30.0, kNoNullValue, "lag of Pext (0: none)"},

@@ -31,12 +31,12 @@ struct Model {
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the first move begins", shared::kAfterRest,
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the first move", shared::kAfterRest,
        shared::kAnyTime},
-      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNullValue, "from one command to the next",
+      {"interval", "Ti", "s", 4.0, 0.1, 1e5, kNoNullValue, "time between two commands",
        literature::kundur("11.1.6, every few seconds"),
        literature::own("a tenth of a second, to longer than any record")},
-      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNullValue, "how long one move takes (0: a step)",
+      {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNullValue, "duration of a move (0: a step)",
        literature::own("half of the interval"), shared::kAnyTime},
       {"move1", "dP1", "pu", 0.0, -1.0, 1.0, 0.0, "first move of the governor's reference"},
       {"move2", "dP2", "pu", 0.0, -1.0, 1.0, 0.0, "second move, on top"},
@@ -50,10 +50,10 @@ struct Model {
     if (!(p[start] >= 0))
       problems.add(fmt::format("start = {:g} s", p[start]), where, "a run begins at 0 s", "give start >= 0");
     if (!(p[interval] > 0))
-      problems.add(fmt::format("interval = {:g} s", p[interval]), where, "the moves follow one another",
+      problems.add(fmt::format("interval = {:g} s", p[interval]), where, "moves must not coincide",
                    "give interval > 0");
     if (!(p[duration] >= 0))
-      problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a ramp goes forward in time",
+      problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a duration cannot be negative",
                    "give duration >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }

@@ -62,7 +62,8 @@ struct Model {
     for (const int i : {FBF, PBF})
       if (p[i] != 0 && p[i] != 1) problems.add(says(i), where, "it is a switch", "give 0 or 1");
     for (const int i : {FB, TPELEC, DB, EMAX, KP, KI, IRMAX})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a gain, a time or a width", "give a value >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "gains, times and widths cannot be negative", "give a value >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

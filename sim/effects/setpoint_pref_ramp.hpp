@@ -16,7 +16,7 @@ struct Model : shared::SetpointRamp<Model> {
 )";
   static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {
-      {"amount", "dPref", "pu", 0.0, -1.0, 1.0, 0.0, "how far the reference of the governor is moved"},
+      {"amount", "dPref", "pu", 0.0, -1.0, 1.0, 0.0, "change of the governor's reference"},
       kStart,
       kDuration};
 

@@ -15,9 +15,7 @@ struct Model : shared::SetpointRamp<Model> {
 )";
   static constexpr Source bounds_from = literature::own("half of the rated voltage");
   static constexpr Parameter parameters[] = {
-      {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "how far the reference of the exciter is moved"},
-      kStart,
-      kDuration};
+      {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "change of the exciter's reference"}, kStart, kDuration};
 
   template <class T>
   static T& moved(Signals<T>& s) {

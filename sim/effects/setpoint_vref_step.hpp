@@ -14,9 +14,7 @@ struct Model : shared::SetpointStep<Model> {
 )";
   static constexpr Source bounds_from = literature::own("half of the rated voltage");
   static constexpr Parameter parameters[] = {
-      {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "how far the reference of the exciter is moved"},
-      kStart,
-      kEnd};
+      {"amount", "dVref", "pu", 0.0, -0.5, 0.5, 0.0, "change of the exciter's reference"}, kStart, kEnd};
 
   template <class T>
   static T& moved(Signals<T>& s) {

@@ -29,22 +29,22 @@ struct Model {
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
-      {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "part of the torque the valves take away", kAsEffect,
+      {"drop", "k", "-", 0.0, 0.0, 1.0, 0.0, "fraction of the torque removed by the valves", kAsEffect,
        shared::kShare},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the valves begin to close", shared::kAfterRest},
-      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNullValue, "how long they close (0: at once)",
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the closing", shared::kAfterRest},
+      {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNullValue, "closing time (0: instantaneous)",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "how long they stay closed",
-       literature::own("a little longer than they close")},
-      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNullValue, "how long they reopen (0: at once)",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which they stay closed",
+       literature::own("slightly longer than the closing")},
+      {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNullValue, "reopening time (0: instantaneous)",
        literature::kundur("17.1.5, over seconds")}};
   enum C { coefficients = opening + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     for (const P i : {start, closing, hold, opening})
       if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where,
-                     "valves move forward in time", fmt::format("give {} >= 0", parameters[i].name));
+        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
+                     fmt::format("give {} >= 0", parameters[i].name));
   }
   static std::string_view unphysical(const double*) { return ""; }
   static std::vector<double> switching_times(const double* p) {

@@ -14,7 +14,7 @@ namespace swingbank::sim::effects::shaft_fast_valving_on_fault {
 struct Model {
   static constexpr std::string_view
       name = "FVFAULT",
-      title = "fast valving set off by a fault",
+      title = "fast valving triggered by a fault",
       source =
           "Kundur (1994), 17.1.5: intercept valves close within 0.1 to 0.2 s once a "
           "fault is detected, and reopen over seconds; ramps by definition, the "
@@ -28,30 +28,29 @@ struct Model {
         0 |______/            \_________
              delay +closing +hold  +opening
 
-  d set/dt   = 100 clamp((V0 - V)/dip - 1, 0, 1) (1 - set)     V0: V at rest
+  d set/dt   = 100 clamp((V0 - V)/dip - 1, 0, 1) (1 - set)     V0: steady-state V
   d since/dt = set
   Until V has fallen by `dip` nothing is changed.
 )";
   enum P { drop, dip, delay, closing, hold, opening };
-  static constexpr Source defaults_from =
-      literature::own("a fault that is felt, and valves that follow at once");
+  static constexpr Source defaults_from = literature::own("a noticeable fault, and valves without delay");
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
-      {"drop", "k", "-", 0.3, 0.0, 1.0, 0.0, "part of the torque the valves take away",
+      {"drop", "k", "-", 0.3, 0.0, 1.0, 0.0, "fraction of the torque removed by the valves",
        literature::own("some"), shared::kShare},
-      {"dip", "dV", "pu", 0.1, 1e-3, 2.0, kNoNullValue, "fall of V from which the valves are set off",
-       literature::own("more than a load does"), literature::own("from noise to more than V")},
+      {"dip", "dV", "pu", 0.1, 1e-3, 2.0, kNoNullValue, "voltage dip that triggers the valves",
+       literature::own("more than a load step causes"), literature::own("from noise to more than V")},
       {"delay", "t1", "s", 0.1, 0.0, 1e5, kNoNullValue,
        "time from the fault until the valves begin to close"},
-      {"closing", "Tc", "s", 0.15, 1e-3, 100.0, kNoNullValue, "how long they close",
+      {"closing", "Tc", "s", 0.15, 1e-3, 100.0, kNoNullValue, "closing time",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "how long they stay closed",
-       literature::own("a little longer than they close")},
-      {"opening", "To", "s", 3.0, 1e-3, 1e5, kNoNullValue, "how long they reopen",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which they stay closed",
+       literature::own("slightly longer than the closing")},
+      {"opening", "To", "s", 3.0, 1e-3, 1e5, kNoNullValue, "reopening time",
        literature::kundur("17.1.5, over seconds")}};
   enum C { begins = opening + 1, level, coefficients };
   enum X { set, since };
-  static constexpr State states[] = {{"set", "-", "1 once a fault has been felt", 1.0},
+  static constexpr State states[] = {{"set", "-", "1 after the detection of a fault", 1.0},
                                      {"since", "s", "time since then", 1.0}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -61,8 +60,8 @@ struct Model {
                      "the equations divide by it", fmt::format("give {} > 0", parameters[i].name));
     for (const P i : {delay, hold})
       if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where,
-                     "valves move forward in time", fmt::format("give {} >= 0", parameters[i].name));
+        problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
+                     fmt::format("give {} >= 0", parameters[i].name));
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -12,7 +12,7 @@ namespace swingbank::sim::effects::shaft_forced_oscillation {
 struct Model {
   static constexpr std::string_view name = "FORCEDOSC", title = "forced oscillation of the mechanical torque",
                                     source =
-                                        "disturbance drive: NERC, Forced Oscillation Monitoring and "
+                                        "a disturbance; NERC, Forced Oscillation Monitoring and "
                                         "Mitigation (2017); sine by definition";
   static constexpr Slot slot = Slot::shaft;
   static constexpr std::string_view description = R"(
@@ -25,11 +25,12 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"amplitude", "A", "pu", 0.0, -1.0, 1.0, 0.0, "amplitude of the torque", kAsEffect, shared::kRating},
       {"frequency", "f", "Hz", 0.5, 1e-3, 60.0, kNoNullValue, "frequency of the oscillation",
-       literature::own("between two areas"), literature::own("from minutes to the frequency of the grid")},
+       literature::own("an inter-area mode"), literature::own("from minutes to the frequency of the grid")},
       {"phase", "phi", "rad", 0.0, -constants::turn, constants::turn, kNoNullValue, "phase at `start`",
        literature::derived("a sine"), literature::derived("a turn either way")},
-      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when it begins", shared::kAfterRest},
-      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "when it ends (100000: never)", shared::kNever}};
+      {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the oscillation", shared::kAfterRest},
+      {"end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "end of the oscillation (100000: never)",
+       shared::kNever}};
   enum C { kA, w, phi, t1, t2, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -40,7 +41,7 @@ struct Model {
       problems.add(fmt::format("start = {:g} s", p[start]), where, "a run begins at 0 s", "give start >= 0");
     if (!(p[end] > p[start]))
       problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
-                   "an oscillation ends after it began", "give end > start");
+                   "an oscillation ends after its start", "give end > start");
   }
   static std::string_view unphysical(const double*) { return ""; }
   static std::vector<double> switching_times(const double* p) { return {p[start], p[end]}; }

@@ -25,14 +25,14 @@ struct Model {
        (1+A1 s+A2 s^2)(1+A3 s+A4 s^2)    1 + s T2   1 + s T4     1 + s T6
   u: speed deviation (ICS = 1), frequency deviation of the terminal (2), electrical power on the machine's
      base (3), accelerating power Pm - P (4), voltage V (5), its slope (6).
-     Frequency from the voltage and the same behind a lag x = V/(1 + s Tf): Im(V conj x)/(|V| |x|)/(2 pi f0 Tf);
+     Frequency from the voltage and the lagged voltage x = V/(1 + s Tf): Im(V conj x)/(|V| |x|)/(2 pi f0 Tf);
      slope s V/(1 + s Tf).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off). T2, T4 = 0: bypass; T6 = 0: KS alone.
 )";
   enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL, Tf };
   static constexpr Source kCase = literature::psid("IEEEST/ThreeBus_IEEEST.dyr");
   static constexpr Source defaults_from =
-      literature::own("of the speed, two equal leads of five; no published sample was found");
+      literature::own("speed input, two equal leads of ratio five; no published sample was found");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"ICS", "ICS", "code", 1.0, 1.0, 6.0, kNoNullValue,
@@ -58,9 +58,9 @@ struct Model {
       {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs", kCase},
       {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs", kCase},
       {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)",
-       literature::sienna("IEEEST, its largest")},
+       literature::sienna("IEEEST, largest value")},
       {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"},
-      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNullValue, "lag behind which frequency or slope is measured",
+      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNullValue, "lag of the frequency or slope measurement",
        literature::own("two and a half cycles of 60 Hz"),
        literature::own("from a quarter of a cycle of 50 Hz to a second")}};
   static constexpr int dyr_columns[] = {ICS, IB, A1, A2, A3, A4,    A5,    A6,  T1, T2,
@@ -143,16 +143,16 @@ struct Model {
         "give a whole number from 1 to 6");
     shared::check_time_constant(name, "Tf", p[Tf], p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
                                 "ICS other than 2 and 6 or KS = 0", where, problems);
-    bad(!std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]), "a time constant", "give a number");
+    bad(!std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]), "it must be finite", "give a number");
     // Speed and powers are those of the machine itself, whatever the bus number.
     bad(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, fmt::format("IB = {:g}", p[IB]),
-        "IEEEST reads its own machine only", "give IB = 0");
+        "IEEEST measures only its own machine", "give IB = 0");
     for (int i : {A1, A2, A3, A4})
       bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]), "the filter would be unstable",
           "give a coefficient >= 0");
     for (int i : {T2, T4, T6})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), "a time constant",
-          "give a value >= 0");
+      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]),
+          "a time constant cannot be negative", "give a value >= 0");
     const auto order = [](double first, double second) { return second != 0.0 ? 2 : first != 0.0 ? 1 : 0; };
     bad(order(p[A5], p[A6]) > order(p[A1], p[A2]) + order(p[A3], p[A4]),
         fmt::format("A5 = {:g} s, A6 = {:g} s^2", p[A5], p[A6]),

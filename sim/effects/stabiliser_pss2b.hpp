@@ -27,8 +27,8 @@ struct Model {
   u1 (IC1), u2 (IC2): speed deviation (1), electrical power on the machine's base (3), accelerating power
      Pm - P (4), voltage (5).
   Bypassed: washout 2 with Tw2 = 0, washout 4 with Tw4 = 0, lags with T6, T7 = 0, lead-lags with T2, T4,
-     T11 = 0, the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 switches all off, KS2 = 0 the second
-     input; what is off needs no Tw1, Tw3 and T9.
+     T11 = 0, the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 disables all, KS2 = 0 the second
+     input; a disabled part needs no Tw1, Tw3 and T9.
 )";
   enum P {
     IC1,
@@ -174,7 +174,7 @@ struct Model {
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
     for (int i : {REM1, REM2})  // preceded by the input code; only a voltage can be remote
-      bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} reads its own machine only", who),
+      bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} measures only its own machine", who),
           fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})
       bad(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), says(i), "it counts lags and stages",
@@ -186,10 +186,10 @@ struct Model {
          {std::tuple{TW1, on, "KS1 = 0"}, {TW3, second, "KS2 = 0"}, {T9, ramp, "M = 0 or N = 0"}})
       shared::check_time_constant(who, parameters[time].symbol, p[time], acts, off, where, problems);
     for (int i : {TW2, T6, TW4, T7, T2, T4, T11})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     for (const auto& [most, least] : {std::pair{VS1MAX, VS1MIN}, {VS2MAX, VS2MIN}})
       bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the range of the input must not be empty", "give a range; +-100 pu limits nothing");
+          "the range of the input must not be empty", "give a range; +-100 pu never acts");
     bad(!(p[VSTMAX] >= p[VSTMIN]), fmt::format("{} pu with {} pu", says(VSTMAX), says(VSTMIN)),
         "the limits cross", "give VSTMAX >= VSTMIN");
   }

@@ -19,9 +19,9 @@ struct Model {
   static constexpr std::string_view description = R"(
   As PSS2B up to the third lead-lag, then
      -> (1 + s T12)/(1 + s T13) -> [VSTMIN, VSTMAX] -> on -> Vs
-  on: goes to 1 while P > PSSON, to 0 while P < PSSOFF, stays between them; at first 1 unless P < PSSOFF;
-     always 1 where PSSON = 0. In 5 ms, and whole from 1e-5 pu beyond on, so that it can be integrated.
-  T13 = 0: no fourth lead-lag. Compensated frequency (input code 7) is not modelled; Xcomp and Tcomp are its.
+  on: to 1 while P > PSSON, to 0 while P < PSSOFF, constant in between; initially 1 unless P < PSSOFF;
+     always 1 if PSSON = 0. It changes within 5 ms, in full from 1e-5 pu beyond a threshold, to be integrable.
+  T13 = 0: no fourth lead-lag. Compensated frequency (input code 7) is not modelled; Xcomp and Tcomp belong to it.
 )";
   /// The parameters of PSS2B, then these.
   enum P { T12 = B::parameter_count, T13, PSSON, PSSOFF, Xcomp, Tcomp, kCount };
@@ -32,12 +32,13 @@ struct Model {
     constexpr Source none = shared::kNothing;
     list[T12] = {"T12", "T12", "s", 0.0, 0.0, 20.0, kNoNullValue, "fourth lead", none};
     list[T13] = {"T13", "T13", "s", 0.0, 0.0, 20.0, kNoNullValue, "fourth lag (0: bypass)", none};
-    list[PSSON] = {"PSSON", "PSSON", "pu", 0.0, 0.0, 1.0, 0.0, "power from which the output is whole", none};
-    list[PSSOFF] = {"PSSOFF", "PSSOFF", "pu", 0.0, 0.0, 1.0, 0.0, "power up to which there is no output",
+    list[PSSON] = {"PSSON", "PSSON", "pu", 0.0, 0.0, 1.0, 0.0, "power above which the output is on", none};
+    list[PSSOFF] = {"PSSOFF", "PSSOFF", "pu", 0.0, 0.0, 1.0, 0.0, "power below which the output is off",
                     none};
     list[Xcomp] = {
         "Xcomp", "Xcomp", "pu", 0.0, 0.0, 2.0, kNoNullValue, "reactance of the compensated frequency", none};
-    list[Tcomp] = {"Tcomp", "Tcomp", "s", 0.0, 0.0, 10.0, kNoNullValue, "its time constant", none};
+    list[Tcomp] = {"Tcomp", "Tcomp", "s", 0.0, 0.0, 10.0, kNoNullValue, "time constant of that frequency",
+                   none};
     return list;
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;
@@ -63,10 +64,11 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     B::check_as(name, p, where, problems);
     if (!(p[T13] >= 0))
-      problems.add(fmt::format("T13 = {:g} s", p[T13]), where, "a time constant", "give T13 >= 0");
+      problems.add(fmt::format("T13 = {:g} s", p[T13]), where, "a time constant cannot be negative",
+                   "give T13 >= 0");
     if (!(p[PSSON] >= p[PSSOFF]))
       problems.add(fmt::format("PSSON = {:g} pu with PSSOFF = {:g} pu", p[PSSON], p[PSSOFF]), where,
-                   "the output would be on where it is off", "give PSSON >= PSSOFF");
+                   "the ranges of on and off would overlap", "give PSSON >= PSSOFF");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -19,7 +19,7 @@ struct Model {
   u1 (MODE), u2 (MODE2): none (0), speed deviation (1), electrical power on the machine's base (3),
      accelerating power Pm - P (4), voltage (5).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off).
-  T3 = 0: 1/(1 + s T4) in the washout's place. T1, T2, T6, T8, T10 = 0, and T4 = 0 with T3 = 0: bypass.
+  T3 = 0: 1/(1 + s T4) instead of the washout. T1, T2, T6, T8, T10 = 0, and T4 = 0 with T3 = 0: bypass.
 )";
   enum P {
     MODE,
@@ -45,7 +45,7 @@ struct Model {
   };
   static constexpr Source kInput = literature::own("speed alone, as IEEEST");
   static constexpr Source defaults_from =
-      literature::own("of the speed, two equal leads of five; no published sample was found");
+      literature::own("speed input, two equal leads of ratio five; no published sample was found");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"MODE", "MODE", "code", 1.0, 0.0, 5.0, kNoNullValue,
@@ -60,7 +60,7 @@ struct Model {
       {"K2", "K2", "pu", 0.0, -1000.0, 1000.0, 0.0, "gain of the second input"},
       {"T1", "T1", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the first input (0: none)"},
       {"T2", "T2", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the second input (0: none)"},
-      {"T3", "T3", "s", 5.0, 0.0, 100.0, kNoNullValue, "washout's numerator (0: a lag in its place)"},
+      {"T3", "T3", "s", 5.0, 0.0, 100.0, kNoNullValue, "washout's numerator (0: a lag instead)"},
       {"T4", "T4", "s", 5.0, 0.01, 100.0, kNoNullValue, "washout's time constant"},
       {"T5", "T5", "s", 0.1, 0.0, 20.0, kNoNullValue, "first lead"},
       {"T6", "T6", "s", 0.02, 0.0, 20.0, kNoNullValue, "first lag (0: bypass)"},
@@ -117,14 +117,15 @@ struct Model {
     shared::check_time_constant(name, "T4", p[T4], p[T3] != 0 && (p[K1] != 0 || p[K2] != 0),
                                 "T3 = 0 or K1 = K2 = 0", where, problems);
     for (const int i : {T1, T2, T3, T6, T8, T10})
-      if (!(p[i] >= 0)) problems.add(says(i) + " s", where, "a time constant", "give a value >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i) + " s", where, "a time constant cannot be negative", "give a value >= 0");
     if (!(p[LSMAX] >= p[LSMIN]))
       problems.add(says(LSMAX) + " pu with " + says(LSMIN) + " pu", where, "the limits cross",
                    "give LSMAX >= LSMIN");
   }
   static std::string remark(const double* p) {
     const bool elsewhere = (p[BUSR] != 0.0 && p[MODE] == 5.0) || (p[BUSR2] != 0.0 && p[MODE2] == 5.0);
-    return elsewhere ? "a remote bus is not measured at: the machine sees its own" : "";
+    return elsewhere ? "the remote bus is ignored: the stabiliser measures at its machine" : "";
   }
   /// A cut-off within the band of normal voltages would switch the stabiliser on and off continually.
   static std::string_view unphysical(const double* p) {

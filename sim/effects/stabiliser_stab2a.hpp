@@ -24,9 +24,9 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNullValue, "gain of each washout"},
       {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNullValue, "time constant of each washout"},
-      {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged way"},
+      {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged path"},
       {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNullValue, "its time constant (0: none)"},
-      {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct way"},
+      {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct path"},
       {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
       {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNullValue, "time constant of each output lag (0: none)"},
       {"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNullValue, "limit of Vs on either side"}};
@@ -47,7 +47,8 @@ struct Model {
     shared::check_time_constant(name, "T2", p[T2], p[K2] != 0 && p[K5] != 0, "K2 = 0 or K5 = 0", where,
                                 problems);
     for (const int i : {T3, T5})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a time constant", "give a value >= 0");
+      if (!(p[i] >= 0))
+        problems.add(says(i), where, "a time constant cannot be negative", "give a value >= 0");
     if (!(p[HLIM] >= 0)) problems.add(says(HLIM), where, "the limits cross", "give HLIM >= 0");
   }
   static std::string_view unphysical(const double*) { return ""; }

@@ -17,7 +17,7 @@ struct Model {
                                     dyr_name = "WTTQA1";
   static constexpr Slot slot = Slot::torque_control;
   static constexpr std::string_view description = R"(
-  P/(1 + s Tp) --> f(P): straight between the points (p, spd) --> [ 1/(1 + s Twref) ] --> wref
+  P/(1 + s Tp) --> f(P): linear between the points (p, spd) --> [ 1/(1 + s Twref) ] --> wref
   wg - wref (Tflag 0), (Pext - P)/(1 + wg) (Tflag 1) --> [ Kpp + Kip/s, Temin to Temax ] --> x (1 + wg) --> Pext
   per unit of TRATE (0: the converter's base)
 )";
@@ -25,12 +25,12 @@ struct Model {
   static constexpr Source defaults_from = literature::andes("WTTQA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
-      {"Tflag", "Tflag", "code", 0.0, 0.0, 1.0, kNoNullValue, "0: regulates the speed, 1: the power",
+      {"Tflag", "Tflag", "code", 0.0, 0.0, 1.0, kNoNullValue, "regulated quantity: 0 speed, 1 power",
        kAsEffect, renewable::kFlag},
       {"Kpp", "Kpp", "pu/pu", 0.0, 0.0, 100.0, 0.0, "proportional gain"},
       {"Kip", "Kip", "1/s", 0.1, 0.0, 100.0, 0.0, "integral gain"},
-      {"Tp", "Tp", "s", 0.05, 0.0, 10.0, kNoNullValue, "measurement of the power (0: none)"},
-      {"Twref", "Twref", "s", 30.0, 0.0, 300.0, kNoNullValue, "lag of the speed that is asked for (0: none)"},
+      {"Tp", "Tp", "s", 0.05, 0.0, 10.0, kNoNullValue, "lag of the power measurement (0: none)"},
+      {"Twref", "Twref", "s", 30.0, 0.0, 300.0, kNoNullValue, "lag of the speed reference (0: none)"},
       {"Temax", "Temax", "pu", 1.2, 0.0, 99.0, kNoNullValue, "largest torque"},
       {"Temin", "Temin", "pu", 0.0, -1.0, 1.0, kNoNullValue, "smallest torque"},
       {"p1", "p1", "pu", 0.2, -1.0, 2.0, kNoNullValue, "power of point 1"},
@@ -63,7 +63,7 @@ struct Model {
   enum X { power, speed, torque };
   static constexpr State states[] = {
       {"power", "pu", "measured power"},
-      {"speed", "pu", "speed that is asked for"},
+      {"speed", "pu", "speed reference"},
       {.name = "torque", .unit = "pu", .meaning = "integral of the torque", .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -73,10 +73,11 @@ struct Model {
     Core::check_signs(parameters, p, {Kpp, Kip, TRATE}, {}, where, problems);
     if (!(p[p2] > p[p1]))
       problems.add(Core::value(parameters, p, p2) + " with " + Core::value(parameters, p, p1), where,
-                   "the speed that is asked for has no curve", "give powers that rise");
+                   "the powers of the speed curve must ascend", "give p1 < p2 < p3 < p4");
     for (const int i : {spd1, spd2})
       if (!(p[i] > 0))
-        problems.add(Core::value(parameters, p, i), where, "the turbine turns", "give a value > 0");
+        problems.add(Core::value(parameters, p, i), where, "a running turbine has a speed > 0",
+                     "give a value > 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -113,7 +114,7 @@ struct Model {
     x[torque] = s.Pneed * c[base] / x[speed];
     c[pref] = s.Pneed = s.P;
     if (value_of(x[torque]) < value_of(c[least]) || value_of(x[torque]) > value_of(c[most]))
-      return fmt::format("it would need a torque of {:.4f} pu, beyond {:g} to {:g} pu", value_of(x[torque]),
+      return fmt::format("it would need a torque of {:.4f} pu, outside {:g} to {:g} pu", value_of(x[torque]),
                          value_of(c[least]), value_of(c[most]));
     return {};
   }

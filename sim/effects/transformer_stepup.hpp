@@ -22,7 +22,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"R", "R", "pu", 0.0, 0.0, 0.1, 0.0, "resistance on the machine's base"},
       {"X", "X", "pu", 0.1, 0.0, 1.0, 0.0, "leakage reactance on the machine's base",
-       literature::own("the usual tenth")},
+       literature::own("a typical value")},
       {"ratio", "n", "-", 1.0, 0.5, 2.0, 1.0, "grid side over machine side, off nominal"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -31,8 +31,8 @@ struct Model {
         problems.add(fmt::format("{} = {:g} {}", parameters[i].name, p[i], parameters[i].unit), where, why,
                      remedy);
     };
-    refuse(R, !(p[R] >= 0), "a winding has losses, it makes no power", "give R >= 0");
-    refuse(X, !(p[X] >= 0), "leakage is inductive", "give X >= 0");
+    refuse(R, !(p[R] >= 0), "a resistance cannot be negative", "give R >= 0");
+    refuse(X, !(p[X] >= 0), "a leakage reactance cannot be negative", "give X >= 0");
     refuse(ratio, !(p[ratio] > 0), "voltages of both sides have the same sign", "give a ratio near 1");
   }
   static std::string_view unphysical(const double*) { return ""; }

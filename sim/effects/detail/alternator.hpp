@@ -39,7 +39,7 @@ struct Alternator {
   template <class T>
   static std::string steady_alternator(const T* p, const T* c, const Signals<T>& s, T* x, T& Vfe) {
     if (!(value_of(s.Efd) > 0.0))
-      return fmt::format("Efd = {:.4f} pu is needed and a rectifier delivers none below zero",
+      return fmt::format("Efd = {:.4f} pu is needed, and a rectifier delivers only positive voltages",
                          value_of(s.Efd));
     x[Model::Vm] = s.Vc;
     x[Model::Ve] = rectifier_source(s.Efd, p[Model::KC] * s.Ifd);
@@ -55,9 +55,9 @@ struct Alternator {
       problems.add(says(M::TE) + " s", where, fmt::format("{} divides by it", M::name), "give TE > 0");
     for (const int i : {M::KC, M::SE1, M::SE2})
       if (!(p[i] >= 0))
-        problems.add(says(i), where, "it can only take from the exciter's voltage", "give a value >= 0");
+        problems.add(says(i), where, "it only reduces the exciter's voltage", "give a value >= 0");
     if (p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2])
-      problems.add(says(M::E1) + " = E2", where, "one voltage cannot have two saturations",
+      problems.add(says(M::E1) + " = E2", where, "one voltage cannot have two saturation factors",
                    "give two points");
   }
 };

@@ -39,7 +39,7 @@ struct AlternatorRectifier : Alternator<Model> {
          {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
          {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance", kAsEffect, kRange},
          {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
-         {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNullValue, "alternator's own field"},
+         {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNullValue, "self-excitation constant"},
          {"E1", "E1", "pu", 4.18, 0.0, 20.0, kNoNullValue, "first point of saturation"},
          {"SE1", "SE(E1)", "-", 0.1, 0.0, 2.0, 0.0, "saturation there"},
          {"E2", "E2", "pu", 3.14, 0.0, 20.0, kNoNullValue, "second point of saturation"},
@@ -113,9 +113,10 @@ void AlternatorRectifier<Model>::check(const double* p, const std::string& where
   };
   Behind::check_alternator(p, where, problems);
   check_time_constant(Model::name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-  bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "no gain, no exciter", "give KA > 0");
+  bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "an exciter needs a gain", "give KA > 0");
   for (int i : {TR, TB, TA})
-    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant", "give a value >= 0");
+    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant cannot be negative",
+        "give a value >= 0");
   bad(!(p[UPPER] > p[LOWER]),
       fmt::format("{} = {:g} pu with {} = {:g} pu", symbol(UPPER), p[UPPER], symbol(LOWER), p[LOWER]),
       "the range of the regulator must not be empty",

@@ -22,10 +22,10 @@ struct BehindImpedance : ControlledCurrent<Model> {
   static constexpr Parameter kRateFlag{"rateFlag",   "rateFlag",
                                        "code",       0.0,
                                        0.0,          1.0,
-                                       kNoNullValue, "0: the active current rises by rrpwr, 1: the power",
+                                       kNoNullValue, "limited by rrpwr: 0 active current, 1 power",
                                        kAsEffect,    renewable::kFlag};
   static constexpr Parameter kPqFlag{
-      "pqFlag",  "pqFlag",        "code", 0.0, 0.0, 1.0, kNoNullValue, "at Imax 0: P yields, 1: Q yields",
+      "pqFlag",  "pqFlag",        "code", 0.0, 0.0, 1.0, kNoNullValue, "current priority at Imax: 0 Q, 1 P",
       kAsEffect, renewable::kFlag};
   static constexpr Parameter kTg{"Tg", "Tg", "s",          0.02,
                                  1e-3, 0.5,  kNoNullValue, "time constant of the converter"};

@@ -13,7 +13,7 @@ template <class Model>
 struct Diesel {
   static constexpr Slot slot = Slot::governor;
   static constexpr Source defaults_from =
-      literature::own("a start within PSS/E's usual ranges; no sample was found");
+      literature::own("within PSS/E's usual ranges; no published sample was found");
   static constexpr Source bounds_from = kNoCases;
   static constexpr Parameter
       kT1 = {"T1", "T1",  "s",          0.01,
@@ -33,7 +33,7 @@ struct Diesel {
       kT5 = {"T5", "T5",  "s",          0.01,
              0.0,  100.0, kNoNullValue, "actuator, first lag (0: neither lag nor lead)"},
       kT6 = {"T6", "T6", "s", 0.01, 0.0, 100.0, kNoNullValue, "actuator, second lag (0: none)"},
-      kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "time between two firings, a delay (0: none)"},
+      kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "delay between two firings (0: none)"},
       kTMAX = {"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNullValue, "upper limit of the throttle"},
       kTMIN = {"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"};
   /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
@@ -59,9 +59,9 @@ struct Diesel {
       const auto& r = M::parameters[static_cast<std::size_t>(i)];
       return fmt::format("{} = {:g} {}", r.symbol, p[i], r.unit);
     };
-    if (!(p[M::K] > 0)) problems.add(says(M::K), where, "nothing would move", "give K > 0");
+    if (!(p[M::K] > 0)) problems.add(says(M::K), where, "the output would be constant", "give K > 0");
     for (const int i : {M::T1, M::T2, M::T3, M::T4, M::T5, M::T6, M::TD})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a time", "give a value >= 0");
+      if (!(p[i] >= 0)) problems.add(says(i), where, "a time cannot be negative", "give a value >= 0");
     if (p[M::T1] == 0 && (p[M::T2] != 0 || p[M::T3] != 0))
       problems.add(says(M::T1) + " with " + says(M::T2) + " and " + says(M::T3), where,
                    "the control box is then bypassed", "give T2 = T3 = 0 with T1 = 0");

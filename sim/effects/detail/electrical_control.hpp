@@ -185,8 +185,7 @@ struct ElectricalControl {
     s.Qneed = voltage && !power ? regulated - bias : c[need];
     s.Pneed = c[pneed];
     if (value_of(c[by_factor]) == 1.0) {
-      if (value_of(s.P) == 0.0 && value_of(c[need]) != 0.0)
-        return "there is no power to have a factor: P = 0 pu";
+      if (value_of(s.P) == 0.0 && value_of(c[need]) != 0.0) return "the power factor is undefined: P = 0 pu";
       c[tangent] = value_of(s.P) == 0.0 ? T(0.0) : c[need] / s.P;
     }
     const auto outside = [](const char* what, const T& value, const T& least, const T& most) {
@@ -213,28 +212,30 @@ struct ElectricalControl {
   static void check_times(std::span<const Parameter> all, const double* p, std::initializer_list<int> times,
                           const std::string& where, Problems& problems) {
     for (const int i : times)
-      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is a time", "give 0 for none, or more");
+      if (!(p[i] >= 0))
+        problems.add(value(all, p, i), where, "a time constant cannot be negative",
+                     "give 0 for none, or more");
   }
   static void check_ranges(std::span<const Parameter> all, const double* p,
                            std::initializer_list<std::pair<int, int>> ranges, const std::string& where,
                            Problems& problems) {
     for (const auto& [high, low] : ranges)
       if (!(p[high] >= p[low]))
-        problems.add(value(all, p, high) + " with " + value(all, p, low), where, "the limits have no room",
+        problems.add(value(all, p, high) + " with " + value(all, p, low), where, "the limits cross",
                      "give the upper one at least the lower one's value");
   }
   static void check_signs(std::span<const Parameter> all, const double* p,
                           std::initializer_list<int> not_below, std::initializer_list<int> not_above,
                           const std::string& where, Problems& problems) {
     for (const int i : not_below)
-      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it is not negative", "give 0 or more");
+      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it cannot be negative", "give 0 or more");
     for (const int i : not_above)
-      if (!(p[i] <= 0)) problems.add(value(all, p, i), where, "it is not positive", "give 0 or less");
+      if (!(p[i] <= 0)) problems.add(value(all, p, i), where, "it cannot be positive", "give 0 or less");
   }
   static std::string remote(double bus) {
-    return bus == 0 ? std::string()
-                    : fmt::format("it is to measure at bus {:g}; here it measures at the unit's own terminal",
-                                  bus);
+    return bus == 0
+               ? std::string()
+               : fmt::format("it should measure at bus {:g}, but measures at the unit's own terminal", bus);
   }
 };
 

@@ -19,39 +19,38 @@ inline constexpr Parameter
     PFFLAG = {"PFFLAG",     "PFFLAG",
               "code",       0.0,
               0.0,          1.0,
-              kNoNullValue, "1: holds the power factor, 0: follows Qext",
+              kNoNullValue, "1: constant power factor, 0: follows Qext",
               kAsEffect,    renewable::kFlag},
     VFLAG = {"VFLAG",      "VFLAG",
              "code",       1.0,
              0.0,          1.0,
-             kNoNullValue, "1: a regulator of Q makes Vcmd, 0: Qext does",
+             kNoNullValue, "source of Vcmd: 1 regulator of Q, 0 Qext",
              kAsEffect,    renewable::kFlag},
     QFLAG = {"QFLAG",      "QFLAG",
              "code",       0.0,
              0.0,          1.0,
-             kNoNullValue, "1: a regulator of V makes Iq, 0: Q over V does",
+             kNoNullValue, "source of Iq: 1 regulator of V, 0 Q/V",
              kAsEffect,    renewable::kFlag},
     PFLAG = {"PFLAG",      "PFLAG",
              "code",       0.0,
              0.0,          1.0,
-             kNoNullValue, "1: Pext times the generator's speed",
+             kNoNullValue, "1: Pext is multiplied by the generator's speed",
              kAsEffect,    renewable::kFlag},
     PQFLAG = {"PQFLAG",     "PQFLAG",
               "code",       0.0,
               0.0,          1.0,
-              kNoNullValue, "at Imax 0: P yields, 1: Q yields",
+              kNoNullValue, "current priority at Imax: 0 Q, 1 P",
               kAsEffect,    renewable::kFlag},
-    Vdip = {"Vdip", "Vdip", "pu", -99.0, -99.0, 1.2, kNoNullValue, "voltage below which there is a dip"},
-    Vup = {"Vup", "Vup", "pu", 99.0, 0.8, 99.0, kNoNullValue, "voltage above which there is a dip"},
-    Trv = {"Trv", "Trv", "s", 0.02, 0.0, 1.0, kNoNullValue, "measurement of the voltage (0: none)"},
+    Vdip = {"Vdip", "Vdip", "pu", -99.0, -99.0, 1.2, kNoNullValue, "voltage below which a dip is detected"},
+    Vup = {"Vup", "Vup", "pu", 99.0, 0.8, 99.0, kNoNullValue, "voltage above which a dip is detected"},
+    Trv = {"Trv", "Trv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of the voltage measurement (0: none)"},
     dbd1 = {"dbd1", "dbd1", "pu", 0.0, -1.0, 0.0, 0.0, "lower edge of the dead-band of Iqv"},
     dbd2 = {"dbd2", "dbd2", "pu", 0.0, 0.0, 1.0, 0.0, "upper edge of the dead-band of Iqv"},
     Kqv = {"Kqv", "Kqv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage error: ride-through"},
     Iqh1 = {"Iqh1", "Iqh1", "pu", 1.1, 0.0, 99.0, kNoNullValue, "highest Iqv"},
     Iql1 = {"Iql1", "Iql1", "pu", -1.1, -99.0, 0.0, kNoNullValue, "lowest Iqv"},
-    Vref0 = {"Vref0", "Vref0", "pu",         0.0,
-             0.0,     1.5,     kNoNullValue, "reference of Iqv (0: the voltage at the start)"},
-    Tp = {"Tp", "Tp", "s", 0.05, 0.0, 10.0, kNoNullValue, "measurement of the power (0: none)"},
+    Vref0 = {"Vref0", "Vref0", "pu", 0.0, 0.0, 1.5, kNoNullValue, "reference of Iqv (0: initial voltage)"},
+    Tp = {"Tp", "Tp", "s", 0.05, 0.0, 10.0, kNoNullValue, "lag of the power measurement (0: none)"},
     Qmax = {"Qmax", "Qmax", "pu", 0.44, -1.0, 99.0, kNoNullValue, "highest Qin"},
     Qmin = {"Qmin", "Qmin", "pu", -0.44, -99.0, 1.0, kNoNullValue, "lowest Qin"},
     Vmax = {"Vmax", "Vmax", "pu", 1.05, 0.5, 99.0, kNoNullValue, "highest Vcmd"},
@@ -68,9 +67,9 @@ inline constexpr Parameter
     Imax = {"Imax", "Imax", "pu", 1.11, 0.1, 99.0, kNoNullValue, "largest current"},
     Tpord = {"Tpord", "Tpord", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of Pord (0: none)"},
     Iqfrz = {"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqv for Thld after a dip"},
-    Thld = {"Thld", "Thld", "s", 0.0,
-            -10.0,  10.0,   0.0, "how long after a dip Iqfrz (> 0) or Iqv (< 0) goes on"},
-    Thld2 = {"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0, "how long after a dip the limit of Ipcmd stays"};
+    Thld = {"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0, "time after a dip with Iqfrz (> 0) or Iqv (< 0)"},
+    Thld2 = {"Thld2", "Thld2", "s", 0.0,
+             0.0,     10.0,    0.0, "time after a dip for which the limit of Ipcmd is kept"};
 
 }  // namespace record
 
@@ -125,7 +124,7 @@ constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p
       record.meaning =
           active ? "voltage of a point of the limit of Ip" : "voltage of a point of the limit of Iq";
     else
-      record.meaning = active ? "active current there" : "reactive current there";
+      record.meaning = active ? "active current at that point" : "reactive current at that point";
   }
   return all;
 }

@@ -55,8 +55,8 @@ struct GatePower {
       const double run = p[gate[k + 1]] - p[gate[k]], rise = p[power[k + 1]] - p[power[k]];
       if (over ? p[gate[k + 1]] != 0.0 || p[power[k + 1]] != 0.0 : run > 0.0 && !(rise > 0.0))
         problems.add(text(gate[k + 1]) + " with " + text(power[k + 1]), where,
-                     over ? "a point follows the end of the curve" : "more opening must give more",
-                     "give points in ascending order, those that are not used as 0");
+                     over ? "a point follows the end of the curve" : "the curve must rise with the opening",
+                     "give points in ascending order, unused ones as 0");
       over = over || !(run > 0.0);
     }
   }

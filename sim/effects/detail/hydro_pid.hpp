@@ -17,7 +17,7 @@ T turbine_rating(const T& given, const Conventions& conventions) {
 }
 
 /// Openings and powers of the points of a gate's curve; a model has the first of them.
-inline constexpr Source kFarPoint = literature::own("99 stands for a point beyond reach");
+inline constexpr Source kFarPoint = literature::own("99 marks a point that is never reached");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};
 }
@@ -109,10 +109,10 @@ struct HydroPid {
                     const std::string& says_kd, double KD, const std::string& says_tf, double TF,
                     const std::string& where, Problems& problems) {
     if (!(KI > 0) && !(KP > 0))
-      problems.add(says_ki + " with " + says_kp, where, "no gate could be held",
+      problems.add(says_ki + " with " + says_kp, where, "no gate position would be steady",
                    "give an integral or a proportional gain > 0");
     if (!(TF >= 0) || (KD > 0 && TF == 0))
-      problems.add(says_kd + " with " + says_tf, where, "no derivative without a lag",
+      problems.add(says_kd + " with " + says_tf, where, "a derivative needs a lag",
                    "give a washout > 0, or no derivative gain");
   }
 };

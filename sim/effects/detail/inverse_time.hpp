@@ -17,8 +17,8 @@ inline constexpr double kFieldVoltageLag = 0.01;
 
 /// Parameters of a Model in this order, starting with EFDRATED.
 enum InverseTimePoint { rated, efd1, time1, efd2, time2, efd3, time3, efddes, gain_of_it, vlow };
-inline constexpr Parameter kPickup{"EFD1",    "EFD1",  "-", 1.1, 0.5, 5.0, kNoNullValue, "pickup, of rated",
-                                   kAsEffect, kNoCases};
+inline constexpr Parameter kPickup{
+    "EFD1", "EFD1", "-", 1.1, 0.5, 5.0, kNoNullValue, "pickup, relative to rated", kAsEffect, kNoCases};
 inline constexpr Parameter kTimeAtPickup{"TIME1",
                                          "TIME1",
                                          "s",
@@ -26,7 +26,7 @@ inline constexpr Parameter kTimeAtPickup{"TIME1",
                                          0.1,
                                          1000.0,
                                          kNoNullValue,
-                                         "time to operate there",
+                                         "operating time at EFD1",
                                          literature::own("half of CIM's 120 s"),
                                          kNoCases};
 inline constexpr Parameter kMiddle{"EFD2",
@@ -36,7 +36,7 @@ inline constexpr Parameter kMiddle{"EFD2",
                                    0.5,
                                    5.0,
                                    kNoNullValue,
-                                   "middle point, of rated",
+                                   "middle point, relative to rated",
                                    literature::own("between its neighbours; CIM has 1.2"),
                                    kNoCases};
 inline constexpr Parameter kTimeAtMiddle{"TIME2",
@@ -46,13 +46,13 @@ inline constexpr Parameter kTimeAtMiddle{"TIME2",
                                          0.1,
                                          1000.0,
                                          kNoNullValue,
-                                         "time to operate there",
+                                         "operating time at EFD2",
                                          literature::own("half of TIME1; CIM has 40 s"),
                                          kNoCases};
 inline constexpr Parameter kUpper{
-    "EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNullValue, "upper point, of rated", kAsEffect, kNoCases};
+    "EFD3", "EFD3", "-", 1.5, 0.5, 10.0, kNoNullValue, "upper point, relative to rated", kAsEffect, kNoCases};
 inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",          15.0,
-                                        0.01,      1000.0,  kNoNullValue, "time to operate there and beyond",
+                                        0.01,      1000.0,  kNoNullValue, "operating time at EFD3 and above",
                                         kAsEffect, kNoCases};
 inline constexpr Parameter kLowest{"VLOW",
                                    "VLOW",
@@ -117,10 +117,11 @@ struct InverseTime {
         "give EFDRATED > 0");
     bad(!(p[efd1] < p[efd2] && p[efd2] < p[efd3]),
         fmt::format("EFD1 = {:g}, EFD2 = {:g}, EFD3 = {:g}", p[efd1], p[efd2], p[efd3]),
-        "the characteristic is read between its points", "give EFD1 < EFD2 < EFD3");
+        "the points of the characteristic must ascend", "give EFD1 < EFD2 < EFD3");
     bad(!(p[time1] >= p[time2] && p[time2] >= p[time3] && p[time3] > 0),
         fmt::format("TIME1 = {:g} s, TIME2 = {:g} s, TIME3 = {:g} s", p[time1], p[time2], p[time3]),
-        fmt::format("more {} is borne for a shorter time", limited), "give TIME1 >= TIME2 >= TIME3 > 0");
+        fmt::format("the operating time must not rise with the {}", limited),
+        "give TIME1 >= TIME2 >= TIME3 > 0");
     bad(!(p[gain_of_it] >= 0), fmt::format("KMX = {:g}", p[gain_of_it]), "the loop would be unstable",
         "give KMX >= 0");
     bad(!(p[vlow] <= 0), fmt::format("VLOW = {:g} pu", p[vlow]), "the limiter can only lower the voltage",

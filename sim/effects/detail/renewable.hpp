@@ -12,9 +12,9 @@ inline constexpr double kDipBand = 2e-3;  ///< width below Vdip and above Vup ov
 inline constexpr double kNoLimit = 1e6;   ///< [pu]
 
 inline constexpr Source kWecc = literature::own(
-    "the sign the equations need; at the far end beyond what WECC's guides and the case files give, or 99 and "
+    "the sign that the equations need; beyond the values of WECC's guides and the case files, or 99 and "
     "999 (none)");
-inline constexpr Source kFlag = literature::derived("the codes there are");
+inline constexpr Source kFlag = literature::derived("the defined codes");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
 
 /// Returns 0 between the edges and the distance to the edge beyond them; an edge of the wrong sign counts as

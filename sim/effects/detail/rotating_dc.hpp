@@ -18,18 +18,18 @@ struct RotatingDc {
   static constexpr Slot slot = Slot::exciter;
   static constexpr Source kOfDc2 = literature::andes("EXDC2, commit 29076bd");
   static constexpr Source kDefault = literature::andes("IEEET1, commit 066781b");
-  static constexpr Source kMild = literature::own("a saturation that is hardly felt at rated excitation");
+  static constexpr Source kMild = literature::own("a small saturation at rated excitation");
   static constexpr Source kRange = literature::sienna("IEEET1");
-  static constexpr Source kTwice = literature::own("PowerSystems.jl's -1 to 1, and twice as far up");
+  static constexpr Source kTwice = literature::own("PowerSystems.jl's -1 to 1, with twice the upper end");
   static constexpr Source kSteep =
       literature::own("not negative; seven records of dynamicsWECC.dyr (GridDyn) lie beyond, at 3.05");
   static constexpr Parameter
       kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kDefault, kRange},
       kVRMAX = {"VRMAX", "VRMAX", "pu",         7.3,
-                0.0,     100.0,   kNoNullValue, "upper limit of Vr (0: by saturation at E2)"},
+                0.0,     100.0,   kNoNullValue, "upper limit of Vr (0: from saturation at E2)"},
       kVRMIN = {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr"},
       kKE = {"KE",     "KE",  "pu",         1.0,
-             -1.0,     2.0,   kNoNullValue, "exciter's own field (0: by the operating point)",
+             -1.0,     2.0,   kNoNullValue, "self-excitation constant (0: from the operating point)",
              kDefault, kTwice},
       kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNullValue, "exciter time constant", kDefault},
       kKA = {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNullValue, "regulator gain", kOfDc2},
@@ -38,7 +38,7 @@ struct RotatingDc {
              0.02,    20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)",
              kDefault},
       kSwitch = {"Switch", "Switch", "code",       0.0,
-                 0.0,      1.0,      kNoNullValue, "kept by PSS/E for files; without effect",
+                 0.0,      1.0,      kNoNullValue, "a column of the .dyr; without effect",
                  kDefault, kCode},
       kE1 = {"E1", "E1", "pu", 2.4, 0.0, 20.0, kNoNullValue, "first point of saturation", kMild},
       kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there", kMild},
@@ -92,7 +92,8 @@ struct RotatingDc {
     using M = Model;
     const T saturation = Quadratic<T>{c[M::satA], c[M::satB]}(s.Efd);
     if (value_of(p[M::KE]) == 0.0 && !(value_of(s.Efd) > 0.0))
-      return fmt::format("KE = 0 is found from Efd, and Efd = {:.4f} pu is not above zero", value_of(s.Efd));
+      return fmt::format("KE = 0 is computed from Efd, and Efd = {:.4f} pu is not above zero",
+                         value_of(s.Efd));
     const auto given = p[M::KE] * p[M::KE] > T(0.0);
     c[M::self] = select(given, p[M::KE], (T(0.1) * c[M::vrmax] - saturation) / select(given, T(1.0), s.Efd));
     x[M::Vm] = s.Vc;
@@ -112,17 +113,17 @@ void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const do
   bad(!(p[M::TE] > 0), fmt::format("TE = {:g} s", p[M::TE]), "the exciter divides by it", "give TE > 0");
   check_time_constant("the exciter", M::parameters[M::TF].symbol, p[M::TF], p[M::KF] != 0, "KF = 0", where,
                       problems);
-  bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "no gain, no exciter", "give KA > 0");
+  bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "an exciter needs a gain", "give KA > 0");
   for (int i : bypassed)
-    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]), "a time constant",
-        "give a value >= 0");
+    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]),
+        "a time constant cannot be negative", "give a value >= 0");
   for (int i : {M::SE1, M::SE2})
     bad(!(p[i] >= 0), fmt::format("{} = {:g}", M::parameters[i].symbol, p[i]),
-        "saturation can only take from the exciter's voltage", "give a value >= 0");
+        "saturation only reduces the exciter's voltage", "give a value >= 0");
   bad(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], fmt::format("E1 = E2 = {:g} pu", p[M::E1]),
-      "one voltage cannot have two saturations", "give two points");
+      "one voltage cannot have two saturation factors", "give two points");
   bad(p[M::VRMAX] == 0.0 && !((p[M::SE2] + (p[M::KE] > 0.0 ? p[M::KE] : 0.0)) * p[M::E2] > 0.0),
-      "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then found from the saturation at E2",
+      "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then computed from the saturation at E2",
       "give VRMAX, or saturation");
   bad(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]),
       fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[M::VRMAX], p[M::VRMIN]),

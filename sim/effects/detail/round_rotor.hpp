@@ -83,7 +83,7 @@ struct RoundRotor {
   static std::string remark(const double* p) {
     std::string text;
     if (p[Tqop] == 0.0) text = "T'qo = 0: no transient circuit in the q axis; E'd follows within 10 ms";
-    if (p[Xqp] < p[Xl]) text += (text.empty() ? "" : "; ") + std::string("X'q below Xl is no machine's");
+    if (p[Xqp] < p[Xl]) text += (text.empty() ? "" : "; ") + std::string("X'q below Xl is not physical");
     return text;
   }
   static std::string_view unphysical(const double* p) {
@@ -192,8 +192,8 @@ void RoundRotor<Model, Saturation>::check(const double* p, const std::string& wh
   const auto text = [](double v) { return std::to_string(v); };
   bad(!(p[H] > 0), "H = " + text(p[H]) + " s", "the swing equation divides by H",
       "give H > 0 (an infinite bus is GENCLS with H = 0)");
-  bad(!(p[Tqop] >= 0), "T'qo = " + text(p[Tqop]) + " s", "a time constant",
-      "give a value > 0, or 0 where there is no such circuit");
+  bad(!(p[Tqop] >= 0), "T'qo = " + text(p[Tqop]) + " s", "a time constant cannot be negative",
+      "give a value > 0, or 0 for no such circuit");
   for (int t : {Tdop, Tdopp, Tqopp})
     bad(!(p[t] > 0), std::string(parameters[t].symbol) + " = " + text(p[t]) + " s",
         machine + " integrates this circuit", "give a time constant > 0");

@@ -14,9 +14,8 @@ namespace swingbank::sim::effects::shared {
 struct SalientPole {
   static constexpr Slot slot = Slot::machine;
   enum P { Tdop, Tdopp, Tqopp, H, D, Xd, Xq, Xdp, Xdpp, Xl, S10, S12, Ra, parameter_count };
-  static constexpr Source kAsRound = literature::own("as the round rotor's");
-  static constexpr Source kNoDamper =
-      literature::psid("EXAC1/TVC_System.dyr, where 999 stands for no damper");
+  static constexpr Source kAsRound = literature::own("as for the round rotor");
+  static constexpr Source kNoDamper = literature::psid("EXAC1/TVC_System.dyr, where 999 means no damper");
   static constexpr Source defaults_from = literature::kundur("within table 4.2, hydraulic units");
   static constexpr Source bounds_from = kBeyondKundur;
   /// Returns all parameters; `s10`, `s12`: meaning of the saturation factors.
@@ -63,7 +62,7 @@ struct SalientPole {
         problems.add(fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
                                  parameters[static_cast<std::size_t>(i)].unit),
                      where, fmt::format("{} divides by it", name),
-                     "give a value > 0 (PSS/E: 999 s for a damper that is not there)");
+                     "give a value > 0 (PSS/E: 999 s for no damper)");
     if (!(p[Xdp] > p[Xl]))
       problems.add(fmt::format("X'd = {:g} pu with Xl = {:g} pu", p[Xdp], p[Xl]), where,
                    fmt::format("{} divides by X'd - Xl", name), "give X'd > Xl");

@@ -12,7 +12,7 @@
 namespace swingbank::sim::effects::shared {
 
 struct SetpointMove {
-  static constexpr std::string_view source = "disturbance drive: no model explains it; shape by definition";
+  static constexpr std::string_view source = "a disturbance; its shape by definition";
   static constexpr Source defaults_from = kNothing;
   static constexpr Slot slot = Slot::setpoint;
 
@@ -33,16 +33,16 @@ template <class Model>
 struct SetpointStep : SetpointMove {
   enum P { amount, start, end };
   static constexpr Parameter kStart = {
-      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the step comes", kAfterRest, kAnyTime};
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the step", kAfterRest, kAnyTime};
   static constexpr Parameter kEnd = {
-      "end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "when it goes (100000: never)", kNever, kAnyTime};
+      "end", "t2", "s", 1e5, 0.0, 1e5, kNoNullValue, "end of the step (100000: never)", kNever, kAnyTime};
   enum C { coefficients = end + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_start(p[start], where, problems);
     if (!(p[end] > p[start]))
       problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
-                   "a step ends after it came", "give end > start");
+                   "a step ends after its start", "give end > start");
   }
   static std::vector<double> switching_times(const double* p) { return {p[start], p[end]}; }
 
@@ -62,16 +62,16 @@ template <class Model>
 struct SetpointRamp : SetpointMove {
   enum P { amount, start, duration };
   static constexpr Parameter kStart = {
-      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "when the ramp begins", kAfterRest, kAnyTime};
+      "start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the ramp", kAfterRest, kAnyTime};
   static constexpr Parameter kDuration = {
-      "duration",  "T",     "s", 5.0, 0.0, 1e5, kNoNullValue, "how long the ramp lasts (0: a step)",
+      "duration",  "T",     "s", 5.0, 0.0, 1e5, kNoNullValue, "duration of the ramp (0: a step)",
       kFewSeconds, kAnyTime};
   enum C { coefficients = duration + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_start(p[start], where, problems);
     if (!(p[duration] >= 0))
-      problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a ramp goes forward in time",
+      problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a duration cannot be negative",
                    "give duration >= 0");
   }
   static std::vector<double> switching_times(const double* p) { return {p[start], p[start] + p[duration]}; }

@@ -29,11 +29,12 @@ struct SimplifiedExciter {
   static constexpr double kLagWeight = 0.1;
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[K] > 0)) problems.add(fmt::format("K = {:g}", p[K]), where, "no gain, no exciter", "give K > 0");
+    if (!(p[K] > 0))
+      problems.add(fmt::format("K = {:g}", p[K]), where, "an exciter needs a gain", "give K > 0");
     for (int i : {TB, TE})
       if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", Model::parameters[i].symbol, p[i]), where, "a time constant",
-                     "give a value >= 0");
+        problems.add(fmt::format("{} = {:g} s", Model::parameters[i].symbol, p[i]), where,
+                     "a time constant cannot be negative", "give a value >= 0");
     if (!(p[EMAX] > p[EMIN]))
       problems.add(fmt::format("EMAX = {:g} pu with EMIN = {:g} pu", p[EMAX], p[EMIN]), where,
                    fmt::format("the range of {} must not be empty", Model::states[output].name),

@@ -6,28 +6,29 @@
 namespace swingbank::sim::effects::shared {
 
 // Bounds.
-inline constexpr Source kBeyondCases =
-    literature::own("the sign the equations need; no value of the case files lies outside but 999 (none)");
+inline constexpr Source kBeyondCases = literature::own(
+    "the sign that the equations need; of the case files' values only 999 (none) lies outside");
 inline constexpr Source kNoCases =
-    literature::own("the sign the equations need; the far end is wide, for no case file has the model");
-inline constexpr Source kShare = literature::derived("a part of the whole");
-inline constexpr Source kCode = literature::derived("the codes there are");
+    literature::own("the sign that the equations need; a wide range, because no case file has the model");
+inline constexpr Source kShare = literature::derived("a fraction");
+inline constexpr Source kCode = literature::derived("the defined codes");
 inline constexpr Source kNotModelled = literature::derived("0 only: nothing else is modelled");
-inline constexpr Source kDeadBand = literature::own("1.2 Hz of 60: wider than any band a governor is given");
+inline constexpr Source kDeadBand = literature::own("1.2 Hz of 60: wider than any governor's dead-band");
 inline constexpr Source kBusNumber = literature::psse("bus numbers, up to 999997");
-inline constexpr Source kThreshold = literature::own("above 0, for the load divides by it; at most rated");
+inline constexpr Source kThreshold =
+    literature::own("above 0, because the load divides by it; at most rated");
 inline constexpr Source kFrequencyLag = literature::own("from half a cycle of 50 Hz to a second");
 inline constexpr Source kBeyondKundur = literature::own(
     "at least 1.7 times beyond Kundur's tables 3.2 and 4.2; above 0 where the equations divide");
-inline constexpr Source kDamping = literature::own("no negative damping; the case files go to 8");
-inline constexpr Source kSaturation = literature::own("not negative; the case files go to 1.0 and 1.3");
+inline constexpr Source kDamping = literature::own("no negative damping; the case files reach 8");
+inline constexpr Source kSaturation = literature::own("not negative; the case files reach 1.0 and 1.3");
 inline constexpr Source kBeyondClass = literature::own("far beyond the worst accuracy class, 10 %");
 inline constexpr Source kNoMeasurement = literature::own("a tenth of the quantity, and 1 Hz, are useless");
 inline constexpr Source kAnyTime = literature::own("a run begins at 0; longer than any record");
 inline constexpr Source kRating = literature::own("not more than the rating");
 
 // Defaults.
-inline constexpr Source kNothing = literature::own("off unless it is asked for");
+inline constexpr Source kNothing = literature::own("off by default");
 inline constexpr Source kNeglected = literature::own("neglected; the default of ZR in PSS/E's .raw");
 inline constexpr Source kPowerThreshold = literature::psse("PQBRAK, where constant power ends");
 inline constexpr Source kCurrentThreshold = literature::psse("0.5 pu, where constant current ends");
@@ -38,6 +39,6 @@ inline constexpr Source kSlowDamper = literature::own("just above Kundur's 0.02 
 inline constexpr Source kMildSaturation = literature::psid("GAST/dyn_data.dyr");
 inline constexpr Source kNever = literature::own("never, in a record of less than a day");
 inline constexpr Source kFewSeconds = literature::own("a few seconds");
-inline constexpr Source kAfterRest = literature::own("after a second of rest");
+inline constexpr Source kAfterRest = literature::own("after one second of steady state");
 
 }  // namespace swingbank::sim::effects::shared

@@ -64,9 +64,11 @@ struct LoadOfParts : StaticLoad<Model> {
       return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
     };
     if (needs(Model::Pp, Model::Qp, Model::Vp))
-      return fmt::format("Vp = {:g} pu: the power part falls there already", value_of(p[Model::Vp]));
+      return fmt::format("Vp = {:g} pu: the constant-power part is already reduced there",
+                         value_of(p[Model::Vp]));
     if (needs(Model::Pi, Model::Qi, Model::Vi))
-      return fmt::format("Vi = {:g} pu: the current part falls there already", value_of(p[Model::Vi]));
+      return fmt::format("Vi = {:g} pu: the constant-current part is already reduced there",
+                         value_of(p[Model::Vi]));
     return {};
   }
 };

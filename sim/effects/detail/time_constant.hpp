@@ -22,7 +22,7 @@ inline void check_time_constant(std::string_view model, std::string_view symbol,
     problems.add(what, where, fmt::format("{} divides by it", model),
                  fmt::format("give {} > 0, or {}, which switches the block off", symbol, off));
   else
-    problems.add(what, where, "a time constant", fmt::format("give {} >= 0", symbol));
+    problems.add(what, where, "a time constant cannot be negative", fmt::format("give {} >= 0", symbol));
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -54,18 +54,19 @@ struct UnderExcitation {
     };
     const auto says = [&](int i) { return fmt::format("{} = {:g}", M::parameters[i].symbol, p[i]); };
     bad(p[M::KUF] != 0.0, says(M::KUF),
-        fmt::format("the exciter's rate feedback is not passed to {}", M::name), "give KUF = 0");
+        fmt::format("the exciter's rate feedback is not available to {}", M::name), "give KUF = 0");
     bad(p[M::VULMIN] != 0.0, says(M::VULMIN) + " pu",
-        fmt::format("{} adds to the voltage error and must be silent within its characteristic; a takeover "
+        fmt::format("{} adds to the voltage error and must be zero within its characteristic; a takeover "
                     "gate is not modelled",
                     M::name),
         "give VULMIN = 0");
     for (int i : {M::KUI, M::KUL})
-      bad(!(p[i] >= 0), says(i), "the limiter would pull further out", "give a value >= 0");
-    for (int i : {M::TU2, M::TU4}) bad(!(p[i] >= 0), says(i) + " s", "a time constant", "give a value >= 0");
+      bad(!(p[i] >= 0), says(i), "the limiter would act in the wrong direction", "give a value >= 0");
+    for (int i : {M::TU2, M::TU4})
+      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
     bad(!(p[M::VUIMIN] <= 0.0 && p[M::VUIMAX] >= 0.0),
         fmt::format("{} pu with {} pu", says(M::VUIMIN), says(M::VUIMAX)),
-        "the integrator rests at VUIMIN and may only raise the voltage above", "give VUIMIN <= 0 <= VUIMAX");
+        "the integrator starts at VUIMIN and only raises the voltage", "give VUIMIN <= 0 <= VUIMAX");
     bad(!(p[M::VULMAX] >= 0.0), says(M::VULMAX) + " pu", "the limits cross", "give VULMAX >= 0");
   }
 };

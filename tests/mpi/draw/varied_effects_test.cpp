@@ -92,7 +92,7 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(refusal("\"all:SEXS", "\"30:SEXS"),
               AllOf(HasSubstr("generator 31 of vary.generators"), HasSubstr("add \"31:SEXS\" to attach")));
   EXPECT_THAT(refusal("\"all:SEXS", "\"77:SEXS"), HasSubstr("no plant 77"));
-  EXPECT_THAT(refusal("\"all:SEXS:K=100", "\"all:SEXS:K=-1"), HasSubstr("no gain, no exciter"));
+  EXPECT_THAT(refusal("\"all:SEXS:K=100", "\"all:SEXS:K=-1"), HasSubstr("an exciter needs a gain"));
   EXPECT_THAT(refusal("attach = [", "attach = [\"30:IEEET1\", "),
               HasSubstr("a second exciter, SEXS, for plant 30"));
   EXPECT_THAT(refusal("attach = [", "laws = [\"none.toml\"]\nattach = ["), HasSubstr("none.toml"));

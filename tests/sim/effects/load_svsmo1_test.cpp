@@ -235,7 +235,7 @@ TEST(Svsmo1, ReportsNeglectedParameters) {
     return load.block.effect->remark(load.block.p.data());
   };
   EXPECT_THAT(says({}), IsEmpty());
-  EXPECT_THAT(says({{"Flag1", 1}}), HasSubstr("mechanically switched shunts stay"));
+  EXPECT_THAT(says({{"Flag1", 1}}), HasSubstr("mechanically switched shunts are not switched"));
   EXPECT_THAT(says({{"Flag2", 1}}), HasSubstr("the slope is Xc1 everywhere"));
   EXPECT_THAT(says({{"Kis", 0.1}}), HasSubstr("slow susceptance regulator"));
   EXPECT_THAT(says({{"UV2", 0.3}}), HasSubstr("below UV2 = 0.3 pu"));
