@@ -15,9 +15,9 @@ struct Rate {
   }
   /// Returns the proportion [-]; 0 for n = 0.
   [[nodiscard]] double value() const { return n > 0 ? static_cast<double>(hits) / n : 0.0; }
-  /// Lower and upper end of the interval; 0 and 1 for n = 0.
+  /// Returns the lower end of the interval [-]; 0 for n = 0.
   [[nodiscard]] double low() const;
-  /// Returns the upper end of the interval; see low().
+  /// Returns the upper end of the interval [-]; 1 for n = 0.
   [[nodiscard]] double high() const;
 };
 

@@ -7,9 +7,10 @@
 
 namespace swingbank {
 
-/// Words of the error for a lock that is held: "<what> at <where> (process 12 on host a holds it): <remedy>".
+/// Parts of the error message for a lock held by another process: "<what> at <where> (process 12 on host a
+/// holds it): <remedy>".
 struct LockWords {
-  std::string what, where, remedy;  ///< parts of the sentence, without the reason
+  std::string what, where, remedy;  ///< the message without its reason
 };
 
 /// Lock on a folder, held from construction to destruction.
@@ -30,8 +31,8 @@ class RunLock {
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
-  /// Removes the file if this object created it, or in any case with `always`. For folders that no run needs
-  /// to lock any more: one that is refused, or one whose results are complete.
+  /// Removes the file if this object created it, or always with `always`. For folders that no run locks any
+  /// more: a refused folder, or a folder with complete results.
   void withdraw(bool always = false);
 
  private:

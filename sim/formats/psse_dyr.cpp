@@ -13,7 +13,7 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// Returns true if the whole line is a comment ('//' or '@!'), also between the lines of a record.
+/// Returns true if the whole line is a comment ('//' or '@!'). Such lines may occur within a record.
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string::npos &&
@@ -193,7 +193,7 @@ class DyrReader {
     for (const auto& [from, to] : map_) {
       if (asked.contains(from))
         problems_.add("model " + from + " is both ignored and mapped", name_,
-                      "only one of the two can be done", "drop one of the two options");
+                      "a model can be ignored or mapped, not both", "drop one of the two options");
       asked.insert(from);
     }
     for (const std::string& name : asked)

@@ -65,7 +65,7 @@ Outcome simulate(int workers, double shard_seconds, const Reply& reply) {
   };
   std::mt19937_64 random(1);
   std::gamma_distribution<double> cost(16.0,
-                                       shard_seconds / 16.0);  // relative standard deviation of a quarter
+                                       shard_seconds / 16.0);  // relative standard deviation 0.25
   std::priority_queue<Asking, std::vector<Asking>, std::greater<>> queue;
   std::vector<ranks::Report> reports(static_cast<std::size_t>(workers) + 1);
   for (int r = 1; r <= workers; ++r) queue.push({0.0, r});
@@ -135,8 +135,8 @@ int main(int argc, char** argv) {
   const double per_shard = (many - one) / 32.0, message = one - per_shard;
   fmt::print("a shard takes {:g} s, a flush {:g} ms; a report costs {:.1f} us and {:.1f} us for each shard\n",
              shard_seconds, flush * 1e3, message * 1e6, per_shard * 1e6);
-  fmt::print("{:>8} {:>14} {:>16} {:>34}\n", "workers", "busy, master", "us per answer",
-             "busy, a flush in each answer");
+  fmt::print("{:>8} {:>14} {:>16} {:>34}\n", "workers", "busy, master", "us per reply",
+             "busy, a flush in each reply");
   for (const int workers : {16, 64, 256, 1000, 10000}) {
     const Outcome now = of_the_master(workers, shard_seconds, flush, message, per_shard);
     const Outcome before = with_a_flush_in_each_reply(workers, shard_seconds, flush, one);

@@ -16,9 +16,9 @@ namespace {
 using sim::P8;
 
 constexpr auto kTogether = std::size_t(P8::lanes);
-constexpr double kLeastOfAll = 1e-9;  ///< smallest step; a run that needs a shorter one is abandoned [s]
-constexpr int kStepsOfAll =
-    3;  ///< step limit of the batch / step limit of one plant; common steps are shorter
+constexpr double kLeastOfAll =
+    1e-9;                       ///< step size below which the run with the largest error is abandoned [s]
+constexpr int kStepsOfAll = 3;  ///< factor of the step limit, because eight runs share the smallest step
 
 P8 size_of(P8 a) { return sim::positive_part(a) + sim::positive_part(-a); }
 
@@ -43,8 +43,7 @@ class Together {
     const auto& switchings = runs_.front().curve->switchings();
     for (auto& response : responses_)
       for (auto& values : response.value) values.reserve(r.t.size());
-    const double slack =
-        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
+    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is before it
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > runs_.front().until) break;
@@ -65,8 +64,8 @@ class Together {
   }
 
  private:
-  /// Returns the equations of all runs. A run whose operating point has no steady state is replaced by a
-  /// copy of another.
+  /// Returns the equations of all runs; a lane whose operating point has no steady state is a copy of
+  /// another.
   PlaybackEquations<P8> packed(std::span<const PlaybackRun> runs) {
     sim::plant::OperatingOf<P8> at;
     bool first = true;
@@ -115,9 +114,11 @@ class Together {
         fresh_ = any_positive(moved);
       }
       if (error > 1 ? h < kLeastOfAll : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
-      const auto power = sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
-                                                       static_cast<float>(kRoughSteps.exponent));
-      h_ = next_step(h_, h, error, power, reaches);
+      const double factor =
+          std::clamp(0.9 * sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
+                                                         static_cast<float>(kRoughSteps.exponent)),
+                     0.2, 5.0);
+      h_ = reaches && error <= 1 ? std::max(h_, h * factor) : h * factor;
     }
     t_ = std::max(t_, to);
   }
@@ -180,7 +181,7 @@ class Together {
     }
   }
 
-  static constexpr double kNotFinite = 1e30;  ///< error assigned to a step that is not finite [-]
+  static constexpr double kNotFinite = 1e30;  ///< error of a lane with a non-finite value
   std::span<const PlaybackRun> runs_;
   std::array<char, kTogether> alive_{};
   PlaybackEquations<P8> equations_;
@@ -194,7 +195,7 @@ class Together {
   double t_ = 0, h_ = 1e-3;
 };
 
-/// Returns whether eight such runs can take common steps.
+/// Returns true if the run can share its steps with other runs of a batch.
 bool can_go_together(const PlaybackRun& run) {
   constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&

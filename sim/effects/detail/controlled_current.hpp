@@ -20,7 +20,7 @@ struct ControlledCurrent {
                                        1e-3,
                                        1.0,
                                        kNoNullValue,
-                                       "measurement of the terminal's frequency",
+                                       "lag of the frequency measurement",
                                        literature::own("about a cycle")};
   static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},
                          kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};

@@ -1,6 +1,6 @@
 #pragma once
-// Common part of the under-excitation limiters UEL1 and UEL2: PI regulator and lead-lags from the distance
-// beyond the characteristic to the signal added to the voltage error.
+// Common part of the under-excitation limiters UEL1 and UEL2: PI regulator and two lead-lags. The input is
+// the distance beyond the characteristic; the output is added to the voltage error.
 #include <fmt/format.h>
 
 #include <string>

@@ -17,7 +17,7 @@ std::optional<Phase> phase_of(std::string_view text) {
     return at == letters.end() ? std::nullopt : std::optional(at->second);
   };
   if (const auto p = single(name)) return Phase{*p};
-  // To neutral or ground.
+  // A trailing 'n' or 'g' names neutral or ground.
   if (name.size() > 1 && (name.back() == 'n' || name.back() == 'g'))
     if (const auto p = single(std::string_view(name).substr(0, name.size() - 1))) return Phase{*p};
   std::string_view pair = name;

@@ -14,11 +14,12 @@ namespace swingbank::validate::record {
 /// Returns no value for any other heading.
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit);
 
-/// Clears the meaning of phase columns that are not needed: of an incomplete set, or if the file contains the
-/// positive sequence, or P and Q beside the current.
+/// Clears the meaning of unneeded phase columns: incomplete sets, all phases of a quantity whose positive
+/// sequence the file contains, and currents if it contains P and Q.
 void keep_needed_phases(std::vector<Heading>& headings);
 
-/// Returns whether the values determine the unit: magnitudes and angles of three phases, and a frequency.
+/// Returns true if the unit of a column can be inferred from its values: for magnitudes and angles of three
+/// phases, and for a frequency.
 bool is_unit_in_values(const Heading& heading);
 
 /// Infers units missing in the headings from the values, and replaces three phases by the positive sequence

@@ -70,7 +70,7 @@ class Playback {
   }
 
  private:
-  /// Enters the braces and identifies the fields.
+  /// Locates the values between braces and identifies their fields.
   void find_block() {
     powerworld_ = true;
     const auto open = text_.find('['), close = text_.find(']', open), brace = text_.find('{', close);
@@ -116,7 +116,8 @@ class Playback {
     if (!t && t_.empty() && !powerworld_) return;  // a title
     if (!t || !v || (!f_.empty() && !f)) {
       problems_.add("a line that is not a sample", fmt::format("{}:{}", name_, line_),
-                    "it must hold time, voltage and frequency as numbers", "complete the line or remove it");
+                    "a sample contains time, voltage and frequency as numbers",
+                    "complete the line or remove it");
       return;
     }
     lines_.push_back(line_);
@@ -136,7 +137,7 @@ class Playback {
       unit = Unit::volt;
     if (!unit)
       problems_.add(fmt::format("voltages about {:.4g}", v), name_,
-                    "that is neither in pu nor near the records' base_kv",
+                    "they are neither in pu nor near the records' base_kv",
                     "set base_kv (line to line) under [record] in the plant file");
     raw.about.notes.push_back(
         fmt::format("The file names no units; the voltage, about {:.4g}, was taken to be in {}.", v,
@@ -154,7 +155,7 @@ class Playback {
     const bool deviation = std::abs(f) < 0.05;
     if (!unit)
       problems_.add(fmt::format("frequencies about {:.4g}", f), name_,
-                    fmt::format("that is neither in pu nor near {:g} Hz", base_.frequency),
+                    fmt::format("they are neither in pu nor near {:g} Hz", base_.frequency),
                     "check the column and frequency_hz in the plant file");
     raw.about.notes.push_back(fmt::format("The frequency, about {:.4g}, was taken to be {}.", f,
                                           deviation             ? "a deviation in pu"
