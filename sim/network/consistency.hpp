@@ -31,9 +31,8 @@ struct Device;
 void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicates, bool by_voltages,
                        const std::vector<Device>& devices);
 /// Resolves contradictions between generators in service, with a remark for each:
-/// - At a load bus (type 1) a generator delivers its P and Q if the file's voltages confirm that power;
-/// otherwise it is
-///   out of service, as in PSS/E.
+/// - At a load bus (type 1) a generator delivers its P and Q if the file's voltages confirm that power.
+///   Otherwise it is out of service, as in PSS/E.
 /// - Generators of one bus with different set-points or regulated buses take those of the first.
 /// - A generator that regulates a bus out of service regulates its own bus, at the file's voltage.
 /// - Reactive limits with q_min above q_max are removed.
@@ -45,14 +44,14 @@ void settle_islands(Network& network);
 
 /// Equipment without a model in Swingbank: kind, name and buses.
 struct Device {
-  std::string name, where;          ///< kind; name
-  std::vector<int> buses;           ///< indices
+  std::string name, where;          ///< kind and name, as text; its place in the file
+  std::vector<int> buses;           ///< bus indices
   std::vector<double> scheduled{};  ///< scheduled consumption [pu] at each; NaN: unknown
 };
 /// Replacement of equipment without a model.
 enum class DeviceReplacement {
-  checked,  ///< loads computed from the file's voltages; a problem if these are no solution at the other
-            ///< buses
+  checked,  ///< loads computed from the file's voltages; a problem if they are not a solution at the
+            ///< other buses
   file,     ///< the same without that check
   none      ///< no replacement
 };

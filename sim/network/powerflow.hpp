@@ -31,16 +31,14 @@ struct PowerFlowOptions {
   bool step_shunts = false;     ///< step switched shunts until the regulated voltages lie in their bands
 };
 /// Solves the power flow.
-/// - A generator regulates the voltage of its bus, or of `regulated`. Several that regulate one remote bus
-/// share their
-///   reactive power by `share`.
-/// - A bus whose reactive power would exceed q_min to q_max delivers the limit. It regulates again once the
-/// voltage
-///   allows it. Slack buses have no limits, nor have buses with q_min above q_max.
+/// - A generator regulates the voltage of its bus, or of `regulated`.
+/// - Generators that regulate one remote bus share their reactive power by `share`.
+/// - A bus whose reactive power would be outside q_min to q_max delivers the limit. It regulates again once
+///   the voltage allows it. Slack buses and buses with q_min above q_max have no limits.
 /// - In every island at least one slack bus sets the angle and balances the power.
 /// - Switched shunts step one step at a time, all at once; one that reverses its direction stops.
-/// - A bus of type 2 without a generator in service is a load bus. At a bus of type 1 generators deliver P
-/// and Q.
+/// - A bus of type 2 without a generator in service is a load bus.
+/// - At a bus of type 1 generators deliver P and Q.
 /// - If Newton's method fails from the file's voltages, it is repeated from a flat start.
 /// - Mismatches below the rounding of the powers at a bus count as zero.
 /// Throws InputError on divergence (with the bus of the largest mismatch), and for an island without a slack

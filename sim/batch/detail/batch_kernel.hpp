@@ -1,5 +1,5 @@
 #pragma once
-// The lanes kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See
+// Batch kernel for one scalar type (double: one lane, Pack<N>: N lanes, FloatPack: sixteen). See
 // batch.hpp for the interface.
 #include <cmath>
 #include <limits>
