@@ -14,7 +14,7 @@ struct Model {
                                         "frequency in mHz)";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
-  |V|, |I|, angles of V and I, df --[ nearest multiple of the step ]-- each sample by itself
+  |V|, |I|, angles of V and I, df --[ nearest multiple of the step ]-- each sample independently
 
   A step of 0 leaves the quantity as it is. A 16-bit magnitude has full scale / 32768, an angle 1e-4 rad,
   a frequency 0.001 Hz.
