@@ -16,9 +16,9 @@ namespace {
 using sim::P8;
 
 constexpr auto kTogether = std::size_t(P8::lanes);
-constexpr double kLeastOfAll =
-    1e-9;                       ///< step size below which the run with the largest error is abandoned [s]
-constexpr int kStepsOfAll = 3;  ///< factor of the step limit, because eight runs share the smallest step
+constexpr double kLeastOfAll = 1e-9;  ///< smallest step; a run that needs a shorter one is abandoned [s]
+constexpr int kStepsOfAll =
+    3;  ///< step limit of the batch / step limit of one plant; common steps are shorter
 
 P8 size_of(P8 a) { return sim::positive_part(a) + sim::positive_part(-a); }
 
@@ -43,7 +43,8 @@ class Together {
     const auto& switchings = runs_.front().curve->switchings();
     for (auto& response : responses_)
       for (auto& values : response.value) values.reserve(r.t.size());
-    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is before it
+    const double slack =
+        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > runs_.front().until) break;
@@ -64,8 +65,8 @@ class Together {
   }
 
  private:
-  /// Returns the equations of all runs; a lane whose operating point has no steady state is a copy of
-  /// another.
+  /// Returns the equations of all runs. A run whose operating point has no steady state is replaced by a
+  /// copy of another.
   PlaybackEquations<P8> packed(std::span<const PlaybackRun> runs) {
     sim::plant::OperatingOf<P8> at;
     bool first = true;
@@ -181,7 +182,7 @@ class Together {
     }
   }
 
-  static constexpr double kNotFinite = 1e30;  ///< error of a lane with a non-finite value
+  static constexpr double kNotFinite = 1e30;  ///< error assigned to a step that is not finite [-]
   std::span<const PlaybackRun> runs_;
   std::array<char, kTogether> alive_{};
   PlaybackEquations<P8> equations_;
