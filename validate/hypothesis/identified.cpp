@@ -27,18 +27,6 @@ constexpr std::size_t kOptima = 2;
 /// and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
 
-std::uint64_t stream_of(const std::string& name) {  // FNV-1a
-  std::uint64_t sum = 14695981039346656037u;
-  for (const char c : name) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return sum;
-}
-
-/// Returns the length of the first record [s].
-double length(const BaseModel& base_model) {
-  const auto& t = base_model.events.front().record.t;
-  return t.back() - t.front();
-}
-
 class Identifying {
  public:
   Identifying(const BaseModel& base_model, const event::Progress& report)
@@ -290,7 +278,7 @@ class Identifying {
                                   leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;
-          j.why_not = fmt::format("predicted chi2 reduction {:.0f}: too small for a fit", j.gain);
+          j.why_not = too_small(j.gain);
         }
       }
       all.push_back(std::move(j));

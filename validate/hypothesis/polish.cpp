@@ -24,12 +24,7 @@ const fit::Fit* Identified::best() const {
   return least == fits.end() || !least->failed.empty() ? nullptr : &*least;
 }
 
-Polish::Polish(const BaseModel& base_model)
-    : base_model_(base_model), free_(fit::free_parameters(base_model.plant, base_model.prior_sd)) {
-  for (const fit::FreeParameter& f : base_model.own) {
-    std::erase_if(free_, [&](const fit::FreeParameter& known) { return known.id == f.id; });
-    free_.push_back(f);
-  }
+Polish::Polish(const BaseModel& base_model) : base_model_(base_model), free_(free_with_own(base_model)) {
   for (const auto& f : free_) axes_.push_back(fit::make_axis(base_model.plant, f));
 }
 

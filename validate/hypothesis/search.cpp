@@ -1,21 +1,26 @@
 #include "validate/hypothesis/search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
-#include <span>
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/posterior.hpp"
+#include "validate/reduced/closed_loop.hpp"
+#include "validate/reduced/identify.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Maximum number of steps of the fit from each start, and of the fit that continues from the best one.
+/// Maximum number of steps of an identification and of the fit from its optimum, and of the fit that
+/// continues from the best one.
 constexpr int kFirstSteps = 4, kLastSteps = 40;
 /// Number of evaluated draws of an added effect, in addition to its starts.
 constexpr std::size_t kFurtherDraws = 80;
@@ -23,7 +28,7 @@ constexpr std::size_t kFurtherDraws = 80;
 /// Values of all free parameters of a hypothesis, and the events' states.
 struct Start {
   std::vector<double> values;
-  std::vector<fit::EventState> states;  ///< empty: as prepared
+  const std::vector<fit::EventState>* states;
 };
 
 /// A hypothesis that is fitted with the whole plant.
@@ -31,20 +36,29 @@ struct Candidate {
   Hypothesis hypothesis;
   sim::plant::Plant prior = {};  ///< the plant at its prior mean
   std::vector<fit::FreeParameter> free = {};
-  std::vector<Start> starts = {};  ///< empty: the hypothesis has no influence
+  std::vector<Start> starts = {};                         ///< empty: the hypothesis has no influence
+  double cost = std::numeric_limits<double>::infinity();  ///< lowest cost of the identification
   std::vector<fit::Fit> fits = {};
 };
 
-/// Fits of hypotheses that cannot be identified alone. Draws are evaluated in SIMD batches about two points:
-/// the submitted values and the base model's fit. The best draw at each point and the default values are
-/// fitted for a few steps. The best of these fits is completed, if it may come within reach of the best
-/// hypothesis.
+/// Fits of hypotheses that cannot be identified in open loop. Each is identified in closed loop, with the
+/// plant's other parameters linear, about two points: the submitted values and the base model's fit. The
+/// optima are fitted for a few steps if they promise half of the required evidence. The best of these fits is
+/// completed, if it may come within reach of the best hypothesis.
 class WholeFits {
  public:
   /// `least`: lowest cost of the hypotheses that are fitted already.
   WholeFits(const BaseModel& base_model, const event::Progress& report, double least)
       : base_model_(base_model), report_(report), least_(least) {
-    for (const auto& e : base_model.fit.events) fitted_states_.push_back(e.state);
+    if (base_model.fit.reduced_chi2() >= thresholds::noise.measurable) {
+      sim::plant::Plant plant = base_model.plant;
+      for (const fit::FreeParameter& f : base_model.own)
+        sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
+      linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
+    }
+    std::vector<fit::EventState> fitted;
+    for (const auto& e : base_model.fit.events) fitted.push_back(e.state);
+    linearise(base_model.fit.plant, fitted);
   }
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
@@ -53,10 +67,17 @@ class WholeFits {
     const event::Phase screening = first() ? event::Phase::screening : event::Phase::second_screening;
     each(candidates, screening, [&](Candidate& c) { find_starts(c); });
     std::erase_if(candidates, [](const Candidate& c) { return c.starts.empty(); });
+    std::vector<Judgement> tried;
+    const double needed = this->needed();
+    std::erase_if(candidates, [&](Candidate& c) {
+      if (c.cost < needed) return false;
+      tried.push_back(not_fitted(c));
+      return true;
+    });
     double goal = this->goal(candidates);
     each(candidates, screening, [&](Candidate& c) {
       for (const Start& start : c.starts)
-        keep(c, attempt(c, start.values, start.states,
+        keep(c, attempt(c, start.values, *start.states,
                         {.iterations = kFirstSteps,
                          .lenient = true,
                          .brief = true,
@@ -72,7 +93,6 @@ class WholeFits {
       keep(c, attempt(c, fit::values_of(from.plant, c.free), states,
                       {.iterations = kLastSteps, .lenient = true, .goal = {goal, kLastSteps}}));
     });
-    std::vector<Judgement> tried;
     for (Candidate& c : candidates) {
       Judgement j;
       j.hypothesis = std::move(c.hypothesis);
@@ -85,54 +105,56 @@ class WholeFits {
   }
 
  private:
+  /// Linearises a plant of the base model's structure, unless it cannot be simulated.
+  void linearise(const sim::plant::Plant& plant, const std::vector<fit::EventState>& states) {
+    try {
+      points_.push_back(std::make_unique<const reduced::ClosedLoop>(
+          reduced::linear_about(plant, base_model_.under_test(), base_model_.events,
+                                free_with_own(base_model_), states, {}, base_model_.threads),
+          base_model_.events));
+    } catch (const InputError&) {
+    }
+  }
   void find_starts(Candidate& c) const {
     Hypothesis& h = c.hypothesis;
-    const std::size_t own = h.free.size();
+    reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h))};
+    trial.draws = [h, within = length(base_model_)](int round) {
+      std::vector<std::vector<double>> draws;
+      if (round > 0) return draws;
+      draws = h.starts;
+      std::ranges::copy(h.further, std::back_inserter(draws));
+      if (h.drawn)
+        std::ranges::copy(further_draws(h, h.free.size(), kFurtherDraws, within), std::back_inserter(draws));
+      return draws;
+    };
     bring(base_model_, h);
-    auto draws = h.starts;
-    draws.insert(draws.end(), h.further.begin(), h.further.end());
-    if (h.drawn) {
-      const auto& t = base_model_.events.front().record.t;
-      for (auto& draw : further_draws(h, own, kFurtherDraws, t.back() - t.front())) {
-        draw.insert(draw.end(), draws.front().begin() + static_cast<std::ptrdiff_t>(own),
-                    draws.front().end());
-        draws.push_back(std::move(draw));
-      }
-    }
     c.prior = prior_mean(base_model_, h);
     c.free = free_of(h, base_model_.prior_sd);
-    bool changes = false;
-    const auto add_best = [&](const sim::plant::Plant& about, const std::vector<fit::EventState>& states,
-                              bool submitted) {
-      const double without =
-          chi2_of_each(std::array{about}, base_model_.conventions, base_model_.events, states)[0];
-      std::vector<sim::plant::Plant> plants;
-      for (const auto& draw : draws) {
-        sim::plant::Plant plant = started(h, draw);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const reduced::Inference& at = points_[k]->inference();
+      const reduced::ClosedLoopCost cost(*points_[k], h.conventions, reduced::mark_absent(at, trial.plant));
+      for (const reduced::Optimum& optimum :
+           reduced::identify(cost, trial, {.draws = 2, .kept = 1, .steps = kFirstSteps})) {
+        sim::plant::Plant plant = c.prior;
         for (const fit::FreeParameter& f : c.free)
-          if (const auto id = sim::plant::same_parameter(about, plant, f.id))
-            if (std::ranges::find(h.free, f.id, &fit::FreeParameter::id) == h.free.end())
-              sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(about, *id);
-        plants.push_back(std::move(plant));
+          if (const auto id = sim::plant::same_parameter(at.base, plant, f.id))
+            sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(at.base, *id);
+        for (std::size_t i = 0; i < trial.free.size(); ++i)
+          sim::plant::parameter_value(plant, trial.free[i].id) = optimum.values[i];
+        c.starts.push_back({fit::values_of(plant, c.free), &at.states});
+        c.cost = std::min(c.cost, optimum.cost);
       }
-      const auto chi2 = chi2_of_each(plants, h.conventions, base_model_.events, states);
-      for (const double left : chi2)
-        changes |= std::isfinite(left) && std::abs(left - without) > thresholds::search.other_steps;
-      const auto best = static_cast<std::size_t>(std::ranges::min_element(chi2) - chi2.begin());
-      const auto add = [&](std::size_t k) {
-        if (!std::isfinite(chi2[k])) return;
-        c.starts.push_back({fit::values_of(plants[k], c.free), {}});
-        if (!submitted) c.starts.back().states = states;
-      };
-      if (submitted && best != 0) add(0);  // the draw with the lowest chi2 may have almost no effect
-      add(best);
-    };
-    sim::plant::Plant plant = base_model_.plant;
-    for (const fit::FreeParameter& f : base_model_.own)
-      sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model_.fit.plant, f.id);
-    add_best(plant, std::vector<fit::EventState>(base_model_.events.size()), true);
-    add_best(base_model_.fit.plant, fitted_states_, false);
-    if (!changes) c.starts.clear();
+    }
+  }
+  /// Returns the judgement of a candidate that promises too little.
+  [[nodiscard]] Judgement not_fitted(Candidate& c) const {
+    Judgement j;
+    j.hypothesis = std::move(c.hypothesis);
+    j.fit = base_model_.fit;
+    j.fitted = false;
+    j.gain = fit::penalised(base_model_.fit) - c.cost;
+    j.why_not = too_small(j.gain);
+    return j;
   }
   [[nodiscard]] fit::Fit attempt(const Candidate& c, const std::vector<double>& values,
                                  const std::vector<fit::EventState>& states, fit::FitOptions options) const {
@@ -143,14 +165,17 @@ class WholeFits {
   static void keep(Candidate& c, fit::Fit f) {
     if (f.failed.empty()) c.fits.push_back(std::move(f));
   }
-  /// Returns the cost that a fit must be able to reach: within reach of the best, and with half of the
-  /// required evidence.
+  /// Returns the cost that a fit must be able to reach: within reach of the best, and with enough evidence.
   [[nodiscard]] double goal(const std::vector<Candidate>& candidates) const {
     double least = least_;
     for (const Candidate& c : candidates)
       for (const fit::Fit& f : c.fits) least = std::min(least, fit::penalised(f));
-    const double needed = first() ? thresholds::evidence.accepted : thresholds::evidence.second;
-    return std::min(least + out_of_reach(), fit::penalised(base_model_.fit) - needed / 2);
+    return std::min(least + out_of_reach(), needed());
+  }
+  /// Returns the cost with half of the required evidence.
+  [[nodiscard]] double needed() const {
+    const double evidence = first() ? thresholds::evidence.accepted : thresholds::evidence.second;
+    return fit::penalised(base_model_.fit) - evidence / 2;
   }
   template <class F>
   void each(std::vector<Candidate>& candidates, event::Phase phase, F act) const {
@@ -172,7 +197,7 @@ class WholeFits {
 
   const BaseModel& base_model_;
   const event::Progress& report_;
-  std::vector<fit::EventState> fitted_states_;
+  std::vector<std::unique_ptr<const reduced::ClosedLoop>> points_;  ///< the base model, linearised
   double least_;
 };
 
@@ -193,19 +218,28 @@ fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& t
   }
 }
 
-std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
-                                 const sim::Conventions& conventions, const noise::WhitenedEvents& events,
-                                 const std::vector<fit::EventState>& states) {
-  std::vector<double> chi2(plants.size(), 0.0);
-  for (std::size_t e = 0; e < events.size(); ++e) {
-    const auto responses = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
-    for (std::size_t k = 0; k < plants.size(); ++k) {
-      fit::EventFit f;
-      if (responses[k]) noise::compare(events, e, *responses[k], f);
-      chi2[k] += responses[k] ? f.chi2 : std::numeric_limits<double>::infinity();
-    }
+std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model) {
+  std::vector<fit::FreeParameter> free = fit::free_parameters(base_model.plant, base_model.prior_sd);
+  for (const fit::FreeParameter& f : base_model.own) {
+    std::erase_if(free, [&](const fit::FreeParameter& known) { return known.id == f.id; });
+    free.push_back(f);
   }
-  return chi2;
+  return free;
+}
+
+std::uint64_t stream_of(const std::string& name) {  // FNV-1a
+  std::uint64_t sum = 14695981039346656037u;
+  for (const char c : name) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return sum;
+}
+
+double length(const BaseModel& base_model) {
+  const auto& t = base_model.events.front().record.t;
+  return t.back() - t.front();
+}
+
+std::string too_small(double gain) {
+  return fmt::format("predicted chi2 reduction {:.0f}: too small for a fit", gain);
 }
 
 sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h) {

@@ -1,6 +1,7 @@
 #pragma once
 // Single trial of every hypothesis on one base model, in descending order of evidence. Afterwards judge()
 // tests the leading ones on unseen events.
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -52,11 +53,14 @@ std::vector<Judgement> try_hypotheses(const BaseModel& base_model, std::vector<H
 fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& tested,
                 const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options);
 
-/// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
-/// The plants differ only in parameter values and are simulated in SIMD batches.
-std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
-                                 const sim::Conventions& conventions, const noise::WhitenedEvents& events,
-                                 const std::vector<fit::EventState>& states);
+/// Returns the free parameters of a base model: those of the given model, and those of effects added before.
+std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model);
+/// Returns the stream of the random draws of a hypothesis of this name.
+std::uint64_t stream_of(const std::string& name);
+/// Returns the length of the first record [s].
+double length(const BaseModel& base_model);
+/// Returns the reason why a hypothesis with this predicted reduction of chi2 is not fitted.
+std::string too_small(double gain);
 
 /// Returns the plant at its prior mean: the hypothesis at its first start, and parameters of effects added
 /// before at their prior means.

@@ -42,34 +42,21 @@ constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< maximum steps
 constexpr double kLengths[] = {0.1, 1.0, 10.0,
                                1000.0};  ///< factors on the damping of the steps that are tried at once
 
-/// Marks parameters of the submitted plant whose blocks are absent from `plant`.
-std::vector<char> mark_absent(const Inference& inference, const sim::plant::Plant& plant) {
-  std::vector<char> marks;
-  for (const auto& f : inference.free) marks.push_back(same_parameter(plant, inference.base, f.id) ? 0 : 1);
-  return marks;
-}
-
 /// Identification of one trial.
 class Identifying {
  public:
-  Identifying(const Reduction& reduction, event::InputKind input, const Trial& trial,
-              const std::vector<Index>& freed)
-      : reduction_(reduction),
-        input_(input),
-        trial_(about(reduction.inference(), trial)),
-        reduced_(reduction, input, mark_absent(reduction.inference(), trial.plant), freed) {
+  Identifying(const ReducedCost& reduced, const Trial& trial)
+      : reduced_(reduced), trial_(about(reduced.inference(), trial)) {
     for (const auto& f : trial.free) {
       fit::Axis axis = fit::make_axis(trial.plant, f);
       // A time constant far below the sampling interval is indistinguishable from zero in the records.
       if (parameter_record(trial.plant, f.id).unit == "s")
-        axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduction.step()));
+        axis.low = std::max(axis.low, std::min(axis.start, kShortestTime * reduced.step()));
       axes_.push_back(axis);
     }
-    without_ = reduction.responses(input, {reduction.inference().base});
   }
 
   std::vector<Optimum> run(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
-    if (!without_.allFinite()) return {};
     begin(options, known);
     optimise(options.steps);
     return optima();
@@ -97,7 +84,7 @@ class Identifying {
   }
   /// Returns the points with a finite cost.
   [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points) const {
-    const VectorXd cost = costs(series(points), points, VectorXd::Zero(static_cast<Index>(points.size())));
+    const VectorXd cost = costs(responses(points), points, VectorXd::Zero(static_cast<Index>(points.size())));
     std::vector<Start> all;
     for (std::size_t k = 0; k < points.size(); ++k)
       if (std::isfinite(cost[static_cast<Index>(k)]))
@@ -118,13 +105,11 @@ class Identifying {
       parameter_value(plant, trial_.free[i].id) = axes_[i].value(z[static_cast<Index>(i)]);
     return plant;
   }
-  /// Returns the input's time series that these values add to the plant's own controls.
-  [[nodiscard]] MatrixXd series(const std::vector<VectorXd>& all) const {
+  /// Returns the responses of the trial with these values.
+  [[nodiscard]] MatrixXd responses(const std::vector<VectorXd>& all) const {
     std::vector<sim::plant::Plant> plants;
     for (const VectorXd& z : all) plants.push_back(plant_at(z));
-    MatrixXd made = reduction_.responses(input_, plants);
-    made.colwise() -= without_.col(0);
-    return made;
+    return reduced_.responses(plants);
   }
   [[nodiscard]] double prior_cost(const VectorXd& z) const {
     double cost = 0;
@@ -133,14 +118,14 @@ class Identifying {
         cost += std::pow(z[static_cast<Index>(i)] / prior_sd, 2);
     return cost;
   }
-  /// Returns the costs; infinite for a trial that cannot be simulated, and for an idle one, which adds
-  /// nothing to the input: its cost has no gradient, and as a start it would displace starts that act.
+  /// Returns the costs; infinite for a trial that cannot be simulated, and for an idle one, which changes
+  /// nothing: its cost has no gradient, and as a start it would displace starts that act.
   [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
                                const VectorXd& gains) const {
     VectorXd cost = reduced_.costs(made, gains);
     for (Index k = 0; k < cost.size(); ++k) {
       cost[k] += prior_cost(all[static_cast<std::size_t>(k)]);
-      if (!std::isfinite(cost[k]) || made.col(k).isZero() || !runs(all[static_cast<std::size_t>(k)]))
+      if (!std::isfinite(cost[k]) || !reduced_.acts(made.col(k)) || !runs(all[static_cast<std::size_t>(k)]))
         cost[k] = std::numeric_limits<double>::infinity();
     }
     return cost;
@@ -264,7 +249,7 @@ class Identifying {
       }
     }
     if (moving.empty()) return false;
-    const MatrixXd made = series(points);
+    const MatrixXd made = responses(points);
     std::vector<VectorXd> tried;
     VectorXd gains(static_cast<Index>(std::size(kLengths) * moving.size()));
     for (std::size_t k = 0; k < moving.size(); ++k) {
@@ -276,7 +261,7 @@ class Identifying {
         jacobian.col(i) = (jacobian.col(i) - made.col(at)) / move;
         if (!jacobian.col(i).allFinite()) jacobian.col(i).setZero();
       }
-      ReducedPlant::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, jacobian);
+      ReducedCost::Quadratic quadratic = reduced_.quadratic(made.col(at), s.gain, jacobian);
       for (Index i = 0; i < np; ++i)
         if (const double prior_sd = axes_[static_cast<std::size_t>(i)].prior_sd(); prior_sd > 0) {
           quadratic.curvature(1 + i, 1 + i) += 1 / (prior_sd * prior_sd);
@@ -288,7 +273,7 @@ class Identifying {
         tried.push_back(within(s.z + step.tail(np).cwiseMax(-kLongestAxisStep).cwiseMin(kLongestAxisStep)));
       }
     }
-    const MatrixXd there = series(tried);
+    const MatrixXd there = responses(tried);
     const VectorXd cost = costs(there, tried, gains);
     for (std::size_t k = 0; k < moving.size(); ++k) {
       Start& s = *moving[k];
@@ -310,7 +295,7 @@ class Identifying {
   }
   /// Returns the step to the damped minimum within the bounds. A parameter at its bound is fixed there, and
   /// the others are solved for again (active set).
-  [[nodiscard]] VectorXd bounded_step(const ReducedPlant::Quadratic& quadratic, const Start& s,
+  [[nodiscard]] VectorXd bounded_step(const ReducedCost::Quadratic& quadratic, const Start& s,
                                       double damping) const {
     constexpr double kRidge = 1e-12;
     MatrixXd curvature = quadratic.curvature;
@@ -349,7 +334,7 @@ class Identifying {
       Optimum found;
       for (std::size_t i = 0; i < axes_.size(); ++i)
         found.values.push_back(axes_[i].value(s.z[static_cast<Index>(i)]));
-      found.series = series({s.z}).col(0);
+      found.series = responses({s.z}).col(0);
       found.plant = reduced_.plant_of(found.series, s.gain);
       found.cost = s.cost;
       found.starts = 1;
@@ -358,20 +343,24 @@ class Identifying {
     return all;
   }
 
-  const Reduction& reduction_;
-  event::InputKind input_;
+  const ReducedCost& reduced_;
   Trial trial_;
-  ReducedPlant reduced_;
   std::vector<fit::Axis> axes_;
-  MatrixXd without_;  ///< open-loop response of the submitted plant's own controls
   std::vector<Start> starts_;
 };
 
 }  // namespace
 
+std::vector<Optimum> identify(const ReducedCost& reduced, const Trial& trial, const IdentifyOptions& options,
+                              const std::vector<std::vector<double>>& known) {
+  return Identifying(reduced, trial).run(options, known);
+}
+
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
                               const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
-  return Identifying(reduction, input, trial, options.freed).run(options, known);
+  return identify(
+      ReducedPlant(reduction, input, mark_absent(reduction.inference(), trial.plant), options.freed), trial,
+      options, known);
 }
 
 }  // namespace swingbank::validate::reduced

@@ -1,7 +1,7 @@
 #pragma once
-// Open-loop identification of a single block against the inferred input. The block is simulated from many
-// starts at once, and the plant's parameters are eliminated in closed form (reduce.hpp). No trial simulates
-// the plant.
+// Identification of a trial from many starts at once, with the plant's parameters eliminated in closed form
+// (reduced_cost.hpp). A control block is simulated in open loop, against the inferred input (reduce.hpp); any
+// other change with the whole plant (closed_loop.hpp).
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -24,7 +24,7 @@ struct Trial {
 struct Optimum {
   std::vector<double> values;  ///< of the trial's free parameters
   Eigen::VectorXd plant;       ///< changes of the plant's parameters, on the axes of the inference
-  Eigen::VectorXd series;      ///< input that the block adds to the plant's own controls, at all knots [pu]
+  Eigen::VectorXd series;      ///< response of the trial (ReducedCost::responses)
   double cost = 0;             ///< chi2 of the records and of the priors of plant and block
   int starts = 0;              ///< number of starts that ended within 1 of this cost
 };
@@ -39,7 +39,12 @@ struct IdentifyOptions {
 };
 
 /// Returns the distinct local minima in ascending order of cost; empty if no draw acts. `known`:
-/// further start values of the trial's free parameters.
+/// further start values of the trial's free parameters. `options.freed` does not apply: `reduced` has its
+/// own.
+std::vector<Optimum> identify(const ReducedCost& reduced, const Trial& trial,
+                              const IdentifyOptions& options = {},
+                              const std::vector<std::vector<double>>& known = {});
+/// Identifies a block in open loop (ReducedPlant).
 std::vector<Optimum> identify(const Reduction& reduction, event::InputKind input, const Trial& trial,
                               const IdentifyOptions& options = {},
                               const std::vector<std::vector<double>>& known = {});

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "validate/fit/axis.hpp"
-#include "validate/fit/states.hpp"
 #include "validate/playin/component.hpp"
+#include "validate/reduced/detail/with_state.hpp"
 
 namespace swingbank::validate::reduced {
 namespace {
@@ -13,9 +13,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 using event::InputKind;
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-/// Prior precision of a change, relative to the squared norm of its column.
-constexpr double kChangePrecision = 1e-8;
 
 /// Returns the triangular factor R with R'R = all'all, from row and column `first` on.
 MatrixXd triangle(const MatrixXd& all, Index first) {
@@ -70,43 +67,6 @@ std::vector<double> steps_between(const Knots& knots, double sample) {
   return times;
 }
 
-/// Returns the switching times that would leave their range at the optimum of the event's state (active set),
-/// with their moves to the end of the range.
-std::vector<std::pair<Index, double>> active_bounds(const event::FitEvent& event,
-                                                    const EventSensitivities& sensitivities,
-                                                    const std::vector<double>& priors) {
-  const Index n = sensitivities.state.cols();
-  MatrixXd curvature = sensitivities.state.transpose() * sensitivities.state;
-  VectorXd gradient = sensitivities.state.transpose() * sensitivities.residual;
-  for (Index k = 0; k < n; ++k)
-    if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
-      curvature(k, k) += 1 / (b * b);
-      gradient[k] += sensitivities.state_at[k] / (b * b);
-    }
-  std::vector<std::pair<Index, double>> active;
-  for (bool changed = true; changed;) {
-    changed = false;
-    MatrixXd left = curvature;
-    VectorXd right = gradient;
-    for (const auto& [k, move] : active) {
-      right += curvature.col(k) * move;
-      left.row(k).setZero();
-      left.col(k).setZero();
-      left(k, k) = 1;
-    }
-    for (const auto& [k, move] : active) right[k] = -move;
-    const VectorXd best = sensitivities.state_at - left.ldlt().solve(right);
-    VectorXd kept = best;
-    keep_in_range(event, kept);
-    for (Index k = 0; k < n; ++k)
-      if (kept[k] != best[k] && std::ranges::count(active, k, &std::pair<Index, double>::first) == 0) {
-        active.emplace_back(k, kept[k] - sensitivities.state_at[k]);
-        changed = true;
-      }
-  }
-  return active;
-}
-
 VectorXd at_times(const playin::PiecewiseLinear& input,
                   const std::vector<playin::OpenLoop::TimePoint>& times) {
   VectorXd values(static_cast<Index>(times.size()));
@@ -157,24 +117,11 @@ Reduction::Reduction(Inference inference, const noise::WhitenedEvents& events,
     if (inference_.inputs.torque) residual -= s.torque * torque_.segment(row, K);
     if (inference_.inputs.field) residual -= s.field * field_.segment(row, K);
     row += K;
-    MatrixXd all = MatrixXd::Zero(values + states, states + plant + s.torque.cols() + s.field.cols() + 1);
-    all.topRows(values).leftCols(states + s.plant.cols()) << s.state, s.plant;
-    if (s.changes.cols() > 0)
-      all.topRows(values).middleCols(states + s.plant.cols(), s.changes.cols()) = s.changes;
-    all.topRows(values).rightCols(all.cols() - states - plant) << s.torque, s.field, residual;
-    const auto priors = fit::state_priors(events[e]);
-    for (Index k = 0; k < states; ++k)
-      if (const double b = priors[static_cast<std::size_t>(k)]; b > 0) {
-        all(values + k, k) = 1 / b;
-        all(values + k, all.cols() - 1) = s.state_at[k] / b;
-      }
-    for (const auto& [k, move] : active_bounds(events[e], s, priors)) {
-      all.rightCols(1) += all.col(k) * move;
-      all.col(k).setZero();
-      all.row(values + k).setZero();
-      all(values + k, k) = 1;
-      all(values + k, all.cols() - 1) = -move;
-    }
+    MatrixXd columns(values, plant + s.torque.cols() + s.field.cols() + 1);
+    columns.leftCols(s.plant.cols()) = s.plant;
+    if (s.changes.cols() > 0) columns.middleCols(s.plant.cols(), s.changes.cols()) = s.changes;
+    columns.rightCols(columns.cols() - plant) << s.torque, s.field, residual;
+    const MatrixXd all = detail::with_state(events[e], s, columns);
     const Eigen::HouseholderQR<MatrixXd> qr(all);
     const MatrixXd whole = qr.matrixQR().topRows(all.cols()).triangularView<Eigen::Upper>();
     const Index left = all.cols() - states;
@@ -203,7 +150,7 @@ MatrixXd Reduction::responses(InputKind kind, const std::vector<sim::plant::Plan
 
 std::vector<VectorXd> Reduction::states_at(const noise::WhitenedEvents& events, InputKind kind,
                                            const VectorXd& plant, const VectorXd& series) const {
-  const Gain g = gain(kind);
+  const ReducedCost::Gain g = gain(kind);
   const double moved = g.number >= 0 ? g.exponent * plant[g.number] : 0.0;
   std::vector<VectorXd> states;
   Index row = 0;
@@ -223,14 +170,14 @@ std::vector<VectorXd> Reduction::states_at(const noise::WhitenedEvents& events, 
   return states;
 }
 
-Reduction::Gain Reduction::find_gain(const noise::WhitenedEvents& events, InputKind kind) const {
+ReducedCost::Gain Reduction::find_gain(const noise::WhitenedEvents& events, InputKind kind) const {
   constexpr double kGainMove = 1e-4, kNoExponent = 0.1;  // of a logarithm, of an exponent
   const auto rates = [&](const sim::plant::Plant& plant) {
     return event::rates_by_input({plant, conventions_}, events.front(), inference_.states.front(), kind)
         .norm();
   };
   const double still = rates(inference_.base);
-  Gain gain;
+  ReducedCost::Gain gain;
   for (std::size_t i = 0; i < inference_.free.size(); ++i) {
     const auto& f = inference_.free[i];
     const fit::Axis axis = fit::make_axis(inference_.base, f);
@@ -246,42 +193,12 @@ Reduction::Gain Reduction::find_gain(const noise::WhitenedEvents& events, InputK
 
 ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std::vector<char>& held,
                            const std::vector<Index>& freed)
-    : gain_(reduction.gain(kind)) {
+    : reduction_(reduction), kind_(kind) {
   const Inference& at = reduction.inference();
-  numbers_ = static_cast<Index>(at.free.size());
-  const Index n = numbers_ + reduction.changes();
   const bool field = kind == InputKind::field;
-  const auto is_held = [&](Index i) { return !held.empty() && held[static_cast<std::size_t>(i)]; };
-  if (gain_.number >= 0 && is_held(gain_.number)) gain_ = {};
-  for (Index i = 0; i < numbers_; ++i) {
-    const double prior_sd = at.free[static_cast<std::size_t>(i)].prior_sd,
-                 precision = prior_sd > 0 ? 1 / (prior_sd * prior_sd) : 0.0;
-    if (i == gain_.number) {
-      gain_precision_ = precision;
-      gain_offset_ = at.offset[i];
-      continue;
-    }
-    prior_cost_ += precision * at.offset[i] * at.offset[i];
-    if (!is_held(i)) free_.push_back(i);
-  }
-  const auto parameters = static_cast<Index>(free_.size());
-  for (const Index change : freed) free_.push_back(numbers_ + change);
-  const auto m = static_cast<Index>(free_.size());
-  MatrixXd curvature = MatrixXd::Zero(m, m);
-  first_ = VectorXd::Zero(m);
-  for (Index k = 0; k < m; ++k) {
-    if (k >= parameters) {  // a weak prior, which matters only for collinear columns
-      double square = 0;
-      for (const Reduction::Event& e : reduction.events())
-        square += e.triangle.col(free_[static_cast<std::size_t>(k)]).squaredNorm();
-      curvature(k, k) = kChangePrecision * square;
-      continue;
-    }
-    const Index i = free_[static_cast<std::size_t>(k)];
-    const double prior_sd = at.free[static_cast<std::size_t>(i)].prior_sd;
-    curvature(k, k) = prior_sd > 0 ? 1 / (prior_sd * prior_sd) : 0.0;
-    first_[k] = curvature(k, k) * at.offset[i];
-  }
+  without_ = reduction.responses(kind, {at.base});
+  eliminate(at, reduction.gain(kind), held, freed);
+  const Index n = static_cast<Index>(at.free.size()) + reduction.changes();
   Index row = 0;
   for (const Reduction::Event& e : reduction.events()) {
     const MatrixXd& R = e.triangle;
@@ -291,8 +208,8 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
     const MatrixXd explained = R.middleCols(n + (both && field ? K : 0), K),
                    rest = R.middleCols(n + (both && !field ? K : 0), both ? K : 0);
     // Derivative with respect to the gain's parameter at constant product of gain and input.
-    if (gain_.number >= 0)
-      plant.col(gain_.number) -= gain_.exponent * (explained * reduction.series(kind).segment(row, K));
+    if (gain().number >= 0)
+      plant.col(gain().number) -= gain().exponent * (explained * reduction.series(kind).segment(row, K));
     const Index first = rest.cols();
     MatrixXd all = MatrixXd::Zero(R.rows() + first, first + n + K + 1);
     all.topRows(R.rows()) << rest, plant, explained, R.rightCols(1);
@@ -304,79 +221,19 @@ ReducedPlant::ReducedPlant(const Reduction& reduction, InputKind kind, const std
       }
     }
     const MatrixXd left = triangle(all, first);
-    Event event;
-    event.T = left(Eigen::all, free_);
-    event.by_gain = gain_.number >= 0 ? VectorXd(left.col(gain_.number)) : VectorXd::Zero(left.rows());
-    event.L = left.middleCols(n, K);
-    event.r = left.rightCols(1);
-    curvature += event.T.transpose() * event.T;
-    events_.push_back(std::move(event));
+    add({.r = left.rightCols(1),
+         .by_gain = gain().number >= 0 ? VectorXd(left.col(gain().number)) : VectorXd::Zero(left.rows()),
+         .T = left(Eigen::all, eliminated()),
+         .L = left.middleCols(n, K)});
     row += K;
   }
-  inverse_ = curvature.ldlt().solve(MatrixXd::Identity(m, m));
+  finish();
 }
 
-VectorXd ReducedPlant::costs(const MatrixXd& series, const VectorXd& gains) const {
-  const Index count = series.cols();
-  VectorXd cost = VectorXd::Constant(count, prior_cost_);
-  cost.array() += gain_precision_ * (gains.array() + gain_offset_).square();
-  MatrixXd gradient = first_.replicate(1, count);
-  const VectorXd factors = (gain_.exponent * gains).array().exp();
-  Index row = 0;
-  for (const Event& e : events_) {
-    const Index K = e.L.cols();
-    MatrixXd left = e.L * (series.middleRows(row, K) * factors.asDiagonal());
-    left.colwise() += e.r;
-    left += e.by_gain * gains.transpose();
-    cost += left.colwise().squaredNorm();
-    gradient += e.T.transpose() * left;
-    row += K;
-  }
-  cost -= (gradient.array() * (inverse_ * gradient).array()).colwise().sum().matrix();
-  return cost;
-}
-
-ReducedPlant::Quadratic ReducedPlant::quadratic(const VectorXd& series, double gain,
-                                                const MatrixXd& jacobian) const {
-  const Index n = jacobian.cols() + 1, m = static_cast<Index>(free_.size());
-  Quadratic quadratic{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
-  MatrixXd cross = MatrixXd::Zero(m, n);
-  VectorXd gradient = first_;
-  quadratic.curvature(0, 0) = gain_precision_;
-  quadratic.gradient[0] = gain_precision_ * (gain_offset_ + gain);
-  Index row = 0;
-  for (const Event& e : events_) {
-    const Index K = e.L.cols();
-    MatrixXd by(e.r.size(), n);
-    by.rightCols(n - 1) = factor(gain) * (e.L * jacobian.middleRows(row, K));
-    const VectorXd shown = factor(gain) * (e.L * series.segment(row, K));
-    by.col(0) = e.by_gain + gain_.exponent * shown;
-    const VectorXd left = e.r + shown + gain * e.by_gain;
-    quadratic.curvature += by.transpose() * by;
-    quadratic.gradient += by.transpose() * left;
-    cross += e.T.transpose() * by;
-    gradient += e.T.transpose() * left;
-    row += K;
-  }
-  quadratic.curvature -= cross.transpose() * inverse_ * cross;
-  quadratic.gradient -= cross.transpose() * (inverse_ * gradient);
-  return quadratic;
-}
-
-VectorXd ReducedPlant::plant_of(const VectorXd& series, double gain) const {
-  VectorXd gradient = first_;
-  Index row = 0;
-  for (const Event& e : events_) {
-    const Index K = e.L.cols();
-    gradient += e.T.transpose() * (e.r + factor(gain) * (e.L * series.segment(row, K)) + gain * e.by_gain);
-    row += K;
-  }
-  const VectorXd step = -(inverse_ * gradient);
-  VectorXd all = VectorXd::Zero(numbers_);
-  for (std::size_t k = 0; k < free_.size(); ++k)
-    if (free_[k] < numbers_) all[free_[k]] = step[static_cast<Index>(k)];
-  if (gain_.number >= 0) all[gain_.number] = gain;
-  return all;
+MatrixXd ReducedPlant::responses(const std::vector<sim::plant::Plant>& plants) const {
+  MatrixXd made = reduction_.responses(kind_, plants);
+  made.colwise() -= without_;
+  return made;
 }
 
 }  // namespace swingbank::validate::reduced

@@ -9,7 +9,7 @@
 #include <Eigen/SparseCore>
 
 #include "validate/playin/open_loop.hpp"
-#include "validate/reduced/infer.hpp"
+#include "validate/reduced/reduced_cost.hpp"
 
 namespace swingbank::validate::reduced {
 
@@ -58,74 +58,41 @@ class Reduction {
   [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const noise::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;
-  /// The plant parameter that scales an input, and its exponent.
-  struct Gain {
-    Eigen::Index number = -1;  ///< index of the parameter; -1: none
-    double exponent = 0;       ///< exponent of the parameter in the input
-  };
   /// Returns the parameter that scales an input, and its exponent.
-  [[nodiscard]] Gain gain(event::InputKind kind) const {
+  [[nodiscard]] ReducedCost::Gain gain(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_gain_ : field_gain_;
   }
 
  private:
-  [[nodiscard]] Gain find_gain(const noise::WhitenedEvents& events, event::InputKind kind) const;
+  [[nodiscard]] ReducedCost::Gain find_gain(const noise::WhitenedEvents& events, event::InputKind kind) const;
   Inference inference_;
   sim::Conventions conventions_;
   std::vector<Event> events_;
   Eigen::Index knots_ = 0;
   double step_ = 0;
   Eigen::VectorXd torque_, field_;
-  Gain torque_gain_, field_gain_;
+  ReducedCost::Gain torque_gain_, field_gain_;
 };
 
-/// Cost of one input's time series u in a Reduction, minimised over the changes d of all plant parameters
-/// except the gain's:
-///
-/// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
-///
-/// o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard deviations.
-class ReducedPlant {
+/// Cost of one input's time series u in a Reduction (reduced_cost.hpp), in open loop: its responses are the
+/// time series that a block adds to the input of the plant's own controls, at all knots [knot of all events].
+class ReducedPlant : public ReducedCost {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
-  /// because their blocks are absent; empty: none. Only the changes in `freed` are free.
+  /// because their blocks are absent; empty: none. Only the changes in `freed` are free. The reduction must
+  /// outlive it.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
                const std::vector<Eigen::Index>& freed = {});
 
-  /// Returns the cost of each time series [knot of all events][series], each with its change of the gain's
-  /// parameter.
-  [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& series, const Eigen::VectorXd& gains) const;
-  /// Half the gradient and half the Gauss-Newton Hessian of the cost of one time series. The variables are
-  /// the gain's parameter and the parameters of `jacobian` [knot][parameter]; all other plant
-  /// parameters are eliminated.
-  struct Quadratic {
-    Eigen::MatrixXd curvature;  ///< half the Hessian
-    Eigen::VectorXd gradient;   ///< half the gradient
-  };
-  /// Computes the quadratic model of the cost of one time series. `gain`: change of the gain's parameter.
-  [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& series, double gain,
-                                    const Eigen::MatrixXd& jacobian) const;
-  /// Returns the changes of the plant parameters that minimise the cost of a time series, without those of
-  /// add_changes().
-  [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& series, double gain) const;
-  /// Returns the parameter that scales the input, and its exponent.
-  [[nodiscard]] Reduction::Gain gain() const { return gain_; }
+  [[nodiscard]] const Inference& inference() const override { return reduction_.inference(); }
+  [[nodiscard]] double step() const override { return reduction_.step(); }
+  [[nodiscard]] Eigen::MatrixXd responses(const std::vector<sim::plant::Plant>& plants) const override;
+  [[nodiscard]] bool acts(const Eigen::VectorXd& response) const override { return !response.isZero(); }
 
  private:
-  struct Event {
-    Eigen::VectorXd r, by_gain;
-    Eigen::MatrixXd T, L;  ///< Jacobians by the eliminated parameters and by the time series
-  };
-  [[nodiscard]] double factor(double gain) const { return std::exp(gain_.exponent * gain); }
-
-  Reduction::Gain gain_;
-  std::vector<Eigen::Index> free_;  ///< eliminated parameters
-  Eigen::Index numbers_;
-  std::vector<Event> events_;
-  Eigen::MatrixXd inverse_;  ///< inverse Hessian of the eliminated parameters
-  Eigen::VectorXd first_;    ///< half the gradient of their prior
-  double prior_cost_ = 0;    ///< prior cost at the present values
-  double gain_precision_ = 0, gain_offset_ = 0;
+  const Reduction& reduction_;
+  event::InputKind kind_;
+  Eigen::VectorXd without_;  ///< output of the submitted plant's own controls
 };
 
 }  // namespace swingbank::validate::reduced

@@ -7,6 +7,7 @@
 #include "validate/hypothesis/hypothesis.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
+#include "validate/reduced/closed_loop.hpp"
 #include "validate/reduced/free_input.hpp"
 #include "validate/reduced/identify.hpp"
 
@@ -177,6 +178,40 @@ TEST_F(Reduced, FreeChangeActsAsAParameter) {
   EXPECT_NEAR(fixed, cost(*reduction_, all_held, {}), 1e-6 * fixed);
   EXPECT_LT(by_parameter, fixed - 1000);
   EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // accuracy of the linearisation
+}
+
+/// A wrong inertia is identified in closed loop, with all other parameters linear, as a fit of the whole
+/// plant finds it.
+TEST_F(Reduced, ClosedLoopFindsWhatAFitFinds) {
+  const hypothesis::Hypothesis h = true_exciter();
+  auto others = fit::free_parameters(h.plant, 0.2);
+  const auto inertia = std::ranges::find_if(others, [&](const fit::FreeParameter& f) {
+    return sim::plant::parameter_record(h.plant, f.id).name == "H";
+  });
+  ASSERT_NE(inertia, others.end());
+  const fit::FreeParameter moved = *inertia;
+  others.erase(inertia);
+  hypothesis::Hypothesis wrong = h;
+  parameter_value(wrong.plant, moved.id) *= 1.05;
+  const fit::Fit base = fit::fit(wrong.under_test(), *events_, others, {});
+  ASSERT_TRUE(base.failed.empty());
+  std::vector<event::EventState> states;
+  for (const auto& e : base.events) states.push_back(e.state);
+  const ClosedLoop plant(linear_about(base.plant, wrong.under_test(), *events_, others, states, {}, 1),
+                         *events_);
+  const ClosedLoopCost cost(plant, model_->conventions, {});
+  const auto found = identify(cost, {wrong.plant, {moved}, 1}, {.draws = 0, .kept = 0, .steps = 8},
+                              {{0.99 * parameter_value(wrong.plant, moved.id)}});
+  ASSERT_FALSE(found.empty());
+
+  auto all = others;
+  all.push_back(moved);
+  const fit::Fit whole = fit::fit(wrong.under_test(), *events_, all, {});
+  ASSERT_GT(fit::penalised(base), fit::penalised(whole) + 100);
+  EXPECT_NEAR(found.front().cost, fit::penalised(whole),
+              0.05 * (fit::penalised(base) - fit::penalised(whole)));
+  EXPECT_NEAR(found.front().values[0], parameter_value(whole.plant, moved.id),
+              0.005 * parameter_value(whole.plant, moved.id));
 }
 
 /// The exciter that made the records is identified alone, without other prior knowledge.

@@ -41,6 +41,23 @@ fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
     if (ranked[k].fitted) hypothesis::try_from(base_model, ranked[k].fit, base);
   return std::move(base.fit);
 }
+/// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
+/// The plants differ only in parameter values and are simulated in SIMD batches.
+std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
+                                 const sim::Conventions& conventions, const noise::WhitenedEvents& events,
+                                 const std::vector<event::EventState>& states) {
+  std::vector<double> chi2(plants.size(), 0.0);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const auto responses = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
+    for (std::size_t k = 0; k < plants.size(); ++k) {
+      fit::EventFit f;
+      if (responses[k]) noise::compare(events, e, *responses[k], f);
+      chi2[k] += responses[k] ? f.chi2 : std::numeric_limits<double>::infinity();
+    }
+  }
+  return chi2;
+}
+
 /// Fits the model from the best single change of one parameter. A limit that is never reached has zero
 /// gradient.
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
@@ -57,7 +74,7 @@ fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
           sim::plant::search_range(sim::plant::parameter_record(base_model.plant, f.id), value);
       value = std::clamp(value * multiple, range.low, range.high);
     }
-  const auto chi2 = hypothesis::chi2_of_each(plants, base_model.conventions, base_model.events, states);
+  const auto chi2 = chi2_of_each(plants, base_model.conventions, base_model.events, states);
   const auto least = std::ranges::min_element(chi2);
   if (least == chi2.end() || !std::isfinite(*least)) return base_model.fit;
   fit::FitOptions o = fit::continued({.lenient = true}, base_model.fit, free);

@@ -1,0 +1,90 @@
+#pragma once
+// Cost of a change of the plant near a point at which its residuals were linearised, with all other unknowns
+// eliminated. A trial's response u is the change that its block makes; the rest is linear:
+//   |r + T d + L g u|^2 + |(offset + d) / spread|^2
+#include "validate/reduced/infer.hpp"
+
+namespace swingbank::validate::reduced {
+
+/// Cost of a response u, minimised over the changes d of all plant parameters except the gain's:
+///
+/// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
+///
+/// o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard deviations. The states
+/// of the events are eliminated from r, T and L.
+class ReducedCost {
+ public:
+  virtual ~ReducedCost() = default;
+  /// Returns the point of the linearisation.
+  [[nodiscard]] virtual const Inference& inference() const = 0;
+  /// Sampling interval [s].
+  [[nodiscard]] virtual double step() const = 0;
+  /// Returns the responses of plants with equal blocks: [row of all events][plant]. A column is not finite if
+  /// the plant cannot be simulated.
+  [[nodiscard]] virtual Eigen::MatrixXd responses(const std::vector<sim::plant::Plant>& plants) const = 0;
+  /// Returns whether a response [row of all events] is more than the numerical error of none.
+  [[nodiscard]] virtual bool acts(const Eigen::VectorXd& response) const = 0;
+
+  /// Returns the cost of each response, [row of all events][response], each with its change of the gain's
+  /// parameter.
+  [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& responses, const Eigen::VectorXd& gains) const;
+  /// Half the gradient and half the Gauss-Newton Hessian of the cost of one response. The variables are the
+  /// gain's parameter and the parameters of `jacobian` [row][parameter]; all other plant parameters are
+  /// eliminated.
+  struct Quadratic {
+    Eigen::MatrixXd curvature;  ///< half the Hessian
+    Eigen::VectorXd gradient;   ///< half the gradient
+  };
+  /// Computes the quadratic model of the cost of one response. `gain`: change of the gain's parameter.
+  [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& response, double gain,
+                                    const Eigen::MatrixXd& jacobian) const;
+  /// Returns the changes of the plant parameters that minimise the cost of a response, without those of
+  /// add_changes().
+  [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& response, double gain) const;
+  /// The plant parameter that scales the response, and its exponent.
+  struct Gain {
+    Eigen::Index number = -1;  ///< index of the parameter; -1: none
+    double exponent = 0;       ///< exponent of the parameter in the response
+  };
+  /// Returns the parameter that scales the response, and its exponent.
+  [[nodiscard]] Gain gain() const { return gain_; }
+
+ protected:
+  /// Terms of one event.
+  struct Event {
+    Eigen::VectorXd r, by_gain;  ///< residual without any response; its derivative by the gain's parameter
+    Eigen::MatrixXd T;           ///< Jacobian by the eliminated parameters
+    Eigen::MatrixXd L;           ///< Jacobian by the response; empty: the response is a residual
+  };
+  /// Sets the eliminated parameters: those of `at` that are not `held`, then `freed`, and their prior.
+  void eliminate(const Inference& at, Gain gain, const std::vector<char>& held,
+                 const std::vector<Eigen::Index>& freed = {});
+  /// Returns the columns of the eliminated parameters among all, [plant | changes].
+  [[nodiscard]] const std::vector<Eigen::Index>& eliminated() const { return free_; }
+  /// Adds an event whose T has the eliminated parameters' columns.
+  void add(Event event) { events_.push_back(std::move(event)); }
+  /// Ends the construction.
+  void finish();
+
+ private:
+  [[nodiscard]] double factor(double gain) const;
+  /// Number of rows of a response that belong to an event.
+  static Eigen::Index rows(const Event& e);
+  /// Returns the residuals that responses cause: [value][response].
+  static Eigen::MatrixXd seen(const Event& e, const Eigen::MatrixXd& responses);
+
+  Gain gain_;
+  std::vector<Eigen::Index> free_;  ///< eliminated parameters
+  Eigen::Index numbers_ = 0;
+  std::vector<Event> events_;
+  Eigen::VectorXd precision_;  ///< prior precision of the eliminated parameters
+  Eigen::MatrixXd inverse_;    ///< inverse Hessian of the eliminated parameters
+  Eigen::VectorXd first_;      ///< half the gradient of their prior
+  double prior_cost_ = 0;      ///< prior cost at the present values
+  double gain_precision_ = 0, gain_offset_ = 0;
+};
+
+/// Marks parameters of the submitted plant whose blocks are absent from `plant`.
+std::vector<char> mark_absent(const Inference& inference, const sim::plant::Plant& plant);
+
+}  // namespace swingbank::validate::reduced
