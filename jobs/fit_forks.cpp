@@ -57,35 +57,38 @@ nlohmann::json read_message(int socket) {
   return nlohmann::json::parse(text, nullptr, false);
 }
 
-/// Sends a socket to the process at the other end of `control`. Returns false if that has ended.
-bool send_socket(int control, int socket) {
+/// A message of one byte that carries a socket.
+struct SocketMessage {
+  SocketMessage() {
+    header.msg_iov = &data;
+    header.msg_iovlen = 1;
+    header.msg_control = buffer.data();
+    header.msg_controllen = buffer.size();
+  }
+  SocketMessage(const SocketMessage&) = delete;  // the header refers to the other members
+  SocketMessage& operator=(const SocketMessage&) = delete;
+
   char byte = 0;
   iovec data{&byte, 1};
   alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> buffer{};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = buffer.data();
-  message.msg_controllen = buffer.size();
-  cmsghdr* head = CMSG_FIRSTHDR(&message);
+  msghdr header{};
+};
+
+/// Sends a socket to the process at the other end of `control`. Returns false if that has ended.
+bool send_socket(int control, int socket) {
+  SocketMessage message;
+  cmsghdr* head = CMSG_FIRSTHDR(&message.header);
   head->cmsg_level = SOL_SOCKET;
   head->cmsg_type = SCM_RIGHTS;
   head->cmsg_len = CMSG_LEN(sizeof(int));
   std::memcpy(CMSG_DATA(head), &socket, sizeof socket);
-  return until_done([&] { return ::sendmsg(control, &message, MSG_NOSIGNAL); }) == 1;
+  return until_done([&] { return ::sendmsg(control, &message.header, MSG_NOSIGNAL); }) == 1;
 }
 /// Receives a socket; none if the other end is closed.
 std::optional<int> receive_socket(int control) {
-  char byte = 0;
-  iovec data{&byte, 1};
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> buffer{};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = buffer.data();
-  message.msg_controllen = buffer.size();
-  if (until_done([&] { return ::recvmsg(control, &message, 0); }) != 1) return {};
-  const cmsghdr* head = CMSG_FIRSTHDR(&message);
+  SocketMessage message;
+  if (until_done([&] { return ::recvmsg(control, &message.header, 0); }) != 1) return {};
+  const cmsghdr* head = CMSG_FIRSTHDR(&message.header);
   if (head == nullptr || head->cmsg_type != SCM_RIGHTS) return {};
   int socket = -1;
   std::memcpy(&socket, CMSG_DATA(head), sizeof socket);
