@@ -51,7 +51,7 @@ refuses "an exciter of a converter" "SEXS for generator 32 .*exciter is part of 
 refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control is part of a converter" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --attach 30:REPCA1 --out "$work/x.csv"
 grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
-refuses "a plant control that measures nowhere" "no bus 999 for REPCA1 of plant 32 at --attach" \
+refuses "a plant control that measures nowhere" "no bus 999 for the remote measurement of REPCA1 at plant 32 at --attach" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
 # A source with built-in control, and one behind a reactance: each explains its own run, but not with a wrong gain.
