@@ -72,7 +72,7 @@ attached = table("attached")
 assert abs(attached["2.V_pu"][0] / true["2.V_pu"][0] - 1.02) < 1e-9
 PYTHON
 
-refuses "no such instrument" "no measurement effect 'SEXS' at --measure SEXS \(there are .*CTERROR" \
+refuses "no such instrument" "no measurement effect 'SEXS' at --measure SEXS \(the measurement effects are .*CTERROR" \
   simulate --measure SEXS --out "$work/x.csv"
 refuses "no such parameter" "CTERROR has gain, phase" simulate --measure CTERROR:gian=1 --out "$work/x.csv"
 refuses "a dead instrument" "the current would be zero" simulate --measure CTERROR:gain=-1 --out "$work/x.csv"
