@@ -142,7 +142,8 @@ TEST(TransformerStepup, RefusesInvalidTransformers) {
   Problems problems;
   library::compiled().find("STEPUP")->check(nullptr, wrong, "here", problems);
   ASSERT_EQ(problems.list().size(), 3u);
-  EXPECT_EQ(problems.list()[1].sentence(), "X = -0.1 pu at here (leakage is inductive): give X >= 0");
+  EXPECT_EQ(problems.list()[1].sentence(),
+            "X = -0.1 pu at here (a leakage reactance cannot be negative): give X >= 0");
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST(Matpower, TruncatedFilesAreReported) {
   EXPECT_THAT(sentences_of([] { parse_matpower("mpc.a = 'x\n", "cut.m", 60.0); }),
               HasSubstr("not closed at cut.m:1"));
   EXPECT_THAT(sentences_of([] { parse_matpower("mpc.a = ];\n", "cut.m", 60.0); }),
-              HasSubstr("without its '['"));
+              HasSubstr("without a matching '['"));
 }
 
 TEST(Matpower, OtherVersionsAreRefused) {

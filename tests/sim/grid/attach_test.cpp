@@ -63,10 +63,12 @@ TEST(Attach, RemoteMeasurementsMustExistInTheNetwork) {
   Grid other = grid;
   EXPECT_THAT(said(grid, "104:REPCA1:RemoteBus=102,FromBus=102,ToBus=103,Circuit=1"), ::testing::IsEmpty());
   EXPECT_TRUE(grid.plants.at(1).far.has_value());
-  EXPECT_THAT(said(other, "104:REPCA1:RemoteBus=999,FromBus=102,ToBus=101,Circuit=1"),
-              ::testing::ElementsAre(
-                  ::testing::HasSubstr("no bus 999 for REPCA1 of plant 104 at --attach 104:REPCA1:"),
-                  ::testing::HasSubstr("no branch 102 - 101, circuit 1 for REPCA1 of plant 104")));
+  EXPECT_THAT(
+      said(other, "104:REPCA1:RemoteBus=999,FromBus=102,ToBus=101,Circuit=1"),
+      ::testing::ElementsAre(
+          ::testing::HasSubstr(
+              "no bus 999 for the remote measurement of REPCA1 at plant 104 at --attach 104:REPCA1:"),
+          ::testing::HasSubstr("no branch 102 - 101, circuit 1 for the remote measurement of REPCA1")));
 }
 
 }  // namespace

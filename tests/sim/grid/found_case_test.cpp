@@ -145,7 +145,7 @@ TEST(FoundCase, DropsRefusedRecordsOnRequest) {
   CaseOptions options;
   options.drop_refused = true;
   const Grid grid = make({}, dyr, options);
-  EXPECT_THAT(places(grid, "cannot take"), ::testing::SizeIs(3));
+  EXPECT_THAT(places(grid, "does not accept"), ::testing::SizeIs(3));
   for (const plant::Plant& p : grid.plants) EXPECT_TRUE(p.controls.empty());
   EXPECT_EQ(grid.plants[1].machine.p[0], 3.0);
 }

@@ -97,7 +97,7 @@ TEST(StaticVar, TheOtherFormNamesTheShunt) {
   const Grid grid = load_from(with_shunt(), kPlants + t3);
   ASSERT_EQ(grid.loads.size(), 1u);
   EXPECT_EQ(parameter_of(grid, "Bmin"), -0.3);
-  EXPECT_TRUE(says(grid, "mechanically switched shunts stay as they are; Flag2 = 1: the slope is Xc1"));
+  EXPECT_TRUE(says(grid, "mechanically switched shunts are not switched; Flag2 = 1: the slope is Xc1"));
   const Grid other = load_from(with_shunt(), kPlants + "103 'SVSMO1T3' '7' 103 0 0" + kEight + kRest);
   EXPECT_TRUE(other.loads.empty());
   EXPECT_TRUE(says(other, "models of switched shunts out of service are left out"));

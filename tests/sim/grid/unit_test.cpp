@@ -205,7 +205,7 @@ TEST_F(UnitTest, AsksForTheMeasuringPoint_WhenAnotherUnitSharesTheTransformer) {
   c.id = "1";
   c.measured_at = 103;
   EXPECT_THAT(complaints(c),
-              ::testing::AllOf(HasSubstr("generator '2' at bus 102 too"), HasSubstr("--point")));
+              ::testing::AllOf(HasSubstr("second generator, '2', at bus 102"), HasSubstr("--point")));
 }
 
 TEST_F(UnitTest, IsWrittenAsRecordsThatReadBack) {
