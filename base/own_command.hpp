@@ -15,8 +15,13 @@
 
 namespace swingbank::jobs {
 
-/// Returns the folder of the running executable.
+/// Folder of the commands if the running executable is another program, such as Python; empty: the
+/// executable's.
+inline std::filesystem::path commands_folder;
+
+/// Returns the folder of the commands of this build.
 inline std::filesystem::path own_folder() {
+  if (!commands_folder.empty()) return commands_folder;
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 

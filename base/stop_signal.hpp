@@ -52,6 +52,34 @@ inline void interrupt_on_stop_signals() {
 }
 /// Returns whether the current work must end.
 inline bool interruption_asked() { return detail::interruptible != 0 && stop_asked(); }
+/// Asks the current work to end at its next interruption point, as a stop signal does.
+inline void ask_to_stop() { detail::stop_asked = 1; }
+
+/// Makes the work of its lifetime interruptible: Ctrl-C ends it at its next interruption point. For a host
+/// program with handlers of its own, such as Python: the destructor restores them. A thread other than the
+/// main one leaves the handler unchanged.
+class InterruptOnSigint {
+ public:
+  InterruptOnSigint() {
+    if (detail::interruptible == 0) detail::stop_asked = 0;
+    detail::interruptible = detail::interruptible + 1;
+    if (::gettid() != ::getpid()) return;
+    struct sigaction own = {};
+    own.sa_handler = [](int) { ask_to_stop(); };
+    installed_ = ::sigaction(SIGINT, &own, &before_) == 0;
+  }
+  InterruptOnSigint(const InterruptOnSigint&) = delete;
+  InterruptOnSigint& operator=(const InterruptOnSigint&) = delete;
+  ~InterruptOnSigint() {
+    if (installed_) ::sigaction(SIGINT, &before_, nullptr);
+    detail::interruptible = detail::interruptible - 1;
+    if (detail::interruptible == 0) detail::stop_asked = 0;
+  }
+
+ private:
+  bool installed_ = false;
+  struct sigaction before_ = {};
+};
 /// Runs `work` until it ends or is interrupted. Values that it has assigned before an interruption remain.
 template <class Work>
 void until_interrupted(Work work) {

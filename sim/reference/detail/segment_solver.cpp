@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/stop_signal.hpp"
+
 namespace swingbank::sim::reference {
 
 void require(int flag, const char* call) {
@@ -166,6 +168,7 @@ SegmentSolver::SegmentSolver(SUNContext context, const ReferenceSystem& system, 
 SegmentSolver::~SegmentSolver() = default;
 
 bool SegmentSolver::advance(double t) {
+  interruption_point();
   return IDASolve(parts_->ida.get(), t, &reached_, parts_->y, parts_->yp, IDA_NORMAL) >= 0;
 }
 
