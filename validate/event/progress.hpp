@@ -2,6 +2,7 @@
 // Progress of long analyses: the current phase and its completed share.
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace swingbank::validate::event {
 
@@ -38,6 +39,9 @@ enum class Phase {
   pair_crossings,      ///< pairs of effects from two pairs
   pair_unseen_events,  ///< hold-out tests
 };
+
+/// Returns the user's words for a phase.
+std::string_view phase_words(Phase phase);
 
 /// Callback with the phase, the current item (may be empty), and the numbers of completed and of all items.
 /// May be empty.
