@@ -3,14 +3,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "base/read_apart.hpp"
 #include "base/sha256.hpp"
-#include "mpi/store/hdf5_file.hpp"
+#include "mpi/store/hdf5_apart.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/formats.hpp"
 
 namespace swingbank::validate::record {
 namespace {
+
+/// Arrays and attributes of a run, read in a separate process. This one needs no HDF5, which a Python process
+/// may hold as another library.
+class RunContents {
+ public:
+  using Array = mpi::store::h5::Contents::Array;
+  using Texts = std::vector<std::string>;
+  using Reals = std::vector<double>;
+
+  explicit RunContents(const std::filesystem::path& file)
+      : file_(file),
+        contents_(mpi::store::h5::Contents::parse(
+            read_apart("hdf5", file,
+                       {"f8/time", "f8/records", "text@format", "text@plant_names", "text@channel_names",
+                        "text@channel_units", "real@plant_base_mva"}),
+            file)) {
+    if (get<Texts>("@format") != Texts{"swingbank-run-1"}) refuse();
+  }
+  /// Returns an attribute, or an array with its shape.
+  template <class T>
+  [[nodiscard]] const T& get(const std::string& name) const {
+    const auto* value = contents_.find(name);
+    const T* found = value == nullptr ? nullptr : std::get_if<T>(value);
+    if (found == nullptr) refuse();
+    return *found;
+  }
+  /// Returns the values of an array.
+  [[nodiscard]] std::vector<double> values(const std::string& name) const {
+    const Array& a = get<Array>(name);
+    if (a.kind != "f8") refuse();
+    std::vector<double> all(a.bytes.size() / sizeof(double));
+    if (!all.empty()) std::memcpy(all.data(), a.bytes.data(), all.size() * sizeof(double));
+    return all;
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    throw InputError({"no run", file_.string(), "HDF5 records are runs written by swingbank simulate",
+                      "give such a file, CSV or COMTRADE"});
+  }
+  std::filesystem::path file_;
+  mpi::store::h5::Contents contents_;
+};
 
 /// Returns the requested plant, or the only one.
 std::size_t choose_plant(const std::vector<std::string>& plants, const std::string& asked,
@@ -31,19 +76,12 @@ std::size_t choose_plant(const std::vector<std::string>& plants, const std::stri
 Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& base,
                         const ReadOptions& options) {
   const std::string bytes = read_bytes(file);
-  const mpi::store::h5::File h = mpi::store::h5::File::open_apart(
-      file, {"f8/time", "f8/records", "text@format", "text@plant_names", "text@channel_names",
-             "text@channel_units", "real@plant_base_mva"});
-  if (!h.has("/time") || !h.has("/records") || !h.has_attribute("format") ||
-      h.text_attribute("format") != "swingbank-run-1")
-    throw InputError({"no run", file.string(), "HDF5 records are runs written by swingbank simulate",
-                      "give such a file, CSV or COMTRADE"});
-  const auto plants = h.texts_attribute("plant_names"), channels = h.texts_attribute("channel_names");
-  const auto mva = h.reals_attribute("plant_base_mva");
-  std::vector<double> time, values;
-  h.read("/time", time);
-  h.read("/records", values);
-  const mpi::store::h5::Shape shape = h.shape("/records");
+  const RunContents run(file);
+  const auto &plants = run.get<RunContents::Texts>("@plant_names"),
+             &channels = run.get<RunContents::Texts>("@channel_names");
+  const auto& mva = run.get<RunContents::Reals>("@plant_base_mva");
+  const std::vector<double> time = run.values("/time"), values = run.values("/records");
+  const auto& shape = run.get<RunContents::Array>("/records").shape;
   if (shape.size() != 3 || shape[0] != plants.size() || shape[1] != channels.size() ||
       shape[2] != time.size() || mva.size() != plants.size() || plants.empty())
     throw InputError({"a run whose parts do not fit", file.string(),
@@ -56,7 +94,7 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   raw.about.terminal = plants[plant];
   raw.about.sha256 = sha256(bytes);
   std::vector<Heading> headings{{"t_s", ColumnMeaning{Quantity::time, Unit::second, false, {}, false}}};
-  const auto units = h.texts_attribute("channel_units");
+  const auto& units = run.get<RunContents::Texts>("@channel_units");
   for (std::size_t c = 0; c < channels.size(); ++c)
     headings.push_back({channels[c], column_meaning(channels[c], c < units.size() ? units[c] : "")});
   Problems problems;
