@@ -23,8 +23,9 @@ install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
 # README.md's relative links lead to the same paths in the installation.
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY python/notebooks DESTINATION ${CMAKE_INSTALL_DOCDIR}/python)
 file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} base/README.md cmake/README.md
-  configs/README.md jobs/README.md mpi/README.md packaging/README.md research/README.md sim/README.md slurm/README.md tests/README.md train/README.md validate/README.md)
+  configs/README.md jobs/README.md mpi/README.md packaging/README.md python/README.md research/README.md sim/README.md slurm/README.md tests/README.md train/README.md validate/README.md)
 foreach(readme ${readmes})
   cmake_path(GET readme PARENT_PATH folder)
   install(FILES ${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})

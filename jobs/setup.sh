@@ -92,7 +92,7 @@ build_all() {
 # build_level NAME: the programs for one instruction set, in a separate folder
 build_level() {
   local folder=build/portable-$1 log=build/portable-$1-configure.log
-  if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF >"$log" 2>&1; then
+  if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_PYTHON=OFF >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     echo "configuration failed at instruction set $1 (log $source_folder/$log): see the lines above" >&2
     return 1

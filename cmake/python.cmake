@@ -1,0 +1,15 @@
+# Interpreter and pybind11 of the Python package. SWINGBANK_PYTHON_FOUND: the package is built.
+set(SWINGBANK_PYTHON_FOUND FALSE)
+if(SWINGBANK_PYTHON)
+  # Debian's interpreter, for which the packages of packages.txt are installed, not another one of the PATH.
+  if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE)
+    set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Interpreter of the Python package")
+  endif()
+  find_package(Python COMPONENTS Interpreter Development.Module)
+  find_package(pybind11 CONFIG QUIET)
+  if(Python_Development.Module_FOUND AND pybind11_FOUND)
+    set(SWINGBANK_PYTHON_FOUND TRUE)
+  else()
+    message(STATUS "Python package: not built (no python3-dev or pybind11-dev: apt install python3-dev pybind11-dev)")
+  endif()
+endif()

@@ -1,0 +1,176 @@
+// Python's Calibration and Addition: fits of a plant to records, without and with an added effect.
+#include <fmt/format.h>
+
+#include "base/json.hpp"
+#include "python/src/fitted.hpp"
+#include "python/src/interruptible.hpp"
+#include "python/src/native.hpp"
+#include "validate/add/add.hpp"
+#include "validate/add/report.hpp"
+#include "validate/calibrate/report.hpp"
+#include "validate/event/component_model.hpp"
+
+namespace swingbank::python {
+namespace {
+
+using calibrate::Calibration, add::Addition;
+
+/// What a fit takes from Python.
+struct FitArguments {
+  std::vector<std::string> hold_out, fixed;
+  double prior_sd = thresholds::parameters.prior_sd;
+  bool power_only = false;
+};
+
+calibrate::CalibrateOptions options_of(const FitArguments& a, const std::shared_ptr<Callback>& callback) {
+  calibrate::CalibrateOptions options;
+  options.held_out = a.hold_out;
+  options.fixed = a.fixed;
+  options.prior_sd = a.prior_sd;
+  options.events.measured_states = !a.power_only;
+  options.progress = progress_of(callback);
+  return options;
+}
+
+std::shared_ptr<Plant> plant_of(const Plant& model) {
+  return std::make_shared<Plant>(event::whole_model(model));
+}
+
+std::vector<fit::FittedParameter> parameters_of(const Calibration& c) {
+  std::vector<fit::FittedParameter> all;
+  for (const auto& p : c.parameters) all.push_back(p.fit);
+  return all;
+}
+
+bool is_adequate(const Calibration& c) { return c.adequacy != calibrate::Adequacy::structure_poor; }
+
+py::array_t<double> correlation(const Calibration& c) {
+  py::array_t<double> copy({c.correlation.rows(), c.correlation.cols()});
+  auto to = copy.mutable_unchecked<2>();
+  for (py::ssize_t i = 0; i < to.shape(0); ++i)
+    for (py::ssize_t k = 0; k < to.shape(1); ++k) to(i, k) = c.correlation(i, k);
+  return copy;
+}
+
+std::string html_of(const Calibration& c) {
+  return "<div>" + verdict_html(c.sentence, is_adequate(c)) + table_html(calibrate::parameter_table(c)) +
+         table_html(calibrate::event_table(c.events)) + "</div>";
+}
+
+std::string html_of(const Addition& a) {
+  return "<div>" + verdict_html(a.sentence, a.adequate && a.earns) + parameters_html(a.parameters) +
+         table_html(add::addition_table(a)) + "</div>";
+}
+
+void bind_calibration(py::module_& module) {
+  py::class_<Calibration, std::shared_ptr<Calibration>>(module, "Calibration",
+                                                        "Parameters of a plant fitted to records.")
+      .def_property_readonly(
+          "plant", [](const Calibration& c) { return plant_of(c.model); }, "Plant with the fitted values.")
+      .def_property_readonly("adequate", &is_adequate,
+                             "Whether only noise remains; False: a component is missing, and the fitted\n"
+                             "values are biased.")
+      .def_readonly("sentence", &Calibration::sentence, "Verdict in words.")
+      .def_property_readonly("parameters", &parameters_of, "Fitted parameters, a list of FittedParameter.")
+      .def_property_readonly("correlation", &correlation,
+                             "Correlation of the estimates, shape (parameters, parameters) [-].")
+      .def_readonly("before", &Calibration::before, "Reduced chi-square before the fit [-].")
+      .def_readonly("after", &Calibration::after, "Reduced chi-square after the fit [-].")
+      .def_readonly("seconds", &Calibration::seconds, "Processing time [s].")
+      .def(
+          "to_dict",
+          [](const Calibration& c) { return from_json(json_text(calibrate::calibration_json(c))); },
+          "Returns the content of calibrate.json.")
+      .def("_repr_html_", [](const Calibration& c) { return html_of(c); })
+      .def("__str__", [](const Calibration& c) { return calibrate::terminal_report(c); })
+      .def("__repr__", [](const Calibration& c) { return "<swingbank.Calibration: " + c.sentence + ">"; });
+}
+
+void bind_addition(py::module_& module) {
+  py::class_<Addition, std::shared_ptr<Addition>>(module, "Addition",
+                                                  "An effect added to a plant and fitted.")
+      .def_property_readonly(
+          "plant", [](const Addition& a) { return plant_of(a.model); },
+          "Plant with the effect and the fitted values.")
+      .def_readonly("adequate", &Addition::adequate, "Whether only noise remains in every event.")
+      .def_readonly("accepted", &Addition::earns,
+                    "Whether the evidence is strong and no held-out event is worse with the effect.")
+      .def_readonly("evidence", &Addition::evidence, "2 ln(Bayes factor) over the refit without it [-].")
+      .def_readonly("sentence", &Addition::sentence, "Result in words.")
+      .def_readonly("parameters", &Addition::parameters,
+                    "Fitted parameters, a list of FittedParameter, those of the effect first.")
+      .def_readonly("own", &Addition::own, "Number of parameters of the effect.")
+      .def_readonly("seconds", &Addition::seconds, "Processing time [s].")
+      .def(
+          "to_dict", [](const Addition& a) { return from_json(json_text(add::addition_json(a))); },
+          "Returns the content of add.json.")
+      .def("_repr_html_", [](const Addition& a) { return html_of(a); })
+      .def("__str__", [](const Addition& a) { return add::terminal_report(a); })
+      .def("__repr__", [](const Addition& a) { return "<swingbank.Addition: " + a.sentence + ">"; });
+}
+
+std::shared_ptr<Calibration> calibrate_plant(const Plant& self, const py::object& records,
+                                             const FitArguments& arguments, const py::object& progress) {
+  const auto samples = samples_of(records_of(self, records), false);
+  const auto callback = std::make_shared<Callback>(progress);
+  return without_lock(
+      [&] {
+        return std::make_shared<Calibration>(
+            calibrate::calibrate(plant::as_submitted(self), samples, options_of(arguments, callback)));
+      },
+      {callback});
+}
+
+std::shared_ptr<Addition> add_to_plant(const Plant& self, const std::string& effect,
+                                       const py::object& records, const FitArguments& arguments,
+                                       const py::object& progress) {
+  const auto samples = samples_of(records_of(self, records), false);
+  const auto callback = std::make_shared<Callback>(progress);
+  return without_lock(
+      [&] {
+        const Plant model = plant::as_submitted(self);
+        add::AddOptions options;
+        options.calibrate = options_of(arguments, callback);
+        return std::make_shared<Addition>(
+            add::add_effect(model, add::find_hypothesis(model, effect), samples, options));
+      },
+      {callback});
+}
+
+}  // namespace
+
+void bind_fits(py::module_& module, PlantClass& of) {
+  bind_fitted(module);
+  bind_calibration(module);
+  bind_addition(module);
+  constexpr double prior = thresholds::parameters.prior_sd;
+  of.def(
+        "calibrate",
+        [](const Plant& self, const py::object& records, const std::vector<std::string>& hold_out,
+           const std::vector<std::string>& fix, double prior_sd, bool power_only,
+           const py::object& progress) {
+          return calibrate_plant(self, records, {hold_out, fix, prior_sd, power_only}, progress);
+        },
+        py::arg("records"), py::kw_only(), py::arg("hold_out") = std::vector<std::string>{},
+        py::arg("fix") = std::vector<std::string>{}, py::arg("prior_sd") = prior,
+        py::arg("power_only") = false, py::arg("progress") = py::none(),
+        "Fits the plant's parameters to records (or their paths), as `swingbank calibrate` does.\n\n"
+        "`hold_out`: names of records excluded from the fit; `fix`: parameters that keep their values;\n"
+        "`prior_sd`: prior standard deviation of the parameters, relative; `power_only`: the recorded\n"
+        "speed, Efd and Ifd are not compared; `progress`: called as progress(phase, item, done, total).\n"
+        "Ctrl-C, or an exception of `progress`, ends the fit.")
+      .def(
+          "add",
+          [](const Plant& self, const std::string& effect, const py::object& records,
+             const std::vector<std::string>& hold_out, double prior_sd, bool power_only,
+             const py::object& progress) {
+            return add_to_plant(self, effect, records, {hold_out, {}, prior_sd, power_only}, progress);
+          },
+          py::arg("effect"), py::arg("records"), py::kw_only(),
+          py::arg("hold_out") = std::vector<std::string>{}, py::arg("prior_sd") = prior,
+          py::arg("power_only") = false, py::arg("progress") = py::none(),
+          "Adds an effect (\"SEXS\", \"GENROU:S10,S12\") and fits it, as `swingbank add` does.\n\n"
+          "Arguments as for `calibrate`.");
+}
+
+}  // namespace swingbank::python

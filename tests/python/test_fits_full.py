@@ -1,0 +1,74 @@
+"""Calibration, addition and diagnosis: the same figures as the commands."""
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+from case import PLANT, RECORDS, run_json
+
+import swingbank
+
+# Wall-clock times differ between two runs; the other keys are added by the commands.
+CLOCKS = ("seconds", "command", "provenance", "records", "fitness", "errors", "statistically_complete",
+          "standard_values", "format")
+
+
+def figures(content):
+    return {key: value for key, value in content.items() if key not in CLOCKS}
+
+
+class Fits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.plant = swingbank.Plant(PLANT)
+
+    def command(self, *words):
+        with tempfile.TemporaryDirectory() as folder:
+            return run_json(*words, "--model", PLANT, "--records", *RECORDS, "--power-only", "--json", "--out",
+                            pathlib.Path(folder) / "out", codes=(0, 3, 4, 5))
+
+    def test_calibration(self):
+        said = self.command("calibrate", "--hold-out", "avr_ev4.csv")
+        phases = set()
+        got = self.plant.calibrate(RECORDS, hold_out=["avr_ev4.csv"], power_only=True,
+                                   progress=lambda phase, *_: phases.add(phase))
+        self.assertEqual(figures(got.to_dict()), figures(said))
+        self.assertFalse(got.adequate)
+        self.assertIn("fit of the parameters", phases)
+        self.assertEqual(got.correlation.shape, (len(got.parameters),) * 2)
+        np.testing.assert_allclose(np.diag(got.correlation), 1.0)
+        self.assertEqual(got.plant[got.parameters[0].name], got.parameters[0].value)
+        self.assertIn(got.parameters[0].name, got._repr_html_())
+
+    def test_addition(self):
+        said = self.command("add", "SEXS", "--hold-out", "avr_ev4.csv")
+        got = self.plant.add("SEXS", RECORDS, hold_out=["avr_ev4.csv"], power_only=True)
+        self.assertEqual(figures(got.to_dict()), figures(said))
+        self.assertTrue(got.accepted and got.adequate)
+        k = next(p for p in got.parameters if p.name == "SEXS.K")
+        self.assertTrue(k.low < 100 < k.high)  # the hidden exciter's value
+        self.assertTrue(got.plant.compare(RECORDS, power_only=True).complete)
+        self.assertIn("SEXS", got._repr_html_())
+        with self.assertRaises(swingbank.InputError):
+            self.plant.add("NONE", RECORDS)
+
+    def test_diagnosis(self):
+        said = self.command("diagnose")
+        phases, sentences = set(), []
+        got = self.plant.diagnose(RECORDS, power_only=True, progress=lambda phase, *_: phases.add(phase),
+                                  preliminary=sentences.append)
+        self.assertEqual(figures(got.to_dict()), figures(said))
+        self.assertEqual((got.effects[0], got.side), ("SEXS", "excitation"))
+        self.assertGreater(len(phases), 4)
+        self.assertTrue(sentences)
+        self.assertEqual(got.hypotheses[0]["name"], "SEXS")
+        self.assertTrue(got.hypotheses[0]["accepted"])
+        self.assertAlmostEqual(sum(got.probabilities.values()), 1.0, places=6)
+        t, value = got.field["avr_ev1.csv"]
+        self.assertEqual(t.shape, value.shape)
+        self.assertIn("<html", got.to_html())
+        self.assertIn("SEXS", got._repr_html_())
+
+
+if __name__ == "__main__":
+    unittest.main()
