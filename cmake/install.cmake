@@ -31,5 +31,5 @@ foreach(readme ${readmes})
   install(FILES ${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
 # The chart library is part of programs and reports; its licence requires this notice.
-install(FILES ${DYGRAPHS_COPYRIGHT} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME dygraphs.copyright)
+install(FILES validate/report/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME uplot.copyright)
 swingbank_install_package()

@@ -117,8 +117,9 @@ function(swingbank_command_tables)
   endforeach()
 endfunction()
 
-# swingbank_embed(out files...): writes a source that contains the files, and page_file(), which finds them by name.
-function(swingbank_embed out)
+# swingbank_embed(target header function files...): makes files part of a target. `function` is declared by the header,
+# with its type, and returns the name and the content of a file by its name.
+function(swingbank_embed target header function)
   set(places "")
   set(symbols "")
   set(names "")
@@ -129,18 +130,17 @@ function(swingbank_embed out)
     string(APPEND symbols "extern \"C\" const char ${symbol}[], ${symbol}_end[];\n")
     string(APPEND names "  if (name == \"${name}\") return {name, {${symbol}, static_cast<std::size_t>(${symbol}_end - ${symbol})}};\n")
   endforeach()
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}_files.cpp)
   file(CONFIGURE OUTPUT ${out} CONTENT "// Made by swingbank_embed of cmake/targets.cmake.
-#include \"jobs/page_server.hpp\"
+#include \"@header@\"
 
 asm(\".section .rodata\\n\"
 @places@    \".previous\\n\");
 @symbols@
-namespace swingbank::jobs {
-
-PageFile page_file(std::string_view name) {
+@function@(std::string_view name) {
 @names@  return {};
 }
-
-}  // namespace swingbank::jobs
 " @ONLY)
+  set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${ARGN}")
+  target_sources(${target} PRIVATE ${out})
 endfunction()

@@ -61,6 +61,10 @@ compare::CommandPage page_of(const add::Addition& added) {
   compare::CommandPage page;
   page.complete = added.adequate && added.earns;
   page.sentence = added.sentence;
+  page.headline = fmt::format("{} {}", added.hypothesis.name,
+                              !added.earns     ? "does not improve the model"
+                              : added.adequate ? "added: only noise remains"
+                                               : "added: errors remain");
   say_on(page, added);
   return page;
 }
@@ -68,6 +72,8 @@ compare::CommandPage page_of(const add::Completion& c) {
   compare::CommandPage page;
   page.complete = c.adequate;
   page.sentence = c.sentence;
+  page.headline = fmt::format("{} {} added: {}", c.added.size(), c.added.size() == 1 ? "effect" : "effects",
+                              c.adequate ? "only noise remains" : "errors remain");
   for (const auto& one : c.added) say_on(page, one);
   for (const auto& r : c.removed)
     page.tried.push_back(fmt::format("{} removed again: evidence {:.1f}.", r.effect, r.evidence));

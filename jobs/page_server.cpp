@@ -292,13 +292,14 @@ void PageServer::State::routes() {
   const std::string at = "/" + token;
   const auto api = [&](const std::string& name) { return at + "/api/" + name; };
   const auto file = [](const std::string& name, Response& out) {
-    const PageFile f = page_file(name);
-    if (f.content.empty()) {
+    report::Asset f = page_file(name);
+    if (f.text.empty()) f = report::asset(name);
+    if (f.text.empty()) {
       out.status = 404;
       return;
     }
     const auto is = [&](const char* end) { return name.ends_with(end); };
-    out.set_content(f.content.data(), f.content.size(),
+    out.set_content(f.text.data(), f.text.size(),
                     is(".js")    ? "text/javascript"
                     : is(".css") ? "text/css"
                     : is(".svg") ? "image/svg+xml"

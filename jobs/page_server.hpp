@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "jobs/fit_forks.hpp"
 #include "validate/live/session.hpp"
+#include "validate/report/assets.hpp"
 
 namespace swingbank::jobs {
 
@@ -42,11 +43,7 @@ class PageServer {
   std::unique_ptr<State> state_;
 };
 
-/// File of the page, part of the binary.
-struct PageFile {
-  std::string_view name, content;
-};
-/// Returns the file of that name; content is empty if there is none.
-PageFile page_file(std::string_view name);
+/// Returns the page's file of that name; its text is empty if there is none.
+validate::report::Asset page_file(std::string_view name);
 
 }  // namespace swingbank::jobs

@@ -1,11 +1,8 @@
 // Curves of one event: measured, submitted model and this model, with cursors that move together.
-/* global uPlot */
-import { by, digits, make } from "./format.js";
+/* global curves, uPlot */
+import { by, make } from "./format.js";
 
-const colour = (name) =>
-  getComputedStyle(document.documentElement)
-    .getPropertyValue("--" + name)
-    .trim();
+const { colour } = curves;
 const sync = uPlot.sync("event");
 const charts = [];
 let moving = 0; // number of the present animation; another number ends it
@@ -38,53 +35,20 @@ function between(u, t, low, high) {
   ctx.restore();
 }
 
-/** Shades the failing window and the fault. */
-function shades(of) {
-  const band = (u, from, to, fill) => {
-    const a = Math.max(u.valToPos(from, "x", true), u.bbox.left);
-    const b = Math.min(u.valToPos(to, "x", true), u.bbox.left + u.bbox.width);
-    if (b <= a) return;
-    u.ctx.save();
-    u.ctx.fillStyle = fill;
-    u.ctx.fillRect(a, u.bbox.top, b - a, u.bbox.height);
-    u.ctx.restore();
-  };
-  return {
-    hooks: {
-      drawClear: (u) => {
-        if (of.window) band(u, of.window[0], of.window[1], colour("shade"));
-        if (of.range) between(u, of.data[0], of.range[0], of.range[1]);
-        if (of.fault) band(u, of.fault[0], of.fault[1], colour("fault"));
-      },
-    },
-  };
-}
-
+const series = [
+  { name: "measured", ink: "measured" },
+  { name: "submitted", ink: "ghost" },
+  { name: "this model", ink: "model" },
+];
 function chart(place, of, height) {
-  const value = (u, v) => (v === null || v === undefined ? "–" : digits(v) + " " + of.unit);
-  const axis = {
-    stroke: colour("soft"),
-    grid: { stroke: colour("line"), width: 1 },
-    ticks: { stroke: colour("line") },
-  };
-  const options = {
+  of.series = series;
+  const options = curves.options(of, {
     title: `${of.name} [${of.unit}]`,
     width: place.clientWidth || 600,
     height,
-    cursor: { sync: { key: sync.key }, drag: { x: true, y: false } },
-    scales: { x: { time: false } },
-    axes: [
-      { ...axis, size: 34 },
-      { ...axis, size: 56 },
-    ],
-    series: [
-      { label: "t", value: (u, v) => (v === null || v === undefined ? "–" : v.toFixed(3) + " s") },
-      { label: "measured", stroke: colour("measured"), width: 3, value, points: { show: false } },
-      { label: "submitted", stroke: colour("ghost"), width: 1.5, dash: [6, 4], value, points: { show: false } },
-      { label: "this model", stroke: colour("model"), width: 2, value, points: { show: false } },
-    ],
-    plugins: [shades(of)],
-  };
+    group: sync.key,
+    below: (u) => of.range && between(u, of.data[0], of.range[0], of.range[1]),
+  });
   const box = make("div", { className: "chart" });
   place.append(box);
   const plot = new uPlot(options, of.data, box);

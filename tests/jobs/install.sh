@@ -16,7 +16,7 @@ others=$(find "$prefix/bin" \( -not -name 'swingbank*' -o -name 'swingbank_resea
 [[ -z $others ]] || fail "no commands, but installed: $others"
 cmp <(cd "$SWINGBANK_SOURCE/configs" && find . -type f | sort) <(cd "$prefix/share/swingbank/configs" && find . -type f | sort) ||
   fail "the installed configs are not those of the source tree"
-for file in README.md LICENSE CHANGELOG.md docs/reference/formats.md validate/README.md dygraphs.copyright; do
+for file in README.md LICENSE CHANGELOG.md docs/reference/formats.md validate/README.md uplot.copyright; do
   [[ -s $prefix/share/doc/swingbank/$file ]] || fail "no share/doc/swingbank/$file"
 done
 

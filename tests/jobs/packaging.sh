@@ -24,7 +24,7 @@ import re, sys, types
 root = sys.argv[1]
 said = {"depends_on": [], "variant": [], "version": []}
 class Spec:
-    variants = {"arch": types.SimpleNamespace(value="native"), "dygraphs": types.SimpleNamespace(value="/charts")}
+    variants = {"arch": types.SimpleNamespace(value="native")}
 class CMakePackage:
     spec = Spec()
     def define(self, name, value): return (name, value)
@@ -54,7 +54,7 @@ cmake = "".join(open(f"{root}/{f}").read() for f in ("CMakeLists.txt", "validate
 options = [name for name, _ in space["Swingbank"]().cmake_args()]
 for option in options:
     assert option in cmake, f"CMake has no {option}"
-assert {"arch", "train", "dygraphs"} == set(said["variant"]) and said["version"], said
+assert {"arch", "train"} == set(said["variant"]) and said["version"], said
 PYTHON
 echo "ok: Spack package"
 

@@ -32,6 +32,7 @@ import re, sys
 page, width, media = open(sys.argv[1]).read(), sys.argv[3], sys.argv[4]
 page = re.sub(r"(<td class=.cell[^>]*>)[^<]* of [^<]*", r"\1-11.06 of ±5 % *", page)  # the widest possible value
 page = page.replace(media, "@media all", 1).replace("</main>", """</main><script>addEventListener('load', () => {
+  document.querySelectorAll('details').forEach((d) => d.open = true);
   document.body.style.width = '%spx';
   const width = document.querySelector('main').clientWidth - 2 * parseFloat(getComputedStyle(document.querySelector('main')).paddingLeft);
   document.body.innerText = 'over:' + [...document.querySelectorAll('table')].map((t, i) => t.scrollWidth > width + 1 ? i : '').join(' ') + ';';
@@ -41,7 +42,7 @@ PYTHON
     chromium --headless --no-sandbox --disable-gpu --window-size=1000,800 --dump-dom "file://$work/measured.html" 2>/dev/null |
       grep -o 'over:[0-9 ]*;'
   }
-  [[ $(too_wide 390 '@media(max-width:600px)') =~ ^over:[^0]*\;$ ]] || fail "the fitness table is wider than a phone: $(too_wide 390 '@media(max-width:600px)')"
+  [[ $(too_wide 390 '@media (max-width: 600px)') =~ ^over:[^0]*\;$ ]] || fail "the fitness table is wider than a phone: $(too_wide 390 '@media (max-width: 600px)')"
   [[ $(too_wide 718 '@media print') =~ ^over:\ *\;$ ]] || fail "wider than A4: $(too_wide 718 '@media print')"
   # in print a long table continues on the next page, a short one stays whole, and a heading stays with its content
   python3 - "$work/out/report.html" "$work/printed.html" <<'PYTHON'

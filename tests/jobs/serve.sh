@@ -21,6 +21,7 @@ expect 200 "$url"
 grep -q 'main.js' content || fail "no page"
 expect 200 "${url}page/main.js"
 expect 200 "${url}page/uPlot.iife.min.js"
+expect 200 "${url}page/curves.js"
 expect 200 "${url}api/open" -d '{}'
 session=$(python3 -c 'import json; print(json.load(open("content"))["session"])')
 [[ $session =~ ^[0-9a-f]{32}$ ]] || fail "no session: $session"

@@ -47,7 +47,7 @@ sim/core/effect.cpp validate/record/record.hpp
 sim/batch/batch.cpp validate/fit/fit.hpp
 mpi/store/dataset.cpp mpi/ranks/generate.hpp
 validate/record/record.cpp validate/fit/fit.hpp
-validate/report/page.cpp validate/diagnose/diagnose.hpp
+validate/report/html.cpp validate/diagnose/diagnose.hpp
 validate/diagnose/diagnose.cpp research/blind/score/score.hpp
 validate/calibrate/calibrate.cpp validate/fit/detail/cost.hpp
 FORBIDDEN

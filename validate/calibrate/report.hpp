@@ -5,7 +5,7 @@
 
 #include "base/json.hpp"
 #include "validate/calibrate/calibrate.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::calibrate {
 

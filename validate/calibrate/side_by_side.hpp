@@ -10,7 +10,7 @@
 #include "validate/calibrate/calibrate.hpp"
 #include "validate/calibrate/curve_fit.hpp"
 #include "validate/calibrate/network.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::calibrate {
 

@@ -20,9 +20,18 @@ double shade(const TimeFrequencyBin& bin) {
   return std::clamp(0.35 + 0.65 * std::log(bin.normalised / bin.bound) / std::log(25.0), 0.0, 1.0);
 }
 
-report::Cell map_cell(const TimeFrequencyBin& bin) {
+/// Returns a cell of the map. Its hint: the error in units, in % of the nominal value, and against the bound.
+report::Cell map_cell(const LabelledMap& m, const std::string& window, std::string_view band,
+                      const TimeFrequencyBin& bin) {
   if (bin.empty()) return {"–"};
-  return {times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin)};
+  report::Cell cell(times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin));
+  const double error = bin.rms * m.scale;
+  cell.hint = fmt::format("{} of {}, {}, {}: RMS {:.3g} {}", m.channel, m.event, window, band, error, m.unit);
+  if (m.size > 0)
+    cell.hint += fmt::format(", {:.2g} % of {:.4g} {}", 100 * bin.rms / m.size, m.size * m.scale,
+                             m.unit == "MW" || m.unit == "Mvar" ? "MVA" : m.unit);
+  cell.hint += fmt::format("; {} noise, bound {}", times_noise(bin.normalised), times_noise(bin.bound));
+  return cell;
 }
 
 std::vector<std::string> columns(bool with_event) {
@@ -33,21 +42,38 @@ std::vector<std::string> columns(bool with_event) {
   return names;
 }
 
-void add_row(report::Table& table, const LabelledMap& m, const std::string& window, const ErrorMap::Row& row,
-             bool with_event) {
+/// Row of a map; each bin has its own event in `of`.
+struct MapRow {
+  const TimeFrequencyBin* bin = nullptr;
+  const LabelledMap* of = nullptr;
+};
+void add_row(report::Table& table, const LabelledMap& m, const std::string& window,
+             const std::vector<MapRow>& row, bool with_event) {
   std::vector<report::Cell> cells;
   if (with_event) cells.emplace_back(m.event);
   cells.emplace_back(m.channel);
   cells.emplace_back(window);
-  cells.emplace_back(row.all.empty() ? "–" : fmt::format("{:.3g} {}", row.all.rms * m.scale, m.unit));
-  cells.push_back(map_cell(row.all));
-  for (const TimeFrequencyBin& bin : row.bands) cells.push_back(map_cell(bin));
+  const MapRow& all = row.front();
+  cells.emplace_back(!all.bin || all.bin->empty() ? "–"
+                                                  : fmt::format("{:.3g} {}", all.bin->rms * m.scale, m.unit));
+  for (std::size_t k = 0; k < row.size(); ++k)
+    cells.push_back(row[k].bin ? map_cell(*row[k].of, window,
+                                          k ? error_bands()[k - 1].name : "all frequencies", *row[k].bin)
+                               : report::Cell("–"));
   table.rows.push_back(std::move(cells));
 }
 
-void keep_worse(TimeFrequencyBin& worst, const TimeFrequencyBin& bin) {
-  if (bin.empty()) return;
-  if (worst.empty() || bin.normalised / bin.bound > worst.normalised / worst.bound) worst = bin;
+/// Returns the bins of a window: all frequencies, then the bands.
+std::vector<MapRow> bins_of(const LabelledMap& m, std::size_t window) {
+  std::vector<MapRow> row = {{&m.map->rows[window].all, &m}};
+  for (const TimeFrequencyBin& bin : m.map->rows[window].bands) row.push_back({&bin, &m});
+  return row;
+}
+void keep_worse(std::vector<MapRow>& worst, const std::vector<MapRow>& row) {
+  if (worst.empty()) worst.resize(row.size());
+  const auto ratio = [](const MapRow& r) { return r.bin->normalised / r.bin->bound; };
+  for (std::size_t k = 0; k < row.size(); ++k)
+    if (!row[k].bin->empty() && (!worst[k].bin || ratio(row[k]) > ratio(worst[k]))) worst[k] = row[k];
 }
 
 /// Text ", in n of m events": events in which the bin exceeds its bound, of those that have the bin.
@@ -76,7 +102,7 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
   std::vector<LabelledMap> maps;
   for (const auto& e : events)
     for (const auto& c : e.channels)
-      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map});
+      maps.push_back({e.record.name, c.name, c.unit, c.scale, &e.windows, &c.map, c.size});
   return maps;
 }
 
@@ -92,7 +118,7 @@ report::Table map_table(const std::vector<LabelledMap>& maps) {
   report::Table table{kCaption, columns(with_event), {}};
   for (const auto& m : maps)
     for (std::size_t w = 0; w < m.windows->size(); ++w)
-      add_row(table, m, (*m.windows)[w].name, m.map->rows[w], with_event);
+      add_row(table, m, (*m.windows)[w].name, bins_of(m, w), with_event);
   return table;
 }
 
@@ -107,16 +133,13 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
       if (std::ranges::find(windows, w.name) == windows.end()) windows.push_back(w.name);
   for (const auto& channel : channels)
     for (const auto& window : windows) {
-      ErrorMap::Row worst;
-      worst.bands.resize(error_bands().size());
+      std::vector<MapRow> worst;
       const LabelledMap* of = nullptr;
       for (const auto& m : maps)
         for (std::size_t w = 0; w < m.windows->size(); ++w) {
           if (m.channel != channel || (*m.windows)[w].name != window) continue;
           of = &m;
-          keep_worse(worst.all, m.map->rows[w].all);
-          for (std::size_t b = 0; b < worst.bands.size(); ++b)
-            keep_worse(worst.bands[b], m.map->rows[w].bands[b]);
+          keep_worse(worst, bins_of(m, w));
         }
       if (of) add_row(table, *of, window, worst, false);
     }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "validate/compare/error_map.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -16,6 +16,7 @@ struct LabelledMap {
   double scale = 1;                              ///< units in 1 pu
   const std::vector<Window>* windows = nullptr;  ///< windows of the map
   const ErrorMap* map = nullptr;                 ///< errors of this channel
+  double size = 0;                               ///< nominal value [pu]; 0: unknown
 };
 
 /// Returns the map of each channel of each event, which must outlive the result.

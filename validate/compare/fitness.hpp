@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validate/compare/compare.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 #include "validate/thresholds/acceptance.hpp"
 
 namespace swingbank::validate::compare {

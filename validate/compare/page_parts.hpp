@@ -1,11 +1,11 @@
 #pragma once
-// Parts that the report pages of all commands share. Their order is: verdict, error maps, panels of the
-// events, parameters, errors, hypotheses, glossary, provenance.
+// Parts that the reports of all commands share. Their order is: first screen, limits, error maps, hypotheses,
+// panels of the events, parameters, errors, glossary, provenance.
 #include <string>
 #include <vector>
 
 #include "validate/compare/played.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -17,24 +17,29 @@ struct PageParameter {
   std::string note = {};                            ///< "at its bound"
 };
 
-/// Both verdicts, and the worst errors of the last model of `played` with their limits.
-void verdict_part(report::Page& page, const std::vector<Played>& played, bool complete,
-                  const std::string& sentence, report::Tone tone);
-/// Panels of each event: V, f, P and Q, measured and simulated by each model; then other recorded channels.
-void panels_part(report::Page& page, const std::vector<Played>& played);
+/// Errors of the last model with their limits, and the verdict on each other model.
+void limits_part(report::Document& page, const std::vector<Played>& played);
+/// Panels of each event, folded: V, f, P and Q, measured and simulated by each model; then other recorded
+/// channels. P and Q of the worst event are omitted, because the first
+/// screen shows them.
+void panels_part(report::Document& page, const std::vector<Played>& played);
 /// Table of parameters: before, after, 95 % interval. Without intervals (compare): the model's values.
-void parameters_part(report::Page& page, const std::vector<PageParameter>& parameters);
+void parameters_part(report::Document& page, const std::vector<PageParameter>& parameters);
 /// Table of error_table(). `unseen`: names of held-out events.
-void errors_part(report::Page& page, const std::vector<Played>& played,
+void errors_part(report::Document& page, const std::vector<Played>& played,
                  const std::vector<std::string>& unseen = {});
+/// Error map of map_table() or worst_map_table() as a heat map for each channel, side by side.
+void heat_maps(report::Document& page, const report::Table& map);
 /// Error map of each model.
-void maps_part(report::Page& page, const std::vector<Played>& played);
+void maps_part(report::Document& page, const std::vector<Played>& played);
 /// Definitions of the terms on the page.
-void glossary_part(report::Page& page);
+void glossary_part(report::Document& page);
 
 /// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
   std::string title, subtitle;             ///< heading; line below it
+  std::string headline = {};               ///< verdict in at most eight words; empty: that of compare
+  std::string next = {};                   ///< next command; empty: none
   bool complete = false;                   ///< statistically complete: the residual is noise
   std::string sentence;                    ///< verdict in words
   std::vector<Played> played;              ///< models with their comparisons, in order

@@ -12,6 +12,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
 #include "validate/compare/event_title.hpp"
+#include "validate/compare/first_screen.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -178,6 +179,7 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
   page.played = {{"model", events, fitness}};
   page.parameters = parameters_of(model.plant);
   page.provenance = rows;
+  if (!adequacy.adequate) page.next = next_command(rows, "diagnose");
   page.figures = json_report(model, events, adequacy, fitness, rows);
   return command_html(page);
 }

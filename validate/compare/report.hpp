@@ -5,7 +5,7 @@
 
 #include "validate/compare/compare.hpp"
 #include "validate/compare/fitness.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::compare {
 

@@ -62,6 +62,7 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
   r.name = playin::output_name(output);
   r.unit = unit.name;
   r.scale = unit.scale;
+  r.size = unit.name == "MW" || unit.name == "Mvar" ? d.base.plant.mva / event.record.base.mva : 1.0;
   r.measured = event.measured(output);
   const auto quiet = static_cast<std::size_t>(event.start.samples);
   // The pre-event residual is the channel's noise, unless a fit biases the start to compensate for a missing

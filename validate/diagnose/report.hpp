@@ -6,7 +6,7 @@
 
 #include "validate/compare/played.hpp"
 #include "validate/diagnose/diagnose.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::diagnose {
 
@@ -15,6 +15,7 @@ namespace swingbank::validate::diagnose {
 struct ReportChannel {
   std::string name, unit;                       ///< name of the channel; its unit
   double scale = 1, noise = 0;                  ///< conversion from 1 pu; noise standard deviation [pu]
+  double size = 0;                              ///< MVA of the machine for a power, else 1 [pu]
   std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
   compare::ErrorMap map_before, map_after;      ///< error maps without and with the addition
   double inside_before = 0, inside_after = 0;   ///< share of samples inside the 99 % band of the noise

@@ -1,4 +1,4 @@
-// The page of a diagnosis: verdict, figures, evidence, events, provenance.
+// The page of a diagnosis: verdict, worst event, side, candidates, events, provenance.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/first_screen.hpp"
 #include "validate/compare/page_parts.hpp"
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_user_models.hpp"
@@ -17,15 +18,49 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kBars = 12;          // maximum number of plotted hypotheses; the table holds all
+constexpr std::size_t kBars = 12;  // maximum number of plotted hypotheses; the table holds all
+constexpr const char *kTorque = "Inferred missing torque, added to Tm",
+                     *kField = "Inferred missing field voltage, added to Efd";
 constexpr std::size_t kLeastProbable = 4;  // number of plotted explanations if the set is smaller
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
 
-std::vector<std::pair<double, double>> fault_bands(const event::FitEvent& e) {
-  if (e.switchings.empty()) return {};
-  return {{e.switchings.front().time, e.switchings.back().time}};
+/// Returns the verdict in at most eight words.
+std::string headline(const Diagnosis& d) {
+  switch (d.verdict) {
+    case Verdict::adequate:
+      return !d.wrong ? "No component is missing"
+                      : fmt::format("No component is missing, but {} {} wrong", d.wrong->wrong.size(),
+                                    d.wrong->wrong.size() == 1 ? "value is" : "values are");
+    case Verdict::unexplained:
+      return d.user_models.found() ? "A user-defined model explains the records"
+                                   : "No listed effect explains the records";
+    case Verdict::interrupted:
+      return "Interrupted before a verdict";
+    default:
+      break;
+  }
+  const auto named = std::ranges::find_if(d.probabilities, [](const auto& e) { return e.place >= 0; });
+  if (named == d.probabilities.end())
+    return (d.effects.empty() ? "A component" : d.effects.front()) + " is missing";
+  if (named->probability <= thresholds::posterior.named)
+    return fmt::format("Undecided: one of {} effects is missing", d.equivalent.size() + 1);
+  const bool replaces = d.ranked[static_cast<std::size_t>(named->place)].hypothesis.replaces;
+  return fmt::format("{} {} ({})", named->name, replaces ? "explains the records" : "is missing",
+                     hypothesis::probability_text(named->probability));
+}
+report::Tone tone(Verdict verdict) {
+  return verdict == Verdict::adequate      ? report::Tone::good
+         : verdict == Verdict::unexplained ? report::Tone::bad
+                                           : report::Tone::found;
+}
+/// Returns the command that follows the diagnosis; empty without one.
+std::string next_command(const Diagnosis& d, const report::Provenance& rows) {
+  if (d.verdict == Verdict::adequate) return compare::next_command(rows, "calibrate");
+  if (d.effects.size() != 1) return {};
+  const bool blank = d.effects.front().find(' ') != std::string::npos;
+  return compare::next_command(rows, "add " + (blank ? "'" + d.effects.front() + "'" : d.effects.front()));
 }
 
 class DiagnosisPage {
@@ -37,51 +72,77 @@ class DiagnosisPage {
         rows_(rows),
         played_(played),
         figures_(report_figures(d)),
-        page_("Diagnosis: " + model.name,
+        page_{"Diagnosis: " + model.name,
               fmt::format("{} of {:g} MVA · {} {} · recorded terminal voltage played into the model",
                           plant::subject(model), model.plant.mva, d.events.size(),
-                          d.events.size() == 1 ? "event" : "events")) {}
+                          d.events.size() == 1 ? "event" : "events")} {}
 
   std::string html() {
-    compare::verdict_part(page_, played_, d_.verdict == Verdict::adequate, d_.sentence,
-                          d_.verdict == Verdict::adequate      ? report::Tone::good
-                          : d_.verdict == Verdict::unexplained ? report::Tone::bad
-                                                               : report::Tone::found);
-    page_.text(false_positive_note());
+    opening();
+    sides();
     probabilities();
-    compare::panels_part(page_, played_);
+    hypotheses();
     few_wrong();
+    user_models_on_page(d_, page_);
+    error_maps();
+    limits();
     parameters();
     at_a_glance();
-    error_maps();
-    sides();
-    hypotheses();
-    user_models_on_page(d_, page_);
-    page_.section("Event results");
+    compare::panels_part(page_, played_);
     for (std::size_t e = 0; e < figures_.events.size(); ++e) event(e);
     method();
     compare::glossary_part(page_);
     page_.provenance(rows_);
-    page_.data("figures", json_text(diagnosis_json(model_, d_, rows_)));
-    return page_.html();
+    page_.add(report::Data{"figures", json_text(diagnosis_json(model_, d_, rows_))});
+    return report::html(page_);
   }
 
  private:
   [[nodiscard]] bool with_after() const { return figures_.after != nullptr; }
 
+  /// Adds the verdict, and the worst event before and after: with the added effect, or else refitted.
+  void opening() {
+    compare::FirstScreen screen{headline(d_), {d_.sentence}, tone(d_.verdict)};
+    if (!played_.empty()) screen.before = &played_.front();
+    if (played_.size() > 1) screen.after = &played_[1];
+    screen.judge_before = d_.verdict != Verdict::adequate;
+    screen.next = next_command(d_, rows_);
+    compare::first_screen(page_, screen);
+  }
+  /// Adds both verdicts of the exit code, and the errors of the refitted model with their limits.
+  void limits() {
+    if (played_.empty()) return;
+    page_.section("Verdicts");
+    const compare::Fitness& fitness = played_.back().fitness;
+    page_.add(report::Verdict{(played_.size() > 1 ? "Refitted model. " : "") + fitness.sentence,
+                              !fitness.not_judged.empty() ? report::Tone::found
+                              : fitness.fit               ? report::Tone::good
+                                                          : report::Tone::bad});
+    page_.text(fmt::format("Statistically complete: {}.", d_.verdict == Verdict::adequate ? "yes" : "no"));
+    compare::limits_part(page_, played_);
+  }
+
   void probabilities() {
     if (d_.probabilities.empty()) return;
+    page_.section("Candidates");
     const std::size_t set = hypothesis::credible(d_.probabilities);
     report::Bars bars{"Probability [%]", "%", 0, "", {}};
     for (std::size_t i = 0; i < d_.probabilities.size() && (i < set || i < kLeastProbable); ++i)
-      bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability, i < set,
+      bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability,
+                           i < set ? "good" : "poor",
                            hypothesis::probability_text(d_.probabilities[i].probability)});
-    page_.bars(bars);
     page_.text(
         fmt::format("Probability of each explanation, including that none of the tried effects is right. The "
                     "blue bars form the {:.0f} % credible set. Measured reliability of these probabilities: "
-                    "docs/reference/blind-test-results.md.",
-                    100 * thresholds::posterior.set));
+                    "docs/reference/blind-test-results.md. {}",
+                    100 * thresholds::posterior.set, false_positive_note()));
+    page_.add(report::Begin{report::Begin::Layout::row});
+    page_.add(bars);
+    next_measurements();
+    page_.add(report::End{});
+  }
+  /// Adds the table of measurements that would separate the candidates; equal values share a row.
+  void next_measurements() {
     if (d_.would_decide.next.empty()) return;
     report::Table table{
         fmt::format("Next measurement: expected number of the {:.0f} candidates that remain, from "
@@ -89,9 +150,14 @@ class DiagnosisPage {
                     d_.would_decide.now),
         {"record", "remaining candidates"},
         {}};
-    for (const auto& n : d_.would_decide.next)
-      table.rows.push_back({n.what, fmt::format("{:.1f}", n.expected)});
-    page_.table(table);
+    for (const auto& n : d_.would_decide.next) {
+      const std::string left = fmt::format("{:.1f}", n.expected);
+      if (!table.rows.empty() && table.rows.back().back().text == left)
+        table.rows.back().front().text += "; or " + n.what;
+      else
+        table.rows.push_back({n.what, left});
+    }
+    page_.add(table);
   }
 
   void at_a_glance() {
@@ -117,7 +183,7 @@ class DiagnosisPage {
       }
       table.rows.push_back(std::move(row));
     }
-    page_.table(table);
+    page_.add(table);
     tolerance();
   }
   /// Adds the share of each channel's samples within the stated tolerance.
@@ -137,25 +203,24 @@ class DiagnosisPage {
         if (with_after()) row.emplace_back(percent(c.inside_after));
         table.rows.push_back(std::move(row));
       }
-    page_.table(table);
+    page_.add(table);
   }
 
   [[nodiscard]] std::vector<compare::LabelledMap> maps(compare::ErrorMap ReportChannel::*which) const {
     std::vector<compare::LabelledMap> all;
     for (const auto& e : figures_.events)
       for (const auto& c : e.channels)
-        all.push_back({e.event->record.name, c.name, c.unit, c.scale, &e.windows, &(c.*which)});
+        all.push_back({e.event->record.name, c.name, c.unit, c.scale, &e.windows, &(c.*which), c.size});
     return all;
   }
   void error_maps() {
     page_.section("Error map");
-    report::Table before = compare::worst_map_table(maps(&ReportChannel::map_before));
-    before.caption = "Model with refitted parameters. " + before.caption;
-    page_.table(before);
+    page_.text("Refitted model.");
+    compare::heat_maps(page_, compare::worst_map_table(maps(&ReportChannel::map_before)));
     if (!with_after()) return;
     report::Table after = compare::worst_map_table(maps(&ReportChannel::map_after));
-    after.caption = "With " + figures_.after_name + ". Same units.";
-    page_.table(after);
+    after.caption = "Model with " + figures_.after_name + ".";
+    compare::heat_maps(page_, after);
   }
 
   void sides() {
@@ -168,12 +233,19 @@ class DiagnosisPage {
     report::Bars bars{"Normalised RMS", "×", 1.0, "noise alone", {}};
     const auto add = [&](const std::string& name, double reduced_chi2) {
       const double left = std::sqrt(reduced_chi2);
-      bars.bars.push_back({name, left, left < 1.5});
+      bars.bars.push_back({name, left, left < 1.5 ? "good" : "poor"});
     };
     add("refitted", d_.base.reduced_chi2());
     if (!d_.torque.fit.events.empty()) add("with an inferred torque", d_.torque.reduced_chi2());
     if (!d_.field.fit.events.empty()) add("with an inferred field voltage", d_.field.reduced_chi2());
-    page_.bars(bars);
+    page_.add(report::Begin{report::Begin::Layout::panels});
+    page_.add(bars);
+    const std::size_t worst =
+        !played_.empty() && !played_.front().events.empty() ? compare::worst_event(played_.front()).first : 0;
+    const bool torque = d_.field.fit.events.empty() || (!d_.torque.fit.events.empty() &&
+                                                        d_.torque.reduced_chi2() <= d_.field.reduced_chi2());
+    torque ? input(worst, d_.torque, kTorque) : input(worst, d_.field, kField);
+    page_.add(report::End{});
     if (d_.side != hypothesis::Side::none)
       page_.text(fmt::format("Side: {}.", hypothesis::side_name(d_.side)));
   }
@@ -191,11 +263,12 @@ class DiagnosisPage {
     report::Bars bars{
         "Evidence (logarithmic)", "", std::log10(thresholds::evidence.accepted.value), "accepted", {}};
     for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
-      bars.bars.push_back({hypothesis::full_name(d_.ranked[i].hypothesis),
-                           std::log10(std::max(1.0, d_.ranked[i].gain)),
-                           d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10),
-                           fmt::format("{:.0f}", d_.ranked[i].gain)});
-    page_.bars(bars);
+      bars.bars.push_back(
+          {hypothesis::full_name(d_.ranked[i].hypothesis), std::log10(std::max(1.0, d_.ranked[i].gain)),
+           d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10) ? "good" : "poor",
+           fmt::format("{:.0f}", d_.ranked[i].gain)});
+    page_.add(bars);
+    page_.add(report::Begin{report::Begin::Layout::fold, fmt::format("All {} hypotheses", d_.ranked.size())});
     report::Table table{
         "",
         {"hypothesis", "description", "side", "evidence", "normalised RMS", "held-out events", "judgement"},
@@ -210,7 +283,8 @@ class DiagnosisPage {
                             h.held_out.empty() ? "–" : "≤ " + compare::times_noise(worst),
                             h.accepted ? "accepted" : h.why_not});
     }
-    page_.table(table);
+    page_.add(table);
+    page_.add(report::End{});
   }
 
   /// Adds the section on wrong parameters, if a small set of them explains the records.
@@ -233,7 +307,7 @@ class DiagnosisPage {
                             fmt::format("{:.0f}", w.evidence), fmt::format("{:.0f} %", 100 * w.share),
                             tied.empty() ? "–" : tied});
     }
-    page_.table(table);
+    page_.add(table);
   }
 
   void parameters() {
@@ -265,54 +339,50 @@ class DiagnosisPage {
       row.emplace_back(std::isfinite(p.decided) ? fmt::format("{:.0f} %", 100 * p.decided) : "–");
       table.rows.push_back(std::move(row));
     }
-    page_.table(table);
+    page_.add(table);
   }
 
+  /// Adds the inferred inputs and the error map of one event, folded.
   void event(std::size_t index) {
     const ReportEvent& e = figures_.events[index];
     const record::Record& r = e.event->record;
-    page_.subsection(r.name);
-    std::string switching_times;
-    for (const auto& s : e.event->switchings)
-      switching_times += fmt::format("{}{:.3f} s", switching_times.empty() ? "" : ", ", s.time);
-    page_.text(fmt::format(
-        "{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = "
-        "{:.4f} pu.",
-        r.samples(), r.rate(), switching_times.empty() ? "none" : switching_times,
-        e.event->start.P * r.base.mva, e.event->start.Q * r.base.mva, std::abs(e.event->start.voltage)));
-    input(index, d_.torque, "Inferred missing torque", "added to Tm [pu]");
-    input(index, d_.field, "Inferred missing field voltage", "added to Efd [pu]");
-    if (figures_.events.size() < 2) return;
-    std::vector<compare::LabelledMap> own;
-    for (const auto& c : e.channels)
-      own.push_back(
-          {r.name, c.name, c.unit, c.scale, &e.windows, with_after() ? &c.map_after : &c.map_before});
-    report::Table table = compare::map_table(own);
-    table.caption =
-        fmt::format("Error map of {}{}.", r.name, with_after() ? ", with " + figures_.after_name : "");
-    page_.table(table);
+    page_.add(report::Begin{report::Begin::Layout::fold, "Inferred inputs and error map of " + r.name});
+    page_.add(report::Begin{report::Begin::Layout::panels});
+    input(index, d_.torque, kTorque);
+    input(index, d_.field, kField);
+    page_.add(report::End{});
+    if (figures_.events.size() > 1) {
+      std::vector<compare::LabelledMap> own;
+      for (const auto& c : e.channels)
+        own.push_back({r.name, c.name, c.unit, c.scale, &e.windows,
+                       with_after() ? &c.map_after : &c.map_before, c.size});
+      report::Table table = compare::map_table(own);
+      table.caption =
+          fmt::format("Error map of {}{}.", r.name, with_after() ? ", with " + figures_.after_name : "");
+      page_.add(table);
+    }
+    page_.add(report::End{});
   }
-  void input(std::size_t index, const reduced::FreeInput& m, const std::string& title,
-             const std::string& label) {
+  void input(std::size_t index, const reduced::FreeInput& m, const std::string& title) {
     if (index >= m.fit.events.size() || m.of(index).t.empty()) return;
-    const std::string& name = figures_.events[index].event->record.name;
-    report::Curves curves{
-        title, "t [s]", label, name, m.of(index).t, {}, fault_bands(*figures_.events[index].event)};
+    const event::FitEvent& of = *figures_.events[index].event;
     const auto& value = m.of(index).value;
-    curves.series.push_back({title, "#7d3c98", false, value});
+    report::Curves curves{of.record.name + ": " + title, "pu", of.record.name, m.of(index).t};
+    if (!of.switchings.empty()) curves.fault = {of.switchings.front().time, of.switchings.back().time};
+    curves.series.push_back({"inferred", report::Ink::inferred, value});
     std::vector<double> low, high;
     for (std::size_t k = 0; k < value.size(); ++k) {
       const double half = constants::normal95 * m.deviation[index][static_cast<Eigen::Index>(k)];
       low.push_back(value[k] - half);
       high.push_back(value[k] + half);
     }
-    curves.series.push_back({"lower 95 % limit", "#c9a6da", false, low});
-    curves.series.push_back({"upper 95 % limit", "#c9a6da", false, high});
-    page_.curves(curves);
+    curves.series.push_back({"lower 95 % limit", report::Ink::limit, low});
+    curves.series.push_back({"upper 95 % limit", report::Ink::limit, high});
+    page_.add(std::move(curves));
   }
 
   void method() {
-    page_.section("Method");
+    page_.add(report::Begin{report::Begin::Layout::fold, "Method"});
     page_.text(
         "Playback of the recorded terminal voltage and angle into the model, with the response "
         "compared with the measurement for each event, as in verification reports under NERC "
@@ -324,6 +394,7 @@ class DiagnosisPage {
         "of the residual in a time window and a frequency band, divided by that of noise alone. "
         "With 99.9 % probability, noise alone stays below the bounds of all bins.");
     page_.text(fmt::format("Computed in {:.0f} s.", d_.seconds));
+    page_.add(report::End{});
   }
 
   const plant::PlantModel& model_;
@@ -331,7 +402,7 @@ class DiagnosisPage {
   const report::Provenance& rows_;
   const std::vector<compare::Played>& played_;
   ReportFigures figures_;
-  report::Page page_;
+  report::Document page_;
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "validate/diagnose/detail/false_positives.hpp"
 #include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 #include "validate/thresholds/list.hpp"
 #include "validate/thresholds/thresholds.hpp"
 

@@ -132,15 +132,18 @@ std::string fleet_csv(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
-  report::Page page("Fleet: " + fleet.file.stem().string(), "every plant diagnosed from its own records");
+  report::Document page{"Fleet: " + fleet.file.stem().string(), "every plant diagnosed from its own records"};
   const bool good = fleet_code(rows) == 0, failed = count(rows, {"failed", "unexplained"}) > 0;
-  page.verdict(fleet_summary(rows), good     ? report::Tone::good
-                                    : failed ? report::Tone::bad
-                                             : report::Tone::found);
+  page.add(
+      report::Opening{fmt::format("{} of {} plants are adequate", count(rows, {"adequate"}), rows.size()),
+                      {fleet_summary(rows)},
+                      good     ? report::Tone::good
+                      : failed ? report::Tone::bad
+                               : report::Tone::found});
   report::Table table = fleet_table(rows);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i].failed()) table.rows[i].front().link = rows[i].plant + "/report.html";
-  page.table(table);
+  page.add(table);
   page.note(fleet_caution(rows));
   page.section("Verdicts");
   for (const auto& r : rows) {
@@ -153,8 +156,8 @@ std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
   }
   page.provenance({{"command", "swingbank diagnose --fleet " + fleet.file.string()},
                    {"software", "swingbank " SWINGBANK_VERSION}});
-  page.data("figures", fleet_json(fleet, rows));
-  return page.html();
+  page.add(report::Data{"figures", fleet_json(fleet, rows)});
+  return report::html(page);
 }
 
 int fleet_code(const std::vector<FleetRow>& rows) {

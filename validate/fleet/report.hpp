@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "validate/fleet/fleet.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::fleet {
 

@@ -8,6 +8,7 @@
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/event_title.hpp"
+#include "validate/compare/first_screen.hpp"
 #include "validate/fit/axis.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 #include "validate/live/detail/number.hpp"
@@ -73,34 +74,6 @@ json map_of(const compare::EventComparison& e, const compare::ChannelComparison&
   return rows;
 }
 
-/// Returns the largest normalised RMS / bound of a channel with its window; 0 without bins.
-std::pair<double, int> worst_window(const compare::ChannelComparison& c) {
-  double worst = c.map.whole.empty() ? 0 : c.map.whole.normalised / c.map.whole.bound;
-  double largest = 0;
-  int at = -1;
-  for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
-    double here = 0;
-    const auto take = [&](const compare::TimeFrequencyBin& b) {
-      if (!b.empty() && b.bound > 0) here = std::max(here, b.normalised / b.bound);
-    };
-    take(c.map.rows[w].all);
-    for (const auto& b : c.map.rows[w].bands) take(b);
-    if (here > largest) largest = here, at = static_cast<int>(w);
-  }
-  return {std::max(worst, largest), at};
-}
-
-/// Returns the largest ratio of an error of this channel and event to its limit.
-double share_of_limit(const compare::Fitness& fitness, const std::string& event, const std::string& channel) {
-  double most = 0;
-  for (const auto& row : fitness.rows)
-    if (row.event == event && row.channel == channel && row.samples > 0)
-      most = std::max(most, thresholds::nearest(row.errors, row.limits).ratio);
-  for (const auto& m : fitness.movements)
-    if (m.event == event && m.channel == channel) most = std::max(most, m.error / m.limit);
-  return most;
-}
-
 /// Returns the result of each channel of each event.
 json chips(const Step& step) {
   json all = json::array();
@@ -108,7 +81,7 @@ json chips(const Step& step) {
     const auto& event = step.played->events[e];
     for (std::size_t k = 0; k < event.channels.size(); ++k) {
       const auto& c = event.channels[k];
-      const auto [worst, window] = worst_window(c);
+      const compare::ChannelError error = compare::channel_error(step.played->fitness, event, c);
       all.push_back({{"event", e},
                      {"channel", k},
                      {"name", c.name},
@@ -120,25 +93,14 @@ json chips(const Step& step) {
                      {"worst", number(c.whole.worst * c.scale)},
                      {"worst_at", c.whole.worst_at},
                      {"judged", c.judged},
-                     {"bound", number(worst)},
-                     {"limit", number(share_of_limit(step.played->fitness, event.record.name, c.name))},
-                     {"window", window},
+                     {"bound", number(error.bound)},
+                     {"limit", number(error.limit)},
+                     {"window", error.window},
                      {"size", number(c.size * c.scale)},
                      {"map", map_of(event, c)}});
     }
   }
   return all;
-}
-
-/// Returns the verdict in at most eight words.
-std::string verdict(const Step& step) {
-  const auto& fitness = step.played->fitness;
-  const bool judged = fitness.not_judged.empty();
-  if (step.complete)
-    return judged && !fitness.fit ? "Only noise remains, but limits are exceeded"
-                                  : "Model matches: only noise remains";
-  if (judged && fitness.fit) return "Fit for purpose, but errors exceed noise";
-  return "Model does not match the records";
 }
 
 std::string kind_name(Step::Kind kind) {
@@ -199,7 +161,7 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
           {"label", step.label},
           {"command", step.command},
           {"sentence", step.sentence},
-          {"verdict", verdict(step)},
+          {"verdict", compare::headline(step.complete, step.played->fitness)},
           {"reason", step.provisional ? "First look: switching times are being fitted."
                                       : step.played->fitness.sentence},
           {"provisional", step.provisional},

@@ -2,7 +2,7 @@
 // Saving of a step: plant file, PSS/E records and report.
 #include "base/output_folder.hpp"
 #include "validate/live/session.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::live {
 

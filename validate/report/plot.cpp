@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::report {
 namespace {

@@ -231,52 +231,15 @@ Table parameter_table(const TableBlock& block) {
 
 namespace {
 
-/// Writer of the same content as a page and as Markdown.
-class Both {
- public:
-  Both(std::string_view title, std::string_view subtitle)
-      : page_(title, subtitle), markdown_(fmt::format("# {}\n\n{}\n\n", title, subtitle)) {}
-  void section(const std::string& title) {
-    page_.section(title);
-    markdown_ += fmt::format("## {}\n\n", title);
-  }
-  void subsection(const std::string& title) {
-    page_.subsection(title);
-    markdown_ += fmt::format("### {}\n\n", title);
-  }
-  void text(const std::string& paragraph) {
-    if (paragraph.empty()) return;
-    page_.text(paragraph);
-    markdown_ += paragraph + "\n\n";
-  }
-  void colours(const std::string& meaning) { page_.text(meaning); }  // Markdown has no colours
-  void note(const std::string& paragraph) {
-    page_.note(paragraph);
-    markdown_ += fmt::format("> {}\n\n", paragraph);
-  }
-  void table(const Table& table) {
-    page_.table(table);
-    markdown_ += markdown(table) + "\n";
-  }
+/// Document whose pictures are also files.
+struct Report {
+  Document document;
+  std::vector<std::pair<std::string, std::string>> pictures = {};  ///< name and SVG
   void picture(const std::string& name, const std::string& svg, const std::string& caption) {
     if (svg.empty()) return;
-    page_.picture(svg, caption);
-    markdown_ += fmt::format("![{}]({}/{})\n\n", caption, kPictureFolder, name);
-    pictures_.emplace_back(name, svg);
+    document.add(Picture{svg, caption, fmt::format("{}/{}", kPictureFolder, name)});
+    pictures.emplace_back(name, svg);
   }
-  TablesReport end(const Provenance& sources) {
-    page_.provenance(sources);
-    markdown_ += "## Provenance\n\n";
-    for (const auto& [name, value] : sources)
-      if (name != "command")
-        markdown_ += fmt::format("- {}: {}\n", name, value);  // the command contains local paths
-    return {markdown_, page_.html(), {}, pictures_};
-  }
-
- private:
-  Page page_;
-  std::string markdown_;
-  std::vector<std::pair<std::string, std::string>> pictures_;
 };
 
 std::string made_of(const Task& task) {
@@ -287,14 +250,14 @@ std::string made_of(const Task& task) {
 }
 
 /// Adds all tables and plots of a task; `stem` begins the names of the plots' files.
-void add_task(const Task& task, const std::string& stem, Both& to) {
-  to.text(made_of(task));
+void add_task(const Task& task, const std::string& stem, Report& to) {
+  to.document.text(made_of(task));
   if (const auto makers = task.makers(); makers.size() > 1)
-    to.note(fmt::format(
+    to.document.note(fmt::format(
         "These figures were made by different software or processors, so a small difference between "
         "two of them need not be one of the methods: {}.",
         fmt::join(makers, "; ")));
-  to.table(method_table(task));
+  to.document.add(method_table(task));
   to.picture(stem + "-methods.svg", method_picture(task),
              task.generators().empty()
                  ? "Mean squared error of each method."
@@ -302,36 +265,36 @@ void add_task(const Task& task, const std::string& stem, Both& to) {
                    "left out.");
   for (const double level : task.levels())
     if (!task.generators().empty()) {
-      to.table(generator_table(task, level));
-      if (const Table unseen = unseen_table(task, level); !unseen.rows.empty()) to.table(unseen);
+      to.document.add(generator_table(task, level));
+      if (const Table unseen = unseen_table(task, level); !unseen.rows.empty()) to.document.add(unseen);
     }
   to.picture(stem + "-parameters.svg", parameter_picture(task),
              "Error of each parameter relative to its variance.");
-  for (const double level : task.levels()) to.table(parameter_comparison(task, level));
+  for (const double level : task.levels()) to.document.add(parameter_comparison(task, level));
   to.picture(
       stem + "-reliability.svg", reliability_picture(task),
       "Coverage of the intervals: a point on the dashed line is an interval with the nominal coverage.");
-  if (const Table several = several_table(task); !several.rows.empty()) to.table(several);
-  to.table(effort_table(task));
+  if (const Table several = several_table(task); !several.rows.empty()) to.document.add(several);
+  to.document.add(effort_table(task));
 }
 
 void add_scaling(const std::vector<RunResult>& results, const std::string& table, const std::string& stem,
-                 Both& to) {
+                 Report& to) {
   std::vector<RunResult> own;
   for (const auto& r : results)
     if (r.table == table) own.push_back(r);
   const auto series = scaling_series(own);
   if (series.empty()) return;
-  to.subsection("Error against training rows and time");
+  to.document.subsection("Error against training rows and time");
   to.picture(
       stem + "-scaling.svg", scaling_picture(series),
       "Each point is a run, or the mean of several; dashed, the power law through them with its 95 % band.");
-  to.table(scaling_table(series));
+  to.document.add(scaling_table(series));
 }
 
 /// Adds the table of recipe selection by nested cross-validation. Its runs are evaluated on a generator that
 /// the table's run trains on, without the generator that the table leaves out.
-void add_choice(const std::vector<RunResult>& results, const std::string& table, Both& to) {
+void add_choice(const std::vector<RunResult>& results, const std::string& table, Report& to) {
   struct Sum {
     double log_ratio = 0;
     int runs = 0;
@@ -363,11 +326,11 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
                            : "–");
     choice.rows.push_back(std::move(row));
   }
-  to.table(choice);
+  to.document.add(choice);
 }
 
 /// Adds the control runs of a table, if there are any.
-void add_controls(const std::vector<RunResult>& results, const std::string& table, Both& to) {
+void add_controls(const std::vector<RunResult>& results, const std::string& table, Report& to) {
   Table controls{
       "Control runs: labels shuffled before training, so nothing can be learnt, and the ratio must be about 1.",
       {"network", "preset", "generator", "MSE / predict-the-mean"},
@@ -376,7 +339,7 @@ void add_controls(const std::vector<RunResult>& results, const std::string& tabl
     if (r.shuffled && r.table == table)
       controls.rows.push_back({method_name(r.network), r.preset,
                                r.generator > 0 ? fmt::format("#{}", r.generator) : "–", figure(r.ratio)});
-  if (!controls.rows.empty()) to.table(controls);
+  if (!controls.rows.empty()) to.document.add(controls);
 }
 
 std::string remark(const std::string& table) {
@@ -394,18 +357,19 @@ std::string remark(const std::string& table) {
 
 /// Adds everything of one table: its tasks, recipe selection, control runs and scaling.
 void add_table(const std::vector<RunResult>& results, const std::vector<Task>& tasks,
-               const std::string& table, Both& to) {
+               const std::string& table, Report& to) {
   std::vector<const Task*> own;
   for (const auto& task : tasks)
     if (task.table == table) own.push_back(&task);
   for (std::size_t i = 0; i < own.size(); ++i) {
-    if (own.size() > 1) to.subsection(fmt::format("Preset {}, {} rows", own[i]->preset, own[i]->rows));
+    if (own.size() > 1)
+      to.document.subsection(fmt::format("Preset {}, {} rows", own[i]->preset, own[i]->rows));
     add_task(*own[i], safe(i == 0 ? table : fmt::format("{}-{}", table, i + 1)), to);
   }
   add_choice(results, table, to);
   add_controls(results, table, to);
   add_scaling(results, table, safe(table), to);
-  to.text(remark(table));
+  to.document.text(remark(table));
 }
 
 std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<RunResult>& results,
@@ -427,34 +391,35 @@ std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<Run
 }  // namespace
 
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources) {
-  Both to(
-      "Calibration by learning: Tables IV, V and VI",
-      "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
-      "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
-      "compared with the thesis.");
+  Report to{
+      {"Calibration by learning: Tables IV, V and VI",
+       "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
+       "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
+       "compared with the thesis."}};
   const auto tasks = tasks_of(results);
   std::map<std::string, std::string> others;  // titles of experiments other than the thesis's tables
   for (const auto& r : results)
     if (table_rank(r.table) == kThesisTables.size()) others.emplace(r.table, r.title);
   if (!tasks.empty()) {
-    to.colours("Green: the thesis's MSE or less, under noise the floor. Red: no better than the mean.");
-    for (const auto& table : overview_tables(tasks)) to.table(table);
+    to.document.add(
+        Paragraph{"Green: the thesis's MSE or less, under noise the floor. Orange: no better than the mean.",
+                  Paragraph::Kind::plain, false});
+    for (const auto& table : overview_tables(tasks)) to.document.add(table);
   }
   for (const auto& table : kThesisTables) {
     const std::string number(table.number);
-    to.section(fmt::format("Table {}: {}", table.number, table.title));
+    to.document.section(fmt::format("Table {}: {}", table.number, table.title));
     if (std::ranges::none_of(results, [&](const RunResult& r) { return r.table == number; }))
-      to.text(fmt::format("Table {}: no results in these folders.", table.number));
+      to.document.text(fmt::format("Table {}: no results in these folders.", table.number));
     else
       add_table(results, tasks, number, to);
   }
   for (const auto& [table, title] : others) {
-    to.section(title.empty() ? table : fmt::format("{}: {}", table, title));
+    to.document.section(title.empty() ? table : fmt::format("{}: {}", table, title));
     add_table(results, tasks, table, to);
   }
-  TablesReport report = to.end(sources);
-  report.csv = csv_files(results, tasks);
-  return report;
+  to.document.provenance(sources);
+  return {markdown(to.document), html(to.document), csv_files(results, tasks), to.pictures};
 }
 
 }  // namespace swingbank::validate::report

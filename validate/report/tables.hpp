@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 #include "validate/report/run_result.hpp"
 
 namespace swingbank::validate::report {

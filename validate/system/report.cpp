@@ -9,6 +9,8 @@
 #include "base/constants.hpp"
 #include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/compare/first_screen.hpp"
+#include "validate/compare/page_parts.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -116,34 +118,61 @@ json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i
   return j;
 }
 
-void add_terminal(report::Page& page, const SystemCase& s, const SystemComparison& c, std::size_t i) {
+std::vector<double> in_units(const compare::ChannelComparison& channel, std::vector<double> values) {
+  for (auto& x : values) x *= channel.scale;
+  return values;
+}
+
+/// Returns the chart of a channel of a terminal; all terminals zoom together.
+report::Curves channel_chart(const SystemComparison& c, std::size_t terminal,
+                             const compare::ChannelComparison& channel) {
+  report::Curves curves = compare::event_chart(c.terminals[terminal], channel.name, channel.unit);
+  curves.group = "system";
+  curves.fault = {c.switching_times.front(), c.switching_times.back()};
+  curves.view = {c.switching_times.front() - 1, c.switching_times.front() + 5};
+  curves.id = compare::chart_id(terminal, channel.name);
+  curves.series = {{"measured", report::Ink::measured, in_units(channel, channel.measured)},
+                   {"modelled", report::Ink::fitted, in_units(channel, channel.modelled)}};
+  return curves;
+}
+
+/// Returns a chip for each channel of each terminal, in the order of the error.
+report::Chips chips(const SystemCase& s, const SystemComparison& c) {
+  report::Chips all;
+  for (const auto& r : c.ranking) {
+    report::Chips::Group group{s.terminals[r.terminal].name, {}};
+    for (const auto& channel : c.terminals[r.terminal].channels) {
+      const compare::ChannelError error = compare::channel_error({}, c.terminals[r.terminal], channel);
+      group.chips.push_back(
+          {channel.name, compare::times_noise(channel.whole.in_noise), error.tone,
+           compare::chart_id(r.terminal, channel.name),
+           fmt::format("RMS error {:.3g} {}", channel.whole.rms * channel.scale, channel.unit)});
+    }
+    all.groups.push_back(std::move(group));
+  }
+  return all;
+}
+
+void add_terminal(report::Document& page, const SystemCase& s, const SystemComparison& c, std::size_t i) {
   const SystemTerminal& t = s.terminals[i];
   const compare::EventComparison& e = c.terminals[i];
-  page.section(t.name);
-  page.text(fmt::format("At {}. {}: {} samples at {:.6g} per second.", place_of(s, t), t.record.name,
-                        t.record.samples(), t.record.rate()));
+  page.add(report::Begin{report::Begin::Layout::fold, t.name + ", " + place_of(s, t)});
+  page.text(fmt::format("{}: {} samples at {:.6g} per second.", t.record.name, t.record.samples(),
+                        t.record.rate()));
   for (const auto& note : e.notes) page.note(note);
-  const std::vector<std::pair<double, double>> fault = {
-      {c.switching_times.front(), c.switching_times.back()}};
+  page.add(report::Begin{report::Begin::Layout::panels});
   for (const auto& channel : e.channels) {
-    const auto curves = [&](const std::string& title, const std::string& label) {
-      return report::Curves{title, "t [s]", label, "system", e.record.t, {}, fault};
-    };
-    const auto in_units = [&](std::vector<double> v) {
-      for (auto& x : v) x *= channel.scale;
-      return v;
-    };
-    report::Curves overlay =
-        curves(channel.name + ", measured and modelled", channel.name + " [" + channel.unit + "]");
-    overlay.series.push_back({channel.name + " measured", "#8a97a5", true, in_units(channel.measured)});
-    overlay.series.push_back({channel.name + " modelled", "#c0392b", false, in_units(channel.modelled)});
-    page.curves(overlay);
-    report::Curves residual =
-        curves(channel.name + " residual (modelled − measured)", "[" + channel.unit + "]");
-    residual.series.push_back({channel.name + " residual", "#0b5cad", false, in_units(channel.residual)});
-    page.curves(residual);
+    report::Curves curves = channel_chart(c, i, channel);
+    page.add(curves);
+    curves.title = channel.name + " residual (modelled − measured)";
+    curves.series = {{"residual", report::Ink::fitted, in_units(channel, channel.residual)}};
+    curves.id.clear();
+    page.add(std::move(curves));
   }
-  if (c.terminals.size() > 1) page.table(of_terminals(compare::map_table(compare::maps_of({e}))));
+  page.add(report::End{});
+  if (c.terminals.size() > 1)
+    compare::heat_maps(page, of_terminals(compare::map_table(compare::maps_of({e}))));
+  page.add(report::End{});
 }
 
 }  // namespace
@@ -222,30 +251,48 @@ std::string system_json(const SystemCase& s, const SystemComparison& c, const re
 }
 
 std::string system_html(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
-  report::Page page(
+  report::Document page{
       "Measured against modelled: " + s.name,
       fmt::format("{} buses, {} plants; the event simulated in the whole grid, compared at {} {}.",
                   s.grid.network.buses.size(), s.grid.plants.size(), s.terminals.size(),
-                  s.terminals.size() == 1 ? "terminal" : "terminals"));
-  page.verdict(c.adequacy.sentence + " " + c.culprit,
-               c.adequacy.adequate ? report::Tone::good : report::Tone::bad);
+                  s.terminals.size() == 1 ? "terminal" : "terminals")};
+  page.add(report::Opening{c.adequacy.adequate ? "Grid model matches: only noise remains"
+                                               : "Grid model does not match the records",
+                           {c.adequacy.sentence + " " + c.culprit},
+                           c.adequacy.adequate ? report::Tone::good : report::Tone::bad});
+  page.add(chips(s, c));
+  if (!c.ranking.empty()) {
+    const std::size_t worst = c.ranking.front().terminal;
+    page.subsection(s.terminals[worst].name + ", " + place_of(s, s.terminals[worst]));
+    page.add(report::Begin{report::Begin::Layout::large});
+    for (const auto& channel : c.terminals[worst].channels)
+      if (channel.name == "P" || channel.name == "Q") {
+        report::Curves curves = channel_chart(c, worst, channel);
+        curves.id.clear();
+        page.add(std::move(curves));
+      }
+    page.add(report::End{});
+  }
   for (const auto& note : c.notes) page.note(note);
-  page.table(ranking_table(s, c));
+  page.add(ranking_table(s, c));
   const auto maps = compare::maps_of(c.terminals);
-  page.table(
-      of_terminals(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps)));
-  page.table(summary(c.terminals));
-  page.table(initial_table(s, c));
+  page.section("Error map");
+  compare::heat_maps(
+      page, of_terminals(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps)));
+  page.add(summary(c.terminals));
+  page.add(initial_table(s, c));
   std::string event;
   for (const auto& line : event_lines(s.texts)) event += (event.empty() ? "" : "; ") + line;
   page.text("Event: " + event + ". Switching: " + switching_times_text(c) + ".");
-  page.text(
-      "Drag across a chart to zoom in on a time range (all charts follow); double-click to see "
-      "the whole record. The shaded band is the fault.");
+  page.section("Terminals");
+  page.add(report::Paragraph{
+      "Drag across a chart to zoom in on a time range (all charts follow); double-click to see the whole record. The "
+      "grey band is the fault.",
+      report::Paragraph::Kind::hint});
   for (const auto& r : c.ranking) add_terminal(page, s, c, r.terminal);
   page.provenance(rows);
-  page.data("figures", system_json(s, c, rows));
-  return page.html();
+  page.add(report::Data{"figures", system_json(s, c, rows)});
+  return report::html(page);
 }
 
 report::Provenance system_provenance(const SystemCase& s, const std::string& command_line) {

@@ -6,7 +6,7 @@
 #include "sim/core/trajectory.hpp"
 #include "sim/grid/event_choice.hpp"
 #include "validate/compare/compare.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::system {
 

@@ -19,13 +19,6 @@ class Swingbank(CMakePackage):
         description="instruction set that the simulator is built for",
     )
 
-    variant(
-        "dygraphs",
-        default="/usr/share/javascript/dygraphs",
-        values=lambda folder: True,
-        description="folder of dygraph.min.js and .css 2.x and their copyright: Spack has no package of them",
-    )
-
     depends_on("c", type="build")
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
@@ -56,13 +49,9 @@ class Swingbank(CMakePackage):
     generator("ninja")
 
     def cmake_args(self):
-        dygraphs = self.spec.variants["dygraphs"].value
         return [
             self.define("SWINGBANK_ARCH", self.spec.variants["arch"].value),
             self.define_from_variant("SWINGBANK_TRAIN", "train"),
-            self.define("DYGRAPHS_JS", join_path(dygraphs, "dygraph.min.js")),
-            self.define("DYGRAPHS_CSS", join_path(dygraphs, "dygraph.min.css")),
-            self.define("DYGRAPHS_COPYRIGHT", join_path(dygraphs, "copyright")),
             self.define("SWINGBANK_TESTS", False),
             self.define("SWINGBANK_BENCH", False),
         ]

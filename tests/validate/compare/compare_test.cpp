@@ -10,8 +10,11 @@
 #include "base/json.hpp"
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/first_screen.hpp"
 #include "validate/compare/report.hpp"
+#include "validate/report/assets.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -449,19 +452,71 @@ TEST(CompareReportTest, PageLoadsNothingExternal) {
   const Adequacy adequacy = judge(events);
   const std::string html = html_report(example_model(), events, adequacy, fitness_of(events),
                                        provenance(example_model(), events, "swingbank compare <x>"));
-  const std::string library(report::dygraphs_script());
-  const auto at = html.find(library);
-  ASSERT_NE(at, std::string::npos);
-  const std::string own = html.substr(0, at) + html.substr(at + library.size());
+  std::string own = html;
+  for (const char* file : {"uPlot.iife.min.js", "uPlot.min.css"}) {
+    const std::string library(report::asset(file).text);
+    const auto at = own.find(library);
+    ASSERT_NE(at, std::string::npos) << file;
+    own.erase(at, library.size());
+    EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // a browser would fetch it
+  }
   for (const char* word : {"<link", "src=", "@import", "url(", "http:", "https:"})
     EXPECT_EQ(own.find(word), std::string::npos) << word;
-  EXPECT_EQ(library.find("sourceMappingURL"), std::string::npos);  // a browser would fetch it
   EXPECT_NE(own.find("swingbank compare &lt;x&gt;"), std::string::npos);
   EXPECT_NE(own.find("name=\"viewport\""), std::string::npos);
   ASSERT_NE(own.find("Error map</h2>"), std::string::npos);
-  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));  // the map follows the verdict
-  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);       // compare has no hypotheses
+  EXPECT_LT(own.find("class=\"headline bad\""),
+            own.find("class=\"chips\""));  // verdict, chips, charts, map, events
+  EXPECT_LT(own.find("class=\"chips\""), own.find("<figure id=\"event-1-Q\">"));
+  EXPECT_LT(own.find("<figure id=\"event-1-Q\">"), own.find("Error map</h2>"));
+  EXPECT_LT(own.find("Error map</h2>"), own.find("Events</h2>"));
+  EXPECT_EQ(own.find("Hypotheses</h2>"), std::string::npos);  // compare has no hypotheses
 }
+TEST(CompareReportTest, FirstScreenLinksEachChannelToItsChart) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const Fitness fitness = fitness_of(events);
+  const std::string html = html_report(example_model(), events, adequacy, fitness,
+                                       {{"command", "swingbank compare --model m --out o --records r"}});
+  EXPECT_THAT(html, HasSubstr("Model does not match the records"));
+  EXPECT_THAT(html, HasSubstr("<code>swingbank diagnose --model m --records r</code>"));
+  for (const ChannelComparison& c : events[0].channels) {
+    if (!c.judged) continue;
+    const std::string id = chart_id(0, c.name);
+    const auto chip = html.find("href=\"#" + id + "\"");
+    ASSERT_NE(chip, std::string::npos) << c.name;
+    EXPECT_THAT(html.substr(chip, 600), HasSubstr("</b> " + times_noise(c.whole.in_noise))) << c.name;
+    EXPECT_NE(html.find("<figure id=\"" + id + "\">"), std::string::npos) << c.name;
+  }
+  const ChannelError q = channel_error(fitness, events[0], events[0].channels[1]);
+  EXPECT_EQ(q.tone, report::Tone::bad);
+  EXPECT_THAT(html, HasSubstr("largest error</span></figcaption>"));
+}
+TEST(CompareReportTest, HeadlinesHaveAtMostEightWords) {
+  Fitness fit, unfit;
+  fit.fit = true;
+  for (const bool complete : {false, true})
+    for (const Fitness* f : {&fit, &unfit}) {
+      const std::string text = headline(complete, *f, "Calibrated model");
+      EXPECT_LE(std::ranges::count(text, ' '), 7) << text;
+    }
+  EXPECT_EQ(headline(true, fit), "Model matches: only noise remains");
+  EXPECT_EQ(headline(false, unfit), "Model does not match the records");
+  EXPECT_EQ(headline(true, unfit), "Only noise remains, but limits are exceeded");
+}
+TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
+  std::vector<EventComparison> events = {example_event()};
+  judge(events);
+  const report::Table map = error_map(events);
+  const ChannelComparison& q = events[0].channels[1];
+  const TimeFrequencyBin& bin = q.map.rows[2].all;
+  const std::string expected = fmt::format("RMS {:.3g} Mvar, {:.2g} % of {:.4g} MVA; {} noise, bound {}",
+                                           bin.rms * q.scale, 100 * bin.rms / q.size, q.size * q.scale,
+                                           times_noise(bin.normalised), times_noise(bin.bound));
+  EXPECT_EQ(std::ranges::count_if(map.rows, [&](const auto& row) { return row[3].hint.ends_with(expected); }),
+            1);
+}
+
 TEST(CompareReportTest, TerminalReportHasUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);

@@ -172,6 +172,15 @@ TEST(DiagnosisReportTest, VerdictIsFirst) {
   EXPECT_LT(verdict, page().find("<table"));
   EXPECT_LT(verdict, page().find("<h2"));
 }
+TEST(DiagnosisReportTest, HeadlineNamesTheEffectWithItsProbability) {
+  Diagnosis d = example().d;
+  d.probabilities = {{"SEXS", 0, 0, 0.8}, {"none of these", 0, -1, 0.2}};
+  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr(">SEXS is missing (80 %)</p>"));
+  d.effects = {"SEXS"};
+  EXPECT_THAT(
+      diagnosis_html(example().model, d, {{"command", "swingbank diagnose --model m --out o --records r"}}),
+      HasSubstr("<code>swingbank add SEXS --model m --records r</code>"));
+}
 TEST(DiagnosisReportTest, AdequateModelNeedsNoEffect) {
   Diagnosis d = example().d;
   d.verdict = Verdict::adequate;
@@ -179,7 +188,7 @@ TEST(DiagnosisReportTest, AdequateModelNeedsNoEffect) {
   const auto j = diagnosis_json(example().model, d, {});
   EXPECT_TRUE(j["after"].is_null());
   EXPECT_FALSE(j["events"][0]["channels"][0].contains("map_after"));
-  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict good"));
+  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("headline good"));
 }
 TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
   Diagnosis d = example().d;
@@ -187,7 +196,7 @@ TEST(DiagnosisReportTest, ShowsUnexplainedResidualAsInferredInput) {
   d.ranked.front().accepted = false;
   const auto j = diagnosis_json(example().model, d, {});
   EXPECT_EQ(j["after"]["with"], "the inferred field voltage");
-  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("verdict bad"));
+  EXPECT_THAT(diagnosis_html(example().model, d, {}), HasSubstr("headline bad"));
 }
 
 /// The example without an accepted effect, with an accepted user-defined model for the field voltage and a
@@ -257,28 +266,43 @@ TEST(DiagnosisReportTest, PageOmitsUserModels_WithoutASearch) {
 }
 
 TEST(DiagnosisPageTest, RendersInABrowser) {
-  // A drag from 30 % to 60 % of the first chart's width: a user's zoom.
-  const std::string zoom = R"js(<script>
-    const box=[...document.getElementById("chart0").querySelectorAll("canvas")].pop(), r=box.getBoundingClientRect();
-    const mouse=(what,x,on)=>on.dispatchEvent(new MouseEvent(what,{bubbles:true,cancelable:true,view:window,button:0,buttons:1,
-      clientX:r.left+x*r.width,clientY:r.top+60,screenX:r.left+x*r.width,screenY:r.top+60}));
-    mouse("mousedown",.3,box);mouse("mousemove",.6,document);mouse("mouseup",.6,document);
-    const group=Object.values(groups)[0];
-    document.body.dataset.result=JSON.stringify({all:charts[0].rows.length,zoomed:group.map(g=>g.xAxisRange()),
-      charts:document.querySelectorAll(".chart canvas").length,figures:JSON.parse(document.getElementById("figures").textContent),
-      wide:document.documentElement.scrollWidth,inner:innerWidth});
+  // A drag from 30 % to 60 % of the first chart's width: a user's zoom; then a double-click.
+  const std::string act = R"js(<script>
+    const box=document.querySelector(".u-over"), r=box.getBoundingClientRect(), state=()=>charts_of_test().map((c)=>({group:c.of.group,x:c.x}));
+    const mouse=(what,x,on=box)=>on.dispatchEvent(new MouseEvent(what,{bubbles:true,cancelable:true,view:window,button:0,buttons:1,movementX:1,
+      clientX:r.left+x*r.width,clientY:r.top+60}));
+    const result={first:state(),figures:JSON.parse(document.getElementById("figures").textContent)};
+    mouse("mousemove",.3);mouse("mousedown",.3);mouse("mousemove",.6);mouse("mouseup",.6,document);
+    setTimeout(()=>{result.zoomed=state();mouse("dblclick",.5);
+      setTimeout(()=>{result.whole=state();
+        [...document.querySelectorAll(".chips a")].pop().click();
+        result.open=document.querySelectorAll("details[open]").length;
+        result.charts=document.querySelectorAll(".chart canvas").length;
+        result.wide=document.documentElement.scrollWidth;result.inner=innerWidth;
+        document.body.dataset.result=JSON.stringify(result)},200)},200);
   </script>)js";
-  const test::Shown shown = test::show(page(), zoom);
+  const test::Shown shown = test::show(page(), act);
   EXPECT_EQ(shown.complaints, "");
   const auto& result = shown.result;
   EXPECT_EQ(result["figures"], figures());
-  EXPECT_GT(result["charts"].get<int>(), 20);  // two canvases each, overlay and residual of five channels
-  const double from = result["zoomed"][0][0], to = result["zoomed"][0][1];
-  EXPECT_GT(from, 2.5);  // of 0 to 15 s; the axis takes some of the width
-  EXPECT_LT(to, 10.0);
-  EXPECT_GT(to, from + 2);
-  for (const auto& range : result["zoomed"])
-    EXPECT_EQ(range, result["zoomed"][0]);     // the event's charts share the range
+  EXPECT_GT(result["charts"].get<int>(), 12);  // folded ones too
+  const auto range = [&](const char* when, std::size_t chart) -> std::pair<double, double> {
+    return {result[when][chart]["x"][0], result[when][chart]["x"][1]};
+  };
+  const auto [from, to] = range("first", 0);  // 1 s before to 5 s after the first switching
+  EXPECT_NEAR(to - from, 6, 1e-6);
+  EXPECT_NEAR(range("zoomed", 0).first, from + 0.3 * 6, 0.1);
+  EXPECT_NEAR(range("zoomed", 0).second, from + 0.6 * 6, 0.1);
+  EXPECT_GT(range("whole", 0).second - range("whole", 0).first, 14);
+  const auto& group = result["first"][0]["group"];
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < result["first"].size(); ++k) {
+    const bool follows = result["first"][k]["group"] == group;
+    same += follows;
+    EXPECT_EQ(range("zoomed", k) == range("zoomed", 0), follows) << k;  // the event's charts share the range
+  }
+  EXPECT_GT(same, 4U);
+  EXPECT_EQ(result["open"], 1);                // a chip opens the event of its chart
   EXPECT_LE(result["wide"], result["inner"]);  // on a telephone only tables need horizontal scrolling
 }
 TEST(DiagnosisPageTest, DetectsBrowserErrors) {

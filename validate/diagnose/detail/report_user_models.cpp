@@ -10,8 +10,7 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr const char* kInferred = "#7d3c98";
-constexpr const char* kUserModel = "#d68910";
+using report::Ink;
 
 std::string input_name(const user_model_search::UserModelSearch& s) {
   return s.kind == fit::InputKind::torque ? "inferred torque" : "inferred field voltage";
@@ -19,10 +18,10 @@ std::string input_name(const user_model_search::UserModelSearch& s) {
 /// Returns the user-defined model whose time series is plotted: the one found, or null.
 const user_model_search::UserModelFinding* drawn(const Diagnosis& d) { return d.user_models.found(); }
 
-void add_scatters(const Diagnosis& d, report::Page& page) {
+void add_scatters(const Diagnosis& d, report::Document& page) {
   const user_model_search::UserModelSearch& s = d.user_models;
   const user_model_search::UserModelRegression regression(s.traces);
-  std::vector<report::Scatter> all;
+  page.add(report::Begin{report::Begin::Layout::row});
   for (std::size_t signal = 0; signal < user_model_search::kUserModelSignals.size(); ++signal) {
     user_model_search::TimeSeries time_series;
     for (const auto& t : s.traces) time_series.push_back(t.signal[signal]);
@@ -30,26 +29,25 @@ void add_scatters(const Diagnosis& d, report::Page& page) {
     report::Scatter plot{std::string(user_model_search::kUserModelSignals[signal].expression),
                          std::string(user_model_search::kUserModelSignals[signal].expression) + " [pu]",
                          input_name(s) + " [pu]",
-                         {{"inferred", kInferred, {}}}};
-    if (drawn(d)) plot.groups.push_back({"law", kUserModel, {}});
+                         {{"inferred", Ink::inferred, {}}}};
+    if (drawn(d)) plot.groups.push_back({"law", Ink::fitted, {}});
     for (std::size_t e = 0; e < s.traces.size(); ++e)
       for (std::size_t k = 0; k < x[e].size(); ++k) {
         plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
         if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->user_model.time_series[e][k]);
       }
-    all.push_back(std::move(plot));
+    page.add(std::move(plot));
   }
-  page.scatters(all);
+  page.add(report::End{});
 }
-void add_time_series(const Diagnosis& d, report::Page& page) {
+void add_time_series(const Diagnosis& d, report::Document& page) {
   const user_model_search::UserModelSearch& s = d.user_models;
   for (std::size_t e = 0; e < s.traces.size(); ++e) {
     const std::string& name = d.events[e].record.name;
-    report::Curves c{name + ": " + input_name(s), "t [s]", "[pu]", name + " user-defined model",
-                     s.traces[e].knots,           {},      {}};
-    c.series.push_back({"inferred", kInferred, false, s.traces[e].input});
-    if (drawn(d)) c.series.push_back({"law", kUserModel, false, drawn(d)->user_model.time_series[e]});
-    page.curves(c);
+    report::Curves c{name + ": " + input_name(s), "pu", name + " user-defined model", s.traces[e].knots};
+    c.series.push_back({"inferred", Ink::inferred, s.traces[e].input});
+    if (drawn(d)) c.series.push_back({"law", Ink::fitted, drawn(d)->user_model.time_series[e]});
+    page.add(std::move(c));
   }
 }
 std::string unseen_words(const user_model_search::UserModelFinding& f) {
@@ -85,7 +83,7 @@ nlohmann::json finding_json(const user_model_search::UserModelFinding& f) {
 
 }  // namespace
 
-void user_models_on_page(const Diagnosis& d, report::Page& page) {
+void user_models_on_page(const Diagnosis& d, report::Document& page) {
   const user_model_search::UserModelSearch& s = d.user_models;
   if (s.kind == fit::InputKind::none) return;
   page.section("User-defined model");
@@ -111,7 +109,7 @@ void user_models_on_page(const Diagnosis& d, report::Page& page) {
                           fmt::format("{:.1f}", f.judgement.gain),
                           fmt::format("{:.2f} ×", std::sqrt(f.judgement.fit.reduced_chi2())), unseen_words(f),
                           f.judgement.accepted ? "accepted" : f.judgement.why_not, f.words});
-  if (!table.rows.empty()) page.table(table);
+  if (!table.rows.empty()) page.add(table);
 }
 
 nlohmann::json user_models_json(const Diagnosis& d) {

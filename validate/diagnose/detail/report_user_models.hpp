@@ -4,13 +4,13 @@
 #include <string>
 
 #include "validate/diagnose/diagnose.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::diagnose {
 
 /// Adds plots of the inferred input over time and against every signal, and a table of the models tried. Does
 /// nothing if there was no search.
-void user_models_on_page(const Diagnosis& d, report::Page& page);
+void user_models_on_page(const Diagnosis& d, report::Document& page);
 /// Returns null if there was no search.
 nlohmann::json user_models_json(const Diagnosis& d);
 std::string user_models_text(const Diagnosis& d);

@@ -1,7 +1,7 @@
 #pragma once
 // Tables of a task's methods: per noise level, per generator, per parameter, and training effort.
 #include "validate/report/detail/summary.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::validate::report {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "validate/report/detail/power_law.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 #include "validate/report/run_result.hpp"
 
 namespace swingbank::validate::report {

@@ -1,0 +1,223 @@
+#include "validate/compare/first_screen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "validate/compare/error_map_table.hpp"
+#include "validate/compare/event_title.hpp"
+
+namespace swingbank::validate::compare {
+namespace {
+
+constexpr double kShownBefore = 1, kShownAfter = 5;  ///< first view, from the first switching [s]
+
+const ChannelComparison* find_channel(const Played* played, std::size_t event, const std::string& name) {
+  if (!played || event >= played->events.size()) return nullptr;
+  const auto& channels = played->events[event].channels;
+  const auto c = std::ranges::find(channels, name, &ChannelComparison::name);
+  return c == channels.end() ? nullptr : &*c;
+}
+
+std::vector<double> scaled(std::vector<double> values, double scale) {
+  for (auto& v : values) v *= scale;
+  return values;
+}
+
+/// Returns "86 → 1.0 ×", or "86 ×" for one model.
+std::string fall_text(const ChannelComparison& before, const ChannelComparison* after) {
+  std::string text = times_noise(before.whole.in_noise);
+  if (!after) return text;
+  if (text.ends_with(" ×")) text.erase(text.size() - std::string(" ×").size());
+  return text + " → " + times_noise(after->whole.in_noise);
+}
+
+std::string event_label(const FirstScreen& s, std::size_t event) {
+  const bool unseen = std::ranges::count(s.unseen, s.before->events[event].record.name) > 0;
+  return fmt::format("event {}{}", event + 1, unseen ? " (held out)" : "");
+}
+
+report::Chips::Chip chip(const FirstScreen& s, std::size_t event, const ChannelComparison& c) {
+  const ChannelComparison* after = find_channel(s.after, event, c.name);
+  const bool by_after = after != nullptr && !s.judge_before;
+  const Played& judged = by_after ? *s.after : *s.before;
+  const ChannelError error = channel_error(judged.fitness, judged.events[event], by_after ? *after : c);
+  const auto rms = [](const ChannelComparison& of) { return fmt::format("{:.4g}", of.whole.rms * of.scale); };
+  return {c.name, fall_text(c, after), error.tone, chart_id(event, c.name),
+          fmt::format("{} {}: RMS error {}{} {}, in multiples of the noise {}{}",
+                      s.before->events[event].record.name, c.name, rms(c), after ? " → " + rms(*after) : "",
+                      c.unit, fall_text(c, after),
+                      error.limit > 0 ? fmt::format("; {:.0f} % of its limit", 100 * error.limit) : "")};
+}
+
+report::Chips chips(const FirstScreen& s) {
+  report::Chips all;
+  for (std::size_t e = 0; e < s.before->events.size(); ++e) {
+    report::Chips::Group group{event_label(s, e), {}};
+    for (const auto& c : s.before->events[e].channels)
+      if (c.judged) group.chips.push_back(chip(s, e, c));
+    all.groups.push_back(std::move(group));
+  }
+  return all;
+}
+
+/// Returns the bars of each event's worst channel before and after.
+report::Bars fall(const FirstScreen& s) {
+  report::Bars bars{fmt::format("RMS error in multiples of the noise, worst channel of each event: {} → {}",
+                                s.before->name, s.after->name),
+                    "",
+                    1,
+                    "noise",
+                    {}};
+  for (std::size_t e = 0; e < s.before->events.size(); ++e) {
+    const ChannelComparison* worst = nullptr;
+    for (const auto& c : s.before->events[e].channels)
+      if (c.judged && std::isfinite(c.whole.in_noise) && (!worst || c.whole.in_noise > worst->whole.in_noise))
+        worst = &c;
+    const ChannelComparison* after = worst ? find_channel(s.after, e, worst->name) : nullptr;
+    if (!after) continue;
+    bars.bars.push_back({event_label(s, e) + " " + worst->name, worst->whole.in_noise, "before",
+                         times_noise(worst->whole.in_noise)});
+    bars.bars.push_back({"", after->whole.in_noise, "after", times_noise(after->whole.in_noise)});
+  }
+  return bars;
+}
+
+/// Adds the worst event with P and Q side by side.
+void large_charts(report::Document& document, const FirstScreen& s) {
+  const auto [event, channels] = worst_event(*s.before);
+  document.subsection(fmt::format("Event {}: {}, {}", event + 1, s.before->events[event].record.name,
+                                  event_title(s.before->events[event])));
+  document.add(report::Begin{report::Begin::Layout::large});
+  for (const auto& name : channels) {
+    report::Curves c = channel_curves(
+        {{s.before, s.after ? report::Ink::submitted : report::Ink::fitted}, {s.after, report::Ink::fitted}},
+        event, name);
+    const ChannelComparison& of = *find_channel(s.before, event, name);
+    const ChannelError error = channel_error(s.before->fitness, s.before->events[event], of);
+    if (error.tone != report::Tone::good && error.window >= 0) {
+      const Window& w = s.before->events[event].windows[static_cast<std::size_t>(error.window)];
+      c.window = {w.from, w.to};
+    }
+    document.add(std::move(c));
+  }
+  document.add(report::End{});
+}
+
+/// Returns the largest ratio of an error of this channel and event to its limit.
+double share_of_limit(const Fitness& fitness, const std::string& event, const std::string& channel) {
+  double most = 0;
+  for (const auto& row : fitness.rows)
+    if (row.event == event && row.channel == channel && row.samples > 0)
+      most = std::max(most, thresholds::nearest(row.errors, row.limits).ratio);
+  for (const auto& m : fitness.movements)
+    if (m.event == event && m.channel == channel) most = std::max(most, m.error / m.limit);
+  return most;
+}
+
+}  // namespace
+
+std::string headline(bool complete, const Fitness& fitness, const std::string& model) {
+  const bool judged = fitness.not_judged.empty();
+  if (complete)
+    return judged && !fitness.fit ? "Only noise remains, but limits are exceeded"
+                                  : model + " matches: only noise remains";
+  if (judged && fitness.fit) return "Fit for purpose, but errors exceed noise";
+  return model + " does not match the records";
+}
+
+ChannelError channel_error(const Fitness& fitness, const EventComparison& event, const ChannelComparison& c) {
+  ChannelError error;
+  error.bound = c.map.whole.empty() ? 0 : c.map.whole.normalised / c.map.whole.bound;
+  double largest = 0;
+  for (std::size_t w = 0; w < c.map.rows.size(); ++w) {
+    double here = 0;
+    const auto take = [&](const TimeFrequencyBin& b) {
+      if (!b.empty() && b.bound > 0) here = std::max(here, b.normalised / b.bound);
+    };
+    take(c.map.rows[w].all);
+    for (const auto& b : c.map.rows[w].bands) take(b);
+    if (here > largest) largest = here, error.window = static_cast<int>(w);
+  }
+  error.bound = std::max(error.bound, largest);
+  error.limit = share_of_limit(fitness, event.record.name, c.name);
+  error.tone = error.limit > 1               ? report::Tone::bad
+               : error.bound > 1 && c.judged ? report::Tone::warn
+                                             : report::Tone::good;
+  return error;
+}
+
+std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played) {
+  std::pair<std::size_t, std::vector<std::string>> worst;
+  double largest = -1;
+  for (std::size_t e = 0; e < played.events.size(); ++e)
+    for (const auto& c : played.events[e].channels)
+      if (const double ratio = c.whole.in_noise; c.judged && std::isfinite(ratio) && ratio > largest)
+        largest = ratio, worst.first = e;
+  if (played.events.empty()) return worst;
+  const auto& channels = played.events[worst.first].channels;
+  for (const auto& c : channels)
+    if (c.name == "P" || c.name == "Q") worst.second.push_back(c.name);
+  for (std::size_t k = 0; worst.second.empty() && k < std::min<std::size_t>(2, channels.size()); ++k)
+    worst.second.push_back(channels[k].name);
+  if (worst.second.empty() && !channels.empty()) worst.second.push_back(channels.front().name);
+  return worst;
+}
+
+std::string chart_id(std::size_t event, const std::string& channel) {
+  return fmt::format("event-{}-{}", event + 1, channel);
+}
+
+report::Curves event_chart(const EventComparison& e, const std::string& title, const std::string& unit) {
+  report::Curves c{title, unit, e.record.name, e.record.t};
+  if (e.switchings.empty() || e.record.t.empty()) return c;
+  const double first = e.switchings.front().time;
+  c.fault = {first, e.switchings.back().time};
+  c.view = {std::max(first - kShownBefore, e.record.t.front()),
+            std::min(first + kShownAfter, e.record.t.back())};
+  return c;
+}
+
+report::Curves channel_curves(const std::vector<std::pair<const Played*, report::Ink>>& models,
+                              std::size_t event, const std::string& channel) {
+  report::Curves c;
+  for (const auto& [played, ink] : models)
+    if (const ChannelComparison* of = find_channel(played, event, channel)) {
+      if (c.series.empty()) {
+        c = event_chart(played->events[event], channel, of->unit);
+        c.series.push_back({"measured", report::Ink::measured, scaled(of->measured, of->scale)});
+      }
+      c.series.push_back({played->name, ink, scaled(of->modelled, of->scale)});
+    }
+  c.id = chart_id(event, channel);
+  return c;
+}
+
+void first_screen(report::Document& document, const FirstScreen& s) {
+  document.add(report::Opening{s.headline, s.reasons, s.tone});
+  if (s.before && !s.before->events.empty()) {
+    document.add(chips(s));
+    large_charts(document, s);
+    if (s.after && !s.after->events.empty()) document.add(fall(s));
+  }
+  if (!s.next.empty()) document.add(report::Paragraph{s.next, report::Paragraph::Kind::command});
+}
+
+std::string next_command(const report::Provenance& rows, const std::string& command) {
+  if (rows.empty()) return {};
+  std::string line = rows.front().second;
+  for (const auto& [name, value] : rows)
+    if (name == "command") line = value;
+  const auto begin = line.find(' ');                                                // after the program
+  const auto end = begin == std::string::npos ? begin : line.find(' ', begin + 1);  // after its command
+  if (end == std::string::npos) return {};
+  std::string rest = line.substr(end);
+  if (const auto out = rest.find(" --out "); out != std::string::npos) {
+    const auto next = rest.find(' ', out + 7);
+    rest.erase(out, next == std::string::npos ? next : next - out);
+  }
+  return "swingbank " + command + rest;
+}
+
+}  // namespace swingbank::validate::compare

@@ -1,0 +1,56 @@
+#pragma once
+// First screen of a report, and its parts for the live page: the verdict in a few words, and the error of
+// each channel.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validate/compare/played.hpp"
+#include "validate/report/document.hpp"
+
+namespace swingbank::validate::compare {
+
+/// Returns the verdict in at most eight words; `model`: for example "Calibrated model".
+std::string headline(bool complete, const Fitness& fitness, const std::string& model = "Model");
+
+/// Error of one channel of one event against its bounds and limits.
+struct ChannelError {
+  double bound = 0;   ///< largest normalised RMS / bound of all bins; above 1: more than noise
+  int window = -1;    ///< window of the largest ratio; -1: no bins
+  double limit = 0;   ///< largest error / limit; above 1: exceeds an engineering limit
+  report::Tone tone;  ///< good: noise; warn: more than noise; bad: exceeds a limit
+};
+/// Returns the error of a channel, judged by the limits of `fitness`.
+ChannelError channel_error(const Fitness& fitness, const EventComparison& event, const ChannelComparison& c);
+
+/// Content of a report's first screen.
+struct FirstScreen {
+  std::string headline;                   ///< at most eight words
+  std::vector<std::string> reasons;       ///< one line each
+  report::Tone tone = report::Tone::bad;  ///< colour of the headline
+  const Played* before = nullptr;         ///< shown model; with `after`: the submitted one
+  const Played* after = nullptr;          ///< changed model; null: none
+  bool judge_before = false;              ///< chips have the colour of `before`, else of `after`
+  std::vector<std::string> unseen = {};   ///< names of held-out events
+  std::string next = {};                  ///< next command; empty: none
+};
+/// Adds headline, chips, P and Q of the worst event, and the fall of the errors.
+void first_screen(report::Document& document, const FirstScreen& screen);
+
+/// Returns the event with the largest error, and its channels for the large charts: P and Q, or the first
+/// two.
+std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played);
+
+/// Returns the chart of one channel: measured, and simulated by each model with its role. Empty without
+/// series.
+report::Curves channel_curves(const std::vector<std::pair<const Played*, report::Ink>>& models,
+                              std::size_t event, const std::string& channel);
+/// Returns the id of the chart of a channel.
+std::string chart_id(std::size_t event, const std::string& channel);
+/// Returns an empty chart of an event, which shows 1 s before to 5 s after the first switching.
+report::Curves event_chart(const EventComparison& e, const std::string& title, const std::string& unit);
+
+/// Returns the command line of another command with the same inputs: "swingbank add SEXS --model ...".
+std::string next_command(const report::Provenance& rows, const std::string& command);
+
+}  // namespace swingbank::validate::compare
