@@ -74,8 +74,8 @@ report::Table addition_table(const Addition& a) {
 }
 
 std::string terminal_report(const Addition& a) {
-  return a.sentence + "\n\n" + calibrate::aligned(addition_table(a)) + "\n" +
-         calibrate::aligned(values_table(a)) +
+  return a.sentence + "\n\n" + report::padded(addition_table(a), 1) + "\n" +
+         report::padded(values_table(a), 1) +
          fmt::format("\nEvidence, 2 ln(Bayes factor): {:.1f}; above {:g} is strong.\n{}\n", a.evidence,
                      thresholds::addition.strong.value, judged_by(a));
 }

@@ -14,10 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Number of UTF-8 characters.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
-}
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
 /// Returns whether a value is so far from the model's that the prior biases it and correlated parameters.
@@ -134,31 +130,9 @@ report::Table event_table(const std::vector<EventScore>& events) {
   return t;
 }
 
-std::string aligned(const report::Table& table) {
-  std::vector<std::size_t> widths(table.header.size(), 0);
-  for (std::size_t c = 0; c < widths.size(); ++c) {
-    widths[c] = width(table.header[c]);
-    for (const auto& row : table.rows) widths[c] = std::max(widths[c], width(row[c].text));
-  }
-  std::string text;
-  const auto line = [&](auto cell) {
-    std::string one;
-    for (std::size_t c = 0; c < widths.size(); ++c) {
-      const std::string& content = cell(c);
-      const std::string pad(widths[c] - width(content), ' ');
-      one += (c == 0 ? "  " : "  ") + (c == 0 ? content + pad : pad + content);
-    }
-    one.erase(one.find_last_not_of(' ') + 1);
-    text += one + "\n";
-  };
-  line([&](std::size_t c) -> const std::string& { return table.header[c]; });
-  for (const auto& row : table.rows) line([&](std::size_t c) -> const std::string& { return row[c].text; });
-  return text;
-}
-
 std::string terminal_report(const Calibration& c) {
-  std::string text =
-      c.sentence + "\n\n" + aligned(event_table(c.events)) + "\n" + aligned(parameter_table(c));
+  std::string text = c.sentence + "\n\n" + report::padded(event_table(c.events), 1) + "\n" +
+                     report::padded(parameter_table(c), 1);
   text += fmt::format("\n{} of {} starts reached this optimum{}.\n", c.agreeing, c.starts,
                       c.converged ? "" : "; the search reached its iteration limit");
   if (c.started.size() > 1) text += starts_text(c);

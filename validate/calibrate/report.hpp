@@ -13,8 +13,6 @@ namespace swingbank::validate::calibrate {
 report::Table parameter_table(const Calibration& c);
 /// Table of events: fitted or unseen, reduced chi-square before and after, and its limit.
 report::Table event_table(const std::vector<EventScore>& events);
-/// Table for a terminal with aligned columns, the first left-aligned.
-std::string aligned(const report::Table& table);
 
 /// Verdict, tables, parameters that are not identified, and events that would identify them.
 std::string terminal_report(const Calibration& c);

@@ -203,7 +203,7 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   std::string text =
       "Comparison, reduced chi-square (each event with its own switching times and start; only "
       "the parameters differ):\n" +
-      aligned(events_beside(ways)) + "\n" + aligned(parameters_beside(ways, truth));
+      report::padded(events_beside(ways), 1) + "\n" + report::padded(parameters_beside(ways, truth), 1);
   if (truth.empty()) return text;
   text += "\n";
   for (const auto& way : ways) {
@@ -253,8 +253,8 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
                   return values;
                 }(),
                 f.events};
-  std::string text =
-      f.sentence + "\n\n" + aligned(event_table(f.events)) + "\n" + aligned(parameters_beside({way}, truth));
+  std::string text = f.sentence + "\n\n" + report::padded(event_table(f.events), 1) + "\n" +
+                     report::padded(parameters_beside({way}, truth), 1);
   for (const auto& p : f.parameters)
     if (p.at_bound) text += p.full_name() + " ended at its bound.\n";
   if (truth.empty()) return text;

@@ -198,8 +198,8 @@ std::string terminal_report(const Retrained& r) {
                            figure(e.reduced_chi2[0]), figure(e.reduced_chi2[1])});
   return r.sentence +
          "\n\nEstimates on held-out events; errors in standard deviations of the drawn values:\n" +
-         calibrate::aligned(t) + "\nP and Q with each network's estimates from the fitted events:\n" +
-         calibrate::aligned(events);
+         report::padded(t, 1) + "\nP and Q with each network's estimates from the fitted events:\n" +
+         report::padded(events, 1);
 }
 
 json retrained_json(const Retrained& r) {
