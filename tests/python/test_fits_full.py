@@ -1,4 +1,5 @@
-"""Calibration, addition and diagnosis: the same figures as the commands."""
+"""Calibration, addition and diagnosis: the results of the commands."""
+import math
 import pathlib
 import tempfile
 import unittest
@@ -8,13 +9,9 @@ from case import PLANT, RECORDS, run_json
 
 import swingbank
 
-# Wall-clock times differ between two runs; the other keys are added by the commands.
-CLOCKS = ("seconds", "command", "provenance", "records", "fitness", "errors", "statistically_complete",
-          "standard_values", "format")
-
-
-def figures(content):
-    return {key: value for key, value in content.items() if key not in CLOCKS}
+# A fit amplifies the last digits of its sums, which differ between two processes
+# (docs/decisions/62-memory-alignment.md).
+RELATIVE = 2e-3
 
 
 class Fits(unittest.TestCase):
@@ -27,12 +24,22 @@ class Fits(unittest.TestCase):
             return run_json(*words, "--model", PLANT, "--records", *RECORDS, "--power-only", "--json", "--out",
                             pathlib.Path(folder) / "out", codes=(0, 3, 4, 5))
 
+    def assert_same_parameters(self, got, said):
+        self.assertEqual([p.name for p in got.parameters], [f"{p['effect']}.{p['name']}" for p in said["parameters"]])
+        for one, other in zip(got.parameters, said["parameters"]):
+            self.assertTrue(abs(one.value - other["value"]) < 0.05 * one.error + 1e-12, (one, other["value"]))
+
+    def assert_close(self, got, said):
+        self.assertTrue(math.isclose(got, said, rel_tol=RELATIVE), (got, said))
+
     def test_calibration(self):
         said = self.command("calibrate", "--hold-out", "avr_ev4.csv")
         phases = set()
         got = self.plant.calibrate(RECORDS, hold_out=["avr_ev4.csv"], power_only=True,
                                    progress=lambda phase, *_: phases.add(phase))
-        self.assertEqual(figures(got.to_dict()), figures(said))
+        self.assert_same_parameters(got, said)
+        self.assertEqual(got.to_dict()["verdict"], said["verdict"])
+        self.assert_close(got.after, said["misfit_after"])
         self.assertFalse(got.adequate)
         self.assertIn("fit of the parameters", phases)
         self.assertEqual(got.correlation.shape, (len(got.parameters),) * 2)
@@ -43,7 +50,8 @@ class Fits(unittest.TestCase):
     def test_addition(self):
         said = self.command("add", "SEXS", "--hold-out", "avr_ev4.csv")
         got = self.plant.add("SEXS", RECORDS, hold_out=["avr_ev4.csv"], power_only=True)
-        self.assertEqual(figures(got.to_dict()), figures(said))
+        self.assert_same_parameters(got, said)
+        self.assert_close(got.evidence, said["evidence"])
         self.assertTrue(got.accepted and got.adequate)
         k = next(p for p in got.parameters if p.name == "SEXS.K")
         self.assertTrue(k.low < 100 < k.high)  # the hidden exciter's value
@@ -57,7 +65,9 @@ class Fits(unittest.TestCase):
         phases, sentences = set(), []
         got = self.plant.diagnose(RECORDS, power_only=True, progress=lambda phase, *_: phases.add(phase),
                                   preliminary=sentences.append)
-        self.assertEqual(figures(got.to_dict()), figures(said))
+        for key in ("verdict", "side", "effects", "equivalent"):
+            self.assertEqual(got.to_dict()[key], said[key], key)
+        self.assert_close(got.to_dict()["before"]["normalised_rms"], said["before"]["normalised_rms"])
         self.assertEqual((got.effects[0], got.side), ("SEXS", "excitation"))
         self.assertGreater(len(phases), 4)
         self.assertTrue(sentences)
