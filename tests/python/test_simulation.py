@@ -22,13 +22,15 @@ class Simulation(unittest.TestCase):
     def test_samples_of_the_command(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "run.csv"
-            run("simulate", "--raw", NETWORKS / "ieee14_genrou.raw", "--dyr", NETWORKS / "ieee14_genrou.dyr", "--fault", "4:1:1.1",
-                "--t-end", "2", "--rate", "60", "--plants", "2", "--channels", "P,speed", "--buses", "4", "--out", file)
+            run("simulate", "--raw", NETWORKS / "ieee14_genrou.raw", "--dyr", NETWORKS / "ieee14_genrou.dyr",
+                "--fault", "4:1:1.1", "--t-end", "2", "--rate", "60", "--plants", "2", "--channels", "P,speed",
+                "--buses", "4", "--out", file)
             rows = list(csv.reader(file.read_text().splitlines()))
         self.assertEqual(rows[0], ["t_s", "2.P_pu", "2.speed_pu", "bus4.V_pu", "bus4.theta_rad"])
         said = np.array(rows[1:], dtype=float).T
-        for got, column in zip((self.result.t, self.result["2", "P"], self.result["2", "speed"], self.result.bus_voltage[0],
-                                self.result.bus_angle[0]), said):
+        columns = (self.result.t, self.result["2", "P"], self.result["2", "speed"], self.result.bus_voltage[0],
+                   self.result.bus_angle[0])
+        for got, column in zip(columns, said):
             np.testing.assert_allclose(got, column, rtol=1e-11, atol=1e-15)
 
     def test_shapes_and_names(self):
