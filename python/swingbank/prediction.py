@@ -65,7 +65,8 @@ def _file_of(record: _native.Record | str | os.PathLike[str]) -> str:
 
 def _problems(messages: str) -> list[tuple[str, str, str, str]]:
     """Returns the problems among the command's messages: "<what> at <where> (<why>): <do>"."""
-    found = [re.fullmatch(r"(.*?) at (.*?) \((.*)\): (.*)", line) for line in messages.splitlines()]
+    lines = [line for line in messages.splitlines() if not line.startswith("warning: ")]
+    found = [re.fullmatch(r"(.*?) at (.*?) \((.*)\): (.*)", line) for line in lines]
     return [(m[1], m[2], m[3], m[4]) for m in found if m]
 
 

@@ -4,7 +4,7 @@ import pickle
 import tempfile
 import unittest
 
-from case import PLANT, RECORDS, SOURCE, run_json
+from case import BIN, PLANT, RECORDS, SOURCE, run_json
 
 import swingbank
 
@@ -80,6 +80,14 @@ class PlantModel(unittest.TestCase):
             self.plant.compare([record, record])
         with self.assertRaises(swingbank.InputError):
             self.plant.compare([])
+
+
+class Prediction(unittest.TestCase):
+    @unittest.skipUnless((BIN / "swingbank-predict").exists(), "this build has no LibTorch")
+    def test_message_of_the_command(self):
+        with self.assertRaises(swingbank.InputError) as caught:
+            swingbank.predict("none.network", swingbank.Plant(PLANT), [RECORDS[0]])
+        self.assertEqual([p.what for p in caught.exception.problems], ["no network"])
 
 
 class Effects(unittest.TestCase):
