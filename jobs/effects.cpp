@@ -73,8 +73,8 @@ class Footnotes {
  public:
   /// Returns the source numbers of a parameter: "1", or "1 2" if default and bounds have different sources.
   std::string marks(const Parameter& p) {
-    const auto standard = number_of(p.default_from), bounds = number_of(p.bounds_from);
-    return standard == bounds ? fmt::format("{}", standard) : fmt::format("{} {}", standard, bounds);
+    const auto value = number_of(p.default_from), bounds = number_of(p.bounds_from);
+    return value == bounds ? fmt::format("{}", value) : fmt::format("{} {}", value, bounds);
   }
   void print() const {
     fmt::print("\nsources (if two: of the default value, of the bounds)\n");
@@ -108,7 +108,7 @@ void describe(const Effect& e) {
   }
   if (!e.parameters.empty()) {
     std::vector<std::vector<std::string>> rows = {
-        {"name", "symbol", "unit", "standard", "lowest", "highest", "neutral", "sources", "meaning"}};
+        {"name", "symbol", "unit", "default", "lowest", "highest", "null", "sources", "meaning"}};
     Footnotes sources;
     for (const Parameter& p : e.parameters)
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit),
@@ -139,19 +139,22 @@ Json as_json(const Effect& e) {
             {"slot", slot_name(e.slot)},
             {"source", e.source},
             {"description", e.description},
-            {"law_file", e.user_model != nullptr},
+            {"user_model", e.user_model != nullptr},
             {"parameters", Json::array()},
             {"states", Json::array()}};
   for (const Parameter& p : e.parameters)
     j["parameters"].push_back({{"name", p.name},
                                {"symbol", p.symbol},
                                {"unit", p.unit},
-                               {"standard", value(p.default_value)},
+                               {"default", value(p.default_value)},
                                {"low", value(p.low)},
                                {"high", value(p.high)},
-                               {"neutral", value(p.null_value)},
-                               {"standard_from", as_text(p.default_from)},
+                               {"null_value", value(p.null_value)},
+                               {"default_from", as_text(p.default_from)},
                                {"bounds_from", as_text(p.bounds_from)},
+                               {"limit", p.limit > 0   ? "upper"
+                                         : p.limit < 0 ? "lower"
+                                                       : ""},
                                {"meaning", p.meaning}});
   for (const State& s : e.states)
     j["states"].push_back({{"name", s.name}, {"unit", s.unit}, {"meaning", s.meaning}});

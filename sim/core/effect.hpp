@@ -96,9 +96,21 @@ struct Parameter {
   double default_value, low, high, null_value;  ///< default; usual range; null value (NaN: none) [unit]
   std::string_view meaning;                     ///< definition, for tables and `swingbank effects`
   Source default_from = {}, bounds_from = {};   ///< sources of the default and of the range
+  int limit = 0;                                ///< +1: upper limit of a signal, -1: lower limit, 0: no limit
   /// Whether the parameter is an integer choice (unit "code"), which is neither sampled nor fitted.
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
+
+/// Returns `p`, marked as the upper limit of a signal.
+constexpr Parameter upper_limit(Parameter p) {
+  p.limit = 1;
+  return p;
+}
+/// Returns `p`, marked as the lower limit of a signal.
+constexpr Parameter lower_limit(Parameter p) {
+  p.limit = -1;
+  return p;
+}
 
 /// Indices of the parameters with which a plant control selects a remote measuring point. Parameter value 0:
 /// at the plant. Index -1: the effect has no such parameter.

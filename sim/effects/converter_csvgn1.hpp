@@ -36,10 +36,12 @@ struct Model : shared::ControlledCurrent<Model> {
       {"T3", "T3", "s", 0.154833, 0.0, 50.0, kNoNullValue, "first lag (0: bypass)"},
       {"T4", "T4", "s", 1.0, 0.0, 50.0, kNoNullValue, "second lag (0: bypass)"},
       {"T5", "T5", "s", 0.005167, 0.001, 10.0, kNoNullValue, "thyristors"},
-      {"RMIN", "RMIN", "Mvar", 0.0, -10000.0, 10000.0, kNoNullValue,
-       "smallest reactive power of the reactor at rated voltage"},
-      {"VMAX", "VMAX", "pu", 2.0, -10.0, 99.0, kNoNullValue, "upper limit of the regulator", kWider},
-      {"VMIN", "VMIN", "pu", -1.0, -99.0, 10.0, kNoNullValue, "lower limit of the regulator", kWider},
+      lower_limit({"RMIN", "RMIN", "Mvar", 0.0, -10000.0, 10000.0, kNoNullValue,
+                   "smallest reactive power of the reactor at rated voltage"}),
+      upper_limit(
+          {"VMAX", "VMAX", "pu", 2.0, -10.0, 99.0, kNoNullValue, "upper limit of the regulator", kWider}),
+      lower_limit(
+          {"VMIN", "VMIN", "pu", -1.0, -99.0, 10.0, kNoNullValue, "lower limit of the regulator", kWider}),
       {"CBASE", "CBASE", "Mvar", 60.0, 0.0, 10000.0, kNoNullValue,
        "reactive power of the capacitor at rated voltage"},
       kTfreq};

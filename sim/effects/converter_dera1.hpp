@@ -128,16 +128,18 @@ struct Model : shared::ControlledCurrent<Model> {
       {"Dup", "Dup", "pu/pu", 0.0, 0.0, 200.0, 0.0, "power per frequency below the dead-band"},
       {"fdbd1", "fdbd1", "pu", -0.0006, -1.0, 0.0, 0.0, "lower edge of the frequency's dead-band"},
       {"fdbd2", "fdbd2", "pu", 0.0006, 0.0, 1.0, 0.0, "upper edge of the frequency's dead-band"},
-      {"femax", "femax", "pu", 99.0, 0.0, 99.0, kNoNullValue, "upper limit of the power regulator's error"},
-      {"femin", "femin", "pu", -99.0, -99.0, 0.0, kNoNullValue, "lower limit of the power regulator's error"},
-      {"Pmax", "Pmax", "pu", 1.1, 0.0, 99.0, kNoNullValue, "highest Pord"},
-      {"Pmin", "Pmin", "pu", 0.0, -99.0, 1.0, kNoNullValue, "lowest Pord"},
+      upper_limit({"femax", "femax", "pu", 99.0, 0.0, 99.0, kNoNullValue,
+                   "upper limit of the power regulator's error"}),
+      lower_limit({"femin", "femin", "pu", -99.0, -99.0, 0.0, kNoNullValue,
+                   "lower limit of the power regulator's error"}),
+      upper_limit({"Pmax", "Pmax", "pu", 1.1, 0.0, 99.0, kNoNullValue, "highest Pord"}),
+      lower_limit({"Pmin", "Pmin", "pu", 0.0, -99.0, 1.0, kNoNullValue, "lowest Pord"}),
       {"dPmax", "dPmax", "pu/s", 0.5, 0.0, 999.0, kNoNullValue, "fastest rise of the power reference"},
       {"dPmin", "dPmin", "pu/s", -0.5, -999.0, 0.0, kNoNullValue, "fastest fall of the power reference"},
       {"Tpord", "Tpord", "s", 0.02, 0.0, 99.0, kNoNullValue, "lag of Pord (0: none)"},
       {"Kpg", "Kpg", "pu/pu", 0.1, 0.0, 100.0, 0.0, "power regulator, proportional gain"},
       {"Kig", "Kig", "1/s", 10.0, 0.0, 500.0, 0.0, "power regulator, integral gain"},
-      {"Imax", "Imax", "pu", 1.2, 0.1, 99.0, kNoNullValue, "largest current"},
+      upper_limit({"Imax", "Imax", "pu", 1.2, 0.1, 99.0, kNoNullValue, "largest current"}),
       {"Vl0", "Vl0", "pu", 0.44, 0.0, 1.0, kNoNullValue, "voltage below which all units trip"},
       {"Vl1", "Vl1", "pu", 0.49, 0.0, 1.0, kNoNullValue, "voltage below which units begin to trip"},
       {"Vh0", "Vh0", "pu", 1.2, 0.5, 99.0, kNoNullValue, "voltage above which all units trip"},
@@ -158,8 +160,10 @@ struct Model : shared::ControlledCurrent<Model> {
       {"rrpwr", "rrpwr", "pu/s", 99.0, 0.01, 999.0, kNoNullValue, "fastest rise of the active current"},
       {"Tv", "Tv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of the tripped fraction (0: none)"},
       {"Vpr", "Vpr", "pu", 0.8, 0.0, 1.0, kNoNullValue, "voltage below which frequency does not trip"},
-      {"Iqh1", "Iqh1", "pu", 1.0, 0.0, 99.0, kNoNullValue, "upper limit of the voltage control's current"},
-      {"Iql1", "Iql1", "pu", -1.0, -99.0, 0.0, kNoNullValue, "lower limit of the voltage control's current"}};
+      upper_limit({"Iqh1", "Iqh1", "pu", 1.0, 0.0, 99.0, kNoNullValue,
+                   "upper limit of the voltage control's current"}),
+      lower_limit({"Iql1", "Iql1", "pu", -1.0, -99.0, 0.0, kNoNullValue,
+                   "lower limit of the voltage control's current"})};
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   static constexpr double kRateLag = 0.01;        ///< time constant of the reference's rate limiter [s]
   static constexpr double kFrequencyBand = 1e-5;  ///< width beyond fl and fh over which a trip sets in [pu]

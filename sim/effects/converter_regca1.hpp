@@ -55,13 +55,15 @@ struct Model : shared::ControlledCurrent<Model> {
       {"Rrpwr", "rrpwr", "pu/s", 10.0, 0.01, 999.0, kNoNullValue, "fastest rise of the active current"},
       {"Brkpt", "Brkpt", "pu", 0.9, 0.0, 1.5, kNoNullValue, "voltage above which LVPL is Lvpl1"},
       {"Zerox", "Zerox", "pu", 0.4, 0.0, 1.0, kNoNullValue, "voltage below which LVPL is 0"},
-      {"Lvpl1", "Lvpl1", "pu", 1.22, 0.0, 5.0, kNoNullValue, "limit of the active current at Brkpt"},
+      upper_limit(
+          {"Lvpl1", "Lvpl1", "pu", 1.22, 0.0, 5.0, kNoNullValue, "limit of the active current at Brkpt"}),
       {"Volim", "Volim", "pu", 1.2, 0.8, 2.0, kNoNullValue, "voltage above which Q is absorbed"},
       {"Lvpnt1", "Lvpnt1", "pu", 0.8, 0.0, 1.5, kNoNullValue, "voltage above which G is 1",
        literature::psse("REGCA1")},
       {"Lvpnt0", "Lvpnt0", "pu", 0.4, -1.0, 1.0, kNoNullValue, "voltage below which G is 0",
        literature::psse("REGCA1")},
-      {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNullValue, "lower limit of the reactive current"},
+      lower_limit(
+          {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNullValue, "lower limit of the reactive current"}),
       {"Tfltr", "Tfltr", "s", 0.2, 0.0, 1.0, kNoNullValue, "measurement of the voltage for LVPL (0: none)"},
       {"Khv", "Khv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage above Volim"},
       {"Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNullValue, "fastest rise of the reactive current"},

@@ -54,10 +54,10 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
                 literature::own("a battery of four hours")},
       Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNullValue, "initial state of charge",
                 literature::own("half full"), literature::derived("a fraction")},
-      Parameter{"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNullValue, "largest state of charge",
-                literature::own("WECC's typical range, 0.8 to 1"), literature::derived("a fraction")},
-      Parameter{"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNullValue, "smallest state of charge",
-                literature::own("WECC's typical range, 0 to 0.2"), literature::derived("a fraction")}};
+      upper_limit({"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNullValue, "largest state of charge",
+                   literature::own("WECC's typical range, 0.8 to 1"), literature::derived("a fraction")}),
+      lower_limit({"SOCmin", "SOCmin", "pu", 0.2, 0.0, 1.0, kNoNullValue, "smallest state of charge",
+                   literature::own("WECC's typical range, 0 to 0.2"), literature::derived("a fraction")})};
   static constexpr auto parameters = [] {
     auto all = renewable::joined(kCodes, ride_through, regulators, orders,
                                  renewable::limit_points<4>(1.11, 1.11), kBehind);

@@ -25,14 +25,15 @@ struct Model : shared::AlternatorRectifier<Model> {
   enum { VRMAX = parameter_count, VRMIN, all_parameters };
   static constexpr auto parameters = [] {
     constexpr auto common = parameters_with(
-        {"VAMAX", "VAMAX", "pu", 14.5, 0.0, 100.0, kNoNullValue, "upper limit of the regulator"},
-        {"VAMIN", "VAMIN", "pu", -14.5, -100.0, 0.0, kNoNullValue, "lower limit of the regulator"});
+        upper_limit({"VAMAX", "VAMAX", "pu", 14.5, 0.0, 100.0, kNoNullValue, "upper limit of the regulator"}),
+        lower_limit(
+            {"VAMIN", "VAMIN", "pu", -14.5, -100.0, 0.0, kNoNullValue, "lower limit of the regulator"}));
     std::array<Parameter, all_parameters> all{};
     std::copy(common.begin(), common.end(), all.begin());
-    all[VRMAX] = {"VRMAX", "VRMAX", "pu",         6.03,
-                  0.0,     100.0,   kNoNullValue, "upper limit of the alternator's field voltage"};
-    all[VRMIN] = {"VRMIN", "VRMIN", "pu",         -5.43,
-                  -100.0,  0.0,     kNoNullValue, "lower limit of the alternator's field voltage"};
+    all[VRMAX] = upper_limit({"VRMAX", "VRMAX", "pu", 6.03, 0.0, 100.0, kNoNullValue,
+                              "upper limit of the alternator's field voltage"});
+    all[VRMIN] = lower_limit({"VRMIN", "VRMIN", "pu", -5.43, -100.0, 0.0, kNoNullValue,
+                              "lower limit of the alternator's field voltage"});
     return all;
   }();
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA,  UPPER, LOWER, TE,    KF,   TF,

@@ -54,8 +54,10 @@ struct Model {
       {"VOS", "VOS", "code", 1.0, 1.0, 2.0, kNoNullValue,
        "input of the stabiliser: 1 voltage error, 2 after the regulator", kAsEffect, shared::kCode},
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
-      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"},
-      {"VIMIN", "VIMIN", "pu", -5.0, -1000.0, 0.0, kNoNullValue, "lower limit of the voltage error"},
+      upper_limit(
+          {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"}),
+      lower_limit(
+          {"VIMIN", "VIMIN", "pu", -5.0, -1000.0, 0.0, kNoNullValue, "lower limit of the voltage error"}),
       {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNullValue, "first lead"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNullValue, "first lag (0: bypass)"},
       {"TC1", "TC1", "s", 0.08, 0.0, 30.0, kNoNullValue, "second lead",
@@ -64,10 +66,13 @@ struct Model {
        literature::openipsl("test of ESST1A")},
       {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNullValue, "gain"},
       {"TA", "TA", "s", 0.02, 0.0, 2.0, kNoNullValue, "regulator time constant (0: none)"},
-      {"VAMAX", "VAMAX", "pu", 99.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator", kNone},
-      {"VAMIN", "VAMIN", "pu", -99.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator", kNone},
-      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage"},
-      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage"},
+      upper_limit(
+          {"VAMAX", "VAMAX", "pu", 99.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator", kNone}),
+      lower_limit(
+          {"VAMIN", "VAMIN", "pu", -99.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator", kNone}),
+      upper_limit({"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage"}),
+      lower_limit(
+          {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage"}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "upper ceiling's drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},

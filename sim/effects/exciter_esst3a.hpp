@@ -55,26 +55,30 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
        literature::own("as EXST1's; CIM has none")},
-      {"VIMAX", "VIMAX", "pu", 0.2, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"},
-      {"VIMIN", "VIMIN", "pu", -0.2, -1000.0, 0.0, kNoNullValue, "lower limit of the voltage error"},
+      upper_limit(
+          {"VIMAX", "VIMAX", "pu", 0.2, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"}),
+      lower_limit(
+          {"VIMIN", "VIMIN", "pu", -0.2, -1000.0, 0.0, kNoNullValue, "lower limit of the voltage error"}),
       {"KM", "KM", "pu", 7.93, 0.01, 1000.0, kNoNullValue, "gain of the inner loop"},
       {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNullValue, "lead"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNullValue, "lag (0: bypass)"},
       {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNullValue, "gain"},
       {"TA", "TA", "s", 0.0, 0.0, 10.0, 0.0, "regulator time constant (0: none)"},
-      {"VRMAX", "VRMAX", "pu", 10.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"},
-      {"VRMIN", "VRMIN", "pu", -10.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"},
+      upper_limit({"VRMAX", "VRMAX", "pu", 10.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"}),
+      lower_limit(
+          {"VRMIN", "VRMIN", "pu", -10.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"}),
       {"KG", "KG", "pu", 1.0, 0.0, 10.0, 0.0, "feedback of Efd to the inner loop"},
       {"KP", "KP", "pu", 6.15, 0.0, 100.0, kNoNullValue, "source, from voltage"},
       {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "source, from current"},
-      {"VBMAX", "VBMAX", "pu", 6.9, 0.1, 1000.0, kNoNullValue, "upper limit of the source"},
+      upper_limit({"VBMAX", "VBMAX", "pu", 6.9, 0.1, 1000.0, kNoNullValue, "upper limit of the source"}),
       {"KC", "KC", "pu", 0.2, 0.0, 10.0, 0.0, "rectifier's commutating reactance"},
       {"XL", "XL", "pu", 0.081, 0.0, 1.0, 0.0, "reactance of the source's voltage part"},
-      {"VGMAX", "VGMAX", "pu", 5.8, 0.0, 1000.0, kNoNullValue, "upper limit of the feedback"},
+      upper_limit({"VGMAX", "VGMAX", "pu", 5.8, 0.0, 1000.0, kNoNullValue, "upper limit of the feedback"}),
       {"THETAP", "THETAP", "deg", 0.0, -90.0, 90.0, kNoNullValue, "angle of the source's voltage part"},
       {"TM", "TM", "s", 0.4, 0.0, 10.0, kNoNullValue, "lag of the inner loop (0: none)"},
-      {"VMMAX", "VMMAX", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "upper limit of the inner loop"},
-      {"VMMIN", "VMMIN", "pu", 0.0, -1000.0, 0.0, kNoNullValue, "lower limit of the inner loop"}};
+      upper_limit({"VMMAX", "VMMAX", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "upper limit of the inner loop"}),
+      lower_limit(
+          {"VMMIN", "VMMIN", "pu", 0.0, -1000.0, 0.0, kNoNullValue, "lower limit of the inner loop"})};
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, KM, TC, TB,    KA,     TA, VRMAX, VRMIN, KG,
                                         KP, KI,    VBMAX, KC, XL, VGMAX, THETAP, TM, VMMAX, VMMIN};
   enum C {

@@ -21,8 +21,9 @@ struct Model : shared::AlternatorRectifier<Model> {
   Ve Se(Ve) = B (Ve - A)^2 above A through (E1, SE1), (E2, SE2)
 )";
   static constexpr auto parameters = parameters_with(
-      {"VRMAX", "VRMAX", "pu", 6.03, 0.0, 100.0, kNoNullValue, "upper limit of the regulator"},
-      {"VRMIN", "VRMIN", "pu", -5.43, -100.0, 0.0, kNoNullValue, "lower limit of the regulator"});
+      upper_limit({"VRMAX", "VRMAX", "pu", 6.03, 0.0, 100.0, kNoNullValue, "upper limit of the regulator"}),
+      lower_limit(
+          {"VRMIN", "VRMIN", "pu", -5.43, -100.0, 0.0, kNoNullValue, "lower limit of the regulator"}));
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, TE, KF,
                                         TF, KC, KD, KE, E1, SE1,   E2,    SE2};
   enum { coefficients = alternator };

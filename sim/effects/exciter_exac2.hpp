@@ -26,29 +26,18 @@ struct Model : shared::AlternatorRectifier<Model> {
   enum { VRMAX = parameter_count, VRMIN, KB, KL, KH, VLR, all_parameters };
   static constexpr Source kDefault = literature::openipsl("EXAC2, defaults");
   static constexpr auto parameters = [] {
-    constexpr auto common = parameters_with(
-        {"VAMAX", "VAMAX", "pu", 14.5, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"},
-        {"VAMIN", "VAMIN", "pu", -14.5, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"});
+    constexpr auto common = parameters_with(upper_limit({"VAMAX", "VAMAX", "pu", 14.5, 0.0, 1000.0,
+                                                         kNoNullValue, "upper limit of the regulator"}),
+                                            lower_limit({"VAMIN", "VAMIN", "pu", -14.5, -1000.0, 0.0,
+                                                         kNoNullValue, "lower limit of the regulator"}));
     std::array<Parameter, all_parameters> all{};
     std::copy(common.begin(), common.end(), all.begin());
-    all[VRMAX] = {"VRMAX",
-                  "VRMAX",
-                  "pu",
-                  95.0,
-                  0.0,
-                  1000.0,
-                  kNoNullValue,
-                  "upper limit of the alternator's field voltage",
-                  literature::cim("ExcIEEEAC2A, VRMAX near 105")};
-    all[VRMIN] = {"VRMIN",
-                  "VRMIN",
-                  "pu",
-                  -95.0,
-                  -1000.0,
-                  0.0,
-                  kNoNullValue,
-                  "lower limit of the alternator's field voltage",
-                  literature::cim("ExcIEEEAC2A, VRMIN = -95")};
+    all[VRMAX] = upper_limit({"VRMAX", "VRMAX", "pu", 95.0, 0.0, 1000.0, kNoNullValue,
+                              "upper limit of the alternator's field voltage",
+                              literature::cim("ExcIEEEAC2A, VRMAX near 105")});
+    all[VRMIN] = lower_limit({"VRMIN", "VRMIN", "pu", -95.0, -1000.0, 0.0, kNoNullValue,
+                              "lower limit of the alternator's field voltage",
+                              literature::cim("ExcIEEEAC2A, VRMIN = -95")});
     all[KB] = {"KB", "KB", "pu", 1.0, 0.01, 1000.0, kNoNullValue, "gain of the second stage", kDefault};
     all[KL] = {"KL",
                "KL",
@@ -61,15 +50,9 @@ struct Model : shared::AlternatorRectifier<Model> {
                literature::andes("EXAC2, commit 12dec4e")};
     all[KH] = {"KH",    "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current",
                kDefault};
-    all[VLR] = {"VLR",
-                "VLR",
-                "pu",
-                20.0,
-                0.0,
-                1000.0,
-                kNoNullValue,
-                "field current at which the limiter ends",
-                literature::own("beyond the forcing of the default alternator")};
+    all[VLR] = upper_limit({"VLR", "VLR", "pu", 20.0, 0.0, 1000.0, kNoNullValue,
+                            "field current at which the limiter ends",
+                            literature::own("beyond the forcing of the default alternator")});
     return all;
   }();
   static constexpr int dyr_columns[] = {TR, TB, TC, KA, TA, UPPER, LOWER, KB, VRMAX, VRMIN, TE, KL,

@@ -36,9 +36,10 @@ struct Model : shared::DcBehindLeadLag<Model> {
        literature::own("half the transient gain; the case files have hardly any")},
       {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNullValue, "lead",
        literature::own("half the transient gain; the case files have hardly any")},
-      {"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNullValue,
-       "upper limit of Vr at rated voltage (0: from saturation at E2)"},
-      {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr at rated voltage"},
+      upper_limit({"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNullValue,
+                   "upper limit of Vr at rated voltage (0: from saturation at E2)"}),
+      lower_limit(
+          {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr at rated voltage"}),
       kKE,
       kTE,
       {"KF", "KF", "pu", 0.08, 0.0, 1.0, 0.0, "rate feedback",

@@ -28,15 +28,18 @@ struct Model {
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kCase},
-      {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNullValue, "upper limit of the voltage error", kCase},
-      {"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNullValue, "lower limit of the voltage error", kCase},
+      upper_limit(
+          {"VIMAX", "VIMAX", "pu", 5.0, 0.0, 100.0, kNoNullValue, "upper limit of the voltage error", kCase}),
+      lower_limit({"VIMIN", "VIMIN", "pu", -5.0, -100.0, 0.0, kNoNullValue,
+                   "lower limit of the voltage error", kCase}),
       {"TC", "TC", "s", 1.0, 0.0, 30.0, kNoNullValue, "lead"},
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNullValue, "lag (0: bypass)"},
       {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNullValue, "gain", kCase},
       {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNullValue, "regulator time constant (0: none)"},
-      {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage", kCase},
-      {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage",
-       literature::own("a bridge inverts slightly less than it rectifies")},
+      upper_limit(
+          {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "upper ceiling at rated voltage", kCase}),
+      lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "lower ceiling at rated voltage",
+                   literature::own("a bridge inverts slightly less than it rectifies")}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};

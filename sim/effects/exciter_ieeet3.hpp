@@ -40,14 +40,15 @@ struct Model {
       {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)"},
       {"KA", "KA", "pu", 120.0, 1.0, 2000.0, kNoNullValue, "regulator gain"},
       {"TA", "TA", "s", 0.15, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)"},
-      {"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNullValue, "upper limit of Vr"},
-      {"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNullValue, "lower limit of Vr"},
+      upper_limit({"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNullValue, "upper limit of Vr"}),
+      lower_limit({"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNullValue, "lower limit of Vr"}),
       {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNullValue, "exciter time constant"},
       {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
       {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "source, from voltage"},
       {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
-      {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of the field supply"},
+      upper_limit(
+          {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of the field supply"}),
       {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"}};
   static constexpr int dyr_columns[] = {TR, KA, TA, VRMAX, VRMIN, TE, KF, TF, KP, KI, VBMAX, KE};
   enum C {

@@ -33,10 +33,10 @@ struct Model {
       {"T1", "T1", "s", 50.0, 0.0, 500.0, kNoNullValue, "lag of the governor (0: none)"},
       {"T2", "T2", "s", 5.0, 0.0, 100.0, kNoNullValue, "lead of the governor"},
       {"T3", "T3", "s", 0.5, 0.0, 100.0, kNoNullValue, "gate actuator (0: bypass)"},
-      {"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the gate",
-       literature::own("rated power; CIM has none")},
-      {"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate",
-       literature::own("shut; CIM has none")},
+      upper_limit({"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the gate",
+                   literature::own("rated power; CIM has none")}),
+      lower_limit({"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate",
+                   literature::own("shut; CIM has none")}),
       {"T4", "T4", "s", 1.0, 0.0, 30.0, 0.0, "water starting time", literature::cim("GovHydro1, Tw")}};
   static constexpr int dyr_columns[] = {K, T1, T2, T3, PMAX, PMIN, T4};
   enum C { gain, iT1, lead, iT3, high, low, water_lead, water_lag, Pref, coefficients };

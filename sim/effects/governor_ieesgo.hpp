@@ -39,8 +39,9 @@ struct Model {
        literature::own("5 % droop")},
       {"K2", "K2", "-", 0.7, -3.0, 3.0, kNoNullValue, "fraction that passes the reheater", kSteam},
       {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNullValue, "fraction of it that passes the crossover", kSteam},
-      {"PMAX", "PMAX", "pu", 1.0, 0.1, 10.0, kNoNullValue, "upper limit of power", literature::own("rated")},
-      {"PMIN", "PMIN", "pu", 0.0, -10.0, 1.0, kNoNullValue, "lower limit of power"},
+      upper_limit({"PMAX", "PMAX", "pu", 1.0, 0.1, 10.0, kNoNullValue, "upper limit of power",
+                   literature::own("rated")}),
+      lower_limit({"PMIN", "PMIN", "pu", 0.0, -10.0, 1.0, kNoNullValue, "lower limit of power"}),
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand}};
   static constexpr int dyr_columns[] = {T1, T2, T3, T4, T5, T6, K1, K2, K3, PMAX, PMIN};

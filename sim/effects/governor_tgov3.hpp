@@ -41,15 +41,9 @@ struct Model {
           names[i - TA], names[i - TA], "s",          i == TB ? 0.2 : 0.0,
           0.0,           100.0,         kNoNullValue, "time of a fast closing; without effect",
           kTimes};
-    all[PRMAX] = {"PRMAX",
-                  "PRMAX",
-                  "pu",
-                  1.2,
-                  0.1,
-                  10.0,
-                  kNoNullValue,
-                  "upper limit of the reheater's pressure",
-                  literature::own("a fifth above rated")};
+    all[PRMAX] =
+        upper_limit({"PRMAX", "PRMAX", "pu", 1.2, 0.1, 10.0, kNoNullValue,
+                     "upper limit of the reheater's pressure", literature::own("a fifth above rated")});
     return all;
   }();
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();

@@ -43,8 +43,8 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"Ifdset", "Ifdset", "pu", 2.86, 0.5, 20.0, kNoNullValue, "pickup",
        literature::own("1.1 times the rated field current of MAXEX2")},
-      {"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNullValue, "hard limit (no effect)",
-       literature::own("1.5 times the rated field current of MAXEX2")},
+      upper_limit({"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNullValue, "hard limit (no effect)",
+                   literature::own("1.5 times the rated field current of MAXEX2")}),
       {"Tpickup", "Tpickup", "s", 10.0, -1000.0, 1000.0, kNoNullValue,
        "operating time at 1 pu above the pickup; < 0: definite time",
        literature::own("a few tens of seconds at a moderate overload")},

@@ -77,8 +77,10 @@ struct Model {
       {"TUQ", "TUQ", "s", 0.0, 0.0, 60.0, kNoNullValue, "lag of the reactive power (0: none)"},
       {"KUI", "KUI", "1/s", 0.5, 0.0, 1000.0, 0.0, "integral gain"},
       {"KUL", "KUL", "pu", 0.8, 0.0, 1000.0, 0.0, "proportional gain"},
-      {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the integrator"},
-      {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the integrator"},
+      upper_limit(
+          {"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the integrator"}),
+      lower_limit(
+          {"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the integrator"}),
       {"KUF", "KUF", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's rate feedback (only 0)"},
       {"KFB", "KFB", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the exciter's feedback (only 0)"},
       {"TUL", "TUL", "s", 0.0, 0.0, 60.0, kNoNullValue, "lag of that feedback (no effect)"},
@@ -87,29 +89,36 @@ struct Model {
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lead"},
       {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       {"P0", "P0", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 0"},
-      {"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
+      lower_limit({"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
       {"P1", "P1", "pu", 0.3, -2.0, 2.0, kNoNullValue, "power of point 1"},
-      {"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
+      lower_limit({"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
       {"P2", "P2", "pu", 0.6, -2.0, 2.0, kNoNullValue, "power of point 2"},
-      {"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
+      lower_limit({"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
       {"P3", "P3", "pu", 0.9, -2.0, 2.0, kNoNullValue, "power of point 3"},
-      {"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
+      lower_limit({"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
       {"P4", "P4", "pu", 1.02, -2.0, 2.0, kNoNullValue, "power of point 4"},
-      {"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point"},
+      lower_limit({"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
       {"P5", "P5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 5", kUnused},
-      {"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
+      lower_limit(
+          {"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
       {"P6", "P6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 6", kUnused},
-      {"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
+      lower_limit(
+          {"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
       {"P7", "P7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 7", kUnused},
-      {"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
+      lower_limit(
+          {"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
       {"P8", "P8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 8", kUnused},
-      {"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
+      lower_limit(
+          {"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
       {"P9", "P9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 9", kUnused},
-      {"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
+      lower_limit(
+          {"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
       {"P10", "P10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 10", kUnused},
-      {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused},
-      {"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output"},
-      {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)"}};
+      lower_limit(
+          {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      upper_limit({"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output"}),
+      lower_limit(
+          {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)"})};
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   enum C {
     none_1,  ///< voltage exponent of P: 1 if K1 = 0; next two: 1 if K1 = 1, if K1 = 2

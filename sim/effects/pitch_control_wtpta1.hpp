@@ -32,8 +32,8 @@ struct Model {
       {"Kpc", "Kpc", "deg/pu", 0.0, 0.0, 999.0, 0.0, "power control, proportional gain"},
       {"Kcc", "Kcc", "pu/pu", 0.0, 0.0, 100.0, 0.0, "gain from power error to speed error"},
       {"Tpi", "Tpi", "s", 0.3, 0.0, 5.0, kNoNullValue, "time constant of the blades (0: none)"},
-      {"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNullValue, "largest angle"},
-      {"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNullValue, "smallest angle"},
+      upper_limit({"TetaMax", "TetaMax", "deg", 30.0, 0.0, 99.0, kNoNullValue, "largest angle"}),
+      lower_limit({"TetaMin", "TetaMin", "deg", 0.0, 0.0, 30.0, kNoNullValue, "smallest angle"}),
       {"RTetaMax", "RTetaMax", "deg/s", 5.0, 0.0, 99.0, kNoNullValue, "fastest rise"},
       {"RTetaMin", "RTetaMin", "deg/s", -5.0, -99.0, 0.0, kNoNullValue, "fastest fall"}};
   static constexpr int dyr_columns[] = {Kiw, Kpw, Kic, Kpc, Kcc, Tpi, TetaMax, TetaMin, RTetaMax, RTetaMin};

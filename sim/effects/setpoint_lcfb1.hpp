@@ -39,10 +39,11 @@ struct Model {
       {"TPELEC", "Tpelec", "s", 1.0, 0.0, 100.0, 0.0, "lag of the measured power (0: none)"},
       {"DB", "db", "pu", 0.0, 0.0, 1.0, 0.0, "half width of the error's dead-band",
        literature::cim("TurbLCFB1")},
-      {"EMAX", "Emax", "pu", 0.02, 0.0, 10.0, kNoNullValue, "largest error", literature::cim("TurbLCFB1")},
+      upper_limit({"EMAX", "Emax", "pu", 0.02, 0.0, 10.0, kNoNullValue, "largest error",
+                   literature::cim("TurbLCFB1")}),
       {"KP", "Kp", "pu", 0.0, 0.0, 100.0, 0.0, "proportional gain", literature::cim("TurbLCFB1")},
       {"KI", "Ki", "1/s", 0.005, 0.0, 100.0, 0.0, "integral gain"},
-      {"IRMAX", "Irmax", "pu", 0.025, 0.0, 10.0, kNoNullValue, "largest move of the reference"}};
+      upper_limit({"IRMAX", "Irmax", "pu", 0.025, 0.0, 10.0, kNoNullValue, "largest move of the reference"})};
   static constexpr int dyr_columns[] = {FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX};
   enum C { by_speed, by_power, iTpelec, band, largest, kp, ki, most, least, Pset, coefficients };
   enum X { measured, integral };

@@ -100,12 +100,16 @@ struct Model {
        literature::own("hardly any; CIM has none")},
       {"T11", "T11", "s", 0.03, 0.0, 20.0, kNoNullValue, "third lag (0: bypass)",
        literature::own("hardly any; CIM has none")},
-      {"VS1MAX", "VS1MAX", "pu", 2.0, 0.0, 100.0, kNoNullValue, "upper limit of the first input"},
-      {"VS1MIN", "VS1MIN", "pu", -2.0, -100.0, 0.0, kNoNullValue, "lower limit of the first input"},
-      {"VS2MAX", "VS2MAX", "pu", 2.0, 0.0, 100.0, kNoNullValue, "upper limit of the second input"},
-      {"VS2MIN", "VS2MIN", "pu", -2.0, -100.0, 0.0, kNoNullValue, "lower limit of the second input"},
-      {"VSTMAX", "VSTMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs"},
-      {"VSTMIN", "VSTMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs"}};
+      upper_limit(
+          {"VS1MAX", "VS1MAX", "pu", 2.0, 0.0, 100.0, kNoNullValue, "upper limit of the first input"}),
+      lower_limit(
+          {"VS1MIN", "VS1MIN", "pu", -2.0, -100.0, 0.0, kNoNullValue, "lower limit of the first input"}),
+      upper_limit(
+          {"VS2MAX", "VS2MAX", "pu", 2.0, 0.0, 100.0, kNoNullValue, "upper limit of the second input"}),
+      lower_limit(
+          {"VS2MIN", "VS2MIN", "pu", -2.0, -100.0, 0.0, kNoNullValue, "lower limit of the second input"}),
+      upper_limit({"VSTMAX", "VSTMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs"}),
+      lower_limit({"VSTMIN", "VSTMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs"})};
   static constexpr auto dyr_columns = shared::columns_to<VSTMIN>();
   static constexpr int kRampLags = 8;  ///< maximum number of first-order lags of the ramp-tracking filter
   enum C {

@@ -68,8 +68,8 @@ struct Model {
       {"T8", "T8", "s", 0.02, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       {"T9", "T9", "s", 0.0, 0.0, 20.0, kNoNullValue, "third lead"},
       {"T10", "T10", "s", 0.0, 0.0, 20.0, kNoNullValue, "third lag (0: bypass)"},
-      {"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs"},
-      {"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs"},
+      upper_limit({"LSMAX", "LSMAX", "pu", 0.1, 0.0, 10.0, kNoNullValue, "upper limit of Vs"}),
+      lower_limit({"LSMIN", "LSMIN", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of Vs"}),
       {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)"},
       {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"}};
   static constexpr int dyr_columns[] = {MODE, BUSR, MODE2, BUSR2, K1, K2,  T1,    T2,    T3,  T4,

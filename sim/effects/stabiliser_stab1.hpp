@@ -30,7 +30,7 @@ struct Model {
       {"T3", "T3", "s", 0.05, 0.0, 20.0, kNoNullValue, "first lag (0: bypass)"},
       {"T2_T4", "T2/T4", "-", 4.0, 0.0, 100.0, 1.0, "second lead over lag"},
       {"T4", "T4", "s", 0.04, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
-      {"HLIM", "HLIM", "pu", 0.1, 0.0, 10.0, kNoNullValue, "limit of |Vs|"}};
+      upper_limit({"HLIM", "HLIM", "pu", 0.1, 0.0, 10.0, kNoNullValue, "limit of |Vs|"})};
   static constexpr int dyr_columns[] = {KT, TW, T1_T3, T3, T2_T4, T4, HLIM};
   enum C { gain, iT, t1, it3, t2, it4, limit, coefficients };
   enum X { washed, lead1, lead2 };

@@ -29,7 +29,7 @@ struct Model {
       {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct path"},
       {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
       {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNullValue, "time constant of each output lag (0: none)"},
-      {"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNullValue, "limit of Vs on either side"}};
+      upper_limit({"HLIM", "HLIM", "pu", 0.05, 0.0, 10.0, kNoNullValue, "limit of Vs on either side"})};
   static constexpr int dyr_columns[] = {K2, T2, K3, T3, K4, K5, T5, HLIM};
   enum C { k2, iT2, k3, iT3, k4, k5, iT5, limit, coefficients };
   enum X { wash1, wash2, wash3, slow, out1, out2 };

@@ -22,30 +22,9 @@ std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
   return {};
 }
 
-/// Returns the direction in which a limit widens: +1 upwards, -1 downwards, 0 if the parameter is no limit.
-/// The parameter's meaning identifies a limit.
-int opening(const Parameter& p) {
-  const std::string meaning(p.meaning);
-  const auto says = [&](const char* word) { return meaning.find(word) != std::string::npos; };
-  if (p.is_code() || (says("rate") && !says("rated")) || says("speed at which") ||
-      says("voltage of a point") || says("drop") || p.unit.ends_with("/s") || p.unit == "s")
-    return 0;
-  const bool limit = says("limit") || says("ceiling") || says("maximum") || says("minimum") ||
-                     says("largest") || says("smallest") || says("most") || says("least") ||
-                     says("highest") || says("lowest");
-  if (!limit) return 0;
-  if (says("upper") || says("maximum") || says("largest") || says("most") || says("highest") ||
-      p.name.ends_with("MAX") || p.name.ends_with("max"))
-    return 1;
-  if (says("lower") || says("minimum") || says("smallest") || says("least") || says("lowest") ||
-      p.name.ends_with("MIN") || p.name.ends_with("min"))
-    return -1;
-  return 1;
-}
-
 struct Limit {
   std::size_t block, parameter;  ///< index of the control and of its parameter
-  int way;
+  int way;                       ///< +1: it widens upwards; -1: downwards
   double given;
 };
 
@@ -54,7 +33,7 @@ class Widener {
   Widener(Grid& grid, plant::Plant& plant) : grid_(grid), plant_(plant) {
     for (std::size_t b = 0; b < plant.controls.size(); ++b)
       for (std::size_t i = 0; i < plant.controls[b].effect->parameters.size(); ++i)
-        if (const int way = opening(plant.controls[b].effect->parameters[i]); way != 0)
+        if (const int way = plant.controls[b].effect->parameters[i].limit; way != 0)
           limits_.push_back({b, i, way, plant.controls[b].p[i]});
   }
   /// Widens the limits. Returns the reasons other than limits, in which case the plant is unchanged.

@@ -34,15 +34,18 @@ assert headers == listed, headers.keys() ^ listed.keys()
 for e in everything:
     assert e["title"] and e["source"] and e["description"].strip(), e["name"]
     for p in e["parameters"]:
-        assert p["low"] <= p["standard"] <= p["high"] and p["unit"] and p["meaning"], (e["name"], p)
-        assert p["standard_from"] and p["bounds_from"], (e["name"], p)
+        assert p["low"] <= p["default"] <= p["high"] and p["unit"] and p["meaning"], (e["name"], p)
+        assert p["default_from"] and p["bounds_from"], (e["name"], p)
+        end = re.search("(max|min)$", p["name"], re.I)  # a limit, unless it is one of a rate or of a time
+        level = p["unit"] != "s" and not p["unit"].endswith("/s")
+        assert not end or not level or p["limit"] == {"max": "upper", "min": "lower"}[end.group().lower()], (e["name"], p)
 
 sexs, gaps = json.loads((work / "two.json").read_text())
 assert sexs["dyr"] == {"name": "SEXS", "columns": ["TAoverTB", "TB", "K", "TE", "EMIN", "EMAX"]}
 gain = next(p for p in sexs["parameters"] if p["name"] == "K")
-assert gain["standard"] == 100 and gain["neutral"] is None
-assert gain["standard_from"] == "CIM: ExcSEXS" and gain["bounds_from"].startswith("own choice: ")
-assert "dyr" not in gaps and gaps["parameters"][0]["neutral"] == 0
+assert gain["default"] == 100 and gain["null_value"] is None
+assert gain["default_from"] == "CIM: ExcSEXS" and gain["bounds_from"].startswith("own choice: ")
+assert "dyr" not in gaps and gaps["parameters"][0]["null_value"] == 0
 
 two = (work / "two.txt").read_text()
 assert "SEXS: simplified excitation system" in two and "GENROU: round-rotor machine" in two

@@ -39,7 +39,8 @@ struct BehindImpedance : ControlledCurrent<Model> {
   static constexpr Parameter kRrpwr{
       "rrpwr", "rrpwr", "pu/s",       10.0,
       0.01,    999.0,   kNoNullValue, "fastest rise of the active current or power"};
-  static constexpr Parameter kImax{"Imax", "Imax", "pu", 1.3, 0.1, 99.0, kNoNullValue, "largest current"};
+  static constexpr Parameter kImax =
+      upper_limit({"Imax", "Imax", "pu", 1.3, 0.1, 99.0, kNoNullValue, "largest current"});
   static constexpr Parameter kRe{"Re",      "Re", "pu", 0.0, 0.0, 0.5, kNoNullValue, "source resistance",
                                  kNeglected};
   static constexpr Parameter kXe{"Xe",

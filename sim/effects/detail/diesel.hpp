@@ -34,8 +34,10 @@ struct Diesel {
              0.0,  100.0, kNoNullValue, "actuator, first lag (0: neither lag nor lead)"},
       kT6 = {"T6", "T6", "s", 0.01, 0.0, 100.0, kNoNullValue, "actuator, second lag (0: none)"},
       kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "delay between two firings (0: none)"},
-      kTMAX = {"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNullValue, "upper limit of the throttle"},
-      kTMIN = {"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"};
+      kTMAX =
+          upper_limit({"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNullValue, "upper limit of the throttle"}),
+      kTMIN =
+          lower_limit({"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"});
   /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
   /// error is 1e-3 up to s TD = 3j, and it has no direct response to a step.
   static constexpr int kDelayOrder = 4;

@@ -54,16 +54,9 @@ inline constexpr Parameter kUpper{
 inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",          15.0,
                                         0.01,      1000.0,  kNoNullValue, "operating time at EFD3 and above",
                                         kAsEffect, kNoCases};
-inline constexpr Parameter kLowest{"VLOW",
-                                   "VLOW",
-                                   "pu",
-                                   -0.1,
-                                   -10.0,
-                                   0.0,
-                                   kNoNullValue,
-                                   "lower limit of the output",
-                                   literature::own("a tenth of the voltage"),
-                                   kNoCases};
+inline constexpr Parameter kLowest =
+    lower_limit({"VLOW", "VLOW", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of the output",
+                 literature::own("a tenth of the voltage"), kNoCases});
 
 /// Inverse-time characteristic and timer with `size` coefficients; p and c point to its first parameter and
 /// coefficient in a Model.

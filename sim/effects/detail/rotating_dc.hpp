@@ -25,9 +25,9 @@ struct RotatingDc {
       literature::own("not negative; seven records of dynamicsWECC.dyr (GridDyn) lie beyond, at 3.05");
   static constexpr Parameter
       kTR = {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)", kDefault, kRange},
-      kVRMAX = {"VRMAX", "VRMAX", "pu",         7.3,
-                0.0,     100.0,   kNoNullValue, "upper limit of Vr (0: from saturation at E2)"},
-      kVRMIN = {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr"},
+      kVRMAX = upper_limit({"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNullValue,
+                            "upper limit of Vr (0: from saturation at E2)"}),
+      kVRMIN = lower_limit({"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr"}),
       kKE = {"KE",     "KE",  "pu",         1.0,
              -1.0,     2.0,   kNoNullValue, "self-excitation constant (0: from the operating point)",
              kDefault, kTwice},
