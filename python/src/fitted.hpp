@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validate/fit/fit.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 
 namespace swingbank::python {
 

@@ -5,7 +5,7 @@
 
 #include "python/src/native.hpp"
 #include "validate/compare/event_title.hpp"
-#include "validate/report/page.hpp"
+#include "validate/report/document.hpp"
 #include "validate/report/plot.hpp"
 
 namespace swingbank::python {
