@@ -42,9 +42,9 @@ struct Candidate {
 };
 
 /// Fits of hypotheses that cannot be identified in open loop. Each is identified in closed loop, with the
-/// plant's other parameters linear, about two points: the submitted values and the base model's fit. The
-/// optima are fitted for a few steps if they promise half of the required evidence. The best of these fits is
-/// completed, if it may come within reach of the best hypothesis.
+/// plant's other parameters linear, about the base model's fit and, unless that nearly fits, about the
+/// submitted values. The optima are fitted for a few steps if they promise half of the required evidence. The
+/// best of these fits is completed, if it may come within reach of the best hypothesis.
 class WholeFits {
  public:
   /// `least`: lowest cost of the hypotheses that are fitted already.
@@ -54,7 +54,11 @@ class WholeFits {
       sim::plant::Plant plant = base_model.plant;
       for (const fit::FreeParameter& f : base_model.own)
         sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
-      linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
+      try {
+        linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
+      } catch (
+          const InputError&) {  // cannot be simulated; the fit, which was simulated, is a point in any case
+      }
     }
     std::vector<fit::EventState> fitted;
     for (const auto& e : base_model.fit.events) fitted.push_back(e.state);
@@ -105,15 +109,12 @@ class WholeFits {
   }
 
  private:
-  /// Linearises a plant of the base model's structure, unless it cannot be simulated.
+  /// Linearises a plant of the base model's structure. Throws InputError if it cannot be simulated.
   void linearise(const sim::plant::Plant& plant, const std::vector<fit::EventState>& states) {
-    try {
-      points_.push_back(std::make_unique<const reduced::ClosedLoop>(
-          reduced::linear_about(plant, base_model_.under_test(), base_model_.events,
-                                free_with_own(base_model_), states, {}, base_model_.threads),
-          base_model_.events));
-    } catch (const InputError&) {
-    }
+    points_.push_back(std::make_unique<const reduced::ClosedLoop>(
+        reduced::linear_about(plant, base_model_.under_test(), base_model_.events, free_with_own(base_model_),
+                              states, {}, base_model_.threads),
+        base_model_.events));
   }
   void find_starts(Candidate& c) const {
     Hypothesis& h = c.hypothesis;
@@ -130,9 +131,9 @@ class WholeFits {
     bring(base_model_, h);
     c.prior = prior_mean(base_model_, h);
     c.free = free_of(h, base_model_.prior_sd);
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      const reduced::Inference& at = points_[k]->inference();
-      const reduced::ClosedLoopCost cost(*points_[k], h.conventions, reduced::mark_absent(at, trial.plant));
+    for (const auto& point : points_) {
+      const reduced::Inference& at = point->inference();
+      const reduced::ClosedLoopCost cost(*point, h.conventions, reduced::mark_absent(at, trial.plant));
       for (const reduced::Optimum& optimum :
            reduced::identify(cost, trial, {.draws = 2, .kept = 1, .steps = kFirstSteps})) {
         sim::plant::Plant plant = c.prior;
