@@ -11,6 +11,7 @@
 
 #include "validate/event/event.hpp"
 #include "validate/event/play.hpp"
+#include "validate/fit/draws.hpp"
 #include "validate/fit/states.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 #include "validate/noise/pre_event.hpp"
@@ -136,9 +137,12 @@ int run(const char* model_file, std::size_t draws, std::span<const char* const> 
   for (const bool lenient : {false, true}) {
     Bench bench{events, lenient};
     bench.add("(the model alone)", model.under_test());
-    for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library))
-      for (std::size_t k = 0; k < std::min(h.starts.size(), 1 + draws); ++k)
-        bench.add(h.name, {hypothesis::started(h, h.starts[k]), h.conventions});
+    for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) {
+      bench.add(h.name, h.under_test());
+      const fit::Draws draw(h.plant, h.free, 1);
+      for (std::uint64_t k = 0; k < draws; ++k)
+        if (const auto values = draw(k)) bench.add(h.name, {hypothesis::started(h, *values), h.conventions});
+    }
     print_costs(bench);
   }
   return 0;

@@ -6,12 +6,10 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <map>
-#include <random>
 
 #include "sim/library/variants.hpp"
 #include "sim/plant/usual.hpp"
-#include "validate/fit/sign.hpp"
+#include "validate/fit/draws.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/instruments.hpp"
@@ -21,11 +19,7 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::size_t kDrawnStarts = 39;  ///< number of start draws of an effect's parameters
-constexpr std::size_t kPartDraws = 32;    ///< number of draws of the parameters that a group frees
-constexpr std::size_t kRedraws = 20;      ///< maximum number of tries per draw until a draw is valid
-/// Shortest draw of the longest time constant, relative to the time allowed.
-constexpr double kShortestDraw = 3e-3;
+constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters that a group frees
 /// Prior standard deviation of ln(value) of parameters at their null values.
 constexpr double kGroupPriorSd = 2.0;
 /// Prior standard deviation of an added effect's parameters: a factor e.
@@ -68,47 +62,6 @@ bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// Returns random draws about the plant's values of `free`, parameters of one block. Half of the variance is
-/// common to all parameters of a unit, so that points of one curve and its times keep their order. A draw
-/// that is inconsistent is repeated. If `within` is positive, the longest time constant is about `within` [s]
-/// at most.
-std::vector<std::vector<double>> draws(const sim::plant::Plant& plant,
-                                       const std::vector<fit::FreeParameter>& free, std::size_t count,
-                                       unsigned seed, double within = 0) {
-  double longest = 0;
-  for (const auto& f : free)
-    if (sim::plant::parameter_record(plant, f.id).unit == "s")
-      longest = std::max(longest, sim::plant::parameter_value(plant, f.id));
-  std::mt19937_64 random(seed);  // fixed seed: a diagnosis is reproducible
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform;
-  sim::plant::Plant drawn = plant;
-  std::vector<std::vector<double>> all;
-  for (std::size_t tries = 0; all.size() < count && tries < kRedraws * count; ++tries) {
-    std::map<std::string_view, double> common;
-    const double shorter =
-        longest > 0 && within > 0 ? std::pow(kShortestDraw, uniform(random)) * within / longest : 1;
-    std::vector<double> values;
-    for (const auto& f : free) {
-      const auto& p = sim::plant::parameter_record(plant, f.id);
-      // Gains are uncertain by decades, times and limits by a factor.
-      const double width = (p.low > 0 && p.high / p.low >= 1000 ? 2.0 : 0.8) * f.prior_sd;
-      const double whole = common.try_emplace(p.unit, normal(random)).first->second;
-      const bool bounded = p.unit == "s" && within > 0;
-      const double shared = std::sqrt(0.5) * width * whole, own = std::sqrt(0.5) * width * normal(random);
-      const double factor =
-          fit::may_change_sign(p) ? 1 + shared + own : (bounded ? shorter : std::exp(shared)) * std::exp(own);
-      const double value = sim::plant::parameter_value(plant, f.id);
-      const auto range = sim::plant::search_range(p, value);
-      values.push_back(std::clamp(value * factor, range.low, range.high));
-      sim::plant::parameter_value(drawn, f.id) = values.back();
-    }
-    if (free.empty() || playin::can_run(sim::plant::block_at(drawn, free.front().id.block)))
-      all.push_back(std::move(values));
-  }
-  return all;
-}
-
 /// Sets the free parameters and start values of an instrument. Its errors are small, and the response is
 /// linear in them.
 void start_near_null(Hypothesis& h, int block) {
@@ -136,12 +89,11 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   return free;
 }
 
-/// Frees these parameters of one block. The starts are the plant's values and random draws about them.
-void free_by_draws(Hypothesis& h, std::vector<fit::FreeParameter> free) {
+/// Frees these parameters of one block.
+void free_about_values(Hypothesis& h, std::vector<fit::FreeParameter> free) {
   h.free = std::move(free);
-  h.starts = draws(h.plant, h.free, kDrawnStarts, 1);
-  h.starts.insert(h.starts.begin(), fit::values_of(h.plant, h.free));
-  h.drawn = true;
+  h.starts = {fit::values_of(h.plant, h.free)};
+  h.added = true;
 }
 
 /// Returns the hypothesis of an effect in a free slot.
@@ -157,7 +109,7 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
   if (effect.slot == Slot::measurement) {
     start_near_null(h, block);
   } else {
-    free_by_draws(h, free_of_added(h.plant, block));
+    free_about_values(h, free_of_added(h.plant, block));
   }
   return h;
 }
@@ -303,26 +255,21 @@ bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant&
   return may_be_zero(without) && !may_be_zero(with);
 }
 
-/// Returns values of the free parameters of `h`: those of `fitted`, and log-uniform draws within two prior
-/// standard deviations for the parameters `freed`.
+/// Returns values of the free parameters of `h`: those of `fitted`, and draws of the parameters `freed`.
 std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector<fit::FreeParameter>& freed,
                                           const sim::plant::Plant& fitted) {
-  std::mt19937_64 random(3);  // fixed seed: an addition is reproducible
-
-  std::uniform_real_distribution<double> uniform(-2, 2);
+  sim::plant::Plant plant = h.plant;
+  for (const fit::FreeParameter& f : h.free)
+    if (std::ranges::find(freed, f.id, &fit::FreeParameter::id) == freed.end())
+      sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(fitted, f.id);
+  const fit::Draws draw(plant, freed, 0);
   std::vector<std::vector<double>> all;
-  for (std::size_t tries = 0; all.size() < kPartDraws && tries < kRedraws * kPartDraws; ++tries) {
-    sim::plant::Plant plant = h.plant;
-    for (const fit::FreeParameter& f : h.free)
-      if (std::ranges::find(freed, f.id, &fit::FreeParameter::id) == freed.end())
-        sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(fitted, f.id);
-    for (const fit::FreeParameter& f : freed) {
-      double& value = sim::plant::parameter_value(plant, f.id);
-      const auto range = sim::plant::search_range(sim::plant::parameter_record(plant, f.id), value);
-      value = std::clamp(value * std::exp(f.prior_sd * uniform(random)), range.low, range.high);
-    }
-    if (playin::can_run(sim::plant::block_at(plant, h.free.front().id.block)))
-      all.push_back(fit::values_of(plant, h.free));
+  for (std::uint64_t number = 0; number < kGroupDraws; ++number) {
+    const auto values = draw(number);
+    if (!values) continue;
+    for (std::size_t i = 0; i < freed.size(); ++i)
+      sim::plant::parameter_value(plant, freed[i].id) = (*values)[i];
+    all.push_back(fit::values_of(plant, h.free));
   }
   return all;
 }
@@ -371,7 +318,7 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
 
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted) {
   std::vector<Hypothesis> all;
-  if (!h.drawn || h.free.empty()) return all;
+  if (!h.added || h.free.empty()) return all;
   const auto is_free = [&](const fit::FreeParameter& part) {
     return std::ranges::find(h.free, part.id, &fit::FreeParameter::id) != h.free.end();
   };
@@ -392,18 +339,12 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
           freed.push_back(f);
         }
       free.insert(free.end(), group.free.begin(), group.free.end());
-      free_by_draws(with, std::move(free));
+      free_about_values(with, std::move(free));
       with.further = draws_of(with, freed, fitted);
       all.push_back(std::move(with));
     }
   }
   return all;
-}
-
-std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
-                                               double within, int round) {
-  return draws(h.plant, {h.free.begin(), h.free.begin() + static_cast<std::ptrdiff_t>(own)}, count,
-               2 + static_cast<unsigned>(round), within);
 }
 
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }

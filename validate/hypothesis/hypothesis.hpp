@@ -26,8 +26,8 @@ struct Hypothesis {
   sim::plant::Plant plant;       ///< the base model with the hypothesis added, at its first start values
   sim::Conventions conventions;  ///< conventions with the hypothesis
   std::vector<fit::FreeParameter> free;     ///< parameters of the hypothesis
-  std::vector<std::vector<double>> starts;  ///< start values of `free`, tried in order
-  bool drawn = false;                       ///< the starts after the first are random draws about it
+  std::vector<std::vector<double>> starts;  ///< start values of `free`
+  bool added = false;                       ///< an effect other than an instrument is added
   /// Further values of `free`; each is optimised if the effect is identified alone.
   std::vector<std::vector<double>> further = {};
   /// Returns references to plant and conventions; the hypothesis must outlive them.
@@ -48,12 +48,8 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
 /// rate feedback KF = 0. There is one for each group ("EXST1 with KF") and, if the group may have either
 /// sign, one for each sign. A parameter that acts only with the group (TF) has the same wide prior as the
 /// group. `fitted` is the plant of a fit of `h`: further starts have its values, and random draws of the
-/// freed parameters. Empty if the starts of `h` are not random draws.
+/// freed parameters. Empty if `h` adds no such effect.
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
-/// Returns `count` further random draws of the hypothesis's first `own` free parameters, others for each
-/// `round`. The longest time constant of a draw is about `within` [s] at most.
-std::vector<std::vector<double>> further_draws(const Hypothesis& h, std::size_t own, std::size_t count,
-                                               double within, int round = 0);
 /// Returns the name with that of the effect added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
 /// Returns the hypothesis's plant with `start` as values of its free parameters.

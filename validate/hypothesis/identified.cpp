@@ -19,8 +19,6 @@ using event::InputKind;
 constexpr std::size_t kLeading = 3;
 /// Maximum number of linearisations about a leader: a second one if the leader changes.
 constexpr int kLinearPoints = 2;
-/// Number of draws per round that are specific to the block, in addition to those of the identification.
-constexpr std::size_t kSuitedDraws = 80;
 /// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
 /// Minimum evidence of an input that is free in time for a search on its side: strong on the scale of Kass
@@ -37,11 +35,8 @@ class Identifying {
 
   std::vector<Judgement> run(std::vector<Hypothesis> all, const std::function<double(double)>& fit_others) {
     for (Hypothesis& h : all) {
-      reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h))};
-      if (h.drawn)
-        trial.draws = [h, within = length(base_model_)](int round) {
-          return further_draws(h, h.free.size(), kSuitedDraws, within, round);
-        };
+      reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h)), length(base_model_),
+                           h.starts};
       tried_.push_back({std::move(h), std::move(trial)});
     }
     begin();
@@ -158,9 +153,7 @@ class Identifying {
     std::vector<std::vector<double>> known;
     for (const reduced::Optimum& o : h.optima) known.push_back(o.values);
     const bool first = known.empty();
-    if (first) known = h.hypothesis.starts;
-    known.resize(std::min(known.size(), kOptima));
-    if (first) std::ranges::copy(h.hypothesis.further, std::back_inserter(known));
+    if (first) known = h.hypothesis.further;
     if (const fit::Fit* best = h.best()) known.push_back(fit::values_of(best->plant, h.trial.free));
     h.optima = reduced::identify(*side, h.input(), h.trial, {}, known);
     h.optima.resize(std::min(h.optima.size(), kOptima));

@@ -22,8 +22,8 @@ namespace {
 /// Maximum number of steps of an identification and of the fit from its optimum, and of the fit that
 /// continues from the best one.
 constexpr int kFirstSteps = 4, kLastSteps = 40;
-/// Number of evaluated draws of an added effect, in addition to its starts.
-constexpr std::size_t kFurtherDraws = 80;
+/// Effort of an identification in closed loop, whose trials cost far more than those in open loop.
+constexpr reduced::IdentifyOptions kClosedLoop{.draws = 4, .kept = 1, .steps = kFirstSteps};
 
 /// Values of all free parameters of a hypothesis, and the events' states.
 struct Start {
@@ -118,24 +118,16 @@ class WholeFits {
   }
   void find_starts(Candidate& c) const {
     Hypothesis& h = c.hypothesis;
-    reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h))};
-    trial.draws = [h, within = length(base_model_)](int round) {
-      std::vector<std::vector<double>> draws;
-      if (round > 0) return draws;
-      draws = h.starts;
-      std::ranges::copy(h.further, std::back_inserter(draws));
-      if (h.drawn)
-        std::ranges::copy(further_draws(h, h.free.size(), kFurtherDraws, within), std::back_inserter(draws));
-      return draws;
-    };
+    reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h)), length(base_model_),
+                         h.starts};
+    std::ranges::copy(h.further, std::back_inserter(trial.starts));
     bring(base_model_, h);
     c.prior = prior_mean(base_model_, h);
     c.free = free_of(h, base_model_.prior_sd);
     for (const auto& point : points_) {
       const reduced::Inference& at = point->inference();
       const reduced::ClosedLoopCost cost(*point, h.conventions, reduced::mark_absent(at, trial.plant));
-      for (const reduced::Optimum& optimum :
-           reduced::identify(cost, trial, {.draws = 2, .kept = 1, .steps = kFirstSteps})) {
+      for (const reduced::Optimum& optimum : reduced::identify(cost, trial, kClosedLoop)) {
         sim::plant::Plant plant = c.prior;
         for (const fit::FreeParameter& f : c.free)
           if (const auto id = sim::plant::same_parameter(at.base, plant, f.id))

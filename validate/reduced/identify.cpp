@@ -7,6 +7,7 @@
 #include "base/stop_signal.hpp"
 #include "sim/core/noise.hpp"
 #include "validate/fit/axis.hpp"
+#include "validate/fit/draws.hpp"
 #include "validate/playin/can_run.hpp"
 
 namespace swingbank::validate::reduced {
@@ -15,13 +16,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< finite difference on an axis, for Jacobians
-constexpr double kDrawWidth = 1.2;    ///< standard deviation of the draws, in prior standard deviations
-/// A quarter of the values are drawn log-uniformly between the start value and a hundredth of it. A limit
-/// acts only if it is as low as its signal.
-constexpr double kShareOfLow = 0.25, kDecadesBelow = 2;
-/// Maximum number of rounds of draws until enough draws act, and of tries per draw until its parameters are
-/// consistent.
-constexpr int kRoundsOfDraws = 20, kRepeats = 20;
+/// Maximum number of rounds of draws until half as many act as one round has.
+constexpr int kRoundsOfDraws = 20;
 /// Share of acting draws below which they are evolved.
 constexpr double kRare = 0.1;
 /// Differential evolution: number of generations without a lower cost that end it, and minimum number of
@@ -143,27 +139,6 @@ class Identifying {
     for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
     return within(z);
   }
-  /// Returns a random draw. A draw whose parameters contradict each other is repeated.
-  [[nodiscard]] VectorXd drawn(int draw) const {
-    VectorXd z = drawn_once(draw, 0);
-    for (int repeat = 1; repeat < kRepeats && !runs(z); ++repeat) z = drawn_once(draw, repeat);
-    return z;
-  }
-  [[nodiscard]] VectorXd drawn_once(int draw, int repeat) const {
-    VectorXd z(static_cast<Index>(axes_.size()));
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-      const auto number = static_cast<std::uint32_t>(i);
-      const auto sample = static_cast<std::uint64_t>(repeat) << 32 | static_cast<std::uint64_t>(draw);
-      const auto [which, where] = sim::uniform_pair(trial_.stream, 2 * number, sample);
-      const double factor = std::pow(10.0, -kDecadesBelow * where);
-      z[static_cast<Index>(i)] =
-          which >= kShareOfLow
-              ? kDrawWidth * axes_[i].prior_sd() * sim::normal_pair(trial_.stream, 2 * number + 1, sample)[0]
-          : axes_[i].logarithmic ? std::log(factor)
-                                 : axes_[i].z(factor * axes_[i].start);
-    }
-    return within(z);
-  }
   /// Draws until enough draws act, and keeps the best. Most exciters act with every draw. A limiter acts only
   /// if its pickup level lies between the steady value and the peak of its signal; the few draws that meet
   /// this are evolved.
@@ -172,13 +147,16 @@ class Identifying {
     for (const auto& values : known) points.push_back(point_of(values));
     const std::vector<Start> given = starts_at(points);
     starts_ = given;
+    const fit::Draws draw(trial_.plant, trial_.free, trial_.stream, trial_.length);
+    const std::size_t wanted = static_cast<std::size_t>(options.draws) * axes_.size();
+    std::uint64_t number = 0;
     std::size_t tried = 0;
-    for (int round = 0; round < kRoundsOfDraws && std::ssize(starts_) < options.draws && !axes_.empty();
-         ++round) {
+    for (int round = 0; round < kRoundsOfDraws && 2 * starts_.size() < wanted; ++round) {
       points.clear();
-      if (trial_.draws)
-        for (const auto& values : trial_.draws(round)) points.push_back(point_of(values));
-      for (int draw = 0; draw < options.draws; ++draw) points.push_back(drawn(round * options.draws + draw));
+      if (round == 0)
+        for (const auto& values : trial_.starts) points.push_back(point_of(values));
+      for (std::size_t k = 0; k < wanted; ++k)
+        if (const auto values = draw(number++)) points.push_back(point_of(*values));
       std::ranges::move(starts_at(points), std::back_inserter(starts_));
       tried += points.size();
     }

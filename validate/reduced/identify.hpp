@@ -3,7 +3,6 @@
 // (reduced_cost.hpp). A control block is simulated in open loop, against the inferred input (reduce.hpp); any
 // other change with the whole plant (closed_loop.hpp).
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "validate/reduced/reduce.hpp"
@@ -12,12 +11,11 @@ namespace swingbank::validate::reduced {
 
 /// A candidate: the plant with the block at its prior mean, and the free parameters of the block.
 struct Trial {
-  sim::plant::Plant plant;               ///< plant with the block
-  std::vector<fit::FreeParameter> free;  ///< free parameters of the block, with their priors
-  std::uint64_t stream = 0;              ///< stream of the random draws, which depend on nothing else
-  /// Returns further draws specific to the block for a round of draws: ordered pickup levels of a limiter,
-  /// times within the record's length. Empty: none.
-  std::function<std::vector<std::vector<double>>(int round)> draws = {};
+  sim::plant::Plant plant;                       ///< plant with the block
+  std::vector<fit::FreeParameter> free;          ///< free parameters of the block, with their priors
+  std::uint64_t stream = 0;                      ///< stream of the random draws (fit::Draws)
+  double length = 0;                             ///< of the records [s], for the draws; 0: unknown
+  std::vector<std::vector<double>> starts = {};  ///< start values of `free`, which compete with the draws
 };
 
 /// A local minimum of the cost.
@@ -31,7 +29,7 @@ struct Optimum {
 
 /// Effort of an identification.
 struct IdentifyOptions {
-  int draws = 96;  ///< number of draws that must act, and of draws per round
+  int draws = 16;  ///< number of draws per free parameter and round
   int kept = 6;    ///< number of best draws that are optimised
   /// Steps of each start; the better half then takes twice as many, and so on (successive halving).
   int steps = 5;
