@@ -55,7 +55,7 @@ TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   EXPECT_THAT(a.sentence, HasSubstr("TB = "));
 }
 
-TEST(Add, VerdictOmitsManyValues) {
+TEST(AddFull, VerdictOmitsManyValues) {
   const plant::PlantModel model = example(false);
   const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
   ASSERT_GT(a.own, 6);
@@ -111,7 +111,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
   return changed;
 }
 
-TEST(Add, FreesRateFeedbackInactiveByDefault) {
+TEST(AddFull, FreesRateFeedbackInactiveByDefault) {
   constexpr double kKF = 0.05;
   const plant::PlantModel model = example(false);
   const Addition a =
@@ -125,7 +125,7 @@ TEST(Add, FreesRateFeedbackInactiveByDefault) {
   EXPECT_NEAR(p->value, kKF, 3 * p->error);
 }
 
-TEST(Add, FreesNothingWithoutEvidence) {
+TEST(AddFull, FreesNothingWithoutEvidence) {
   const plant::PlantModel model = example(false);
   const auto exst1 = find_hypothesis(model, "EXST1");
   const Addition a = add_effect(model, exst1, with_rate_feedback(model, 0.0), power_only());

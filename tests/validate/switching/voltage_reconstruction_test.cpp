@@ -97,7 +97,7 @@ TEST(VoltageReconstruction, IsInsensitiveToNoise) {
 }
 /// Both steps of a fault of three samples share the samples between them; the probability of the switching
 /// times has many local maxima.
-TEST(VoltageReconstruction, FindsTimesOfShortFaultAtAnyOffset) {
+TEST(VoltageReconstructionFull, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {
       const Fault fault = {.off = kOn + length, .V = 0.85};
