@@ -141,6 +141,7 @@ asm(\".section .rodata\\n\"
 @names@  return {};
 }
 " @ONLY)
-  set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${ARGN}")
+  # Alone in its object: a unity source would not have these dependencies.
+  set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${ARGN}" SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${out})
 endfunction()
