@@ -84,23 +84,34 @@ report::Bars fall(const FirstScreen& s) {
   return bars;
 }
 
+/// Shades the window of the channel's largest error, and extends the view so that it is visible.
+void shade_worst(report::Curves& c, const FirstScreen& s, std::size_t event, const std::string& name) {
+  const EventComparison& of = s.before->events[event];
+  const ChannelError error = channel_error(s.before->fitness, of, *find_channel(s.before, event, name));
+  if (error.tone == report::Tone::good || error.window < 0) return;
+  const Window& w = of.windows[static_cast<std::size_t>(error.window)];
+  c.window = {w.from, w.to};
+  if (c.view && w.from >= c.view->second) c.view->second = std::min(w.to, of.record.t.back());
+}
+
 /// Adds the worst event with P and Q side by side.
 void large_charts(report::Document& document, const FirstScreen& s) {
   const auto [event, channels] = worst_event(*s.before);
+  std::vector<report::Curves> charts;
   document.subsection(fmt::format("Event {}: {}, {}", event + 1, s.before->events[event].record.name,
                                   event_title(s.before->events[event])));
-  document.add(report::Begin{report::Begin::Layout::large});
   for (const auto& name : channels) {
-    report::Curves c = channel_curves(
+    charts.push_back(channel_curves(
         {{s.before, s.after ? report::Ink::submitted : report::Ink::fitted}, {s.after, report::Ink::fitted}},
-        event, name);
-    const ChannelComparison& of = *find_channel(s.before, event, name);
-    const ChannelError error = channel_error(s.before->fitness, s.before->events[event], of);
-    if (error.tone != report::Tone::good && error.window >= 0) {
-      const Window& w = s.before->events[event].windows[static_cast<std::size_t>(error.window)];
-      c.window = {w.from, w.to};
-    }
-    document.add(std::move(c));
+        event, name));
+    shade_worst(charts.back(), s, event, name);
+  }
+  const auto widest = std::ranges::max_element(
+      charts, {}, [](const report::Curves& c) { return c.view ? c.view->second : 0; });
+  document.add(report::Begin{report::Begin::Layout::large});
+  for (auto& c : charts) {
+    c.view = widest->view;
+    document.add(c);
   }
   document.add(report::End{});
 }

@@ -50,10 +50,11 @@ std::string headline(const Diagnosis& d) {
   return fmt::format("{} {} ({})", named->name, replaces ? "explains the records" : "is missing",
                      hypothesis::probability_text(named->probability));
 }
-report::Tone tone(Verdict verdict) {
-  return verdict == Verdict::adequate      ? report::Tone::good
-         : verdict == Verdict::unexplained ? report::Tone::bad
-                                           : report::Tone::found;
+bool as_submitted(const Diagnosis& d) { return d.verdict == Verdict::adequate && !d.wrong; }
+report::Tone tone(const Diagnosis& d) {
+  return as_submitted(d)                     ? report::Tone::good
+         : d.verdict == Verdict::unexplained ? report::Tone::bad
+                                             : report::Tone::found;
 }
 /// Returns the command that follows the diagnosis; empty without one.
 std::string next_command(const Diagnosis& d, const report::Provenance& rows) {
@@ -102,10 +103,10 @@ class DiagnosisPage {
 
   /// Adds the verdict, and the worst event before and after: with the added effect, or else refitted.
   void opening() {
-    compare::FirstScreen screen{headline(d_), {d_.sentence}, tone(d_.verdict)};
+    compare::FirstScreen screen{headline(d_), {d_.sentence}, tone(d_)};
     if (!played_.empty()) screen.before = &played_.front();
     if (played_.size() > 1) screen.after = &played_[1];
-    screen.judge_before = d_.verdict != Verdict::adequate;
+    screen.judge_before = !as_submitted(d_);
     screen.next = next_command(d_, rows_);
     compare::first_screen(page_, screen);
   }
