@@ -341,7 +341,9 @@ PlantModel as_submitted(PlantModel model) {
 PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventions, std::string files) {
   PlantModel model;
   model.origin = std::move(files);
-  model.name = fmt::format("{}{}bus {}", unit.bus_name, unit.bus_name.empty() ? "" : ", ", unit.bus);
+  const std::string bus = fmt::format("bus {}", unit.bus);
+  const bool named = !unit.bus_name.empty() && unit.bus_name != fmt::format("BUS {}", unit.bus);
+  model.name = named ? unit.bus_name + ", " + bus : bus;
   model.plant = unit.plant;
   model.plant.name = model.name;
   model.bus = unit.bus;
