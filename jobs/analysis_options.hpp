@@ -85,6 +85,23 @@ struct AnalysisOptions {
              "record (name or number from 1) excluded from the fit, to judge it; may be repeated");
   }
 
+  /// Returns the options that read these records: " --records fault1.csv --power-only".
+  [[nodiscard]] std::string inputs() const {
+    std::vector<std::string> words = {"--records"};
+    words.insert(words.end(), records.begin(), records.end());
+    for (const auto& word : reading.words()) words.push_back(word);
+    for (const auto& word : reading.switches) words.insert(words.end(), {"--switch", word});
+    for (const auto& file : user_model_files) words.insert(words.end(), {"--law", file});
+    if (reading.component != "plant") words.insert(words.end(), {"--component", reading.component});
+    if (!measured_states) words.emplace_back("--power-only");
+    if (!judging.accept.empty()) words.insert(words.end(), {"--accept", judging.accept});
+    std::string text;
+    for (const auto& word : words)
+      text +=
+          word.find_first_of(" \t'\"$&;()<>|*?[]") == std::string::npos ? " " + word : " \"" + word + "\"";
+    return text;
+  }
+
   /// Locks the output folder; call it after all inputs are read and before the work. `names`: files that the
   /// command may write into it. Throws InputError if one of them is an input.
   void open_results(const std::string& command, const std::vector<std::string>& names) {

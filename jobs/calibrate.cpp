@@ -58,11 +58,20 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
 }
 
 /// Returns the names of the held-out records.
-std::vector<std::string> unseen_of(const std::vector<calibrate::EventScore>& events) {
+std::vector<std::string> unseen_of(const Arguments& a, const std::vector<record::Record>& records) {
+  const auto out = calibrate::held_out_events(records, a.options.held_out);
   std::vector<std::string> names;
-  for (const auto& e : events)
-    if (!e.seen) names.push_back(e.record);
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (out[k]) names.push_back(records[k].name);
   return names;
+}
+
+/// Returns the command that follows: a comparison of the calibrated model, or the diagnosis of an inadequate
+/// one.
+std::string next_command(const Arguments& a, bool adequate) {
+  if (!adequate) return fmt::format("swingbank diagnose --model {}{}", a.of.model, a.of.inputs());
+  return fmt::format("swingbank compare --model {}{}", (std::filesystem::path(a.of.out) / kModel).string(),
+                     a.of.inputs());
 }
 
 /// Writes the model to `kModel` with its .dyr records, or to `kBiasedModel` if it is not adequate (`adequate`
@@ -81,13 +90,11 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
         "NOT ADEQUATE: a component is missing in this model, and its parameters are biased. Do not use them.");
   plant::write_plant_file(file, model, head);
   if (!adequate)
-    return fmt::format(
-        "model: {} (not adequate: its parameters are biased, do not use them)\nnext: swingbank "
-        "diagnose --model {} --records ... names the missing component",
-        file.string(), a.of.model);
+    return fmt::format("model: {} (not adequate: its parameters are biased, do not use them)\nnext: {}",
+                       file.string(), next_command(a, adequate));
   const plant::WrittenDyr dyr = plant::write_dyr_beside(file, before, model);
   if (!dyr.file.empty()) a.of.results().file(dyr.file.filename());
-  return fmt::format("model: {}\n{}", file.string(), dyr.line);
+  return fmt::format("model: {}\n{}\nnext: {}", file.string(), dyr.line, next_command(a, adequate));
 }
 
 /// Writes the page report.html; `result` is embedded as JSON.
@@ -98,6 +105,7 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
                               model.plant.mva);
   page.tried.insert(page.tried.begin(),
                     "calibrate does not test the structure; “swingbank diagnose” names missing components.");
+  page.next = next_command(a, page.complete);
   page.provenance = {{"command", a.command},
                      {"software", fmt::format("swingbank {}", jobs::version())},
                      {"model", model.origin}};
@@ -137,12 +145,12 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   page.sentence = f.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
-  page.unseen = unseen_of(f.events);
+  page.unseen = unseen_of(a, records);
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
-          compare::error_text(played, unseen_of(f.events)) + "\n" + written);
+          compare::error_text(played, unseen_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(f.adequate);
 }
@@ -192,10 +200,11 @@ int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<r
   page.sentence = w.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
+  page.unseen = unseen_of(a, records);
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) + compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) +
-          "\n" + compare::error_text(played) + "\n" + written);
+          "\n" + compare::error_text(played, unseen_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(w.is_adequate());
 }
@@ -232,7 +241,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const auto played = play_both(a, model, c.model, records);
   std::string text = compare::fitness_text(played) +
                      compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
-                     compare::error_text(played, unseen_of(c.events));
+                     compare::error_text(played, unseen_of(a, records));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.defaults;
@@ -260,7 +269,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::vector<fit::FittedParameter> fitted;
   for (const auto& p : c.parameters) fitted.push_back(p.fit);
   page.parameters = jobs::page_parameters(fitted, c.model.plant);
-  page.unseen = unseen_of(c.events);
+  page.unseen = unseen_of(a, records);
   for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, adequate, calibrate::provenance_lines(c, a.command));

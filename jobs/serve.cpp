@@ -29,24 +29,6 @@ struct Command {
   bool open = false;
 };
 
-/// Returns a word of a command line, quoted if the shell would split it.
-std::string shell_word(const std::string& word) {
-  return word.find_first_of(" \t'\"$&;()<>|*?[]") == std::string::npos ? word : "\"" + word + "\"";
-}
-
-/// Returns the options that read these records, for the equivalent commands on the page.
-std::string options_of(const Command& c) {
-  std::string text = " --records";
-  for (const auto& record : c.of.records) text += " " + shell_word(record);
-  for (const auto& word : c.of.reading.words()) text += " " + shell_word(word);
-  for (const auto& word : c.of.reading.switches) text += " --switch " + shell_word(word);
-  for (const auto& file : c.of.user_model_files) text += " --law " + shell_word(file);
-  if (c.of.reading.component != "plant") text += " --component " + c.of.reading.component;
-  if (!c.of.measured_states) text += " --power-only";
-  if (!c.of.judging.accept.empty()) text += " --accept " + shell_word(c.of.judging.accept);
-  return text;
-}
-
 std::shared_ptr<live::Setup> read_setup(Command& c) {
   c.of.judging.read();
   auto s = std::make_shared<live::Setup>();
@@ -60,7 +42,7 @@ std::shared_ptr<live::Setup> read_setup(Command& c) {
   s->by = c.of.judging.by;
   s->prior_sd = c.of.prior_sd;
   s->threads = std::max(c.of.threads, 0);
-  s->options = options_of(c);
+  s->options = c.of.inputs();
   s->plant_file = c.of.model;
   return s;
 }
