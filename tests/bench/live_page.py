@@ -4,7 +4,8 @@
   SWINGBANK_BIN=build/release/bin /usr/bin/python3 tests/bench/live_page.py [DRAGS]
 
 The plant is GENROU with ESST4B, PSS2B and IEEEG1 at default values; the records are the four events of 15 s of
-configs/records/record-example. Needs chromium-driver and python3-selenium. Prints medians and the 95th percentile.
+configs/records/record-example, and those of a simulation of this plant where IEEEG1 is added. Needs chromium-driver and
+python3-selenium. Prints medians and the 95th percentile.
 """
 import http.client
 import json
@@ -26,8 +27,8 @@ DRAGS = int(sys.argv[1]) if len(sys.argv) > 1 else 100
 RECORDS = sorted((SOURCE / "configs/records/record-example").glob("avr_ev*.csv"))
 
 
-def plant(folder, *controls):
-    text = (SOURCE / "configs/plants/ieee14_bus2.toml").read_text()
+def plant(folder, *controls, machine=SOURCE / "configs/plants/ieee14_bus2.toml"):
+    text = machine.read_text()
     for control in controls:
         text += "\n" + subprocess.run([SWINGBANK, "effects", control, "--toml"], check=True, capture_output=True, text=True).stdout
     file = pathlib.Path(folder) / ("-".join(["GENROU", *controls]) + ".toml")
@@ -35,9 +36,27 @@ def plant(folder, *controls):
     return file
 
 
-def serve(model):
+def simulated(folder, *controls):
+    """Plant file of the machine at bus 2, and four events of 15 s with these controls and a PMU's noise."""
+    case = SOURCE / "configs/networks/ieee14_genrou"
+    records = []
+    for event in ("--fault 5:2.007:2.107", "--load-step 4:30:10:2.007:10.007", "--fault 4:2.007:2.087",
+                  "--load-step 9:-20:-5:2.007:10.007"):
+        records.append(pathlib.Path(folder) / f"event{len(records) + 1}.csv")
+        attached = [word for control in controls for word in ("--attach", f"2:{control}")]
+        subprocess.run([SWINGBANK, "simulate", "--raw", f"{case}.raw", "--dyr", f"{case}.dyr", *attached, *event.split(),
+                        "--t-end", "15", "--rate", "60", "--plants", "2", "--channels", "P,Q", "--buses", "2", "--measure",
+                        "NOISE:relative=0.0002,angle=0.0002,I=0.001", "--measure-seed", str(len(records)), "--out", records[-1]],
+                       check=True, capture_output=True)
+    machine = pathlib.Path(folder) / "machine.toml"
+    subprocess.run([SWINGBANK, "plant", "--raw", f"{case}.raw", "--dyr", f"{case}.dyr", "--bus", "2", "--out", machine], check=True,
+                   capture_output=True)
+    return machine, records
+
+
+def serve(model, records=RECORDS):
     start = time.monotonic()
-    server = subprocess.Popen([SWINGBANK, "serve", "--model", model, "--records", *RECORDS, "--power-only", "--quiet"],
+    server = subprocess.Popen([SWINGBANK, "serve", "--model", model, "--records", *records, "--power-only", "--quiet"],
                               stdout=subprocess.PIPE, text=True)
     return server, server.stdout.readline().strip(), start
 
@@ -111,8 +130,10 @@ with tempfile.TemporaryDirectory() as folder:
     print(f"memory: {before:.0f} MB before, {memory(server):.0f} MB after {2 * DRAGS} drags; bar + 50 MB")
     server.terminate()
     server.wait()
-    for controls, effect in (((), "SEXS"), (("ESST4B", "PSS2B"), "IEEEG1")):
-        server, url, _ = serve(plant(folder, *controls))
+    machine, four = simulated(folder, "ESST4B", "PSS2B", "IEEEG1")
+    for model, effect, records in ((plant(folder), "SEXS", RECORDS),
+                                   (plant(folder, "ESST4B", "PSS2B", machine=machine), "IEEEG1", four)):
+        server, url, _ = serve(model, records)
         page.get(url)
         while not page.execute_script("return document.body.dataset.ready"):
             time.sleep(0.01)
@@ -131,7 +152,7 @@ with tempfile.TemporaryDirectory() as folder:
                 fitted = time.monotonic() - start
             time.sleep(0.01)
         print(f"first fitted curves after {fitted or float('nan'):.2f} s")
-        print(f"{'+'.join(['GENROU', *controls])}, add and fit {effect}: {time.monotonic() - start:.2f} s, bar 2 s", flush=True)
+        print(f"{model.stem}, add and fit {effect}: {time.monotonic() - start:.2f} s, bar 2 s", flush=True)
         server.terminate()
         server.wait()
     page.quit()

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "base/stop_signal.hpp"
-#include "validate/add/add.hpp"
+#include "validate/add/at_once.hpp"
 #include "validate/diagnose/diagnose.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/hypothesis/posterior.hpp"
@@ -158,8 +158,10 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
     if (std::isfinite(f.chi2) && f.values > 0)
       emit({{"type", "reached"}, {"chi2", f.reduced_chi2()}, {"events", curves_json(f, out)}});
   };
-  const add::Addition a = add::add_effect(model, add::find_hypothesis(model, effect), setup.records,
-                                          {.calibrate = fitting(setup, request, emit), .reached = reached});
+  const add::AddOptions options{.calibrate = fitting(setup, request, emit), .reached = reached};
+  const auto hypothesis = add::find_hypothesis(model, effect);
+  const auto quick = add::add_at_once(model, hypothesis, setup.records, options);
+  const add::Addition a = quick ? *quick : add::add_effect(model, hypothesis, setup.records, options);
   emit({{"type", "step"},
         {"kind", "added"},
         {"effect", effect},
@@ -167,7 +169,7 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
         {"plant", plant_json(a.model)},
         {"parameters", parameters_json(a.parameters)},
         {"held_out", request.value("held_out", std::vector<std::string>{})},
-        {"evidence", number(a.evidence)},
+        {"evidence", quick ? json(nullptr) : number(a.evidence)},
         {"sentence", a.sentence}});
 }
 

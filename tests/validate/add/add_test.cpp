@@ -1,6 +1,4 @@
 // An effect added to the model of the committed records, whose plant has a SEXS.
-#include "validate/add/add.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/instrument_example.hpp"
+#include "validate/add/at_once.hpp"
 #include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::add {
@@ -53,6 +52,20 @@ TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   EXPECT_EQ(a.model.plant.controls[0].effect->name, "SEXS");
   for (int i = 0; i < a.own; ++i) EXPECT_EQ(a.parameters[static_cast<std::size_t>(i)].block, "SEXS");
   EXPECT_THAT(a.sentence, HasSubstr("TB = "));
+}
+
+TEST(Add, OneFitSufficesForTheRightEffectOnly) {
+  const plant::PlantModel model = example(false);
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"2"};
+  const auto a = add_at_once(model, find_hypothesis(model, "SEXS"), records(model), options);
+  ASSERT_TRUE(a);
+  EXPECT_TRUE(a->adequate);
+  const auto gain = std::ranges::find(a->parameters, "K", &fit::FittedParameter::name);
+  ASSERT_LT(gain - a->parameters.begin(), a->own);
+  EXPECT_LT(gain->low, 100);
+  EXPECT_GT(gain->high, 100);
+  EXPECT_FALSE(add_at_once(model, find_hypothesis(model, "TGOV1"), records(model), options));
 }
 
 TEST(AddFull, VerdictOmitsManyValues) {

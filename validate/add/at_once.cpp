@@ -1,0 +1,71 @@
+#include "validate/add/at_once.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "validate/hypothesis/search.hpp"
+#include "validate/noise/level.hpp"
+#include "validate/thresholds/thresholds.hpp"
+
+namespace swingbank::validate::add {
+namespace {
+
+noise::WhitenedEvents seen_events(const plant::PlantModel& model, const std::vector<record::Record>& records,
+                                  const calibrate::CalibrateOptions& options) {
+  const auto out = calibrate::held_out_events(records, options.held_out);
+  std::vector<record::Record> seen;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (!out[k]) seen.push_back(records[k]);
+  return noise::whitened_events(model, std::move(seen), options.events);
+}
+
+bool is_noise(const fit::Fit& f, const noise::WhitenedEvents& events, double least) {
+  const int pre_event = calibrate::pre_event_samples(events);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const double limit = calibrate::reduced_chi2_limit(events[e], f.events[e], pre_event, least);
+    if (!thresholds::within_limit(f.events[e].reduced_chi2(), limit)) return false;
+  }
+  return true;
+}
+
+/// Fits the effect's own parameters, which brings the response close in few short steps, then all parameters.
+fit::Fit fitted(const hypothesis::Hypothesis& h, const noise::WhitenedEvents& events,
+                const AddOptions& options) {
+  fit::FitOptions o{.lenient = true};
+  o.errors = false;
+  const fit::Fit own = fit::fit(h.under_test(), events, h.free, o);
+  if (!own.failed.empty()) return own;
+  if (options.reached) options.reached(own);
+  const auto free = hypothesis::free_of(h, options.calibrate.prior_sd);
+  o = fit::continued({.lenient = true}, own, free);
+  o.goal = {thresholds::noise.measurable * own.values, o.iterations};
+  return fit::fit(h.under_test(), events, free, o);
+}
+
+}  // namespace
+
+std::optional<Addition> add_at_once(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
+                                    const std::vector<record::Record>& records, const AddOptions& options) {
+  const noise::WhitenedEvents events = seen_events(model, records, options.calibrate);
+  Addition a;
+  a.hypothesis = hypothesis;
+  a.with = fitted(hypothesis, events, options);
+  if (!a.with.failed.empty() || !is_noise(a.with, events, options.calibrate.adequate)) return std::nullopt;
+  if (options.reached) options.reached(a.with);
+  a.model = model;
+  a.model.plant = a.with.plant;
+  a.model.conventions = hypothesis.conventions;
+  a.own = static_cast<int>(hypothesis.free.size());
+  a.parameters = a.with.parameters;
+  // A fit lists the effect's parameters last.
+  std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
+  a.adequate = true;
+  a.sentence = fmt::format(
+      "{} added by one fit from its default values: the reduced chi-square is {:.3g}, the residual is noise. The "
+      "command below also computes the evidence.",
+      hypothesis.what, a.with.reduced_chi2());
+  return a;
+}
+
+}  // namespace swingbank::validate::add
