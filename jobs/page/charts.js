@@ -18,7 +18,7 @@ export function split(samples, channels) {
 }
 
 /** Fills the area between two curves. */
-function between(u, t, low, high) {
+function between(u, t, low, high, fill, alpha) {
   const { ctx, bbox } = u;
   ctx.save();
   ctx.beginPath();
@@ -29,8 +29,8 @@ function between(u, t, low, high) {
     y = (v) => u.valToPos(v, "y", true);
   for (let k = 0; k < t.length; ++k) ctx.lineTo(x(k), y(low[k]));
   for (let k = t.length - 1; k >= 0; --k) ctx.lineTo(x(k), y(high[k]));
-  ctx.globalAlpha = 0.3;
-  ctx.fillStyle = colour("model");
+  ctx.globalAlpha = alpha;
+  ctx.fillStyle = colour(fill);
   ctx.fill();
   ctx.restore();
 }
@@ -47,7 +47,10 @@ function chart(place, of, height) {
     width: place.clientWidth || 600,
     height,
     group: sync.key,
-    below: (u) => of.range && between(u, of.data[0], of.range[0], of.range[1]),
+    below: (u) => {
+      if (of.allowed) between(u, of.data[0], ...of.allowed, "good", 0.1);
+      if (of.range) between(u, of.data[0], ...of.range, "model", 0.3);
+    },
   });
   const box = make("div", { className: "chart" });
   place.append(box);
@@ -56,7 +59,7 @@ function chart(place, of, height) {
   return { plot, of, place, height };
 }
 
-/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, main}. */
+/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, allowed, main}. */
 export function show(channels) {
   ++moving;
   for (const c of charts.splice(0)) {

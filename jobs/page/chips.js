@@ -61,7 +61,7 @@ function shade(share) {
   return dark ? `hsl(24 75% ${20 + 24 * strength}%)` : `hsl(24 90% ${91 - 32 * strength}%)`;
 }
 
-/** Builds the map of one event; `zoom(from, to)` shows a window. */
+/** Builds the map of one event; `zoom(channel, from, to)` shows a window. */
 export function map(state, zoom) {
   const { setup, step, event } = state;
   const table = make(
@@ -87,7 +87,7 @@ export function map(state, zoom) {
         cell.style.background = shade(ratio / bound);
         const share = c.size > 0 ? `, ${digits((100 * rms) / c.size, 3)} % of ${digits(c.size)} ${c.unit}` : "";
         cell.title = `${c.name}, ${row.window}, ${setup.bands[b]}: RMS ${digits(rms)} ${c.unit}${share}; ${times(ratio)} the noise, which may reach ${times(bound)}`;
-        cell.addEventListener("click", () => zoom(row.from, row.to));
+        cell.addEventListener("click", () => zoom(c.channel, row.from, row.to));
         tr.append(make("td", {}, cell));
       });
       table.append(tr);

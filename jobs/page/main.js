@@ -57,6 +57,13 @@ const windowOf = (chip) => {
 };
 const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
+/** Returns the measured curve less and more the largest error that the limits allow before, in and after the fault. */
+function allowed(largest, times_, t, measured) {
+  if (!largest || !times_.length) return null;
+  const size = t.map((at) => largest[at < times_[0] ? 0 : at <= times_.at(-1) ? 1 : 2]);
+  return [measured.map((v, k) => v - size[k]), measured.map((v, k) => v + size[k])];
+}
+
 /** Shows the event's curves of the present step. */
 async function showEvent() {
   const { event: e, step } = state;
@@ -70,6 +77,7 @@ async function showEvent() {
       main: k < 2,
       window: windowOf(c),
       fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
+      allowed: allowed(c.allowed, times_, now.t, now.channels[k].measured),
       data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled],
     })),
   );
@@ -87,6 +95,17 @@ function near() {
   const at = state.step.switchings[state.event];
   if (at.length) charts.zoom(at[0] - 1, at.at(-1) + 5);
   else charts.zoom();
+}
+
+/** Shows one window of one channel, with a fifth of it on both sides. */
+function enlarge(channel, from, to) {
+  const margin = 0.2 * (to - from);
+  charts.zoom(from - margin, to + margin);
+  state.channel = channel;
+  charts.choose(channel);
+  charts.shade(chipsOf(state.step, state.event).map((c) => (c.channel === channel ? [from, to] : null)));
+  chips.build(state, guard(choose));
+  by("charts").scrollIntoView({ block: "nearest" });
 }
 
 function showSteps() {
@@ -127,10 +146,7 @@ function showStep() {
   by("command").textContent = step.command;
   by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
   chips.build(state, guard(choose));
-  chips.map(state, (from, to) => {
-    charts.zoom(from - 0.2 * (to - from), to + 0.2 * (to - from));
-    by("charts").scrollIntoView({ block: "nearest" });
-  });
+  chips.map(state, enlarge);
   sliders.build(step, moved, settled, point);
   showSteps();
   api
@@ -183,7 +199,7 @@ async function choose(event, channel = 0) {
   state.event = event;
   state.channel = channel;
   chips.build(state, guard(choose));
-  chips.map(state, (from, to) => charts.zoom(from, to));
+  chips.map(state, enlarge);
   await showEvent();
 }
 function hold(event, on) {

@@ -74,6 +74,19 @@ json map_of(const compare::EventComparison& e, const compare::ChannelComparison&
   return rows;
 }
 
+/// Returns the largest errors that the limits allow before, in and after the fault [unit of the channel].
+json allowed_errors(const compare::Fitness& fitness, const compare::EventComparison& event,
+                    const compare::ChannelComparison& c) {
+  json all = json::array({nullptr, nullptr, nullptr});
+  bool any = false;
+  for (const auto& row : fitness.rows)
+    if (row.event == event.record.name && row.channel == c.name && row.switched) {
+      all[static_cast<std::size_t>(row.phase)] = number(row.limits.mxe / 100 * fitness.mva);
+      any = true;
+    }
+  return any ? all : json(nullptr);
+}
+
 /// Returns the result of each channel of each event.
 json chips(const Step& step) {
   json all = json::array();
@@ -97,6 +110,7 @@ json chips(const Step& step) {
                      {"limit", number(error.limit)},
                      {"window", error.window},
                      {"size", number(c.size * c.scale)},
+                     {"allowed", allowed_errors(step.played->fitness, event, c)},
                      {"map", map_of(event, c)}});
     }
   }
