@@ -68,9 +68,13 @@ page.save_screenshot(f"{folder}/first.png")
 assert page.execute_script("return document.getElementById('charts').getBoundingClientRect().bottom <= innerHeight"), \
     "the curves of P and Q are not on the first screen"
 
+# a cell of the error map enlarges its channel: Q was chosen, the first cell is of P
+event = next(at[0] for at, c in chips().items() if "chosen" in c[0])
+page.execute_script("document.querySelector('#bins button').click()")
+until("the channel of the cell", lambda: "chosen" in chips()[event, 0][0], 20)
+
 # drag a slider with the mouse: the chips of this event follow; after it, the number is that of compare
 slider = one("slider-GENROU.H")
-event = next(at[0] for at, c in chips().items() if "chosen" in c[0])
 before = rms(event, 0)
 page.execute_script("document.getElementById('slider-GENROU.H').scrollIntoView({block: 'center'})")
 drag = ActionChains(page).move_to_element(slider).click_and_hold()
