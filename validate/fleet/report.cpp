@@ -134,12 +134,13 @@ std::string fleet_csv(const std::vector<FleetRow>& rows) {
 std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
   report::Document page{"Fleet: " + fleet.file.stem().string(), "every plant diagnosed from its own records"};
   const bool good = fleet_code(rows) == 0, failed = count(rows, {"failed", "unexplained"}) > 0;
-  page.add(
-      report::Opening{fmt::format("{} of {} plants are adequate", count(rows, {"adequate"}), rows.size()),
-                      {fleet_summary(rows)},
-                      good     ? report::Tone::good
-                      : failed ? report::Tone::bad
-                               : report::Tone::found});
+  const auto adequate = count(rows, {"adequate"});
+  page.add(report::Opening{
+      fmt::format("{} of {} plants {} adequate", adequate, rows.size(), adequate == 1 ? "is" : "are"),
+      {fleet_summary(rows)},
+      good     ? report::Tone::good
+      : failed ? report::Tone::bad
+               : report::Tone::found});
   report::Table table = fleet_table(rows);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i].failed()) table.rows[i].front().link = rows[i].plant + "/report.html";
