@@ -173,9 +173,13 @@ int run(const Options& o) {
   if (o.event && all.size() > 1)
     throw InputError(
         {"one event time for several records", "--event", "each has its own", "give one record at a time"});
+  const auto& machine = model.plant.machine;
+  const double reactance = network.info().needs_reactance
+                               ? machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xdp"))]
+                               : 0;
   for (auto& e : all) {
     e.input = network_input(e.record, model, network.info(), o.event);
-    e.estimate = network.estimate(e.input.values, o.noise);
+    e.estimate = network.estimate(e.input.values, o.noise, reactance);
   }
   const std::string unlike = strangers(network.info(), all);
   if (o.json || !o.out.empty()) fmt::print(stderr, "{}", unlike);

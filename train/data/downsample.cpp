@@ -7,10 +7,18 @@
 #include <cmath>
 
 #include "base/problem.hpp"
+#include "train/data/noise.hpp"
 
 namespace swingbank::train::data {
 
-void InputSelection::apply(const float* record, std::size_t record_samples, float* out) const {
+void InputSelection::apply(const float* record, std::size_t record_samples, double level, double reactance,
+                           float* out) const {
+  if (swing) {
+    swing->apply(record, record_samples, level, reactance, out);
+    out[values() - 1] = static_cast<float>(level);
+    return;
+  }
+  if (shows_level) out[values() - 1] = level_input(level);
   if (physics) return physics->apply(record, record_samples, out);
   const auto copy = [&](bool deviation, float* to) {
     for (const std::size_t c : channels) {
@@ -44,19 +52,37 @@ double shown_reactance(const mpi::store::DatasetHeader& d) {
   return kTypical;
 }
 
-/// Requires a single fault time in the dataset, before which its records are steady.
-Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
+/// Returns the fault time of the dataset [s], before which its records are steady. Throws InputError if there
+/// is none, or several.
+double event_time(const mpi::store::DatasetHeader& d) {
   const auto event = mpi::store::config_numbers(d, "fault.start");
   if (event.size() != 1)
     throw InputError({"no fault time", "form",
                       "the dataset's config has no fault.start, and the steady state is measured before it",
                       "choose another form, or generate the dataset anew"});
-  std::vector<std::string> names = d.channel_names;  // channels that are not requested are ignored
+  return event.front();
+}
+
+/// Returns the names of the record's channels; those that are not requested are empty.
+std::vector<std::string> requested(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
+  std::vector<std::string> names = d.channel_names;
   for (auto& name : names)
     if (std::ranges::find(recipe.channels, name) == recipe.channels.end()) name.clear();
-  PhysicsWindow window{d.rate, recipe.start_s, recipe.end_s, event.front(), shown_reactance(d)};
+  return names;
+}
+
+Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
+  PhysicsWindow window{d.rate, recipe.start_s, recipe.end_s, event_time(d), shown_reactance(d)};
   if (recipe.shows_level) window.least_voltage = kNoisyLeastVoltage;
-  return {names, window};
+  return {requested(recipe, d), window};
+}
+
+SwingIntegrals swing_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
+  if (std::ranges::find(d.held_names, "Xdp") == d.held_names.end())
+    throw InputError({"no fixed X'd", "form", "the rotor's angle follows from the voltage behind X'd",
+                      "choose another form, or a dataset of GENCLS"});
+  return {requested(recipe, d),
+          {d.rate, event_time(d), recipe.start_s, recipe.end_s, d.frequency, frequency_filter(d)}};
 }
 
 }  // namespace
@@ -95,6 +121,11 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
     s.samples = s.physics->bins();
     s.shows_level = recipe.shows_level;
     s.regressions = recipe.regressions;
+  }
+  if (s.form == InputForm::swing) {
+    s.swing = swing_of(recipe, dataset);
+    s.samples = s.swing->functions();
+    s.shows_level = true;
   }
   return s;
 }

@@ -7,6 +7,7 @@
 
 #include "mpi/store/dataset.hpp"
 #include "train/data/physics.hpp"
+#include "train/data/swing.hpp"
 
 namespace swingbank::train::data {
 
@@ -19,9 +20,11 @@ enum class InputForm {
   relative,
   both,     ///< absolute channels, then relative ones
   physics,  ///< physical signals of the machine's equations, then steady values (Physics)
+  swing,    ///< integrals of the swing equation, then the noise level (SwingIntegrals)
 };
 /// Names used in experiment files, in order of the enumeration.
-inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative", "both", "physics"};
+inline const std::vector<std::string> kInputForms = {"absolute", "deviation", "relative",
+                                                     "both",     "physics",   "swing"};
 
 /// Input of a network as given in an experiment's preset.
 struct InputRecipe {
@@ -30,7 +33,7 @@ struct InputRecipe {
   std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 give 30/s
   InputForm form = InputForm::absolute;
   bool seconds_as_steps = false;  ///< with PCA: the components of one second are one step of a series
-  bool shows_level = false;       ///< form physics only: append the noise level after the steady values
+  bool shows_level = false;       ///< form physics: append the noise level after the steady values
   bool regressions = false;       ///< form physics only: append regressions between the signals
 };
 
@@ -39,21 +42,24 @@ struct InputSelection {
   std::vector<std::size_t> channels;  ///< indices into the record's channels
   std::size_t first = 0, step = 1, samples = 0;
   InputForm form = InputForm::absolute;
-  double rate = 0.0;               ///< after slicing [1/s]
-  std::optional<Physics> physics;  ///< form physics only: computes the series
-  bool seconds_as_steps = false;   ///< order of the components in Features
-  bool shows_level = false;        ///< the last value is level_input() of the noise, set by the reader
-  bool regressions = false;        ///< form physics only: Features append regressions
+  double rate = 0.0;                    ///< after slicing [1/s]
+  std::optional<Physics> physics;       ///< form physics only: computes the series
+  std::optional<SwingIntegrals> swing;  ///< form swing only: computes the integrals
+  bool seconds_as_steps = false;        ///< order of the components in Features
+  bool shows_level = false;  ///< the last value is the noise level: level_input(), in the form swing itself
+  bool regressions = false;  ///< form physics only: Features append regressions
 
   [[nodiscard]] std::size_t outputs() const {
+    if (swing) return SwingIntegrals::terms;
     return physics ? physics->channels() : channels.size() * (form == InputForm::both ? 2 : 1);
   }
   /// Returns the number of values after the series.
   [[nodiscard]] std::size_t levels() const { return physics ? physics->levels() : 0; }
   [[nodiscard]] std::size_t values() const { return outputs() * samples + levels() + (shows_level ? 1 : 0); }
-  /// Computes the input of one row. record: channels x record_samples; out: outputs() x samples, then
-  /// levels().
-  void apply(const float* record, std::size_t record_samples, float* out) const;
+  /// Computes the input of one row. record: channels x record_samples; `level`: noise level; `reactance`: X'd
+  /// [pu of the machine], form swing only; out: values().
+  void apply(const float* record, std::size_t record_samples, double level, double reactance,
+             float* out) const;
 };
 
 /// Resolves a recipe. Throws InputError with every channel that the dataset lacks, a window outside the

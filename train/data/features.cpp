@@ -13,6 +13,7 @@ WhiteningSizes whitening_sizes(const FeatureSizes& s) {
 Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                        std::size_t pca_components) {
   if (stream.selection().physics) return of(Whitening::fit(stream, rows, pca_components));
+  if (stream.selection().swing) return unchanged(stream.selection().values());
   Features f;
   f.channels_ = stream.channels();
   f.samples_ = f.length_ = stream.samples();
@@ -61,6 +62,14 @@ Features Features::of(Whitening whitening) {
   f.samples_ = whitening.sizes().samples;
   f.length_ = whitening.length();
   f.whitening_ = std::move(whitening);
+  return f;
+}
+
+Features Features::unchanged(std::size_t values) {
+  Features f;
+  f.channels_ = 1;
+  f.samples_ = f.length_ = values;
+  f.scale_ = {{0.0f}, {1.0f}};
   return f;
 }
 

@@ -22,7 +22,8 @@ struct FeatureSizes {
 class Features {
  public:
   /// Fits the features on `rows`. pca_components = 0: no PCA. Series are normalised per channel, components
-  /// per channel and component. The form "physics" is whitened, with pca_components components a channel.
+  /// per channel and component. The form "physics" is whitened, with pca_components components a channel. The
+  /// form "swing" stays as it is.
   /// Throws InputError if a channel is constant over the rows.
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
@@ -48,6 +49,8 @@ class Features {
 
  private:
   static Features of(Whitening whitening);
+  /// Returns features that are the values of a row, as one channel.
+  static Features unchanged(std::size_t values);
   /// Computes the normalised series of one row, channel after channel.
   void scaled(const float* series, float* row) const;
   [[nodiscard]] std::size_t group(std::size_t channel, std::size_t i) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/problem.hpp"
+#include "train/data/channels.hpp"
 
 namespace swingbank::train::data {
 namespace {
@@ -48,22 +49,17 @@ class Signal {
   std::vector<double> values_;
 };
 
-int place(const std::vector<std::string>& names, const char* name) {
-  const auto found = std::ranges::find(names, name);
-  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
-}
-
 }  // namespace
 
 Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& window)
     : window_(window),
       steady_(std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(window.event_s * window.rate)))),
-      P_(place(names, "P")),
-      Q_(place(names, "Q")),
-      V_(place(names, "V")),
-      speed_(place(names, "speed")),
-      field_(place(names, "Ifd")),
-      frequency_(place(names, "frequency")) {
+      P_(channel_index(names, "P")),
+      Q_(channel_index(names, "Q")),
+      V_(channel_index(names, "V")),
+      speed_(channel_index(names, "speed")),
+      field_(channel_index(names, "Ifd")),
+      frequency_(channel_index(names, "frequency")) {
   Problems problems;
   for (const auto& [index, name] : {std::pair{P_, "P"}, {Q_, "Q"}, {V_, "V"}})
     if (index < 0)

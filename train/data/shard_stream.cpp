@@ -159,9 +159,15 @@ void ShardStream::series_of(const float* record, const mpi::store::ShardInfo& sh
     noise_.add(row, noise, noisy.data());
     record = noisy.data();
   }
-  selection_.apply(record, dataset_.samples, out);
-  if (selection_.shows_level) out[selection_.values() - 1] = level_input(level);
+  selection_.apply(record, dataset_.samples, level, selection_.swing ? reactance(row) : 0, out);
   check_finite(out, shard, row);
+}
+
+double ShardStream::reactance(std::uint64_t row) const {
+  const mpi::store::Dataset& d = row < labels_.judged || !more_ ? dataset_ : *more_;
+  const auto machine = std::ranges::find(d.generators, labels_.generator[row]) - d.generators.begin();
+  const auto name = std::ranges::find(d.held_names, "Xdp") - d.held_names.begin();
+  return d.held.at(static_cast<std::size_t>(machine)).at(static_cast<std::size_t>(name));
 }
 
 void ShardStream::keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard) {

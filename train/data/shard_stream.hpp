@@ -83,6 +83,8 @@ class ShardStream {
   /// Computes the series of a record, the dataset's row `row`, with its noise.
   void series_of(const float* record, const mpi::store::ShardInfo& shard, std::uint64_t row,
                  const Noise& noise, float* out) const;
+  /// Returns the fixed X'd of a row's machine [pu of the machine].
+  [[nodiscard]] double reactance(std::uint64_t row) const;
   /// Reads one contiguous run of rows of a shard and copies the wanted ones.
   struct Wanted {
     std::uint64_t row;

@@ -80,10 +80,14 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
       t.noise_levels = {range[0], range[1], c.require<double>(at + ".training_noise_zero", {0.0, 1.0})};
   }
   input.recipe.shows_level = t.noise_levels.has_value();
-  if (t.noise_levels && input.recipe.form != data::InputForm::physics)
+  if (t.noise_levels && input.recipe.form != data::InputForm::physics &&
+      input.recipe.form != data::InputForm::swing)
     c.problem(at + ".form", "training at many levels of noise",
-              "the noise level is an input, which only the form physics has",
-              "choose form = \"physics\", or leave training_noise out");
+              "the noise level is an input, which only the forms physics and swing have",
+              "choose one of these, or leave training_noise out");
+  if ((t.kind == "swing") != (input.recipe.form == data::InputForm::swing))
+    c.problem(at + ".form", fmt::format("network {} with another input", t.kind),
+              "the network swing and the form swing need each other", "choose form = \"swing\" for it alone");
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {

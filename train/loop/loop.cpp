@@ -140,6 +140,7 @@ class Loop {
 
   [[nodiscard]] Tensor loss_of(const Tensor& out, const Tensor& targets) const {
     if (data_.loss) return data_.loss(out, targets);
+    if (const Tensor own = network_.loss(out, targets); own.defined()) return own;
     return ((out - targets).square() * loss_weights_).mean();
   }
 

@@ -7,6 +7,7 @@
 namespace swingbank::train::networks {
 
 at::Tensor Network::describe(const at::Tensor&) { return {}; }
+at::Tensor Network::loss(const at::Tensor&, const at::Tensor&) { return {}; }
 
 std::unique_ptr<Network> make_network(const std::string& name, const NetworkShape& shape) {
   std::string names;

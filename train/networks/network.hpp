@@ -13,11 +13,19 @@ class Tensor;
 
 namespace swingbank::train::networks {
 
-/// outputs: number of estimated parameters. output_bias (one each): initial bias of the output layer, the
-/// mean of the training targets in the scaled units of Features, so that no ReLU is dead at the first step.
+/// An estimated parameter: raw value = output x unit + origin; mean of its training targets [raw units].
+struct Target {
+  std::string name;
+  double mean = 0, unit = 1, origin = 0;
+};
+
+/// outputs: number of estimated parameters, described by `targets`. output_bias (one each): initial bias of
+/// the output layer, the mean of the training targets in the scaled units of Features, so that no ReLU is
+/// dead at the first step.
 struct NetworkShape {
   std::int64_t channels = 0, samples = 0, outputs = 0;
   std::vector<float> output_bias;
+  std::vector<Target> targets = {};
 };
 
 class Network {
@@ -28,6 +36,9 @@ class Network {
   /// Returns auxiliary features of rows for a network built on this one, batch x numbers; the last are its
   /// outputs. Undefined tensor: the network has no auxiliary outputs.
   virtual at::Tensor describe(const at::Tensor& x);
+  /// Returns the loss of the outputs of forward(x, true) for targets, batch x outputs [scaled units].
+  /// Undefined tensor: the weighted squared error, and forward does not depend on `training` but for dropout.
+  virtual at::Tensor loss(const at::Tensor& outputs, const at::Tensor& targets);
   /// Returns the trained leaves, in a fixed order.
   virtual std::vector<at::Tensor> parameters() = 0;
 };

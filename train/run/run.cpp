@@ -95,11 +95,13 @@ std::vector<double> raw_outputs(const std::vector<float>& out, const data::Targe
 }
 
 networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale,
-                                const Guesses& guesses) {
+                                const Guesses& guesses, const mpi::store::DatasetHeader& d) {
   networks::NetworkShape shape{static_cast<std::int64_t>(features.channels()),
                                static_cast<std::int64_t>(features.length()),
                                static_cast<std::int64_t>(scale.unit.size()),
                                {}};
+  for (std::size_t p = 0; p < scale.unit.size(); ++p)
+    shape.targets.push_back({d.parameter_names[p], scale.mean[p], scale.unit[p], scale.origin[p]});
   for (std::size_t p = 0; p < scale.unit.size(); ++p)
     shape.output_bias.push_back(guesses.none() ? static_cast<float>(scale.scaled(scale.mean[p], p)) : 0.0f);
   if (!guesses.none()) {
@@ -244,7 +246,7 @@ class NetworkRun {
     features_ = data::Features::fit(
         stream_, split_.train, request_.experiment.input(request_.preset, request_.network).pca_components);
     loop::seed_torch(data::key(request_.seed, data::Purpose::weights));
-    network_ = networks::make_network(recipe_.kind, shape_of(features_, scale_, known_));
+    network_ = networks::make_network(recipe_.kind, shape_of(features_, scale_, known_, stream_.dataset()));
     print_sizes();
     const std::vector<float> targets = targets_of_training(), weights = scale_.weights(recipe_.loss_power);
     report_ = loop::train_network(

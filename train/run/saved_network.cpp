@@ -83,6 +83,15 @@ json physics_json(const data::InputSelection& s) {
           {"least_voltage", w.least_voltage}};
 }
 
+json swing_json(const data::InputSelection& s) {
+  if (!s.swing) return {};
+  const data::SwingWindow& w = s.swing->window();
+  return {{"start_s", w.start_s},
+          {"end_s", w.end_s},
+          {"event_s", w.event_s},
+          {"system_frequency_Hz", w.system_frequency}};
+}
+
 json header_of(const NetworkParts& parts, networks::Network& network) {
   const mpi::store::Dataset& d = parts.stream.dataset();
   const RunRequest& r = parts.request;
@@ -123,6 +132,7 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
             {"seconds", parts.report.seconds},
             {"validation_mse", parts.report.validation}}},
           {"physics", physics_json(s)},
+          {"swing", swing_json(s)},
           {"posterior", parts.posterior.head ? maps_json(parts.posterior) : json()},
           {"input_rms_seen", largest_input(parts.stream, parts.features, parts.split.validation)},
           {"parameters", judged_parameters(parts, network)}};
@@ -160,15 +170,23 @@ NetworkInfo info_of(const json& h) {
 }
 
 /// Returns the network's shape. The initial bias is a placeholder, because the weights are read afterwards.
-networks::NetworkShape shape_of(const data::FeatureSizes& s, std::size_t outputs) {
+networks::NetworkShape shape_of(const data::FeatureSizes& s, std::vector<networks::Target> targets) {
+  const std::size_t outputs = targets.size();
   if (s.kept > 0)
     return {1, static_cast<std::int64_t>(s.kept + s.levels + 1 + s.noisy + s.regressed),
-            static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
+            static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f), std::move(targets)};
   const std::size_t seconds = s.pca_per_second > 0 ? s.samples / s.pca_per_second : 0;
   const std::size_t length = s.pca_components > 0 ? seconds * s.pca_components : s.samples;
   const std::size_t steps = s.seconds_as_steps > 0 ? seconds : length;
   return {static_cast<std::int64_t>(s.channels * length / steps), static_cast<std::int64_t>(steps),
-          static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f)};
+          static_cast<std::int64_t>(outputs), std::vector<float>(outputs, 0.0f), std::move(targets)};
+}
+
+std::vector<networks::Target> targets_of(const NetworkInfo& info, const data::TargetScale& scale) {
+  std::vector<networks::Target> all;
+  for (std::size_t i = 0; i < info.parameters.size(); ++i)
+    all.push_back({info.parameters[i].name, scale.mean[i], scale.unit[i], scale.origin[i]});
+  return all;
 }
 
 /// Returns the file itself, or the only one in a folder.
@@ -226,7 +244,7 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     } catch (const json::exception& e) {
       throw Unusable{std::string("its header has another format: ") + e.what()};
     }
-    n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, n.info_.parameters.size()));
+    n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, targets_of(n.info_, n.scale_)));
     for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
     if (!header.at("posterior").is_null()) {
       n.posterior_->levels = maps_of(header.at("posterior"));
@@ -262,7 +280,7 @@ void SavedNetwork::add_head(const data::FeatureSizes& sizes) {
     box.parameter_low.push_back(p.low);
     box.parameter_high.push_back(p.high);
   }
-  const networks::NetworkShape shape = shape_of(sizes, info_.parameters.size());
+  const networks::NetworkShape shape = shape_of(sizes, targets_of(info_, scale_));
   posterior_->head =
       make_head(*network_, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
 }
@@ -292,20 +310,27 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
                                             w.at("reactance"), w.at("least_voltage")});
     info_.samples = selection_.physics->samples();
   }
+  if (const json w = h.value("swing", json()); !w.is_null()) {
+    selection_.swing.emplace(info_.channels,
+                             data::SwingWindow{info_.rate, w.at("event_s"), w.at("start_s"), w.at("end_s"),
+                                               w.at("system_frequency_Hz"), info_.frequency.value()});
+    info_.samples = selection_.swing->samples();
+    info_.needs_reactance = true;
+  }
   const data::FeatureSizes sizes = {f.at("channels"),       f.at("samples"),          f.at("pca_components"),
                                     f.at("pca_per_second"), f.at("levels"),           f.at("kept"),
                                     f.at("noisy"),          f.at("seconds_as_steps"), f.at("regressed")};
-  selection_.shows_level = info_.noise_as_input = sizes.noisy > 0;
+  selection_.shows_level = info_.noise_as_input = sizes.noisy > 0 || selection_.swing;
   selection_.regressions = sizes.regressed > 0;
-  if (sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
+  if (selection_.swing ? sizes.samples != selection_.values()
+                       : sizes.channels != selection_.outputs() || sizes.samples != selection_.samples)
     throw Unusable{"its sizes are inconsistent"};
   return sizes;
 }
 
-Estimate SavedNetwork::estimate(std::span<const float> record, double noise) const {
+Estimate SavedNetwork::estimate(std::span<const float> record, double noise, double reactance) const {
   std::vector<float> series(selection_.values());
-  selection_.apply(record.data(), info_.samples, series.data());
-  if (selection_.shows_level) series.back() = data::level_input(noise);
+  selection_.apply(record.data(), info_.samples, noise, reactance, series.data());
   at::NoGradGuard no_gradients;
   at::Tensor x = at::empty(
       {1, static_cast<std::int64_t>(features_.channels()), static_cast<std::int64_t>(features_.length())},

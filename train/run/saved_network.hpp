@@ -33,8 +33,9 @@ struct NetworkInfo {
   std::size_t samples = 0;                        ///< of a channel, from t = 0
   std::optional<double> fault_start;              ///< fault time in its records [s]; none: unknown
   std::optional<sim::FrequencyFilter> frequency;  ///< of the channel "frequency"
-  double input_rms_seen = 0.0;  ///< largest root mean square of a validation row's normalised input
-  bool noise_as_input = false;  ///< trained at many noise levels; the record's level is an input
+  double input_rms_seen = 0.0;   ///< largest root mean square of a validation row's normalised input
+  bool noise_as_input = false;   ///< trained at many noise levels; the record's level is an input
+  bool needs_reactance = false;  ///< X'd of the machine is an input
   std::vector<EstimatedParameter> parameters;
 };
 
@@ -86,8 +87,9 @@ class SavedNetwork {
   [[nodiscard]] std::unique_ptr<Posterior> release_posterior();
   /// Returns the estimate of a record: info().channels x info().samples, at info().rate from t = 0 [units of
   /// a dataset's record]. `noise`: noise level of the record; used only by a network that was trained at many
-  /// levels.
-  [[nodiscard]] Estimate estimate(std::span<const float> record, double noise = 0.0) const;
+  /// levels. `reactance`: X'd of the machine [pu], used only if the network needs it.
+  [[nodiscard]] Estimate estimate(std::span<const float> record, double noise = 0.0,
+                                  double reactance = 0.0) const;
 
  private:
   SavedNetwork();

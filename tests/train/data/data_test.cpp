@@ -22,7 +22,7 @@ TEST(Downsample, TakesChannelsWindowAndEveryNthSample) {
   std::vector<float> record(40);
   std::iota(record.begin(), record.end(), 100.0f);
   std::vector<float> out(s.values());
-  s.apply(record.data(), 20, out.data());
+  s.apply(record.data(), 20, 0, 0, out.data());
   EXPECT_EQ(out, (std::vector<float>{5.0f, 9.0f, 13.0f}));  // samples 5, 9, 13 of Q, minus its sample 0
   EXPECT_DOUBLE_EQ(s.rate, 2.5);
 }
@@ -37,7 +37,7 @@ TEST(Downsample, RelativeFormIsIndependentOfTheAmplitude) {
   const auto show = [&](const std::vector<float>& record, InputForm form) {
     const auto s = select_input({{"P", "Q"}, 0.0, 4.0, 1, form}, header);
     std::vector<float> out(s.values());
-    s.apply(record.data(), 4, out.data());
+    s.apply(record.data(), 4, 0, 0, out.data());
     return out;
   };
   const float r = std::sqrt(2.0f);  // root mean square of 0, 1, -1, 0 is 1 / sqrt 2

