@@ -1,9 +1,12 @@
 #pragma once
-// Position of a channel in a record.
+// Positions of channels in a record.
 #include <algorithm>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/problem.hpp"
 
 namespace swingbank::train::data {
 
@@ -11,6 +14,15 @@ namespace swingbank::train::data {
 inline int channel_index(const std::vector<std::string>& names, std::string_view name) {
   const auto found = std::ranges::find(names, name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+/// Reports each of `required` that the record lacks. `why`: what needs them.
+inline void require_channels(const std::vector<std::string>& names,
+                             std::initializer_list<std::string_view> required, const std::string& why,
+                             Problems& problems) {
+  for (const std::string_view name : required)
+    if (channel_index(names, name) < 0)
+      problems.add("no channel " + std::string(name), "channels", why, "record it, or choose another form");
 }
 
 }  // namespace swingbank::train::data

@@ -61,10 +61,7 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
       field_(channel_index(names, "Ifd")),
       frequency_(channel_index(names, "frequency")) {
   Problems problems;
-  for (const auto& [index, name] : {std::pair{P_, "P"}, {Q_, "Q"}, {V_, "V"}})
-    if (index < 0)
-      problems.add(std::string("no channel ") + name, "channels", "currents follow from P, Q and V",
-                   "record it, or choose another form");
+  require_channels(names, {"P", "Q", "V"}, "currents follow from P, Q and V", problems);
   problems.raise();
   constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;  // ends of the two finer spans after the event [s]
   constexpr double kMiddleRate = 30, kCoarseRate = 15;    // bins [1/s]

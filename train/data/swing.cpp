@@ -57,11 +57,7 @@ SwingIntegrals::SwingIntegrals(const std::vector<std::string>& names, const Swin
       speed_(channel_index(names, "speed")),
       frequency_(channel_index(names, "frequency")) {
   Problems problems;
-  for (const auto& [index, name] :
-       {std::pair{P_, "P"}, {Q_, "Q"}, {V_, "V"}, {speed_, "speed"}, {frequency_, "frequency"}})
-    if (index < 0)
-      problems.add(fmt::format("no channel {}", name), "channels", "the swing equation needs it",
-                   "record it, or choose another form");
+  require_channels(names, {"P", "Q", "V", "speed", "frequency"}, "the swing equation needs it", problems);
   const auto sample = [&](double t) { return static_cast<std::size_t>(std::lround(t * window.rate)); };
   event_ = sample(window.event_s);
   start_ = sample(window.start_s);

@@ -311,9 +311,10 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
     info_.samples = selection_.physics->samples();
   }
   if (const json w = h.value("swing", json()); !w.is_null()) {
-    selection_.swing.emplace(info_.channels,
-                             data::SwingWindow{info_.rate, w.at("event_s"), w.at("start_s"), w.at("end_s"),
-                                               w.at("system_frequency_Hz"), info_.frequency.value()});
+    selection_.swing.emplace(
+        info_.channels,
+        data::SwingWindow{info_.rate, w.at("event_s"), w.at("start_s"), w.at("end_s"),
+                          w.at("system_frequency_Hz"), info_.frequency.value_or(sim::FrequencyFilter{})});
     info_.samples = selection_.swing->samples();
     info_.needs_reactance = true;
   }

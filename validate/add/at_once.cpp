@@ -11,15 +11,6 @@
 namespace swingbank::validate::add {
 namespace {
 
-noise::WhitenedEvents seen_events(const plant::PlantModel& model, const std::vector<record::Record>& records,
-                                  const calibrate::CalibrateOptions& options) {
-  const auto out = calibrate::held_out_events(records, options.held_out);
-  std::vector<record::Record> seen;
-  for (std::size_t k = 0; k < records.size(); ++k)
-    if (!out[k]) seen.push_back(records[k]);
-  return noise::whitened_events(model, std::move(seen), options.events);
-}
-
 bool is_noise(const fit::Fit& f, const noise::WhitenedEvents& events, double least) {
   const int pre_event = calibrate::pre_event_samples(events);
   for (std::size_t e = 0; e < events.size(); ++e) {
@@ -47,7 +38,8 @@ fit::Fit fitted(const hypothesis::Hypothesis& h, const noise::WhitenedEvents& ev
 
 std::optional<Addition> add_at_once(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
                                     const std::vector<record::Record>& records, const AddOptions& options) {
-  const noise::WhitenedEvents events = seen_events(model, records, options.calibrate);
+  const noise::WhitenedEvents events = noise::whitened_events(
+      model, calibrate::seen_records(records, options.calibrate.held_out), options.calibrate.events);
   Addition a;
   a.hypothesis = hypothesis;
   a.with = fitted(hypothesis, events, options);

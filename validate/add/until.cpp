@@ -11,15 +11,6 @@
 namespace swingbank::validate::add {
 namespace {
 
-std::vector<record::Record> seen_of(const std::vector<record::Record>& records,
-                                    const std::vector<std::string>& held_out) {
-  const auto out = calibrate::held_out_events(records, held_out);
-  std::vector<record::Record> seen;
-  for (std::size_t k = 0; k < records.size(); ++k)
-    if (!out[k]) seen.push_back(records[k]);
-  return seen;
-}
-
 /// Returns the effect that the diagnosis names. If it names none because more than one effect is missing,
 /// returns the hypothesis with the most evidence among those that improve every unseen event.
 std::string next_effect(const diagnose::Diagnosis& d) {
@@ -55,7 +46,7 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
   std::string names;
   while (static_cast<int>(c.added.size()) < most) {
     const diagnose::Diagnosis d =
-        diagnose::diagnose(c.model, seen_of(records, options.calibrate.held_out), how);
+        diagnose::diagnose(c.model, calibrate::seen_records(records, options.calibrate.held_out), how);
     if (d.verdict == diagnose::Verdict::interrupted) throw Interrupted{};
     if (d.verdict == diagnose::Verdict::adequate) {
       c.adequate = true;

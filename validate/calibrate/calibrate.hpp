@@ -133,6 +133,9 @@ std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant
 /// from 1. Throws InputError: no record, unknown names, or every record held out.
 std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
+/// Returns the records that are not held out. Throws InputError as held_out_events().
+std::vector<record::Record> seen_records(const std::vector<record::Record>& records,
+                                         const std::vector<std::string>& held_out);
 
 /// Returns the number of pre-event samples over all events, less one per event.
 int pre_event_samples(const noise::WhitenedEvents& events);

@@ -125,6 +125,15 @@ std::vector<bool> held_out_events(const std::vector<record::Record>& records,
   return out;
 }
 
+std::vector<record::Record> seen_records(const std::vector<record::Record>& records,
+                                         const std::vector<std::string>& held_out) {
+  const auto out = held_out_events(records, held_out);
+  std::vector<record::Record> seen;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    if (!out[k]) seen.push_back(records[k]);
+  return seen;
+}
+
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double prior_sd,
                                                   const std::vector<std::string>& fixed) {
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, prior_sd);

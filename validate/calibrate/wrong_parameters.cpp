@@ -9,12 +9,8 @@ namespace swingbank::validate::calibrate {
 
 WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
                                  const CalibrateOptions& options) {
-  const auto out = held_out_events(records, options.held_out);
-  std::vector<record::Record> seen;
-  for (std::size_t k = 0; k < records.size(); ++k)
-    if (!out[k]) seen.push_back(std::move(records[k]));
   const auto free = chosen_parameters(model.plant, options.prior_sd, options.fixed);
-  const auto events = noise::whitened_events(model, std::move(seen), options.events);
+  const auto events = noise::whitened_events(model, seen_records(records, options.held_out), options.events);
   fit::SparseOptions o;
   o.progress = options.progress;
   WrongParameters w;
