@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# The network of the swing equation: learns from a tiny dataset, beats the mean by far, and estimates the same from
+# records (swingbank predict) as on the rows on which it was judged. X'd comes from the plant file.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
+export OMP_NUM_THREADS=1
+
+TINY_DRAWS=300 TINY_T_END=6 tiny_experiment "$work"
+sed -i 's/^channels = .*/channels = ["P", "Q", "V", "theta", "speed", "frequency"]\nfrequency_washout = 0.1\nfrequency_filter = 0.02/' "$work/tiny_data.toml"
+sed -i 's/^networks = .*/networks = ["swing"]/;s/^channels = .*/channels = ["P", "Q", "V", "speed", "frequency"]/
+  s/^start_s = .*/start_s = 0.6/;s/^end_s = .*/end_s = 6.0/;s/^slice = .*/slice = 1/;s/^form = .*/form = "swing"/' "$work/tiny.toml"
+"$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+"$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --fold 30 --out "$work/out" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+
+plant() { # plant FILE XDP
+  cat >"$1" <<TOML
+[plant]
+name = "bus 30"
+base_mva = 100.0
+frequency_hz = 60.0
+conventions = "psse"
+origin = "test"
+[record]
+base_mva = 100.0
+[machine]
+effect = "GENCLS"
+H = 4.0
+D = 2.0
+Ra = 0.0
+Xdp = $2
+TOML
+}
+plant "$work/plant.toml" 0.3
+plant "$work/wrong.toml" 0.6
+/usr/bin/python3 - "$work" <<'PYTHON'
+import glob, sys
+import h5py, numpy
+work, truth = sys.argv[1], []
+for path in sorted(glob.glob(f"{work}/data/shards/*.h5")):
+    shard = h5py.File(path)
+    for i in numpy.flatnonzero(shard["generator"][:] == 30):
+        x = shard["records"][i].astype(float)
+        with open(f"{work}/row-{len(truth):03d}.csv", "w") as file:
+            file.write("t_s,P_pu,Q_pu,V_pu,theta_rad,speed_pu\n")
+            for k in range(x.shape[1]):
+                file.write(",".join(f"{v:.9g}" for v in (k / 60, *x[:5, k])) + "\n")
+        truth.append(shard["parameters"][i])
+numpy.savetxt(f"{work}/truth.txt", truth)
+PYTHON
+for model in plant wrong; do
+  "$swingbank" predict --network "$work/out" --model "$work/$model.toml" --records "$work"/row-*.csv --json >"$work/$model.json" 2>"$work/log" ||
+    fail "predict: $(head -5 "$work/log")"
+done
+/usr/bin/python3 - "$work" <<'PYTHON'
+import json, sys
+import numpy
+work = sys.argv[1]
+result, truth = json.load(open(f"{work}/out/V-swing-quick-seed1-gen30.json")), numpy.loadtxt(f"{work}/truth.txt")
+mse = {}
+for model in ("plant", "wrong"):
+    estimates = numpy.array([r["estimates"] for r in json.load(open(f"{work}/{model}.json"))["records"]])
+    mse[model] = ((estimates - truth) ** 2).mean()
+assert len(truth) == result["test_rows"], (len(truth), result["test_rows"])
+assert result["ratio"] < 0.01, result["ratio"]
+assert abs(mse["plant"] - result["mse"]) < 1e-3 * result["mse"], (mse, result["mse"])
+assert mse["wrong"] > 10 * mse["plant"], mse
+PYTHON
