@@ -45,8 +45,7 @@ playin::PlaybackRun run_of(const sim::plant::PlantUnderTest& tested, const FitEv
                           .angle = state.angle,
                           .speed = state.speed,
                           .tolerance = how.tolerance,
-                          .until = how.until,
-                          .fixed_guard_times = how.fixed_guard_times};
+                          .until = how.until};
   if (how.hasty) {
     run.least_step = event.record.step() / 40;
     run.step_limit = 15 * event.record.samples();
@@ -57,12 +56,12 @@ playin::PlaybackRun run_of(const sim::plant::PlantUnderTest& tested, const FitEv
     run.allowance = playin::allowances(playin::linearise(run), event.channels, event.record.step());
     if (how.allowance) *how.allowance = run.allowance;
   }
-  if (how.linear_sensitivities) {
-    run.cache = how.cache;
-    run.linear_sensitivities = event.channels;
-    for (const playin::Output o : {playin::Output::P, playin::Output::Q})  // instruments need both
-      if (std::ranges::count(event.channels, o) == 0) run.linear_sensitivities.push_back(o);
-  }
+  run.cache = how.cache;
+  run.linear_sensitivities = event.channels;
+  std::vector<playin::Output> more = {playin::Output::P, playin::Output::Q};  // instruments need both
+  more.insert(more.end(), how.sensitive.begin(), how.sensitive.end());
+  for (const playin::Output o : more)
+    if (std::ranges::count(run.linear_sensitivities, o) == 0) run.linear_sensitivities.push_back(o);
   run.torque = state.torque;
   run.field = state.field;
   return run;

@@ -44,9 +44,8 @@ struct Playing {
   /// Cache of these allowances for further playbacks of the same plant with other values. Empty: computed and
   /// stored here. Null: computed each time.
   std::vector<double>* allowance = nullptr;
-  bool linear_sensitivities = false;  ///< sensitivities as in playin::PlaybackRun, for a search
+  std::vector<playin::Output> sensitive = {};  ///< outputs with sensitivities, beside the channels, P and Q
   std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::PlaybackRun
-  bool fixed_guard_times = false;                                   ///< as in playin::PlaybackRun
   double until = 1e300;                                             ///< later samples are left out [s]
 };
 

@@ -363,7 +363,7 @@ FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter
 Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options) {
   Setting setting{&tested.plant, &tested.conventions, &events, {}, options.tolerance};
-  setting.lenient = setting.linear_sensitivities = options.lenient;
+  setting.lenient = options.lenient;
   setting.goes_on = !options.errors;
   for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
   sim::plant::Plant start = tested.plant;
@@ -374,7 +374,7 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& e
   if (begun.start.empty()) begun.start = early_states({start, tested.conventions}, events, options);
   Fit found = Search(setting, begun).run();
   if (found.failed.empty() || setting.lenient) return found;
-  setting.lenient = setting.linear_sensitivities = true;
+  setting.lenient = true;
   Fit lenient = Search(setting, begun).run();
   return lenient.failed.empty() ? lenient : found;
 }

@@ -115,7 +115,7 @@ struct Goal {
 
 /// Effort, tolerances and start of a fit.
 struct FitOptions {
-  int iterations = 30;               ///< maximum number of iterations
+  int iterations = 60;               ///< maximum number of iterations
   double tolerance = kFitTolerance;  ///< of the integration; see event::Playing
   /// The search integrates with an error allowance for states that the channels do not show, and with
   /// linearised sensitivities (event::Playing). The sensitivities are corrected by secant updates (Broyden)

@@ -153,7 +153,8 @@ class Separations {
       const playin::Response r = event::play(
           {j.fit.plant, j.hypothesis.conventions}, s.event,
           s.recorded < 0 ? event::EventState{} : j.fit.events[static_cast<std::size_t>(s.recorded)].state,
-          along);
+          along,
+          {.sensitive = {Output::speed, Output::Efd, Output::Ifd, Output::Pm, Output::gate, Output::V}});
       ScaledResponse a;
       for (std::size_t o = 0; o < playin::kOutputs; ++o) {
         const auto column = [&](const std::vector<double>& v) -> Eigen::VectorXd {

@@ -219,15 +219,14 @@ class Solver {
     }
     refresh();
     const std::vector<T> derivative = k_[0];
-    const double value = sim::value_of(guards_[static_cast<std::size_t>(guard)]);
     const T rate = rate_of(guard), missing = T(0.0) - guards_[static_cast<std::size_t>(guard)] / rate;
-    mark(Trace::Node::Kind::before, -1, derivative.data(), {guard, sim::value_of(rate), value});
+    mark(Trace::Node::Kind::before, -1, derivative.data(), {guard, sim::value_of(rate)});
     attempt(after - before);
     look_at_guards(trial_, guards_at_end_);
     take(after - before);
     refresh();
     mark(Trace::Node::Kind::after, -1, k_[0].data());
-    for (std::size_t i = 0; i < x_.size() && !run_.fixed_guard_times; ++i)
+    for (std::size_t i = 0; i < x_.size(); ++i)
       for (std::size_t d = 0; d < parameters_.size(); ++d)
         Seeds<T>::add(x_[i], d,
                       Seeds<T>::get(missing, d) * (sim::value_of(derivative[i]) - sim::value_of(k_[0][i])));
@@ -355,8 +354,7 @@ class Solver {
     const double frame = run_.start.drift / (constants::turn * run_.conventions.frequency);
     back.voltage.push_back(equations_.voltage(t_));
     auto out = equations_.outputs(x_.data());
-    if (trace_)
-      for (std::size_t o = 0; auto& y : trace_->y.emplace_back()) y = sim::value_of(out[o++]);
+    if (trace_) ++trace_->samples;
     out[static_cast<std::size_t>(Output::speed)] = equations_.signals.speed + T(frame);
     for (int o = 0; o < kOutputs; ++o) {
       back.value[o].push_back(sim::value_of(out[static_cast<std::size_t>(o)]));

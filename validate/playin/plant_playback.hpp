@@ -64,10 +64,10 @@ struct PlaybackRun {
   double until = 1e300;                     ///< later samples are left out [s]
   double least_step = 0.0;                  ///< step accepted whatever its error [s]; 0: none
   int step_limit = 2'000'000;               ///< maximum number of steps
-  /// Outputs with approximate sensitivities, from the plant linearised at both ends of each step: one or two
-  /// per cent off, at a fraction of the cost. Empty: exact sensitivities of every output.
+  /// Outputs with sensitivities from the plant linearised along the trajectory: a few per cent off at a
+  /// tolerance of 1e-5, at a fraction of the cost. Empty: sensitivities of every output by differentiation of
+  /// each step, which at limits need a tolerance of 1e-9.
   std::vector<Output> linear_sensitivities = {};
-  bool fixed_guard_times = false;  ///< exact sensitivities neglect the shift of a guard's switching time
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
   /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
   std::shared_ptr<const TrajectoryCache>* cache = nullptr;

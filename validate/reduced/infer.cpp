@@ -255,8 +255,7 @@ class Inferring {
     if (inputs_.field) kinds.push_back(Kind::field);
     for (int k = 0; k < knots; ++k)  // in order of time
       for (const Kind kind : kinds) along.push_back({.kind = kind, .index = k});
-    const playin::Response r =
-        event::play({plant, tested_.conventions}, event, state, along, {.linear_sensitivities = true});
+    const playin::Response r = event::play({plant, tested_.conventions}, event, state, along);
     noise::RowMatrix columns(event.values(), static_cast<Index>(along.size()) + 1);
     for (std::size_t d = 0; d < along.size(); ++d)
       columns.col(static_cast<Index>(d)) = event.collected(r.sensitivities[d].value, false);

@@ -21,9 +21,8 @@ struct Setting {
   const noise::WhitenedEvents* events;
   std::vector<Axis> axes;
   double tolerance;
-  bool lenient = false;               ///< of the search; see FitOptions
-  bool linear_sensitivities = false;  ///< see event::Playing
-  bool goes_on = false;               ///< reuses sensitivities that predicted a step well, if lenient
+  bool lenient = false;  ///< of the search; see FitOptions
+  bool goes_on = false;  ///< reuses sensitivities that predicted a step well, if lenient
   /// The start passes can_exist_beside(`plant`); the search then keeps to such plants.
   bool can_exist = false;
 };

@@ -156,7 +156,6 @@ noise::RowMatrix EventCost::values(const double* z, const double* state, bool wi
                                            {.tolerance = setting_.tolerance,
                                             .lenient = setting_.lenient,
                                             .allowance = &allowance_,
-                                            .linear_sensitivities = setting_.linear_sensitivities,
                                             .cache = &last_.cache});
     const auto n = static_cast<Eigen::Index>(along.size());
     noise::RowMatrix e(event_.values(), n + 1);

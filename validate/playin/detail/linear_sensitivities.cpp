@@ -1,105 +1,49 @@
-// Approximate sensitivities of a response from the plant linearised at both ends of each step.
+// Approximate sensitivities of a response from the plant linearised along its trajectory.
 #include "validate/playin/detail/linear_sensitivities.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/stop_signal.hpp"
+#include "validate/playin/detail/hermite.hpp"
+#include "validate/playin/detail/packed_matrix.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
 
 using Kind = SensitivityParameter::Kind;
 using NodeKind = Trace::Node::Kind;
-using sim::P8;
+using sim::P8, by_pack::Matrix, by_pack::kLanes;
 
 constexpr double kNodeMove = 1e-6;  ///< step of a finite difference, relative to 1 + |state|
 constexpr double kAtLimit = 1e-9;   ///< distance of a state at its limit, relative to 1 + |state|
-constexpr auto kLanes = std::size_t(P8::lanes);
-
-/// A matrix stored by packs of eight columns, the rows of each pack contiguous.
-class Matrix {
- public:
-  Matrix(std::size_t rows, std::size_t columns)
-      : rows_(rows), packs_((columns + kLanes - 1) / kLanes), all_(rows * packs_, P8(0.0)) {}
-  [[nodiscard]] std::size_t rows() const { return rows_; }
-  [[nodiscard]] std::size_t packs() const { return packs_; }
-  P8* pack(std::size_t p) { return all_.data() + p * rows_; }
-  [[nodiscard]] const P8* pack(std::size_t p) const { return all_.data() + p * rows_; }
-  /// Row i + 1 of the column is kLanes numbers after row i.
-  double* column(std::size_t j) { return reinterpret_cast<double*>(pack(j / kLanes)) + j % kLanes; }
-  [[nodiscard]] const double* column(std::size_t j) const {
-    return reinterpret_cast<const double*>(pack(j / kLanes)) + j % kLanes;
-  }
-  double& operator()(std::size_t i, std::size_t j) { return column(j)[i * kLanes]; }
-  double operator()(std::size_t i, std::size_t j) const { return column(j)[i * kLanes]; }
-  void clear(std::size_t p) { std::fill_n(pack(p), rows_, P8(0.0)); }
-
- private:
-  std::size_t rows_, packs_;
-  std::vector<P8> all_;
-};
-
-/// Adds factors * from to `count` rows of one pack from row `first` on; `inner`: rows of `from`.
-template <std::size_t count>
-void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const P8* from, P8* to) {
-  P8 sum[count];
-#pragma GCC unroll 8
-  for (std::size_t i = 0; i < count; ++i) sum[i] = to[first + i];
-  for (std::size_t begin = 0; begin < inner; begin += kLanes) {
-    const double* factor = factors.column(begin) + first * kLanes;
-    for (std::size_t j = begin; j < std::min(inner, begin + kLanes); ++j, ++factor) {
-      const P8 row = from[j];
-#pragma GCC unroll 8
-      for (std::size_t i = 0; i < count; ++i) sum[i] = sum[i] + P8(factor[i * kLanes]) * row;
-    }
-  }
-#pragma GCC unroll 8
-  for (std::size_t i = 0; i < count; ++i) to[first + i] = sum[i];
-}
-/// Computes to += factors * from for one pack of columns, from row i on.
-template <std::size_t count = sim::kRegisterBytes == 64 ? 8 : 4>  // their sums stay in registers
-void add_product(const Matrix& factors, std::size_t inner, const P8* from, P8* to, std::size_t i = 0) {
-  for (; i + count <= factors.rows(); i += count) add_rows<count>(factors, i, inner, from, to);
-  if constexpr (count > 1) add_product<count / 2>(factors, inner, from, to, i);
-}
-/// Computes inverse = left^-1 by Gauss-Jordan elimination with partial pivoting; left is overwritten.
-void invert(Matrix& left, Matrix& inverse) {
-  const std::size_t n = left.rows();
-  for (std::size_t p = 0; p < inverse.packs(); ++p) inverse.clear(p);
-  for (std::size_t i = 0; i < n; ++i) inverse(i, i) = 1.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (std::abs(left(i, k)) > std::abs(left(pivot, k))) pivot = i;
-    if (pivot != k)
-      for (Matrix* m : {&left, &inverse})
-        for (std::size_t p = 0; p < m->packs(); ++p) std::swap(m->pack(p)[k], m->pack(p)[pivot]);
-    const P8 per(1 / left(k, k));
-    const double* factor = left.column(k);
-    const auto eliminate = [&](P8* rows) {
-      const P8 row = rows[k] * per;
-      for (std::size_t i = 0; i < n; ++i)
-        if (const double f = factor[i * kLanes]; f != 0.0) rows[i] = rows[i] - P8(f) * row;
-      rows[k] = row;
-    };
-    for (std::size_t p = 0; p < inverse.packs(); ++p) eliminate(inverse.pack(p));
-    for (std::size_t p = left.packs(); p-- > k / kLanes;)
-      eliminate(left.pack(p));  // the pack of the factors last
-  }
-}
+/// A step is halved if an entry of A changes within it by this share of its size and, times the step, by this
+/// much: the equations bend there, at a limit of a signal.
+constexpr double kBend = 0.5, kBendInStep = 0.05;
+constexpr double kShortestHalf = 1e-9;  ///< interval that is not halved further, as of the playback [s]
 
 /// Linearised plant at a node: x' = A x + B, y = C x + D. A and C refer to states and inputs, B and D to
 /// sensitivity parameters. The last row of C and D is the guard that passes zero.
 struct Linear {
   Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
-      : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), clamped(n, 0) {}
+      : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), limits(n, m), clamped(n, 0) {}
   Matrix A, B, C, D;
+  Matrix limits;                  ///< sensitivities of the limits at which states are clamped
   std::vector<std::size_t> hats;  ///< packs of B and D with non-zero hat functions
   std::vector<char> clamped;      ///< states clamped at a limit; their sensitivities are the limit's
+  bool any_clamped = false;
+};
+
+/// Point of a trajectory, where the plant is linearised.
+struct Point {
+  double t;  ///< [s]
+  Side side;
+  Complex v;  ///< terminal voltage in the plant's frame [pu]
+  const double *x, *dx;
 };
 
 class LinearSensitivities {
@@ -114,7 +58,6 @@ class LinearSensitivities {
         m_(parameters.size()),
         inputs_(n_ + (std::ranges::any_of(parameters, is_input) ? 2 : 0)),
         S_(n_, m_),
-        limits_(n_, m_),
         some_(n_, 1),
         right_(n_, 1),
         shown_(run.linear_sensitivities.size()),
@@ -125,7 +68,6 @@ class LinearSensitivities {
         y_(shown_ + 1, m_),
         has_coefficients_(S_.packs(), 0),
         x_(n_),
-        dx_(n_),
         move_(copies_for(inputs_) * kLanes, kNodeMove),
         limit_(n_),
         outward_(n_) {
@@ -154,19 +96,19 @@ class LinearSensitivities {
     for (auto& sensitivity : response_.sensitivities)
       for (const Output o : run_.linear_sensitivities) {
         auto& values = sensitivity.value[static_cast<int>(o)];
-        values.resize(trace_.y.size());
+        values.resize(trace_.samples);
         to_.push_back(values.data());
       }
     for (std::size_t k = 0, sample = 0; k < trace_.nodes.size(); ++k) {
       interruption_point();
       const Trace::Node& node = trace_.nodes[k];
-      linearise(k, sample);
+      std::swap(before_, now_);
+      linearise_node(k);
       if (node.kind == NodeKind::after)
         cross(k);
       else if (k > 0 && node.t > trace_.nodes[k - 1].t)
-        step(node.t - trace_.nodes[k - 1].t);
-      for (std::size_t i = 0; i < n_; ++i)
-        for (std::size_t p = 0; now_.clamped[i] && p < wide(); ++p) S_.pack(p)[i] = limits_.pack(p)[i];
+        integrate(point(k - 1), point(k));
+      take_limits();
       if (node.kind == NodeKind::sample) record(sample++);
     }
     for (std::size_t d = 0; d < m_; ++d)
@@ -181,6 +123,13 @@ class LinearSensitivities {
     PlaybackEquations<P8> equations;
     bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
     std::size_t pack;  ///< columns that receive their sensitivities
+  };
+  /// Derivatives, outputs and one guard in all lanes. Differences are taken between lanes, not to the
+  /// trajectory: what has no effect then has a sensitivity of exactly zero.
+  struct Evaluated {
+    std::vector<P8> dx;
+    std::array<P8, kOutputs> y;
+    P8 guard;
   };
   static std::size_t copies_for(std::size_t columns) { return (columns + kLanes - 1) / kLanes; }
   /// Returns the number of packs of parameters whose input has begun.
@@ -207,6 +156,7 @@ class LinearSensitivities {
         for (const auto& value : seeded.c) at.c.emplace_back(value.a);
         at.Efd = P8(seeded.Efd.a);
         at.Tm = P8(seeded.Tm.a);
+        unperturbed_.emplace(run_, std::span<const SensitivityParameter>(), at);
         for (std::size_t p = 0; p < copies_for(inputs_); ++p) copies_.push_back({{run_, {}, at}, true, p});
         for (std::size_t i = n_; i < inputs_; ++i) {
           auto& equations = copies_[i / kLanes].equations;
@@ -229,15 +179,17 @@ class LinearSensitivities {
         move(copies.equations.Tm, seeded.Tm);
       }
     }
-    guards_.assign(static_cast<std::size_t>(copies_.front().equations.of_plant().guards()), P8(0.0));
+    unmoved_.dx.resize(n_);
+    moved_.dx.resize(n_);
+    guards_.assign(static_cast<std::size_t>(unperturbed_->of_plant().guards()), P8(0.0));
   }
 
   /// Finds the states at their limits, and the admissible perturbations of the others.
   void find_limits(const double* x, const double* dx) {
     for (std::size_t i = 0; i < n_; ++i) move_[i] = kNodeMove * (1 + std::abs(x[i]));
     std::ranges::fill(now_.clamped, 0);
-    any_clamped_ = false;
-    const auto& equations = copies_.front().equations;
+    now_.any_clamped = false;
+    const auto& equations = *unperturbed_;
     if (!equations.of_plant().limited()) return;
     constexpr int kUp = 0, kDown = 1;
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]) + P8(move_[i]) * (lane_[kUp] - lane_[kDown]);
@@ -250,7 +202,7 @@ class LinearSensitivities {
       if (low || (!high && up < kNodeMove * (1 - 1e-3))) move_[i] = -move_[i];  // perturb away from the limit
       if (!(high || low) || dx[i] != 0.0) continue;
       now_.clamped[i] = 1;
-      any_clamped_ = true;
+      now_.any_clamped = true;
       limit_[i] = x_[i][high ? kUp : kDown];
       outward_[i] = (high ? 1.0 : -1.0) * scale;
     }
@@ -258,7 +210,7 @@ class LinearSensitivities {
   /// Sets the states of a node; clamped states take the limit of each lane.
   void place(const PlaybackEquations<P8>& equations, const double* x) {
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
-    if (!any_clamped_) return;
+    if (!now_.any_clamped) return;
     for (std::size_t i = 0; i < n_; ++i)
       if (now_.clamped[i]) x_[i] = P8(x[i] + outward_[i]);
     P8 moved(0.0);
@@ -266,46 +218,54 @@ class LinearSensitivities {
     for (std::size_t i = 0; i < n_; ++i)
       if (!now_.clamped[i]) x_[i] = P8(x[i]);
   }
-  /// Linearises the plant at a node into `now_`, and keeps the previous one in `before_`.
-  void linearise(std::size_t k, std::size_t sample) {
-    std::swap(before_, now_);
+  [[nodiscard]] Point point(std::size_t k) const {
     const Trace::Node& node = trace_.nodes[k];
-    const double *x = trace_.x.data() + k * n_, *dx = trace_.dx.data() + k * n_;
-    const P8 vr(trace_.v[k].real()), vi(trace_.v[k].imag());
-    const bool is_sample = node.kind == NodeKind::sample, at_guard = node.passed.guard >= 0;
+    return {node.t, node.side, trace_.v[k], trace_.x.data() + k * n_, trace_.dx.data() + k * n_};
+  }
+  /// Linearises the plant at a node into `now_`.
+  void linearise_node(std::size_t k) {
+    const Trace::Node& node = trace_.nodes[k];
     // a perturbed copy may lie on the other side of the discontinuity
-    const bool discontinuous = at_guard || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
+    const bool discontinuous = node.passed.guard >= 0 || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
     if (discontinuous) now_ = before_;
-    find_limits(x, dx);
+    linearise(point(k), discontinuous, node.kind == NodeKind::sample, node.passed.guard);
+  }
+  /// Linearises the plant at a point into `now_`. `keep`: A and B remain; `shows`: with its outputs; `guard`:
+  /// with this guard, if any.
+  void linearise(const Point& at, bool keep, bool shows, int guard) {
+    find_limits(at.x, at.dx);
+    place(*unperturbed_, at.x);
+    evaluate(*unperturbed_, at, shows, guard, unmoved_);
     for (auto& [equations, by_state, pack] : copies_) {
-      place(equations, x);
+      place(equations, at.x);
       P8 per_move(1 / kNodeMove);
       if (by_state) {
         per_move = P8(1.0) / P8::load(move_.data() + pack * kLanes);
         for (std::size_t i = pack * kLanes; i < std::min(n_, (pack + 1) * kLanes); ++i)
           if (!now_.clamped[i]) x_[i] = x_[i] + P8(move_[i]) * lane_[i % kLanes];
       }
-      equations.side = node.side;
-      equations.evaluate_at(vr, vi, node.t, x_.data(), dx_.data());
+      evaluate(equations, at, shows, guard, moved_);
       P8* const by = (by_state ? now_.A : now_.B).pack(pack);
-      for (std::size_t i = 0; !discontinuous && i < n_; ++i) by[i] = (dx_[i] - P8(dx[i])) * per_move;
+      for (std::size_t i = 0; !keep && i < n_; ++i) by[i] = (moved_.dx[i] - unmoved_.dx[i]) * per_move;
       P8* const shown = (by_state ? now_.C : now_.D).pack(pack);
-      if (is_sample) {
-        const auto y = equations.outputs(x_.data());
-        for (std::size_t o = 0; o < shown_; ++o) {
-          const auto output = static_cast<std::size_t>(run_.linear_sensitivities[o]);
-          shown[o] = (y[output] - P8(trace_.y[sample][output])) * per_move;
-        }
+      for (std::size_t o = 0; shows && o < shown_; ++o) {
+        const auto output = static_cast<std::size_t>(run_.linear_sensitivities[o]);
+        shown[o] = (moved_.y[output] - unmoved_.y[output]) * per_move;
       }
-      if (at_guard) {
-        equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
-        shown[shown_] =
-            (guards_[static_cast<std::size_t>(node.passed.guard)] - P8(node.passed.value)) * per_move;
-      }
-      for (std::size_t i = 0; !by_state && any_clamped_ && i < n_; ++i)
-        if (now_.clamped[i]) limits_.pack(pack)[i] = (x_[i] - P8(limit_[i])) * per_move;
+      if (guard >= 0) shown[shown_] = (moved_.guard - unmoved_.guard) * per_move;
+      for (std::size_t i = 0; !by_state && now_.any_clamped && i < n_; ++i)
+        if (now_.clamped[i]) now_.limits.pack(pack)[i] = (x_[i] - P8(limit_[i])) * per_move;
     }
-    raise_hats(std::min(node.t, node.side.last_moment));
+    raise_hats(std::min(at.t, at.side.last_moment));
+  }
+  /// Evaluates the equations at the states x_ of all lanes.
+  void evaluate(PlaybackEquations<P8>& equations, const Point& at, bool shows, int guard, Evaluated& to) {
+    equations.side = at.side;
+    equations.evaluate_at(P8(at.v.real()), P8(at.v.imag()), at.t, x_.data(), to.dx.data());
+    if (shows) to.y = equations.outputs(x_.data());
+    if (guard < 0) return;
+    equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
+    to.guard = guards_[static_cast<std::size_t>(guard)];
   }
   /// Sets the columns of inputs that have begun by t: effect of the input times the value of their hat
   /// function.
@@ -333,9 +293,61 @@ class LinearSensitivities {
     for (std::size_t o = 0; o <= shown_; ++o) now_.D(o, d) = now_.C(o, input) * height;
   }
 
+  /// Clamped states have the sensitivities of their limits.
+  void take_limits() {
+    for (std::size_t i = 0; now_.any_clamped && i < n_; ++i)
+      for (std::size_t p = 0; now_.clamped[i] && p < wide(); ++p) S_.pack(p)[i] = now_.limits.pack(p)[i];
+  }
+  /// Integrates the sensitivities between two points, at which `before_` and `now_` are linearised. Where the
+  /// equations bend in between, the interval is halved until the bend no longer matters.
+  void integrate(const Point& from, const Point& to) {
+    const double h = to.t - from.t;
+    if (h < kShortestHalf || !bends(h)) return step(h);
+    std::vector<double> x(n_), dx(n_);
+    const Point middle = between(from, to, x, dx);
+    Linear end = now_;
+    linearise(middle, false, false, -1);
+    integrate(from, middle);
+    take_limits();
+    std::swap(before_, now_);
+    now_ = std::move(end);
+    integrate(middle, to);
+  }
+  [[nodiscard]] bool bends(double h) const {
+    for (std::size_t p = 0; p < left_.packs(); ++p)
+      for (std::size_t i = 0; i < n_; ++i) {
+        const P8 &from = before_.A.pack(p)[i], &to = now_.A.pack(p)[i];
+        for (int l = 0; l < P8::lanes; ++l)
+          if (const double change = std::abs(to[l] - from[l]);
+              h * change > kBendInStep && change > kBend * std::max(std::abs(from[l]), std::abs(to[l])))
+            return true;
+      }
+    return false;
+  }
+  /// Returns the middle of a step, within the limits: of the cubic through states and derivatives at both
+  /// ends, or of the line with the derivative of that end at which the state is free.
+  Point between(const Point& from, const Point& to, std::vector<double>& x, std::vector<double>& dx) {
+    auto& equations = *unperturbed_;
+    const double h = to.t - from.t, t = from.t + h / 2;
+    equations.side = to.side;
+    for (std::size_t i = 0; i < n_; ++i)
+      x_[i] =
+          P8(now_.clamped[i] == before_.clamped[i] ? hermite(0.5, h, from.x[i], from.dx[i], to.x[i], to.dx[i])
+             : now_.clamped[i]                     ? from.x[i] + h / 2 * from.dx[i]
+                                                   : to.x[i] - h / 2 * to.dx[i]);
+    P8 moved(0.0);
+    equations.of_plant().clamp_states(equations.c.data(), x_.data(), moved);
+    const Point middle = {t, to.side, equations.voltage(t), x.data(), dx.data()};
+    evaluate(equations, middle, false, -1, unmoved_);
+    for (std::size_t i = 0; i < n_; ++i) {
+      x[i] = x_[i][0];
+      dx[i] = unmoved_.dx[i][0];
+    }
+    return middle;
+  }
   /// Returns whether a state reaches its limit within the step: clamped at the end, not at the beginning.
   [[nodiscard]] bool meets_a_limit() const {
-    for (std::size_t i = 0; any_clamped_ && i < n_; ++i)
+    for (std::size_t i = 0; now_.any_clamped && i < n_; ++i)
       if (now_.clamped[i] && !before_.clamped[i]) return true;
     return false;
   }
@@ -388,7 +400,7 @@ class LinearSensitivities {
     for (std::size_t d = 0; d < m_; ++d) {
       const SensitivityParameter& along = parameters_[d];
       if (switching < 0 || along.index != switching) continue;
-      if (along.kind == Kind::turn && copies_.front().equations.has_rotor()) S_(0, d) -= along.scale;
+      if (along.kind == Kind::turn && unperturbed_->has_rotor()) S_(0, d) -= along.scale;
       for (std::size_t i = 0; along.kind == Kind::switching && i < n_; ++i)
         S_(i, d) += along.scale * (before[i] - after[i]);
     }
@@ -412,15 +424,16 @@ class LinearSensitivities {
   std::vector<std::pair<double, std::size_t>>
       begins_;                                    ///< start of a parameter's input [s], and its number + 1
   std::array<std::vector<std::size_t>, 2> hats_;  ///< parameters of the hat functions of torque and field
+  std::optional<PlaybackEquations<P8>> unperturbed_;
   std::vector<Copies> copies_;
-  Matrix S_, limits_, some_, right_;
+  Matrix S_, some_, right_;
   std::size_t shown_;  ///< number of outputs with sensitivities
   Linear before_, now_;
   Matrix left_, inverse_, y_;
   std::vector<char> has_coefficients_;  ///< whether a pack of parameters changes any coefficient
-  bool any_clamped_ = false;
-  std::array<P8, kLanes> lane_;  ///< unit vectors: one in the lane, zero elsewhere
-  std::vector<P8> x_, dx_, guards_;
+  std::array<P8, kLanes> lane_;         ///< unit vectors: one in the lane, zero elsewhere
+  std::vector<P8> x_, guards_;
+  Evaluated unmoved_, moved_;
   std::vector<double> move_, limit_, outward_;
   std::vector<double*> to_;  ///< destinations of the sensitivities [parameter][output]
 };

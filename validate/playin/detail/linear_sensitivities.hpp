@@ -1,7 +1,7 @@
 #pragma once
-// Approximate sensitivities of a response from the plant linearised at both ends of each step, for a search
-// that does not need their last digits.
-#include <array>
+// Approximate sensitivities of a response from the plant linearised along its trajectory, for a search that
+// does not need their last digits.
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,10 +11,10 @@ namespace swingbank::validate::playin {
 
 /// Trajectory of a run without sensitivities: every step and sample, and both sides of every switching time.
 struct Trace {
-  /// A guard of the equations that passes zero just after a node, with its rate [1/s] and its value there.
+  /// A guard of the equations that passes zero just after a node, with its rate [1/s].
   struct Passed {
     int guard = -1;
-    double rate = 0, value = 0;
+    double rate = 0;
   };
   struct Node {
     double t;  ///< [s]
@@ -24,9 +24,9 @@ struct Trace {
     Passed passed = {};
   };
   std::vector<Node> nodes;
-  std::vector<double> x, dx;                    ///< [node][state]: states and their derivatives
-  std::vector<Complex> v;                       ///< [node]: terminal voltage in the plant's frame [pu]
-  std::vector<std::array<double, kOutputs>> y;  ///< [sample]: outputs, speed in the plant's frame
+  std::vector<double> x, dx;  ///< [node][state]: states and their derivatives
+  std::vector<Complex> v;     ///< [node]: terminal voltage in the plant's frame [pu]
+  std::size_t samples = 0;
 };
 
 /// Returns whether sensitivities of this run can be computed from its trajectory.
@@ -36,7 +36,8 @@ bool can_be_linear(const PlaybackRun& run);
 /// sensitivities obey \f$S' = A S + B\f$, with A and B from differences over 1e-6 at both nodes. They are
 /// integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
 /// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671), which damps modes faster than a step at
-/// once. Returns false if the result is not finite.
+/// once. A step within which the equations bend, because a limit begins or ceases to act, is halved. Returns
+/// false if the result is not finite.
 bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
                               const Trace& trace, Response& response);
 
