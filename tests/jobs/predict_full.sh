@@ -12,22 +12,7 @@ network=$work/out/V-gru-quick-seed1-gen30.network
 [[ -s $network ]] || fail "no network beside the result"
 grep -q '"name": "tiny_data"' "$work/out/V-gru-quick-seed1-gen30.json" || fail "the dataset has not its config's name"
 
-cat >"$work/plant.toml" <<'TOML'
-[plant]
-name = "bus 30"
-base_mva = 100.0
-frequency_hz = 60.0
-conventions = "psse"
-origin = "test"
-[record]
-base_mva = 100.0
-[machine]
-effect = "GENCLS"
-H = 4.0
-D = 2.0
-Ra = 0.0
-Xdp = 0.3
-TOML
+plant_of_bus_30 "$work/plant.toml" 0.3
 
 # Every row of the excluded generator as a separate record. P and Q are already on the machine's base.
 /usr/bin/python3 - "$work" <<'PYTHON'

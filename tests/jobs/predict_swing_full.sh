@@ -12,26 +12,8 @@ sed -i 's/^networks = .*/networks = ["swing"]/;s/^channels = .*/channels = ["P",
 "$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 "$swingbank" cross-validate "$work/data" --experiment "$work/tiny.toml" --fold 30 --out "$work/out" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 
-plant() { # plant FILE XDP
-  cat >"$1" <<TOML
-[plant]
-name = "bus 30"
-base_mva = 100.0
-frequency_hz = 60.0
-conventions = "psse"
-origin = "test"
-[record]
-base_mva = 100.0
-[machine]
-effect = "GENCLS"
-H = 4.0
-D = 2.0
-Ra = 0.0
-Xdp = $2
-TOML
-}
-plant "$work/plant.toml" 0.3
-plant "$work/wrong.toml" 0.6
+plant_of_bus_30 "$work/plant.toml" 0.3
+plant_of_bus_30 "$work/wrong.toml" 0.6
 /usr/bin/python3 - "$work" <<'PYTHON'
 import glob, sys
 import h5py, numpy

@@ -62,3 +62,23 @@ TOML
     printf '[preset.quick.mlp]\ntraining_rows = true\n' >>"$1/tiny.toml"
   fi
 }
+
+# plant_of_bus_30 FILE XDP: a GENCLS plant file for records of generator 30
+plant_of_bus_30() {
+  cat >"$1" <<TOML
+[plant]
+name = "bus 30"
+base_mva = 100.0
+frequency_hz = 60.0
+conventions = "psse"
+origin = "test"
+[record]
+base_mva = 100.0
+[machine]
+effect = "GENCLS"
+H = 4.0
+D = 2.0
+Ra = 0.0
+Xdp = $2
+TOML
+}
