@@ -21,10 +21,8 @@ using sim::P8, by_pack::Matrix, by_pack::kLanes;
 
 constexpr double kNodeMove = 1e-6;  ///< step of a finite difference, relative to 1 + |state|
 constexpr double kAtLimit = 1e-9;   ///< distance of a state at its limit, relative to 1 + |state|
-/// A step is halved if an entry of A changes within it by this share of its size and, times the step, by this
-/// much: the equations bend there, at a limit of a signal.
-constexpr double kBend = 0.5, kBendInStep = 0.05;
-constexpr double kShortestHalf = 1e-9;  ///< interval that is not halved further, as of the playback [s]
+/// A step is halved if an entry of A, times the step, changes by more within it: a limit of a signal acts.
+constexpr double kBend = 0.05;
 
 /// Linearised plant at a node: x' = A x + B, y = C x + D. A and C refer to states and inputs, B and D to
 /// sensitivity parameters. The last row of C and D is the guard that passes zero.
@@ -299,10 +297,12 @@ class LinearSensitivities {
       for (std::size_t p = 0; now_.clamped[i] && p < wide(); ++p) S_.pack(p)[i] = now_.limits.pack(p)[i];
   }
   /// Integrates the sensitivities between two points, at which `before_` and `now_` are linearised. Where the
-  /// equations bend in between, the interval is halved until the bend no longer matters.
+  /// equations bend in between, the interval is halved until the bend no longer matters; in a run that
+  /// explodes, at most as often as the playback may take steps.
   void integrate(const Point& from, const Point& to) {
-    const double h = to.t - from.t;
-    if (h < kShortestHalf || !bends(h)) return step(h);
+    const double h = to.t - from.t, half = from.t + h / 2;
+    if (!(half > from.t && half < to.t) || halvings_ >= run_.step_limit || !bends(h)) return step(h);
+    ++halvings_;
     std::vector<double> x(n_), dx(n_);
     const Point middle = between(from, to, x, dx);
     Linear end = now_;
@@ -318,9 +318,7 @@ class LinearSensitivities {
       for (std::size_t i = 0; i < n_; ++i) {
         const P8 &from = before_.A.pack(p)[i], &to = now_.A.pack(p)[i];
         for (int l = 0; l < P8::lanes; ++l)
-          if (const double change = std::abs(to[l] - from[l]);
-              h * change > kBendInStep && change > kBend * std::max(std::abs(from[l]), std::abs(to[l])))
-            return true;
+          if (h * std::abs(to[l] - from[l]) > kBend) return true;
       }
     return false;
   }
@@ -429,6 +427,7 @@ class LinearSensitivities {
   Matrix S_, some_, right_;
   std::size_t shown_;  ///< number of outputs with sensitivities
   Linear before_, now_;
+  int halvings_ = 0;
   Matrix left_, inverse_, y_;
   std::vector<char> has_coefficients_;  ///< whether a pack of parameters changes any coefficient
   std::array<P8, kLanes> lane_;         ///< unit vectors: one in the lane, zero elsewhere
