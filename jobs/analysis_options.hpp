@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/output_folder.hpp"
+#include "base/shell_word.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/event_records.hpp"
@@ -96,9 +97,7 @@ struct AnalysisOptions {
     if (!measured_states) words.emplace_back("--power-only");
     if (!judging.accept.empty()) words.insert(words.end(), {"--accept", judging.accept});
     std::string text;
-    for (const auto& word : words)
-      text +=
-          word.find_first_of(" \t'\"$&;()<>|*?[]") == std::string::npos ? " " + word : " \"" + word + "\"";
+    for (const auto& word : words) text += " " + shell_word(word);
     return text;
   }
 

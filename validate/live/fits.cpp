@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base/shell_word.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/add/at_once.hpp"
 #include "validate/diagnose/diagnose.hpp"
@@ -256,14 +257,11 @@ Step step_of_fit(const Setup& setup, const Step& from, int parent, const json& m
       s.intervals.push_back({p.at("name"), p.at("low"), p.at("high")});
   s.model = with_plant(from.model, message.at("plant"));
   std::string held_out;
-  for (const auto& name : s.held_out) held_out += " --hold-out " + name;
+  for (const auto& name : s.held_out) held_out += " --hold-out " + shell_word(name);
   const std::string effect = message.value("effect", "");
-  s.command = fmt::format(
-      "swingbank {} --model {}{}{}",
-      kind == "added"
-          ? fmt::format("add {}", effect.find(' ') == std::string::npos ? effect : "\"" + effect + "\"")
-          : std::string("calibrate"),
-      parent == 0 ? setup.plant_file : "model.toml", setup.options, held_out);
+  s.command =
+      fmt::format("swingbank {} --model {}{}{}", kind == "added" ? "add " + shell_word(effect) : "calibrate",
+                  parent == 0 ? shell_word(setup.plant_file) : "model.toml", setup.options, held_out);
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/plant/parameter_id.hpp"
+#include "base/shell_word.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/event_title.hpp"
 #include "validate/compare/first_screen.hpp"
@@ -147,10 +148,14 @@ nlohmann::json setup_json(const Setup& setup, const Step& submitted) {
   }
   json bands = json::array({"all"});
   for (const auto& b : compare::error_bands()) bands.push_back(std::string(b.name));
-  return {
-      {"name", setup.model.name}, {"mva", setup.model.plant.mva}, {"subject", plant::subject(setup.model)},
-      {"file", setup.plant_file}, {"limits", setup.by.name},      {"events", events},
-      {"bands", bands},           {"options", setup.options}};
+  return {{"name", setup.model.name},
+          {"mva", setup.model.plant.mva},
+          {"subject", plant::subject(setup.model)},
+          {"file", shell_word(setup.plant_file)},
+          {"limits", setup.by.name},
+          {"events", events},
+          {"bands", bands},
+          {"options", setup.options}};
 }
 
 nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {

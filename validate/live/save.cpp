@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/shell_word.hpp"
 #include "base/write_file.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/page_parts.hpp"
@@ -87,12 +88,11 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
   nlohmann::json files = {file.string()};
   if (!dyr.file.empty()) files.push_back(dyr.file.string());
   files.push_back(html.string());
-  nlohmann::json notes = nlohmann::json::array();
-  if (dyr.file.empty()) notes.push_back(dyr.line);
-  return {{"files", files},
-          {"notes", notes},
-          {"model", file.string()},
-          {"command", fmt::format("swingbank compare --model {}{}", file.string(), setup.options)}};
+  return {
+      {"files", files},
+      {"notes", notes},
+      {"model", file.string()},
+      {"command", fmt::format("swingbank compare --model {}{}", shell_word(file.string()), setup.options)}};
 }
 
 }  // namespace swingbank::validate::live

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/shell_word.hpp"
+
 namespace swingbank::validate::live {
 namespace {
 
@@ -44,7 +46,7 @@ Step submitted(const Setup& setup, bool provisional) {
   s.label = "submitted model";
   s.model = setup.model;
   s.provisional = provisional;
-  s.command = fmt::format("swingbank compare --model {}{}", setup.plant_file, setup.options);
+  s.command = fmt::format("swingbank compare --model {}{}", shell_word(setup.plant_file), setup.options);
   s.played = played(setup, s.model, s.complete, !provisional);
   return s;
 }
