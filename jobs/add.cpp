@@ -107,7 +107,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   result["fitness"] = compare::fitness_json(played);
   result["errors"] = compare::errors_json(played);
   plant::write_plant_file(model_file, model, provenance);
-  const plant::WrittenDyr records = plant::write_dyr_beside(model_file, whole_before, model);
+  const plant::WrittenRecords records = plant::write_records_beside(model_file, whole_before, model);
   if (!records.file.empty()) results.file(records.file.filename());
   page.figures = json_text(result);
   write_file(page_file, compare::command_html(page));

@@ -92,7 +92,7 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   if (!adequate)
     return fmt::format("model: {} (not adequate: its parameters are biased, do not use them)\nnext: {}",
                        file.string(), next_command(a, adequate));
-  const plant::WrittenDyr dyr = plant::write_dyr_beside(file, before, model);
+  const plant::WrittenRecords dyr = plant::write_records_beside(file, before, model);
   if (!dyr.file.empty()) a.of.results().file(dyr.file.filename());
   return fmt::format("model: {}\n{}\nnext: {}", file.string(), dyr.line, next_command(a, adequate));
 }

@@ -34,8 +34,6 @@ int run(const Arguments& a) {
   if (!a.id.empty()) model.id = a.id;
   Problems problems;
   const double kv = a.kv > 0 ? a.kv : model.record_base.kv;
-  if (dyd && !(kv > 0))
-    problems.add("no nominal voltage", file, "PSLF requires that of the unit's bus", "give --kv");
   const std::string text = dyd ? plant::dyd_text(model, {model.name}, {a.bus_name, kv}, file, problems)
                                : plant::dyr_text(model, {model.name}, file, problems);
   problems.raise();

@@ -1,5 +1,7 @@
 # Starts the live page for tests; sourced after lib.bash.
-model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
+# shellcheck disable=SC2154 # set by lib.bash
+model=$work/ieee14_bus2.toml
+sed 's/^\[record\]$/&\nbase_kv = 69.0/' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" >"$model"
 # serve RECORD...: starts the server in $work and waits for its address; sets $server and $url.
 # shellcheck disable=SC2034,SC2154 # used by the tests; set by lib.bash
 serve() {

@@ -117,6 +117,8 @@ expect 200 "$api/step?s=$session&k=0"
 expect 200 "$api/save?s=$session" -d '{"step":1}'
 grep -q 'H = 4' saved/model.toml || fail "the saved model is not the step"
 [[ -s saved/model.dyr && -s saved/report.html ]] || fail "records or report are missing: $(ls saved)"
+cmp <("$swingbank" export --model saved/model.toml --format dyd | grep -v '^#') <(grep -v '^#' saved/model.dyd) ||
+  fail "the PSLF records are not those of export"
 
 kill -TERM "$server"
 status=0

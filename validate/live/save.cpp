@@ -15,7 +15,9 @@
 namespace swingbank::validate::live {
 namespace {
 
-constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kPage = "report.html";
+constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kDyd = "model.dyd", *kPage = "report.html";
+
+using nlohmann::json;
 
 /// Returns the steps from the submitted model to this one.
 std::vector<std::shared_ptr<const Step>> path_to(const Session& session, int step) {
@@ -47,7 +49,7 @@ std::vector<compare::PageParameter> changed(const Setup& setup, const Step& step
 
 }  // namespace
 
-std::vector<std::string> saved_files() { return {kModel, kDyr, kPage}; }
+std::vector<std::string> saved_files() { return {kModel, kDyr, kDyd, kPage}; }
 
 nlohmann::json save(const Session& session, int step, OutputFolder& folder,
                     const report::Provenance& provenance) {
@@ -64,8 +66,16 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
   }
   const auto file = folder.file(kModel);
   plant::write_plant_file(file, model, head);
-  const plant::WrittenDyr dyr = plant::write_dyr_beside(file, event::whole_model(setup.model), model);
-  if (!dyr.file.empty()) folder.file(dyr.file.filename());
+  json files = {file.string()}, notes = json::array();
+  for (const auto format : {plant::RecordFormat::dyr, plant::RecordFormat::dyd}) {
+    const auto records = plant::write_records_beside(file, event::whole_model(setup.model), model, format);
+    if (records.file.empty()) {
+      notes.push_back(records.line);
+    } else {
+      folder.file(records.file.filename());
+      files.push_back(records.file.string());
+    }
+  }
   page.title = "Live page: " + setup.model.name;
   page.subtitle =
       fmt::format("{} of {:g} MVA; the submitted and the completed model, compared with the records.",
@@ -85,8 +95,6 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
       {{"format", "swingbank-live-1"}, {"steps", head}, {"fitness", compare::fitness_json(page.played)}});
   const auto html = folder.file(kPage);
   write_file(html, compare::command_html(page));
-  nlohmann::json files = {file.string()};
-  if (!dyr.file.empty()) files.push_back(dyr.file.string());
   files.push_back(html.string());
   return {
       {"files", files},

@@ -43,6 +43,9 @@ std::string dyr_text(const PlantModel& model, const std::vector<std::string>& he
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems) {
   check_bus(model, where, problems);
+  if (!(place.kv > 0))
+    problems.add("no nominal voltage", where, "PSLF requires that of the unit's bus",
+                 "write base_kv under [record], or give --kv");
   return comments(head, "# ") + sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
 }
 
@@ -58,17 +61,21 @@ std::vector<std::string> changed_blocks(const PlantModel& before, const PlantMod
   return names;
 }
 
-WrittenDyr write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
-                            const PlantModel& model) {
+WrittenRecords write_records_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                                    const PlantModel& model, RecordFormat format) {
   const auto changed = changed_blocks(before, model);
   const std::vector<std::string> head = {
       model.name,
       changed.empty() ? "nothing is changed" : fmt::format("changed or new: {}", fmt::join(changed, ", "))};
   Problems problems;
-  const std::string text = dyr_text(model, head, plant_file.filename().string(), problems);
-  if (!problems.empty()) return {"no .dyr: " + problems.list()[0].sentence(), {}};
+  const std::string where = plant_file.filename().string(),
+                    ending = format == RecordFormat::dyd ? ".dyd" : ".dyr";
+  const std::string text = format == RecordFormat::dyd
+                               ? dyd_text(model, head, {"", model.record_base.kv}, where, problems)
+                               : dyr_text(model, head, where, problems);
+  if (!problems.empty()) return {"no " + ending + ": " + problems.list()[0].sentence(), {}};
   auto file = plant_file;
-  file.replace_extension(".dyr");
+  file.replace_extension(ending);
   write_file(file, text);
   return {"records: " + file.string(), file};
 }

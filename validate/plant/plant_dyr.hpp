@@ -14,20 +14,26 @@ namespace swingbank::validate::plant {
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
 
-/// Returns the same as lines of a PSLF .dyd, which also contain the bus's name and nominal voltage [kV].
+/// Returns the same as lines of a PSLF .dyd, which also contain the bus's name and nominal voltage [kV]. A
+/// missing voltage becomes a problem.
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems);
 
 /// Returns the names of the blocks that are new or whose values differ from `before`.
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
 
-/// Result of write_dyr_beside().
-struct WrittenDyr {
+/// Format of dynamic records.
+enum class RecordFormat {
+  dyr,  ///< of PSS/E
+  dyd,  ///< of PSLF
+};
+/// Result of write_records_beside().
+struct WrittenRecords {
   std::string line;            ///< message: the written file, or the reason why none was written
   std::filesystem::path file;  ///< empty if none was written
 };
-/// Writes the .dyr records beside a plant file, with the same name; a comment lists the changed blocks.
-WrittenDyr write_dyr_beside(const std::filesystem::path& plant_file, const PlantModel& before,
-                            const PlantModel& model);
+/// Writes the records beside a plant file, with the same name; a comment lists the changed blocks.
+WrittenRecords write_records_beside(const std::filesystem::path& plant_file, const PlantModel& before,
+                                    const PlantModel& model, RecordFormat format = RecordFormat::dyr);
 
 }  // namespace swingbank::validate::plant
