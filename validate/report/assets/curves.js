@@ -1,5 +1,4 @@
 // Charts of curves against time, shared by the live page and the reports.
-/* global uPlot */
 /* exported curves */
 const curves = (() => {
   /** Returns a colour of palette.css by its name. */
