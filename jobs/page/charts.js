@@ -7,14 +7,17 @@ const sync = uPlot.sync("event");
 const charts = [];
 let moving = 0; // number of the present animation; another number ends it
 
-/** Splits the samples of api.curves() into t and, for each channel, measured and modelled. */
+/** Splits the samples of api.curves() into t and, for each channel, measured, modelled and the limits of its 95 % band. */
 export function split(samples, channels) {
-  const n = samples.length / (1 + 2 * channels);
+  const n = samples.length / (1 + 3 * channels);
   const part = (k) => samples.subarray(k * n, (k + 1) * n);
-  return {
-    t: part(0),
-    channels: Array.from({ length: channels }, (_, c) => ({ measured: part(1 + 2 * c), modelled: part(2 + 2 * c) })),
+  const channel = (c) => {
+    const [measured, modelled, half] = [part(1 + 3 * c), part(2 + 3 * c), part(3 + 3 * c)];
+    if (Number.isNaN(half[0])) return { measured, modelled, band: null };
+    const band = [modelled.map((v, k) => v - half[k]), modelled.map((v, k) => v + half[k])];
+    return { measured, modelled, band, widest: half.reduce((a, b) => Math.max(a, b)) };
   };
+  return { t: part(0), channels: Array.from({ length: channels }, (_, c) => channel(c)) };
 }
 
 /** Fills the area between two curves. */
@@ -49,6 +52,7 @@ function chart(place, of, height) {
     group: sync.key,
     below: (u) => {
       if (of.allowed) between(u, of.data[0], ...of.allowed, "good", 0.1);
+      if (of.band) between(u, of.data[0], ...of.band, "model", 0.3);
       if (of.range) between(u, of.data[0], ...of.range, "model", 0.3);
     },
   });
@@ -59,7 +63,7 @@ function chart(place, of, height) {
   return { plot, of, place, height };
 }
 
-/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], window, fault, allowed, main}. */
+/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], band, window, fault, allowed, main}. */
 export function show(channels) {
   ++moving;
   for (const c of charts.splice(0)) {
@@ -80,6 +84,7 @@ export function model(samples) {
 function put(channel, samples) {
   const c = charts[channel];
   if (!c) return;
+  c.of.band = null; // of the former curve
   c.of.data = [c.of.data[0], c.of.data[1], c.of.data[2], samples];
   if (c.plot.root.offsetParent !== null) (c.plot.setData(c.of.data, false), c.plot.redraw(true, false));
 }
@@ -109,12 +114,20 @@ export function animate(next, done = () => {}) {
 }
 /** The shown data of each chart: t, measured, submitted, this model. For tests. */
 globalThis.charts_of_test = () => charts.map((c) => c.of.data);
+globalThis.bands_of_test = () => charts.map((c) => c.of.band);
 /** Shows the times from..to [s] in every chart; without arguments, the whole record. */
 export function zoom(from, to) {
   for (const c of charts) {
     const t = c.of.data[0];
     c.plot.setScale("x", { min: from ?? t[0], max: to ?? t[t.length - 1] });
   }
+}
+/** Shows the 95 % band of each modelled curve. */
+export function bands(all) {
+  charts.forEach((c, k) => {
+    c.of.band = all[k];
+    c.plot.redraw(false);
+  });
 }
 /** Shades a window [from, to] or nothing in each chart. */
 export function shade(windows) {

@@ -64,6 +64,13 @@ function allowed(largest, times_, t, measured) {
   return [measured.map((v, k) => v - size[k]), measured.map((v, k) => v + size[k])];
 }
 
+/** Writes the largest half width of the 95 % bands of P and Q, which is often less than the width of a line. */
+function showBandSize(own, channels) {
+  by("band-size").textContent = own
+    .slice(0, 2)
+    .flatMap((c, k) => (channels[k].band ? `${c.name} ± ${digits(channels[k].widest, 2)} ${c.unit}` : []))
+    .join(", ");
+}
 /** Shows the event's curves of the present step. */
 async function showEvent() {
   const { event: e, step } = state;
@@ -78,9 +85,11 @@ async function showEvent() {
       window: windowOf(c),
       fault: times_.length > 1 ? [times_[0], times_.at(-1)] : null,
       allowed: allowed(c.allowed, times_, now.t, now.channels[k].measured),
+      band: now.channels[k].band,
       data: [now.t, now.channels[k].measured, ghost.channels[k].modelled, now.channels[k].modelled],
     })),
   );
+  showBandSize(own, now.channels);
   near();
   charts.choose(state.channel);
   by("hold").checked = state.heldOut.has(state.setup.events[e].name);
@@ -144,6 +153,7 @@ function showStep() {
   by("verdict").className = step.complete && step.fit ? "good" : step.fit || step.complete ? "warn" : "bad";
   by("reason").textContent = step.sentence || step.reason;
   by("command").textContent = step.command;
+  by("band").hidden = !step.bands;
   by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
   chips.build(state, guard(choose));
   chips.map(state, enlarge);
@@ -173,10 +183,14 @@ async function enter(step, keepPast = false) {
   }
   showStep();
   const now = await curvesOf(step.step, state.event);
+  showBandSize(chipsOf(step, state.event), now.channels);
   if (state.step === step)
     charts.animate(
       now.channels.map((c) => c.modelled),
-      () => charts.shade(windows()),
+      () => {
+        charts.bands(now.channels.map((c) => c.band));
+        charts.shade(windows());
+      },
     );
 }
 async function goTo(k) {

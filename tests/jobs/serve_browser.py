@@ -119,6 +119,11 @@ print(f"add and fit: {time.monotonic() - start:.2f} s")
 time.sleep(1)
 page.save_screenshot(f"{folder}/added.png")
 assert all("good" in c[0] for c in chips().values()), chips()
+# the 95 % band encloses the curve of the completed model, on the held-out event too
+shown = page.execute_script("return bands_of_test().map((b, k) => b && [charts_of_test()[k][3], ...b].map((s) => Array.from(s)))")
+assert all(shown), "a fitted model has no 95 % band"
+assert "Q ± " in text("band-size") and "Mvar" in text("band-size"), text("band-size")
+assert all(low < model < high for channel in shown for model, low, high in zip(*channel)), "the band does not enclose the curve"
 assert "(unseen)" in text("chips"), text("chips")
 assert "swingbank add SEXS" in text("command") and "--hold-out avr_ev4.csv" in text("command"), text("command")
 

@@ -49,6 +49,37 @@ Eigen::VectorXd whitened(const noise::WhitenedEvent& e, const std::vector<double
   return all;
 }
 
+/// Response with its sensitivities at a point of the fit.
+struct Linearised {
+  playin::Response response;
+  Eigen::MatrixXd by_parameter, by_state;  ///< whitened: [compared value][parameter], [compared value][state]
+  Eigen::MatrixXd state_covariance;        ///< of the states at given parameters, with unit priors
+  Eigen::MatrixXd absorbed;  ///< [state][parameter]: part of a parameter's effect that the states absorb
+};
+Linearised linearised(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvent& e,
+                      const EventState& state, const std::vector<FreeParameter>& free) {
+  std::vector<playin::SensitivityParameter> along;
+  for (const auto& f : free)
+    along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
+  std::ranges::move(own_parameters(e.event), std::back_inserter(along));
+  Linearised at;
+  at.response = event::play(tested, e.event, state, along, kExact);
+  const auto parameters = static_cast<Eigen::Index>(free.size());
+  const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
+  at.by_parameter.resize(e.event.values(), parameters);
+  at.by_state.resize(e.event.values(), states);
+  for (Eigen::Index d = 0; d < parameters + states; ++d) {
+    const Eigen::VectorXd column =
+        whitened(e, at.response.sensitivities[static_cast<std::size_t>(d)].value, false);
+    (d < parameters ? at.by_parameter.col(d) : at.by_state.col(d - parameters)) = column;
+  }
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(states, states);
+  const auto precision = Eigen::MatrixXd(at.by_state.transpose() * at.by_state + unit).ldlt();
+  at.state_covariance = precision.solve(unit);
+  at.absorbed = precision.solve(at.by_state.transpose() * at.by_parameter);
+  return at;
+}
+
 }  // namespace
 
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
@@ -60,32 +91,40 @@ double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
 
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent e,
                                        const EventState& state, const std::vector<FreeParameter>& free) {
-  const event::FitEvent& event = e.event;
-  std::vector<playin::SensitivityParameter> along;
-  for (const auto& f : free)
-    along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
-  std::ranges::move(own_parameters(event), std::back_inserter(along));
-  const playin::Response r = event::play(tested, event, state, along, kExact);
-
+  const Linearised at = linearised(tested, e, state, free);
   EventSensitivities back;
-  back.channels = static_cast<int>(event.channels.size());
-  back.residual = whitened(e, r.value, true);
-  const auto parameters = static_cast<Eigen::Index>(free.size());
-  const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
-  back.sensitivities.resize(event.values(), parameters);
-  Eigen::MatrixXd own(event.values(), states);
-  for (Eigen::Index d = 0; d < parameters + states; ++d) {
-    const Eigen::VectorXd column = whitened(e, r.sensitivities[static_cast<std::size_t>(d)].value, false);
-    (d < parameters ? back.sensitivities.col(d) : own.col(d - parameters)) = column;
-  }
-  // The states, with unit priors, absorb the projected part.
-  const Eigen::MatrixXd inner = own.transpose() * own + Eigen::MatrixXd::Identity(states, states);
-  const auto solved = inner.ldlt();
-  const Eigen::MatrixXd absorbed = solved.solve(own.transpose() * back.sensitivities);
-  back.sensitivities -= own * absorbed;
+  back.channels = static_cast<int>(e.event.channels.size());
+  back.residual = whitened(e, at.response.value, true);
+  back.sensitivities = at.by_parameter - at.by_state * at.absorbed;
   back.score = back.sensitivities.transpose() * back.residual -
-               absorbed.transpose() * in_parameter_units(event, state);
+               at.absorbed.transpose() * in_parameter_units(e.event, state);
   return back;
+}
+
+std::vector<std::vector<double>> response_deviation(const sim::plant::PlantUnderTest& tested,
+                                                    noise::WhitenedEvent e, const EventState& state,
+                                                    const std::vector<FreeParameter>& free,
+                                                    const Eigen::MatrixXd& covariance) {
+  const Linearised at = linearised(tested, e, state, free);
+  const auto parameters = at.by_parameter.cols(), all = parameters + at.by_state.cols();
+  // Joint covariance: the state follows a change of the parameters by -absorbed.
+  Eigen::MatrixXd follow(all, parameters), joint(all, all);
+  follow << Eigen::MatrixXd::Identity(parameters, parameters), -at.absorbed;
+  joint = follow * covariance * follow.transpose();
+  joint.bottomRightCorner(all - parameters, all - parameters) += at.state_covariance;
+  std::vector<std::vector<double>> deviation;
+  for (const playin::Output channel : e.event.channels) {
+    const auto of = static_cast<std::size_t>(channel);
+    const std::size_t samples = at.response.value[of].size();
+    Eigen::MatrixXd by(samples, all);
+    for (Eigen::Index d = 0; d < all; ++d)
+      by.col(d) = Eigen::Map<const Eigen::VectorXd>(
+          at.response.sensitivities[static_cast<std::size_t>(d)].value[of].data(), by.rows());
+    const Eigen::VectorXd variance = (by * joint).cwiseProduct(by).rowwise().sum();
+    const Eigen::VectorXd sd = variance.cwiseMax(0.0).cwiseSqrt();
+    deviation.emplace_back(sd.begin(), sd.end());
+  }
+  return deviation;
 }
 
 Eigen::MatrixXd information(const EventSensitivities& e) {

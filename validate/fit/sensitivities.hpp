@@ -26,6 +26,14 @@ struct EventSensitivities {
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent event,
                                        const EventState& state, const std::vector<FreeParameter>& free);
 
+/// Returns the standard deviation of the modelled response of one event at a point of the fit, as
+/// [channel][sample] [pu]: the uncertainty of the parameters, of this covariance per axis_unit, and that of
+/// the event's own state at given parameters, in its noise. Throws InputError if the playback fails.
+std::vector<std::vector<double>> response_deviation(const sim::plant::PlantUnderTest& tested,
+                                                    noise::WhitenedEvent event, const EventState& state,
+                                                    const std::vector<FreeParameter>& free,
+                                                    const Eigen::MatrixXd& covariance);
+
 /// Returns J'J of one event, the Fisher information on the parameters in units of their priors.
 Eigen::MatrixXd information(const EventSensitivities& e);
 

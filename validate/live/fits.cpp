@@ -9,6 +9,7 @@
 #include "base/shell_word.hpp"
 #include "base/stop_signal.hpp"
 #include "validate/add/at_once.hpp"
+#include "validate/calibrate/response_band.hpp"
 #include "validate/diagnose/diagnose.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/hypothesis/posterior.hpp"
@@ -134,18 +135,30 @@ calibrate::CalibrateOptions fitting(const Setup& setup, const json& request, con
   return o;
 }
 
-/// Returns the modelled curves of each fitted event [pu], rounded to the width of a line.
+/// Returns the values rounded to the width of a line [pu].
+json curve_json(const std::vector<double>& curve) {
+  json values = json::array();
+  for (const double v : curve) values.push_back(number(std::round(1e5 * v) / 1e5));
+  return values;
+}
+
+/// Returns the 95 % bands of the fitted model's response.
+json bands_json(const Setup& setup, const plant::PlantModel& fitted,
+                const std::vector<fit::FittedParameter>& parameters,
+                const calibrate::CalibrateOptions& options) {
+  std::vector<fit::FreeParameter> free;
+  for (const auto& p : parameters) free.push_back(p.where);
+  return calibrate::response_bands(fitted, setup.records, free, options);
+}
+
+/// Returns the modelled curves of each fitted event.
 json curves_json(const fit::Fit& f, const std::vector<bool>& held_out) {
   json all = json::array();
   std::size_t fitted = 0;
   for (std::size_t e = 0; e < held_out.size() && fitted < f.events.size(); ++e) {
     if (held_out[e]) continue;
     json channels = json::array();
-    for (const auto& channel : f.events[fitted].model) {
-      json values = json::array();
-      for (const double v : channel) values.push_back(number(std::round(1e5 * v) / 1e5));
-      channels.push_back(std::move(values));
-    }
+    for (const auto& channel : f.events[fitted].model) channels.push_back(curve_json(channel));
     all.push_back({{"event", e}, {"channels", std::move(channels)}});
     ++fitted;
   }
@@ -169,6 +182,7 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
         {"label", "+ " + effect},
         {"plant", plant_json(a.model)},
         {"parameters", parameters_json(a.parameters)},
+        {"bands", bands_json(setup, a.model, a.parameters, options.calibrate)},
         {"held_out", request.value("held_out", std::vector<std::string>{})},
         {"evidence", quick ? json(nullptr) : number(a.evidence)},
         {"sentence", a.sentence}});
@@ -176,7 +190,8 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
 
 void run_calibration(const Setup& setup, const plant::PlantModel& model, const json& request,
                      const Emit& emit) {
-  const calibrate::Calibration c = calibrate::calibrate(model, setup.records, fitting(setup, request, emit));
+  const calibrate::CalibrateOptions options = fitting(setup, request, emit);
+  const calibrate::Calibration c = calibrate::calibrate(model, setup.records, options);
   std::vector<fit::FittedParameter> parameters;
   for (const auto& p : c.parameters) parameters.push_back(p.fit);
   emit({{"type", "step"},
@@ -184,6 +199,7 @@ void run_calibration(const Setup& setup, const plant::PlantModel& model, const j
         {"label", "fitted parameters"},
         {"plant", plant_json(c.model)},
         {"parameters", parameters_json(parameters)},
+        {"bands", bands_json(setup, c.model, parameters, options)},
         {"held_out", request.value("held_out", std::vector<std::string>{})},
         {"sentence", c.sentence}});
 }
@@ -255,6 +271,7 @@ Step step_of_fit(const Setup& setup, const Step& from, int parent, const json& m
   for (const auto& p : message.at("parameters"))
     if (p.at("low").is_number() && p.at("high").is_number())
       s.intervals.push_back({p.at("name"), p.at("low"), p.at("high")});
+  s.bands = message.at("bands").get<calibrate::ResponseBands>();
   s.model = with_plant(from.model, message.at("plant"));
   std::string held_out;
   for (const auto& name : s.held_out) held_out += " --hold-out " + shell_word(name);

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "sim/plant/parameter_id.hpp"
 #include "base/shell_word.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/event_title.hpp"
 #include "validate/compare/first_screen.hpp"
@@ -185,6 +186,7 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
                                       : step.played->fitness.sentence},
           {"provisional", step.provisional},
           {"complete", step.complete},
+          {"bands", !step.bands.empty()},
           {"fit", step.played->fitness.fit},
           {"ratio", ratio},
           {"evidence", number(step.evidence)},
@@ -198,9 +200,16 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
 std::vector<float> curves(const Step& step, std::size_t event) {
   const auto& e = step.played->events.at(event);
   std::vector<float> all(e.record.t.begin(), e.record.t.end());
-  for (const auto& c : e.channels)
-    for (const auto* values : {&c.measured, &c.modelled})
+  const std::vector<double> none(e.record.t.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const auto& c : e.channels) {
+    const std::vector<double>* band = &none;
+    if (event < step.bands.size())
+      if (const auto found = step.bands[event].find(c.name);
+          found != step.bands[event].end() && found->second.size() == none.size())
+        band = &found->second;
+    for (const auto* values : {&c.measured, &c.modelled, band})
       for (const double v : *values) all.push_back(static_cast<float>(v * c.scale));
+  }
   return all;
 }
 

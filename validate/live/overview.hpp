@@ -8,7 +8,8 @@ namespace swingbank::validate::live {
 nlohmann::json setup_json(const Setup& setup, const Step& submitted);
 /// Returns a step: verdict, sliders, chips, error maps and limits.
 nlohmann::json step_json(const Setup& setup, const Step& step, int number);
-/// Returns the curves of one event as 32-bit floats: t, then measured and modelled of each channel [unit].
+/// Returns the curves of one event as 32-bit floats: t, then for each channel measured, modelled
+/// and half width of the 95 % band of the modelled (NaN: none) [unit].
 std::vector<float> curves(const Step& step, std::size_t event);
 /// Returns a preview as 32-bit floats: RMS error, noise (both [unit]) and modelled samples of each channel.
 std::vector<float> preview_floats(const Preview& preview, const compare::EventComparison& event);

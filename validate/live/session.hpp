@@ -8,6 +8,7 @@
 
 #include "base/json.hpp"
 #include "sim/plant/parameter_id.hpp"
+#include "validate/calibrate/response_band.hpp"
 #include "validate/compare/played.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -45,6 +46,7 @@ struct Step {
   std::string sentence = {};               ///< result of the fit in words
   plant::PlantModel model;                 ///< model of this step
   std::vector<Interval> intervals = {};    ///< of fitted parameters
+  calibrate::ResponseBands bands = {};     ///< of the response, of a fitted model; empty: not fitted
   std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
   double evidence = 0;       ///< 2 ln(Bayes factor) of an added effect over the refit without it
   bool provisional = false;  ///< of first_step()

@@ -14,6 +14,8 @@
 #include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/calibrate/report.hpp"
+#include "validate/calibrate/response_band.hpp"
+#include "validate/noise/pre_event.hpp"
 
 namespace swingbank::validate::calibrate {
 namespace {
@@ -329,6 +331,49 @@ TEST(CalibrateFull, IntervalsContainTheTruthUnderUsualNoise) { expect_two_sided(
 // times the right ones. Without widening, 96.9 % of the intervals contain the truth.
 TEST(CalibrateFull, IntervalsContainTheTruth_WhenTheVoltageIsAsNoisyAsThePower) {
   expect_two_sided(coverage(2e-3, 2e-3, 20), 0.80);
+}
+
+/// Deviation of the fitted model's P and Q from the noise-free ones, in standard deviations of the band.
+TEST(CalibrateFull, ResponseBandsContainTheTrueResponse) {
+  constexpr int kCopies = 12;
+  const Simulation s = simulate_three();
+  const std::string held_out = "fault9.csv";
+  CalibrateOptions options;
+  options.held_out = {held_out};
+  double squares[2] = {}, inside[2] = {}, count[2] = {};  // fitted events; the held-out one
+  for (int copy = 0; copy < kCopies; ++copy) {
+    plant::PlantModel model = wrong(s.plant);
+    const auto records = noisy(s.records, 2e-3, 1e-5, 300 + static_cast<unsigned>(copy));
+    const auto events = noise::whitened_events(model, records, {});
+    const auto free = fit::free_parameters(model.plant, 0.2);
+    const fit::Fit fitted = fit::fit(model.under_test(), events.only({0, 1}), free);
+    ASSERT_TRUE(fitted.failed.empty()) << fitted.failed;
+    model.plant = fitted.plant;
+    const ResponseBands bands = response_bands(model, records, free, options);
+    for (std::size_t e = 0; e < records.size(); ++e) {
+      const fit::Fit alone = fit::fit(model.under_test(), events.alone(e), {});
+      const std::size_t which = records[e].name == held_out;
+      for (const auto& [channel, truth] : {std::pair(0, &s.records[e].P), {1, &s.records[e].Q}}) {
+        const auto& modelled = alone.events.front().model[static_cast<std::size_t>(channel)];
+        const auto& half = bands[e].at(channel == 0 ? "P" : "Q");
+        ASSERT_EQ(half.size(), truth->size());
+        for (std::size_t k = 0; k < half.size(); ++k) {
+          const double deviation = std::abs(modelled[k] - (*truth)[k]);
+          squares[which] += std::pow(1.96 * deviation / half[k], 2);
+          inside[which] += deviation <= half[k];
+          ++count[which];
+        }
+      }
+    }
+  }
+  for (const int which : {0, 1}) {
+    const double rms = std::sqrt(squares[which] / count[which]), share = inside[which] / count[which];
+    fmt::print("{}: deviation {:.2f} standard deviations of the band, {:.1f} % of the samples within it\n",
+               which ? "held out" : "fitted", rms, 100 * share);
+    EXPECT_GT(share, 0.85);  // 0.91 and 0.95 here: the samples of a copy are correlated
+    EXPECT_GT(rms, 0.7);
+    EXPECT_LT(rms, 1.3);
+  }
 }
 
 }  // namespace

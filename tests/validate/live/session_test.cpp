@@ -111,11 +111,14 @@ TEST(LiveFits, StepOfAnAdditionNamesTheCommand) {
                                   {"evidence", 12.0},
                                   {"held_out", {"avr_ev4.csv"}},
                                   {"parameters", {{{"name", "SEXS.K"}, {"low", 1.0}, {"high", 2.0}}}},
+                                  {"bands", {{{"Q", {0.01, 0.02}}}}},
                                   {"plant", plant_json(example()->model)}};
   const Step s = step_of_fit(*example(), *submitted(), 0, message);
   EXPECT_EQ(s.command, "swingbank add SEXS --model plant.toml --records avr_ev4.csv --hold-out avr_ev4.csv");
   ASSERT_EQ(s.intervals.size(), 1U);
   EXPECT_EQ(s.intervals[0].high, 2.0);
+  ASSERT_EQ(s.bands.size(), 1U);
+  EXPECT_EQ(s.bands[0].at("Q"), (std::vector<double>{0.01, 0.02}));
 }
 
 TEST(LiveFits, FailureIsAMessage) {
@@ -132,9 +135,23 @@ TEST(LiveOverview, ContainsEveryChannelAndParameter) {
   EXPECT_EQ(json.at("sliders").size(), submitted()->model.plant.machine.p.size());
   EXPECT_FALSE(json.at("complete"));
   const auto& event = submitted()->played->events[0];
-  EXPECT_EQ(curves(*submitted(), 0).size(), event.record.t.size() * (1 + 2 * event.channels.size()));
+  EXPECT_EQ(curves(*submitted(), 0).size(), event.record.t.size() * (1 + 3 * event.channels.size()));
   EXPECT_EQ(ribbon(*submitted(), 0, {}, "GENROU.Xd").size(),
             event.record.t.size() * 2 * event.channels.size());
+}
+
+TEST(LiveOverview, CurvesContainTheBandOfAFittedChannel) {
+  Step fitted = *submitted();
+  const auto& event = fitted.played->events[0];
+  const std::size_t n = event.record.t.size();
+  fitted.bands = {{{"Q", std::vector<double>(n, 0.01)}}};
+  const auto samples = curves(fitted, 0);
+  ASSERT_EQ(event.channels[0].name, "P");
+  EXPECT_TRUE(std::isnan(samples[3 * n]));
+  ASSERT_EQ(event.channels[1].name, "Q");
+  EXPECT_FLOAT_EQ(samples[6 * n], static_cast<float>(0.01 * event.channels[1].scale));
+  EXPECT_TRUE(step_json(*example(), fitted, 1).at("bands"));
+  EXPECT_FALSE(step_json(*example(), *submitted(), 0).at("bands"));
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+// 95 % band of the response of a fitted model, from the uncertainty of its parameters and of each event's
+// state.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "validate/calibrate/calibrate.hpp"
+
+namespace swingbank::validate::calibrate {
+
+/// Half width of a response's 95 % band: [event][name of a fitted channel][sample] [pu].
+using ResponseBands = std::vector<std::map<std::string, std::vector<double>>>;
+
+/// Computes the bands at the fitted model from the curvature of the events that are not held out, with the
+/// priors of `free`, for all events. Where the residuals exceed noise, the bands are wider by the square root
+/// of the reduced chi-square. Throws InputError if the model cannot follow a record.
+ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<record::Record>& records,
+                             const std::vector<fit::FreeParameter>& free, const CalibrateOptions& options);
+
+}  // namespace swingbank::validate::calibrate
