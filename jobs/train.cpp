@@ -1,14 +1,20 @@
 // swingbank train: trains one network on a dataset split 60/20/20 by databank point (Table IV).
+#include <unistd.h>
+
 #include "jobs/commands.hpp"
 #include "jobs/training_options.hpp"
 
 int swingbank::jobs::train_command(CommandLine& line, int argc, char** argv) {
   using namespace swingbank;
   TrainingOptions options;
+  line.add_flag("--watch", options.watch, "draw the learning curve on the terminal, after each epoch");
   const auto check = [&](const train::run::RunRequest& request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment leaves generators out", options.experiment, "see its split",
                         "use swingbank cross-validate"});
+    if (options.watch && isatty(STDERR_FILENO) == 0)
+      throw InputError({"no terminal to draw on", "--watch", "standard error is a file or a pipe",
+                        "leave it out, and read the curve from curves/ in the folder of --out"});
   };
   return training_main(argc, argv, line, options, check, [&](train::run::RunRequest request) {
     request.runtime = train::runtime::set_up_runtime(options.threads);

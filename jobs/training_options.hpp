@@ -28,7 +28,7 @@ struct TrainingOptions {
   std::size_t test_rows = 0;
   std::string simulate;
   mpi::draw::Overrides simulated;
-  bool shuffle_labels = false, save_network = true, trust = false, any_maker = false;
+  bool shuffle_labels = false, save_network = true, trust = false, any_maker = false, watch = false;
 
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
@@ -100,6 +100,7 @@ struct TrainingOptions {
     r.shuffle_labels = shuffle_labels;
     r.any_maker = any_maker;
     r.save_network = save_network;
+    r.watch = watch;
     r.noise = noise;
     r.train_share = train_share;
     const std::size_t judged = test_rows > 0 ? test_rows : r.experiment.judging(preset, r.network).test_rows;

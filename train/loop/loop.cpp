@@ -84,7 +84,7 @@ class Loop {
       at::NoGradGuard no_gradients;
       for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i].copy_(best_[i]);
     }
-    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best, processor};
+    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best, processor, curve_};
   }
 
  private:
@@ -105,6 +105,7 @@ class Loop {
       if (seconds_since(last_save_) > settings_.checkpoint_every_s) save();
     }
     judge((at_.rows - before) / seconds_since(begin));
+    if (settings_.epoch_done) settings_.epoch_done(curve_);
     ++at_.epoch;
     at_.batch = 0;
     at_.loss_sum = at_.rows = 0.0;
@@ -128,7 +129,8 @@ class Loop {
     if (count) operations_per_row_ = count->operations() / static_cast<double>(batch.rows.size());
     const auto done = at_.epoch * batches_ + at_.batch;
     const TrainingRecipe& recipe = settings_.recipe;
-    adam_.step(learning_rate(recipe, done, recipe.epochs * batches_), recipe.weight_decay, recipe.clip);
+    rate_ = learning_rate(recipe, done, recipe.epochs * batches_);
+    adam_.step(rate_, recipe.weight_decay, recipe.clip);
     average_in(static_cast<double>(done));
     at_.loss_sum += value * static_cast<double>(batch.rows.size());
     at_.rows += static_cast<double>(batch.rows.size());
@@ -204,6 +206,7 @@ class Loop {
   void judge_weights(double samples_per_s) {
     const double error = data_.loss ? own_loss() : squared_error();
     const bool better = error < at_.best;
+    curve_.push_back({at_.epoch + 1, at_.loss_sum / at_.rows, error, rate_, seconds()});
     progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{}{}, {}", at_.epoch + 1,
                                settings_.recipe.epochs, at_.loss_sum / at_.rows, error,
                                better ? ", best so far" : "", data_.loss ? "" : " (scaled units)",
@@ -253,7 +256,9 @@ class Loop {
                          {"rows", at_.rows},
                          {"seconds", seconds()},
                          {"processor_seconds", processor_seconds()},
-                         {"adam_steps", adam_.steps()}};
+                         {"adam_steps", adam_.steps()},
+                         {"learning_rate", rate_},
+                         {"curve", learning_curve_json(curve_)}};
     write_checkpoint(settings_.checkpoint, header, arrays<const float>());
   }
 
@@ -273,6 +278,9 @@ class Loop {
            header.at("seconds"),
            header.at("processor_seconds")};
     adam_.set_steps(header.at("adam_steps"));
+    rate_ = header.at("learning_rate");
+    curve_ = read_learning_curve(header.at("curve"));
+    if (settings_.epoch_done && !curve_.empty()) settings_.epoch_done(curve_);
     progress_.line(fmt::format("resumed at epoch {}, batch {}", at_.epoch + 1, at_.batch + 1));
   }
 
@@ -286,6 +294,8 @@ class Loop {
   std::int64_t outputs_ = 0;
   std::size_t batches_ = 0;
   double operations_per_row_ = 0.0;  // matrix products of a training step; 0: not counted
+  double rate_ = 0.0;                ///< learning rate of the last step
+  LearningCurve curve_;
   Position at_;
   Clock::time_point begin_ = Clock::now(), last_save_ = Clock::now();
   double processor_begin_ = processor_time();

@@ -13,6 +13,7 @@
 #include "train/data/features.hpp"
 #include "train/data/shard_stream.hpp"
 #include "train/loop/experiment.hpp"
+#include "train/loop/learning_curve.hpp"
 #include "train/loop/progress.hpp"
 #include "train/networks/network.hpp"
 
@@ -43,6 +44,8 @@ struct LoopSettings {
   std::uint64_t first_draw = 0;           ///< draw of the first epoch's noise; each epoch has the next one
   double gflops = 0.0;                    ///< rate of matrix products [GFLOP/s]; 0: unknown
   std::function<bool()> stop;             ///< polled before each batch; empty: stop_asked()
+  /// Called with the curve so far after each epoch, and after a resume; may be empty.
+  std::function<void(const LearningCurve&)> epoch_done;
 };
 
 struct LoopReport {
@@ -51,6 +54,7 @@ struct LoopReport {
   double seconds = 0.0;     ///< wall clock, including time before a resume [s]
   double validation = 0.0;  ///< validation loss of the best epoch: weighted squared error, scaled units
   double processor_seconds = 0.0;  ///< of all threads, including before a resume [core-s]
+  LearningCurve curve;             ///< all epochs, including before a resume
 };
 
 /// Trains the network; it ends with the weights of its best epoch. Throws InputError if the loss is not

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace swingbank::train::loop {
@@ -35,10 +36,25 @@ void TrainingProgress::update(std::uint64_t done, const std::string& note) {
   std::fflush(stderr);
 }
 
+/// Removes the status line and the chart from the terminal.
+void TrainingProgress::clear() {
+  if (open_line_) fmt::print(stderr, "\r\033[K");
+  if (chart_lines_ > 0) fmt::print(stderr, "\033[{}A\033[J", chart_lines_);
+  open_line_ = false;
+  chart_lines_ = 0;
+}
+
 void TrainingProgress::line(const std::string& text) {
   if (quiet_) return;
-  fmt::print(stderr, "{}{}: {}\n", open_line_ ? "\r\033[K" : "", title_, text);
-  open_line_ = false;
+  clear();
+  fmt::print(stderr, "{}: {}\n", title_, text);
+}
+
+void TrainingProgress::chart(const std::string& text) {
+  if (quiet_ || !terminal_) return;
+  clear();
+  fmt::print(stderr, "{}", text);
+  chart_lines_ = std::ranges::count(text, '\n');
 }
 
 std::string duration(double seconds) {

@@ -1,6 +1,7 @@
 #pragma once
 // Progress of a training run: one line that is rewritten on a terminal, periodic log lines otherwise.
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -14,12 +15,20 @@ class TrainingProgress {
   void update(std::uint64_t done, const std::string& note);
   /// Prints a separate line, on a terminal or in a log.
   void line(const std::string& text);
+  /// Shows a chart of several lines below the lines printed so far; replaces the former chart. Terminals
+  /// only.
+  void chart(const std::string& text);
+  /// Leaves the shown chart on the terminal; later lines follow it.
+  void keep_chart() { chart_lines_ = 0; }
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string title_;
   std::uint64_t total_, first_ = 0;
   bool started_ = false, terminal_, quiet_, open_line_ = false;
+  std::ptrdiff_t chart_lines_ = 0;  ///< number of lines of the shown chart
+
+  void clear();
   Clock::time_point begin_, last_;
 };
 

@@ -251,7 +251,8 @@ class NetworkRun {
     const std::vector<float> targets = targets_of_training(), weights = scale_.weights(recipe_.loss_power);
     report_ = loop::train_network(
         *network_, {stream_, features_, split_.train, split_.validation, targets, known_.scaled, weights},
-        settings(), progress_);
+        settings(name_), progress_);
+    progress_.keep_chart();
     const bool whole = report_.finished && (recipe_.posterior_epochs == 0 || train_head());
     if (!whole) {
       progress_.line(
@@ -304,9 +305,11 @@ class NetworkRun {
         scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
     loop::TrainingProgress progress(name_ + ", posterior", recipe_.posterior_epochs * split_.train.size(),
                                     request_.quiet);
-    return train_posterior(*posterior_, *network_, context(), settings(), targets, progress);
+    return train_posterior(*posterior_, *network_, context(), settings(name_ + "-posterior"), targets,
+                           progress);
   }
-  [[nodiscard]] loop::LoopSettings settings() const {
+  /// Returns the settings of a training; `curve`: name of its learning curve.
+  [[nodiscard]] loop::LoopSettings settings(const std::string& curve) {
     loop::LoopSettings s;
     s.recipe = recipe_;
     s.recipe.epochs = epochs();
@@ -315,6 +318,13 @@ class NetworkRun {
     s.run = &identity_;
     s.gflops = request_.runtime.gflops;
     s.stop = request_.stop;
+    const bool drawn = request_.watch && curve == name_;
+    s.epoch_done = [this, drawn,
+                    files = std::make_shared<loop::LearningCurveFiles>(request_.out / "curves", curve)](
+                       const loop::LearningCurve& so_far) {
+      files->write(so_far);
+      if (drawn) progress_.chart(loop::learning_curve_chart(so_far));
+    };
     return s;
   }
   [[nodiscard]] std::vector<float> targets_of_training() const {

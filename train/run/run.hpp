@@ -31,6 +31,7 @@ struct RunRequest {
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
+  bool watch = false;               ///< draws the learning curve on the terminal
   std::function<bool()> stop = {};  ///< polled before each batch; empty: stop_asked()
 };
 

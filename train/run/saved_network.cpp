@@ -130,7 +130,8 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
            {{"epochs", parts.report.epochs},
             {"best_epoch", parts.report.best_epoch},
             {"seconds", parts.report.seconds},
-            {"validation_mse", parts.report.validation}}},
+            {"validation_mse", parts.report.validation},
+            {"curve", loop::learning_curve_json(parts.report.curve)}}},
           {"physics", physics_json(s)},
           {"swing", swing_json(s)},
           {"posterior", parts.posterior.head ? maps_json(parts.posterior) : json()},
@@ -289,8 +290,13 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   info_ = info_of(h);
   identity_ = std::make_unique<json>(h.at("run"));
   const json& training = h.at("training");
-  report_ = {true, training.at("epochs"), training.at("best_epoch"), training.at("seconds"),
-             training.at("validation_mse")};
+  report_.finished = true;
+  training.at("epochs").get_to(report_.epochs);
+  training.at("best_epoch").get_to(report_.best_epoch);
+  training.at("seconds").get_to(report_.seconds);
+  training.at("validation_mse").get_to(report_.validation);
+  // Networks of earlier versions have no curve.
+  if (training.contains("curve")) report_.curve = loop::read_learning_curve(training["curve"]);
   for (const auto& p : h.at("parameters")) {
     scale_.mean.push_back(p.at("mean"));
     scale_.unit.push_back(p.at("scale"));

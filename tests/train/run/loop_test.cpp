@@ -114,6 +114,14 @@ TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) {
     EXPECT_EQ(broken.epochs, 4u);
     EXPECT_EQ(broken.best_epoch, whole.best_epoch);
     EXPECT_EQ(broken.validation, whole.validation);
+    ASSERT_EQ(broken.curve.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(broken.curve[k].epoch, k + 1);
+      EXPECT_EQ(broken.curve[k].training, whole.curve[k].training);
+      EXPECT_EQ(broken.curve[k].validation, whole.curve[k].validation);
+      EXPECT_EQ(broken.curve[k].learning_rate, whole.curve[k].learning_rate);
+    }
+    EXPECT_EQ(broken.curve[broken.best_epoch - 1].validation, broken.validation);
   }
 }
 

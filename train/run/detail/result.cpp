@@ -137,6 +137,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
       {"batch", t.batch},
       {"learning_rate", t.learning_rate},
       {"validation_mse", parts.report.validation},
+      {"curve", loop::learning_curve_json(parts.report.curve)},
       {"run", identity(stream, r)}};
   if (!parts.posterior.is_null()) result["posterior"] = parts.posterior;
   if (!parts.several.is_null()) result["several"] = parts.several;

@@ -1,0 +1,53 @@
+#pragma once
+// Learning curve of a training run: errors of each epoch as CSV, as TensorBoard events and as a terminal
+// chart.
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace swingbank::train::loop {
+
+/// Errors of one epoch.
+struct EpochErrors {
+  std::size_t epoch = 0;       ///< number, from 1
+  double training = 0.0;       ///< mean loss of the training rows during the epoch
+  double validation = 0.0;     ///< loss of the validation rows after it
+  double learning_rate = 0.0;  ///< of its last step
+  double seconds = 0.0;        ///< wall clock since the start of the run, without interruptions [s]
+};
+using LearningCurve = std::vector<EpochErrors>;
+
+/// Returns the curve as JSON, one object per epoch, and reads it back.
+nlohmann::json learning_curve_json(const LearningCurve& curve);
+LearningCurve read_learning_curve(const nlohmann::json& curve);
+
+/// Returns the curve as CSV with a header line.
+std::string learning_curve_csv(const LearningCurve& curve);
+
+/// Returns the curve as TensorBoard event records: scalars "loss/training", "loss/validation" and
+/// "learning_rate" at step = epoch. The first record, the format's version, is present if `begin` is 0;
+/// otherwise the records of the epochs from index `begin` on. Format: a TFRecord of a protocol buffer `Event`
+/// each (https://github.com/tensorflow/tensorboard/blob/2.12.0/tensorboard/compat/proto/event.proto).
+std::string tensorboard_events(const LearningCurve& curve, std::size_t begin = 0);
+
+/// Returns a chart of `columns` characters' width: both losses against the epoch, on a logarithmic
+/// axis if they are positive.
+std::string learning_curve_chart(const LearningCurve& curve, std::size_t columns = 72);
+
+/// Files of a growing curve: <folder>/<run>.csv and <folder>/<run>/events.out.tfevents.*.
+class LearningCurveFiles {
+ public:
+  /// Writes nothing yet.
+  LearningCurveFiles(std::filesystem::path folder, std::string run);
+  /// Appends the new epochs; after a start, or if the curve is shorter than the files, writes them anew.
+  /// Throws InputError if a file cannot be written.
+  void write(const LearningCurve& curve);
+
+ private:
+  std::filesystem::path csv_, events_;
+  std::size_t written_ = 0;  ///< number of epochs in the files
+};
+
+}  // namespace swingbank::train::loop
