@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Generates man pages and bash completion from the programs' --help, so that neither is maintained by hand.
-#   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1 and OUT/completion.bash
+# Generates man pages and completion for bash, zsh and fish from the programs' --help: none is maintained by hand.
+#   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}
 set -euo pipefail
 bin=$1 version=$2 out=$3
 
@@ -40,22 +40,42 @@ page() {
     --source="swingbank $version" --output="$out/man1/$1.1" "$out/help/$1"
 }
 
-# "<command>\t<option>[\t<choices>]", a line for each option's name: "  --a,--b TEXT:{x,y} ...", "  --mode ENUM:value in {x->0} ..."
+# "<command>\t<option>\t<type>\t<choices>\t<meaning>", a line for each option's name. The type (TEXT, INT, ...) is - for
+# a flag. Choices are those of "--a,--b TEXT:{x,y} ..." or "--mode ENUM:value in {x->0} ...", or -. The meaning ends
+# at its first semicolon.
 options_of() {
   awk -v command="$1" '
+    function write_option(    i, count, names) {
+      gsub(/ \([^)]*\)?/, "", meaning); sub(/;.*/, "", meaning)
+      count = split(option, names, ",")
+      for (i = 1; i <= count; i++) print command "\t" names[i] "\t" type "\t" choices "\t" meaning
+      option = ""
+    }
+    # take(PATTERN): cuts what matches off the start of rest, and returns it
+    function take(pattern,    found) {
+      if (!match(rest, "^ ?" pattern)) return ""
+      found = substr(rest, RSTART, RLENGTH)
+      rest = substr(rest, RLENGTH + 1)
+      return found
+    }
+    option != "" && substr($0, 1, 30) ~ /^ +$/ { sub(/^ +/, ""); meaning = meaning (meaning == "" ? "" : " ") $0; next }
+    option != "" { write_option() }
     /^  -/ {
-      choices = ""
-      if (match($0, /^  [^ ]+ [A-Z]+:(value in )?\{[^}]*\}/)) {
-        choices = substr($0, RSTART, RLENGTH)
-        sub(/^.*\{/, "", choices); sub(/\}$/, "", choices)
-        gsub(/->[^,]*/, "", choices); gsub(/,/, " ", choices)
-      }
-      count = split($1, names, ",")
-      for (i = 1; i <= count; i++) {
-        sub(/\{.*/, "", names[i])
-        print command "\t" names[i] "\t" choices
-      }
-    }' "$out/help/$1"
+      rest = substr($0, 3)
+      option = take("[^ {]+(\\{[^ ]*)?")
+      gsub(/\{[^},]*\}?/, "", option)
+      type = choices = take("(TEXT|ENUM|FLOAT|INT|UINT)[^ ]*( in (\\[[^]]*\\]|\\{[^}]*\\})[^ ]*)?")
+      if (choices ~ /\{/) {
+        sub(/^.*\{/, "", choices); sub(/\}.*$/, "", choices); gsub(/->[^,]*/, "", choices); gsub(/,/, " ", choices)
+      } else
+        choices = "-"
+      sub(/^ /, "", type); sub(/[^A-Z].*/, "", type)
+      if (type == "") type = "-"
+      take("\\.\\.\\.( |$)"); take("REQUIRED"); take("Needs:( --[^ ]+)+")
+      sub(/^ +/, "", rest)
+      meaning = rest
+    }
+    END { if (option != "") write_option() }' "$out/help/$1"
 }
 
 see_also=
@@ -67,15 +87,61 @@ while IFS=$'\t' read -r command summary; do
 done < <(commands)
 page swingbank all "power-plant model validation at scale" "$see_also"
 
+# with_template FILE: OUT/FILE of the text from standard input and of cmake/completion/FILE below its line "# ---".
+with_template() {
+  cat - <(sed '1,/^# ---/d' "$(dirname "${BASH_SOURCE[0]}")/completion/$1") >"$out/$1"
+}
+
 {
   echo "# bash completion of swingbank $version, made from what its commands say to --help."
   echo "_swingbank_commands='$(commands | cut -f1 | tr '\n' ' ')'"
   echo 'declare -gA _swingbank_options=('
-  awk -F'\t' '{ all[$1] = all[$1] " " $2 } END { for (c in all) printf "  [%s]='\''%s'\''\n", c, substr(all[c], 2) }' "$out/options" | sort
+  awk -F'\t' '
+    { all[$1] = all[$1] " " $2 }
+    END { for (c in all) printf "  [%s]=\047%s\047\n", c, substr(all[c], 2) }' "$out/options" | sort
   echo ')'
   echo 'declare -gA _swingbank_choices=('
-  awk -F'\t' '$3 != "" { printf "  ['\''%s %s'\'']='\''%s'\''\n", $1, $2, $3 }' "$out/options"
+  awk -F'\t' '$4 != "-" { printf "  [\047%s %s\047]=\047%s\047\n", $1, $2, $4 }' "$out/options"
   echo ')'
-  sed '1,/^# ---/d' "$(dirname "${BASH_SOURCE[0]}")/completion.bash"
-} >"$out/completion.bash"
+} | with_template swingbank.bash
+
+quote="'"
+{
+  echo '#compdef swingbank'
+  echo "# zsh completion of swingbank $version, made from what its commands say to --help."
+  echo 'typeset -ga _swingbank_commands=('
+  commands | sed "s/$quote/$quote\\\\$quote$quote/g; s/^\\([^\t]*\\)\t/\\1:/; s/.*/  $quote&$quote/"
+  echo ')'
+  echo '# Prints the options of a command for _arguments.'
+  printf '_swingbank_options() {\n  case $1 in\n'
+  awk -F'\t' '
+    $1 != last {
+      printf "%s    %s)\n      cat <<\047OPTIONS\047\n", last == "" ? "" : "OPTIONS\n      ;;\n", $1
+      last = $1
+    }
+    {
+      meaning = $5
+      gsub(/\\/, "\\\\", meaning); gsub(/\[/, "\\[", meaning); gsub(/\]/, "\\]", meaning)
+      action = $4 != "-" ? "(" $4 ")" : $3 == "TEXT" ? "_files" : " "
+      printf "*%s[%s]%s\n", $2, meaning, $3 == "-" ? "" : ":" tolower($3) ":" action
+    }
+    END { print "OPTIONS\n      ;;" }' "$out/options"
+  printf '  esac\n}\n'
+} | with_template _swingbank
+
+{
+  echo "# fish completion of swingbank $version, made from what its commands say to --help."
+  { commands; cat "$out/options"; } | awk -F'\t' '
+    function quoted(text) { gsub(/[\\\047]/, "\\\\&", text); return "\047" text "\047" }
+    NF == 2 {
+      printf "complete -c swingbank -n __swingbank_words -a %s -d %s\n", $1, quoted($2)
+      printf "complete -c swingbank -n \047__swingbank_words help\047 -a %s -d %s\n", $1, quoted($2)
+      next
+    }
+    {
+      name = $2 ~ /^--/ ? "-l " substr($2, 3) : "-s " substr($2, 2)
+      value = $4 != "-" ? " -x -a " quoted($4) : $3 == "-" ? "" : $3 == "TEXT" ? " -r -F" : " -x"
+      printf "complete -c swingbank -n \047__swingbank_words %s\047 %s%s -d %s\n", $1, name, value, quoted($5)
+    }'
+} | with_template swingbank.fish
 rm -r "$out/help" "$out/more" "$out/options"

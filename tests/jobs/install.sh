@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # cmake --install into a scratch prefix. From an empty folder the commands, the README's example, the man pages and
-# the completion work there; the installation builds nothing.
+# the completions of bash, zsh and fish work there; the installation builds nothing.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 prefix=$work/prefix build=$(cd "$SWINGBANK_BIN/.." && pwd)
 
@@ -58,19 +58,34 @@ for command in compare effects; do
   done
 done
 
-# complete WORD...: completions after the words, the last of which is unfinished
-complete_after() {
+# complete_SHELL WORD...: completions after the words, the last of which is unfinished
+complete_bash() {
   bash -c '
     source "$1"; shift
     COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
     _swingbank "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
-    printf "%s\n" "${COMPREPLY[@]}"' - "$prefix/share/bash-completion/completions/swingbank" "$@" | sort
+    printf "%s\n" "${COMPREPLY[@]}"' - "$prefix/share/bash-completion/completions/swingbank" "$@"
 }
-cmp <(complete_after swingbank "" | grep -v -e '^-' -e '^help$') \
-  <(programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx read-hdf5 | sort) || fail "completion does not list the commands"
-cmp <(complete_after swingbank compare --) \
-  <(swingbank compare --help | grep -oE '^  -[^ {]+' | tr ',' '\n' | tr -d ' ' | grep -e '^--' | sort) ||
-  fail "completion does not list the options of compare"
-[[ $(complete_after swingbank comp) == compare ]] || fail "completion of comp"
-[[ $(complete_after swingbank compare --drive "" | xargs) == "pq voltage" ]] || fail "completion of --drive"
-[[ -z $(complete_after swingbank compare --model "") ]] || fail "completion of a file must be left to the shell"
+complete_zsh() {
+  HOME=$work zsh -f "$SWINGBANK_SOURCE/tests/jobs/complete.zsh" "$prefix/share/zsh/vendor-completions" "$*"
+}
+complete_fish() {
+  HOME=$work XDG_CONFIG_HOME=$work/fish XDG_DATA_HOME=$work/fish XDG_DATA_DIRS=$prefix/share \
+    fish -c 'complete --do-complete "$argv"' "$*" | cut -f1
+}
+programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx read-hdf5 | sort >"$work/commands"
+swingbank compare --help | grep -oE '^  -[^ {]+' | tr ',' '\n' | tr -d ' ' | grep -e '^--' | sort >"$work/options"
+for shell in bash zsh fish; do
+  completed() { "complete_$shell" "$@" | sort; }
+  cmp <(completed swingbank "" | grep -v -e '^-' -e '^help$') "$work/commands" || fail "$shell does not complete commands"
+  cmp <(completed swingbank compare --) "$work/options" || fail "$shell does not complete the options of compare"
+  cmp <(completed swingbank compare --component plant --) "$work/options" || fail "$shell takes a value for a command"
+  [[ $(completed swingbank comp) == compare ]] || fail "$shell does not complete comp"
+  [[ $(completed swingbank help comp) == compare ]] || fail "$shell does not complete help comp"
+  [[ $(completed swingbank compare --drive "" | xargs) == "pq voltage" ]] || fail "$shell does not complete --drive"
+  [[ -z $(completed swingbank compare --threads "") ]] || [[ $shell == bash ]] || fail "$shell completes a number"
+  file=$(completed swingbank compare --model ${model%.toml})
+  # bash completes files itself (-o default).
+  if [[ $shell == bash ]]; then [[ -z $file ]]; else [[ $file == *"${model##*/}" ]]; fi ||
+    fail "$shell completes a file to '$file'"
+done
