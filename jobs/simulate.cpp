@@ -226,6 +226,12 @@ void describe_run(mpi::store::h5::File& h, const Options& o, const grid::Grid& g
   h.attribute("plant_base_mva", bases);
   h.attribute("channel_names", names);
   h.attribute("channel_units", units);
+  h.create_labels("/plant", plants);
+  h.write_labels("/plant", plants);
+  h.describe("/plant", "1", "name of the plant");
+  h.create_labels("/channel", names);
+  h.write_labels("/channel", names);
+  h.describe("/channel", "1", "name of the channel");
 }
 
 void write_hdf5(const std::filesystem::path& file, const Options& o, const grid::Grid& grid,
@@ -236,34 +242,39 @@ void write_hdf5(const std::filesystem::path& file, const Options& o, const grid:
           (run.values.size() + run.bus_v.size() * 2 + (run.frequency.size() + 1) * samples) * sizeof(double) +
               65536);
   mpi::store::h5::File h = mpi::store::h5::File::create(temporary_name(file));
+  std::vector<mpi::store::h5::File::Axes> axes;
   const auto put = [&](const std::string& name, const mpi::store::h5::Shape& shape,
-                       const std::vector<double>& values) {
+                       const std::vector<double>& values, const char* units, const char* meaning,
+                       const std::vector<std::string>& scales) {
     h.create<double>(name, shape);
     h.write(name, 0, shape[0], values.data());
+    h.describe(name, units, meaning);
+    if (!scales.empty()) axes.push_back({name, scales});
   };
   std::vector<double> time(run.samples);
   for (int k = 0; k < run.samples; ++k) time[k] = k / run.rate;
-  put("/time", {samples}, time);
-  h.attribute("unit", std::string("s"), "/time");
-  put("/records", {run.plants.size(), run.channels.size(), samples}, run.packed());
-  h.attribute("unit", std::string("see channel_units; per unit on each plant's own base"), "/records");
+  put("/time", {samples}, time, "s", "time since the start of the run", {});
+  put("/records", {run.plants.size(), run.channels.size(), samples}, run.packed(), "see channel_units",
+      "records at the plants' terminals, per unit on each plant's own base", {"/plant", "/channel", "/time"});
   if (!run.frequency.empty()) {
     std::vector<double> all;
     for (const auto& f : run.frequency) all.insert(all.end(), f.begin(), f.end());
-    put("/measured_frequency", {run.frequency.size(), samples}, all);
-    h.attribute("unit", std::string("Hz"), "/measured_frequency");
+    put("/measured_frequency", {run.frequency.size(), samples}, all, "Hz", "measured frequency",
+        {"/plant", "/time"});
   }
   if (!run.buses.empty()) {
     std::vector<std::int32_t> numbers;
     for (int b : run.buses) numbers.push_back(grid.network.buses[b].number);
     h.create<std::int32_t>("/bus_number", {run.buses.size()});
     h.write("/bus_number", 0, run.buses.size(), numbers.data());
-    put("/bus_voltage", {run.buses.size(), samples}, run.bus_v);
-    h.attribute("unit", std::string("pu"), "/bus_voltage");
-    put("/bus_angle", {run.buses.size(), samples}, run.bus_theta);
-    h.attribute("unit", std::string("rad"), "/bus_angle");
+    h.describe("/bus_number", "1", "number of the bus");
+    put("/bus_voltage", {run.buses.size(), samples}, run.bus_v, "pu", "magnitude of the bus voltage",
+        {"/bus_number", "/time"});
+    put("/bus_angle", {run.buses.size(), samples}, run.bus_theta, "rad", "angle of the bus voltage",
+        {"/bus_number", "/time"});
   }
   describe_run(h, o, grid, run);
+  h.attach_scales(axes);
   h.close();
   publish(file);
 }

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 #include <xxhash.h>
 
+#include <numeric>
+
 #include "base/durable.hpp"
 #include "mpi/store/hdf5_file.hpp"
 
@@ -45,7 +47,9 @@ void write_databank(const std::filesystem::path& file, const Databank& bank, con
     low.push_back(b.low);
     high.push_back(b.high);
   }
-  reserve(file, bank.values.size() * sizeof(double));
+  std::vector<std::uint64_t> points(bank.points());
+  std::iota(points.begin(), points.end(), 0);
+  reserve(file, (bank.values.size() + points.size()) * sizeof(double));
   store::h5::File f = store::h5::File::create(temporary_name(file));
   f.attribute("format", std::string(kFormat));
   f.attribute("machine_model", config.model);
@@ -58,7 +62,15 @@ void write_databank(const std::filesystem::path& file, const Databank& bank, con
   f.attribute("parameter_high", high);
   if (!config.other_effects().empty()) f.attribute("parameter_effects", effects);
   f.create<double>("/parameters", {bank.points(), bank.dimensions});
+  f.create<std::uint64_t>("/point", {points.size()});
+  f.create_labels("/parameter", names);
+  f.describe("/parameters", "see parameter_units", "parameter values of the points");
+  f.describe("/point", "1", "number of the point");
+  f.describe("/parameter", "1", "name of the parameter");
+  f.attach_scales({{"/parameters", {"/point", "/parameter"}}});
   f.write("/parameters", 0, bank.points(), bank.values.data());
+  f.write("/point", 0, points.size(), points.data());
+  f.write_labels("/parameter", names);
   f.close();
   publish(file);
 }

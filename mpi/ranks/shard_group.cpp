@@ -37,7 +37,7 @@ std::uint64_t size_on_disk(const store::ShardData& part, std::uint64_t rows, std
       sizeof(std::uint64_t) + sizeof(std::int32_t) + sizeof(double) * (store::kFaultColumns + 2);
   const std::uint64_t row =
       part.channels * part.samples * sizeof(float) + part.parameter_count * sizeof(double) + fixed;
-  constexpr std::uint64_t own = 64 * 1024;
+  const std::uint64_t own = part.samples * sizeof(double) + 64 * 1024;
   const std::uint64_t draw = sizeof(std::uint64_t) + 1 + store::kRedrawnColumns * sizeof(std::int32_t);
   return rows * row + draws * draw + own;
 }

@@ -181,6 +181,20 @@ class File {
     transfer(object, first, count, Type<T>::memory(), nullptr, values);
   }
 
+  /// Creates a one-dimensional array of texts, stored with a fixed length in UTF-8.
+  void create_labels(const std::string& object, const std::vector<std::string>& labels);
+  /// Writes the texts with which create_labels was called.
+  void write_labels(const std::string& object, const std::vector<std::string>& labels);
+  /// Writes the attributes `units` and `long_name` of an array, which viewers and xarray show.
+  void describe(const std::string& object, const std::string& units, const std::string& long_name);
+  /// Array and, for each of its axes, the one-dimensional array with the axis' values.
+  struct Axes {
+    std::string array;                ///< "/records"
+    std::vector<std::string> scales;  ///< one for each dimension: "/sample_id", "/channel", "/time"
+  };
+  /// Makes the scales HDF5 dimension scales of all arrays that have them. To be called once for a file.
+  void attach_scales(const std::vector<Axes>& all);
+
   /// Writes a text as attribute of `object`.
   void attribute(const std::string& name, const std::string& value, const std::string& object = "/");
   /// Writes a list of texts as attribute of `object`.

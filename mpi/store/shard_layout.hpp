@@ -13,6 +13,18 @@ struct ShardSize {
   std::uint64_t rows, draws;  ///< numbers of rows and draws
 };
 
+/// Labels of the axes of a dataset's arrays.
+struct ShardAxes {
+  const std::vector<std::string>&channel_names, &parameter_names;  ///< of /records and /parameters
+  std::uint64_t samples;                                           ///< of a channel and row
+  double rate;                                                     ///< sampling rate [1/s]
+};
+/// Creates the dimension scales; describes the arrays that the file has, with units, and connects them with
+/// the scales. Collective if the file was opened collectively.
+void lay_out_axes(h5::File& file, const ShardAxes& axes);
+/// Writes the values of the dimension scales. Not collective.
+void fill_axes(h5::File& file, const ShardAxes& axes);
+
 /// Creates arrays and attributes; `data` gives the shape of a row and the attributes. Collective if the file
 /// was opened collectively.
 void lay_out_shard(h5::File& file, const ShardData& data, ShardSize size);

@@ -53,6 +53,9 @@ bool write_virtual_dataset(const Dataset& d) {
   f.create_group("/draws");
   for (const char* array : kOfDraws)
     if (example.has(array)) f.create_virtual(array, example, parts_of(d, array, true));
+  const ShardAxes axes{d.channel_names, d.parameter_names, d.samples, d.rate};
+  lay_out_axes(f, axes);
+  fill_axes(f, axes);
   f.close();
   publish(file);
   return true;

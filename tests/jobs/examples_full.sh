@@ -63,5 +63,9 @@ python read_databank bank.h5 >databank || fail "read_databank.py"
 # printed LINE SCRIPT FILE
 printed() { python "${@:2}" >printed && grep -q "^$1" printed || fail "$2.py does not print '$1'"; }
 printed "stable: 0 to 3 s" read_run run.h5
+printed 'records (plant: 5, channel: 9, time: 361) \[see channel_units\] records at the plants' show_axes run.h5
+printed 'parameters (sample_id: [0-9]*, parameter: 14) \[see parameter_units\]' show_axes data/dataset.h5
+printed 'parameters (point: 100, parameter: 14) ' show_axes bank.h5
+printed '<xarray.Dataset>' show_axes bank.h5
 printed "901 samples at 60.00/s" read_record "$record"
 printed "GENROU.H = 6.54" read_plant "$model"

@@ -27,7 +27,7 @@ with h5py.File(folder + "/run.h5") as run:
     assert list(run.attrs["plant_names"]) == ["2", "8"] and list(run.attrs["plant_base_mva"]) == [100, 50]
     assert list(run.attrs["channel_names"]) == ["delta", "P", "V"]
     assert list(run.attrs["channel_units"]) == ["rad", "pu", "pu"]
-    assert run["time"].attrs["unit"] == "s" and run["bus_angle"].attrs["unit"] == "rad"
+    assert run["time"].attrs["units"] == "s" and run["bus_angle"].attrs["units"] == "rad"
     assert run.attrs["outcome"] == "stable" and run.attrs["faults"] == "5:1:1.1:0.001:0.01"
     assert list(run["bus_number"]) == [5, 9]
     buses = np.stack([run["bus_voltage"][:], run["bus_angle"][:]], axis=1).reshape(4, -1)
@@ -42,6 +42,9 @@ with h5py.File(folder + "/lanes.h5") as lanes, h5py.File(folder + "/reference.h5
     difference = np.abs(lanes["records"][:] - reference["records"][:]).max()
     assert difference < 1e-4, difference  # the promised accuracy of the SIMD batch
 PYTHON
+
+/usr/bin/python3 "$SWINGBANK_SOURCE/tests/jobs/axes.py" "$work/run.h5" records=plant,channel,time \
+  bus_voltage=bus_number,time bus_angle=bus_number,time || fail "axes of run.h5"
 
 # Unbalanced faults by hand: two machines at no load and 1 pu (X'' = 0.2 and 0.3 pu), a line of 0.1 pu between
 # them, a fault at the second. Z1 = Z2 = (0.2 + 0.1) parallel to 0.3 = j0.15 pu, Z0 = j0.05 pu. The positive

@@ -52,7 +52,7 @@ assert list(one) == ["t_s", "2.P_pu", "2.Efd_pu", "2.f_hz"]
 assert abs(one["2.P_pu"][0] / true["2.P_pu"][0] - 1.01) < 1e-9  # the CSV has 12 digits
 with h5py.File(f"{sys.argv[1]}/one.h5") as file:
     assert file["measured_frequency"].shape == (1, 241)
-    assert file["measured_frequency"].attrs["unit"] in ("Hz", b"Hz")
+    assert file["measured_frequency"].attrs["units"] in ("Hz", b"Hz")
     assert "CTERROR:gain=0.01" in str(file.attrs["measured"])
 with h5py.File(f"{sys.argv[1]}/true_reference.h5") as file:
     assert "measured_frequency" not in file

@@ -24,3 +24,18 @@ assert header["frequency"] == 60.0 and header["generators"] == [3] and header["m
 assert dict(zip(header["held_names"], header["held"][0])) == {"Ra": 0.0}
 PYTHON
 cd "$work/data" && "$python3" "$work/read.py"
+
+# Units and axes, as a viewer and xarray find them; 16-bit records at drawn operating points have further arrays.
+axes() { "$python3" "$SWINGBANK_SOURCE/tests/jobs/axes.py" "$@" || fail "axes of $1"; }
+of_rows=("records=sample_id,channel,time" "parameters=sample_id,parameter" "generator=sample_id"
+  "fault=sample_id,fault_column" "largest_spread=sample_id" "angle_valid=sample_id,time"
+  "draws/outcome=draws/sample_id")
+for file in shards/shard-000000.h5 dataset.h5; do axes "$file" "${of_rows[@]}"; done
+"$generate" "$configs/ieee14_genrou_points.toml" --draws 8 --draws-per-shard 4 --int16 --channels P frequency --progress none \
+  --out "$work/int16" >/dev/null 2>&1
+for file in shards/shard-000000.h5 dataset.h5; do
+  axes "$work/int16/$file" "${of_rows[@]}" record_scale=sample_id,channel,record_scale_column machine_base=sample_id \
+    draws/redrawn=draws/sample_id,draws/redrawn_column
+done
+"$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 50 --out "$work/bank.h5" >/dev/null 2>&1
+axes "$work/bank.h5" parameters=point,parameter

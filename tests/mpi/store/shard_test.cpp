@@ -96,6 +96,13 @@ TEST(Shard, EmptyShardIsReadable) {
   EXPECT_EQ(r.samples, 9u);
 }
 
+TEST(Shard, FileWithoutDimensionScalesIsReadable) {  // as written before they were added
+  const ShardData r = read_shard(SWINGBANK_SOURCE "/tests/fuzz/corpus/shard/two_draws");
+  EXPECT_EQ(r.rows, 1u);
+  EXPECT_EQ(r.records.size(), 7u * 1800);
+  EXPECT_EQ(r.draw_outcome.size(), 2u);
+}
+
 TEST(Shard, EqualContentMakesEqualBytes) {
   const Folder folder;
   write_shard(folder.path / "a.h5", sample_shard());
