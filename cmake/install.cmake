@@ -21,6 +21,11 @@ install(CODE "foreach(level x86-64-v3 x86-64-v4)
   endif()
 endforeach()")
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
+# The environment module names the prefix, which is known only now.
+install(CODE "set(PROJECT_VERSION ${PROJECT_VERSION})
+set(CMAKE_INSTALL_BINDIR ${CMAKE_INSTALL_BINDIR})
+configure_file(\"${PROJECT_SOURCE_DIR}/packaging/modulefile\" \"${PROJECT_BINARY_DIR}/modulefile\" @ONLY)")
+install(FILES ${PROJECT_BINARY_DIR}/modulefile DESTINATION ${CMAKE_INSTALL_DATADIR}/modulefiles/swingbank RENAME ${PROJECT_VERSION})
 
 # README.md's relative links lead to the same paths in the installation.
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

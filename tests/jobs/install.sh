@@ -20,6 +20,17 @@ for file in README.md LICENSE CHANGELOG.md docs/reference/formats.md validate/RE
   [[ -s $prefix/share/doc/swingbank/$file ]] || fail "no share/doc/swingbank/$file"
 done
 
+# The environment module, in a shell that knows nothing of the prefix.
+in_shell() { env -i PATH=/usr/bin:/bin HOME="$work" MODULEPATH="$prefix/share/modulefiles" bash -c "$1"; }
+load='eval "$(modulecmd bash load swingbank)"'
+[[ $(in_shell "$load; command -v swingbank") == "$prefix/bin/swingbank" ]] || fail "the module's PATH"
+[[ $(in_shell "$load; swingbank --version") == "$("$SWINGBANK_BIN/swingbank" --version)" ]] || fail "the module's swingbank"
+[[ $(in_shell "$load; echo \$CMAKE_PREFIX_PATH") == "$prefix" ]] || fail "the module's CMAKE_PREFIX_PATH"
+if [[ -d $prefix/lib/python3/dist-packages/swingbank ]]; then
+  in_shell "$load; /usr/bin/python3 -c 'import swingbank'" || fail "the module's PYTHONPATH"
+fi
+[[ -z $(in_shell "$load; eval \"\$(modulecmd bash unload swingbank)\"; command -v swingbank") ]] || fail "unloading the module"
+
 # From PATH, in an empty folder, without the build folder and the source tree.
 export PATH=$prefix/bin:$PATH
 mkdir "$work/empty"
