@@ -252,7 +252,7 @@ void flip_every(std::size_t step) {
 }
 
 TEST(DatasetFolder, DetectsFlippedBytes) { flip_every(37); }
-TEST(DatasetFolderFull, DetectsEveryFlippedByte) { flip_every(1); }
+TEST(DatasetFolderNightly, DetectsEveryFlippedByte) { flip_every(1); }
 
 TEST(JournalFile, DropsAHalfWrittenLastLine) {
   const TwoShards folder;
