@@ -131,7 +131,12 @@ struct PageServer::State {
     found->second->used = std::chrono::steady_clock::now();
     return found->second;
   }
-  std::pair<std::string, std::shared_ptr<Page>> open() {
+  /// Returns the session of this name if it is open, as after a reload; else a new one.
+  std::pair<std::string, std::shared_ptr<Page>> open(const std::string& known) {
+    {
+      const std::lock_guard guard(lock);
+      if (const auto found = pages.find(known); found != pages.end()) return *found;
+    }
     auto submitted = parts.first();
     auto page = std::make_shared<Page>(parts.setup, std::move(submitted));
     std::shared_ptr<Page> closed;  // destroyed after the lock
@@ -208,6 +213,8 @@ struct PageServer::State {
           });
           message = live::step_json(*parts.setup, *of->session.step(k), k);
           message["type"] = "step";
+        } else if (type == "diagnosis") {
+          of->session.diagnosed(request.at("step"), message.at("sentence"));
         }
         ended = ended || type == "step" || type == "end" || type == "failed";
       } catch (const std::exception& error) {
@@ -308,12 +315,17 @@ void PageServer::State::routes() {
   http.Get(at + "/", [file](const Request&, Response& out) { file("index.html", out); });
   http.Get(at + R"(/page/([A-Za-z0-9._-]+))",
            [file](const Request& r, Response& out) { file(r.matches[1], out); });
-  http.Post(api("open"), [this](const Request&, Response& out) {
-    const auto [name, of] = open();
+  http.Post(api("open"), [this](const Request& r, Response& out) {
+    const json body = r.body.empty() ? json::object() : json::parse(r.body);
+    const auto [name, of] = open(body.value("session", ""));
     const auto step = of->session.step(0);
+    json later = json::array();
+    for (const int k : of->session.kept())
+      if (k > 0) later.push_back(live::step_json(*parts.setup, *of->session.step(k), k));
     reply(out, {{"session", name},
                 {"setup", live::setup_json(*parts.setup, *step)},
-                {"step", live::step_json(*parts.setup, *step, 0)}});
+                {"step", live::step_json(*parts.setup, *step, 0)},
+                {"steps", later}});
   });
   http.Get(api("submitted"), [this](const Request& r, Response& out) {
     const auto of = page(r);

@@ -93,11 +93,14 @@ int run(Command& c) {
   parts.start_fit = [&](const json& request) { return forks.start(request); };
   parts.progress = progress_text;
   parts.save = [&](const live::Session& session, int step) {
+    const bool replaced =
+        std::filesystem::exists(std::filesystem::path(c.of.out) / live::saved_files().front());
     OutputFolder folder(c.of.out, "serve", live::saved_files(), c.of.judging.outputs());
     report::Provenance provenance = {{"software", fmt::format("swingbank {}", jobs::version())},
                                      {"model", c.of.model}};
     jobs::sign(provenance, c.of.judging, c.of.model, c.of.records);
     json saved = live::save(session, step, folder, provenance);
+    saved["replaced"] = replaced;
     folder.finish();
     if (!c.of.judging.pdf.empty()) {
       c.of.judging.print(folder.path() / "report.html");

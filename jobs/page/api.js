@@ -1,6 +1,13 @@
 // Requests to the server. The page's address ends with the token, so relative addresses carry it.
-let session = "";
+let session = sessionStorage.getItem("session") ?? "";
 
+const request = async (name, options) => {
+  try {
+    return await fetch(name, options);
+  } catch {
+    throw new Error("The server does not answer: start swingbank serve again, and open its new address.");
+  }
+};
 async function checked(answer) {
   if (answer.ok) return answer;
   const text = await answer.text();
@@ -14,13 +21,14 @@ async function checked(answer) {
 }
 const query = (values = {}) => "?" + new URLSearchParams({ s: session, ...values });
 const post = (name, body) =>
-  fetch("api/" + name + query(), { method: "POST", body: JSON.stringify(body) }).then(checked);
-const get = (name, values) => fetch("api/" + name + query(values)).then(checked);
+  request("api/" + name + query(), { method: "POST", body: JSON.stringify(body) }).then(checked);
+const get = (name, values) => request("api/" + name + query(values)).then(checked);
 
-/** Opens a session; returns {setup, step}. */
+/** Opens this tab's session again, or a new one; returns {setup, step, steps}. */
 export async function open() {
-  const answer = await (await fetch("api/open", { method: "POST" }).then(checked)).json();
+  const answer = await (await post("open", { session })).json();
   session = answer.session;
+  sessionStorage.setItem("session", session);
   return answer;
 }
 /** Waits for the comparison of the submitted model with fitted switching times; returns {setup, step}. */
@@ -41,9 +49,10 @@ export const change = async (body) => (await post("change", body)).json();
 export const fit = async (body) => (await post("fit", body)).json();
 export const stop = async () => (await post("stop", {})).json();
 export const save = async (k) => (await post("save", { step: k })).json();
-/** Calls `receive` with every message of fits. */
-export function listen(receive) {
+/** Calls `receive` with every message of fits, and `lost` with the error if the server does not answer any more. */
+export function listen(receive, lost) {
   const stream = new EventSource("api/stream" + query());
   stream.onmessage = (m) => receive(JSON.parse(m.data));
+  stream.onerror = () => get("step", { k: 0 }).catch(lost);
   return stream;
 }

@@ -7,7 +7,7 @@ export function build(state, choose) {
   by("chips").replaceChildren(
     ...setup.events.map((event, e) => {
       const unseen = step.held_out.includes(event.name);
-      const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out)" : "";
+      const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out next)" : "";
       const group = make(
         "div",
         { className: "group" + (e === state.event ? " now" : "") },
@@ -48,7 +48,9 @@ export function build(state, choose) {
 export function moving(event, errors) {
   for (const chip of by("chips").querySelectorAll(`.chip[data-event="${event}"]`)) {
     const e = errors[chip.dataset.channel];
+    chip.classList.remove(...Object.keys(sign));
     chip.classList.add("moving");
+    chip.firstChild.textContent = "… ";
     chip.querySelector(".ratio").textContent = times(e.noise > 0 ? e.rms / e.noise : NaN);
   }
 }

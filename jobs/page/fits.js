@@ -1,6 +1,6 @@
 // Diagnosis and its candidates: progress, inferred inputs, probabilities, next measurement.
 import { small } from "./charts.js";
-import { by, digits, make, percent } from "./format.js";
+import { by, digits, make, percent, times } from "./format.js";
 
 let candidates = [];
 export const best = () => candidates.find((c) => c.effect)?.effect;
@@ -9,7 +9,7 @@ export function busy(on) {
   by("stop").hidden = by("progress").hidden = !on;
   for (const id of ["diagnose", "fit"]) by(id).disabled = on;
   for (const b of document.querySelectorAll("#candidates button, #any button")) b.disabled = on;
-  if (on) progress({ text: "starting" });
+  if (on) progress({ text: "Starting …" });
 }
 export function progress(message) {
   const share = /^(\d+) % done/.exec(message.text ?? "");
@@ -22,6 +22,7 @@ export function progress(message) {
 const fall = [];
 export function reached(message) {
   fall.push(message.chi2);
+  if (fall.length < 2) return;
   const w = 360,
     h = 70,
     top = Math.log(Math.max(...fall)),
@@ -33,10 +34,15 @@ export function reached(message) {
     `<svg viewBox="0 0 ${w} ${h}" role="img" aria-label="fall of the error">` +
     `<polyline points="${points}" fill="none" stroke="currentColor" stroke-width="2"/><text x="${x(fall.length - 1) + 6}" y="${y(fall.at(-1)) + 4}">χ² ${digits(fall.at(-1), 3)}</text></svg>`;
 }
-export function clear() {
-  candidates = [];
+/** Removes the fall of the error. */
+export function clearFall() {
   fall.length = 0;
   by("fall").replaceChildren();
+}
+/** Removes the results of the former diagnosis. */
+export function clear() {
+  candidates = [];
+  clearFall();
   by("said").textContent = "";
   for (const id of ["inputs", "candidates", "decide"]) by(id).replaceChildren();
 }
@@ -88,4 +94,27 @@ export function result(message, event, add) {
         .join("; "),
     );
   }
+}
+/** Says how the error changed, what else moved, and what to do next. */
+export function summary(m, before, events) {
+  const said = [
+    m.ratio < before
+      ? `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise.`
+      : `${m.label}: the largest error does not fall (${times(before)} before, ${times(m.ratio)} noise after).`,
+  ];
+  const changed = m.sliders
+    .filter((p) => p.submitted !== undefined && p.value !== p.submitted)
+    .map((p) => ({ name: p.name, by: p.submitted ? (100 * (p.value - p.submitted)) / Math.abs(p.submitted) : NaN }))
+    .sort((a, b) => Math.abs(b.by) - Math.abs(a.by));
+  if (changed.length) {
+    const most = changed.find((p) => Number.isFinite(p.by));
+    const largest = most ? `, ${most.name} most (${most.by > 0 ? "+" : ""}${digits(most.by, 2)} %)` : "";
+    said.push(`Submitted parameters that moved: ${changed.length}${largest}.`);
+  }
+  if (m.held_out.length) said.push(`Held out of this fit: ${m.held_out.join(", ")}.`);
+  else if (m.kind === "added" && events > 1)
+    said.push("To test it on an event that the fit has not seen: undo, tick “hold out of fits” there, and add it again.");
+  if (m.kind === "added" && !m.evidence) said.push("The command at the foot of the page also computes the evidence.");
+  if (m.complete || m.fit) said.push("Save the model when you are content.");
+  return said.join(" ");
 }

@@ -26,4 +26,4 @@ export function level(chip) {
   if (chip.limit > 1) return "bad";
   return chip.bound > 1 && chip.judged ? "warn" : "good";
 }
-export const sign = { good: "✓", warn: "!", bad: "✕" };
+export const sign = { good: "✓", warn: "!", bad: "✗" };

@@ -21,19 +21,18 @@ const state = {
   curves: new Map(),
   running: null,
   number: 0,
+  trying: null, // comparison of a value that was changed
+  diagnosed: null, // step of the diagnosis whose candidates are shown
 };
 
 function fail(error) {
   by("failure").textContent = error.message ?? String(error);
   by("failure").hidden = false;
-  clearTimeout(fail.timer);
-  fail.timer = setTimeout(() => {
-    by("failure").hidden = true;
-  }, 9000);
 }
 const guard =
   (action) =>
   async (...words) => {
+    by("failure").hidden = true;
     try {
       return await action(...words);
     } catch (error) {
@@ -117,6 +116,10 @@ function enlarge(channel, from, to) {
   by("charts").scrollIntoView({ block: "nearest" });
 }
 
+const about = (s) => [
+  ...(s.evidence ? [`evidence ${Math.round(s.evidence).toLocaleString("en")}`] : []),
+  ...(s.held_out.length ? [`held out: ${s.held_out.join(", ")}`] : []),
+];
 function showSteps() {
   const shown = [...state.known.values()].filter((s) => s.kind !== "manual" || s.step === state.step.step);
   by("steps").replaceChildren(
@@ -124,17 +127,7 @@ function showSteps() {
       const b = make(
         "button",
         {},
-        make(
-          "span",
-          {},
-          s.label,
-          make("small", {
-            textContent: s.evidence
-              ? `evidence ${Math.round(s.evidence).toLocaleString("en")}` +
-                (s.held_out.length ? `; held out: ${s.held_out.join(", ")}` : "")
-              : "",
-          }),
-        ),
+        make("span", {}, s.label, make("small", { textContent: about(s).join("; ") })),
         make("span", { className: "error", textContent: times(s.ratio) + " noise" }),
       );
       b.addEventListener(
@@ -147,12 +140,18 @@ function showSteps() {
   by("undo").disabled = !state.past.length;
   by("redo").disabled = !state.future.length;
 }
+/** Shows a command line; `model.toml` is a file that has to be saved first. */
+function showCommand(text) {
+  by("command").textContent = text;
+  by("first").hidden = !/ --model model\.toml\b/.test(text);
+}
 function showStep() {
   const { step } = state;
   by("verdict").textContent = step.verdict;
   by("verdict").className = step.complete && step.fit ? "good" : step.fit || step.complete ? "warn" : "bad";
   by("reason").textContent = step.sentence || step.reason;
-  by("command").textContent = step.command;
+  showCommand(step.command);
+  by("save").classList.toggle("primary", step.step > 0 && (step.complete || step.fit));
   by("band").hidden = !step.bands;
   by("now").textContent = step.step ? `this model: ${step.label}` : "this model (as submitted)";
   chips.build(state, guard(choose));
@@ -174,6 +173,7 @@ async function enter(step, keepPast = false) {
   }
   state.known.set(step.step, step);
   state.step = step;
+  sessionStorage.setItem("step", step.step);
   state.base = step.kind === "manual" ? step.parent : step.step;
   const base = state.known.get(state.base) ?? step;
   state.values = {};
@@ -224,6 +224,7 @@ function hold(event, on) {
     state.heldOut.delete(name);
     fail(new Error("Every event would be held out: a fit needs at least one."));
   }
+  sessionStorage.setItem("heldOut", JSON.stringify([...state.heldOut]));
   by("hold").checked = state.heldOut.has(state.setup.events[state.event].name);
   chips.build(state, guard(choose));
 }
@@ -283,9 +284,10 @@ function moved(name, value) {
   state.values[name] = value;
   by("verdict").textContent = "Trying …";
   by("verdict").className = "";
+  by("reason").textContent = "The curves of this event follow. All events are compared when you let go.";
   fly();
 }
-const settled = guard(async () => {
+async function compareChanged() {
   const number = ++state.number; // stale previews are dropped
   try {
     const step = await api.change({ step: state.base, values: state.values });
@@ -296,17 +298,25 @@ const settled = guard(async () => {
     await showEvent();
     throw error;
   }
-});
+}
+const settled = guard(() => (state.trying = compareChanged()));
+/** An action on the present step: it waits for the comparison of a value that was just changed. */
+const onStep = (action) =>
+  guard(async (...words) => {
+    await state.trying?.catch(() => {}); // settled() shows this error
+    return action(...words);
+  });
 
 // --- fits
 async function start(request) {
   const held = [...state.heldOut];
-  if (request.kind === "diagnose") fits.clear();
+  fits.clearFall();
+  if (request.kind === "diagnose") {
+    fits.clear();
+    state.diagnosed = state.step.step;
+    showCommand(`swingbank diagnose --model ${state.step.step ? "model.toml" : state.setup.file}${state.setup.options}`);
+  }
   fits.busy(true);
-  by("command").textContent =
-    request.kind === "diagnose"
-      ? `swingbank diagnose --model ${state.step.step ? "model.toml" : state.setup.file}${state.setup.options}`
-      : by("command").textContent;
   try {
     await api.fit({ ...request, step: state.step.step, held_out: held });
     state.running = request.kind;
@@ -315,7 +325,12 @@ async function start(request) {
     throw error;
   }
 }
-const add = guard((effect) => (effect ? start({ kind: "add", effect }) : undefined));
+const add = onStep((effect) => start({ kind: "add", effect }));
+/** Adds a candidate to the model that was diagnosed, which need not be the present one. */
+const addCandidate = onStep(async (effect) => {
+  if (state.diagnosed !== null && state.diagnosed !== state.step.step) await goTo(state.diagnosed);
+  await start({ kind: "add", effect });
+});
 const receive = guard(async (m) => {
   if (m.type === "progress") return fits.progress(m);
   if (m.type === "reached") {
@@ -326,42 +341,38 @@ const receive = guard(async (m) => {
       charts.animate(event.channels.map((c, k) => Float32Array.from(c, (v) => v * own[k].scale)));
     return undefined;
   }
-  if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, add);
+  if (m.type === "preliminary" || m.type === "diagnosis") return fits.result(m, state.event, addCandidate);
   fits.busy(false);
   state.running = null;
   if (m.type === "step") {
     const before = state.step.ratio;
-    fits.clear();
+    fits.clearFall();
     await enter(m);
-    by("said").textContent =
-      `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise. ` +
-      (m.held_out.length
-        ? `${m.held_out.join(", ")} was not part of the fit. `
-        : "Tick “hold out of fits” at an event and add again to test it on that event. ") +
-      "Save the model when you are content.";
+    by("said").textContent = fits.summary(m, before, state.setup.events.length);
+    if (innerWidth < 700) by("verdict").scrollIntoView({ block: "start" });
   }
   if (m.type === "failed") by("said").textContent = m.text;
 });
 
-const save = guard(async () => {
-  const saved = await api.save(state.step.step);
+const save = onStep(async () => {
+  const { step } = state;
+  const saved = await api.save(step.step);
   by("saved").replaceChildren(
-    "Saved: ",
+    `Saved “${step.label}” (${times(step.ratio)} noise)${saved.replaced ? " in place of the files that were there" : ""}: `,
     saved.files.join(", "),
-    ". ",
-    ...saved.notes.map((n) => n + ". "),
-    "Check it: ",
+    ". Check it: ",
     make("code", { textContent: saved.command }),
+    ...saved.notes.map((n) => make("small", { textContent: n })),
   );
-  by("command").textContent = saved.command;
+  showCommand(saved.command);
 });
-const undo = guard(() => walk(state.past, state.future));
-const redo = guard(() => walk(state.future, state.past));
+const undo = onStep(() => walk(state.past, state.future));
+const redo = onStep(() => walk(state.future, state.past));
 
 const actions = {
   d: () => by("diagnose").click(),
   f: () => by("fit").click(),
-  a: () => add(fits.best()),
+  a: () => fits.best() && addCandidate(fits.best()),
   z: undo,
   y: redo,
   s: save,
@@ -380,11 +391,11 @@ document.addEventListener("keydown", (k) => {
 });
 by("diagnose").addEventListener(
   "click",
-  guard(() => start({ kind: "diagnose" })),
+  onStep(() => start({ kind: "diagnose" })),
 );
 by("fit").addEventListener(
   "click",
-  guard(() => start({ kind: "calibrate" })),
+  onStep(() => start({ kind: "calibrate" })),
 );
 by("stop").addEventListener(
   "click",
@@ -399,7 +410,9 @@ by("whole").addEventListener("click", () => charts.zoom());
 by("copy").addEventListener("click", () => navigator.clipboard.writeText(by("command").textContent));
 by("any").addEventListener("submit", (e) => {
   e.preventDefault();
-  add(by("effect").value.trim());
+  const effect = by("effect").value.trim();
+  if (effect) add(effect);
+  else fail(new Error("Write the name of an effect, for example SEXS."));
 });
 addEventListener("pagehide", () => {
   if (state.running) api.leave();
@@ -409,11 +422,37 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener(
   guard(() => choose(state.event, state.channel)),
 );
 
+function lost(error) {
+  if (state.running) fits.busy(false);
+  state.running = null;
+  by("said").textContent = error.message;
+  fail(error);
+}
+/** Returns to the step and the held-out events that this tab had before it was loaded again. */
+async function restore(steps) {
+  for (const name of JSON.parse(sessionStorage.getItem("heldOut") ?? "[]"))
+    if (state.setup.events.some((e) => e.name === name)) state.heldOut.add(name);
+  if (state.heldOut.size) await choose(state.event, state.channel);
+  const last = steps.find((s) => String(s.step) === sessionStorage.getItem("step"));
+  if (last) await enter(last);
+}
+/** Replaces the first look by the comparison with fitted switching times. */
+async function compareSubmitted() {
+  const full = await api.submitted();
+  state.setup = full.setup;
+  state.first = full.step;
+  state.known.set(0, full.step);
+  state.curves.clear();
+  if (state.step.step !== 0) return;
+  state.step = full.step;
+  showStep();
+  await showEvent();
+}
 async function begin() {
   const opened = await api.open();
   state.setup = opened.setup;
   state.step = state.first = opened.step;
-  state.known.set(0, opened.step);
+  for (const s of [opened.step, ...opened.steps]) state.known.set(s.step, s);
   by("plant").textContent = state.setup.name;
   by("subject").textContent = `${state.setup.subject}, ${digits(state.setup.mva)} MVA · limits ${state.setup.limits}`;
   document.title = `${state.setup.name} – Swingbank`;
@@ -424,19 +463,10 @@ async function begin() {
   state.channel = worst?.channel ?? 0;
   showStep();
   await showEvent();
-  api.listen(receive);
+  api.listen(receive, lost);
   document.body.dataset.ready = "yes";
-  if (!state.step.provisional) return;
-  const full = await api.submitted();
-  state.setup = full.setup;
-  state.first = full.step;
-  state.known.set(0, full.step);
-  state.curves.clear();
-  if (state.step.step === 0) {
-    state.step = full.step;
-    showStep();
-    await showEvent();
-  }
+  if (state.step.provisional) await compareSubmitted();
+  await restore(opened.steps);
   document.body.dataset.compared = "yes";
 }
 begin().catch((error) => {

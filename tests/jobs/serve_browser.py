@@ -127,9 +127,34 @@ assert all(low < model < high for channel in shown for model, low, high in zip(*
 assert "(unseen)" in text("chips"), text("chips")
 assert "swingbank add SEXS" in text("command") and "--hold-out avr_ev4.csv" in text("command"), text("command")
 
-# save; the page says where
+# the candidates stay: another one can be tried from the diagnosed model
+assert "SEXS" in text("candidates"), "the candidates are gone"
+
+# a key pressed while a changed value is compared acts on the model with that value
+page.execute_script("const s = document.getElementById('slider-SEXS.K'); s.value = 900;"
+                    "for (const e of ['input', 'change']) s.dispatchEvent(new Event(e));")
 ActionChains(page).send_keys("s").perform()
 until("saving", lambda: "model.toml" in text("saved"), 60)
+assert "SEXS.K" in text("saved") and "SEXS.K" in text("now"), text("saved")
+page.execute_script("const s = document.getElementById('slider-SEXS.K'); s.value = 400;"
+                    "for (const e of ['input', 'change']) s.dispatchEvent(new Event(e));")
+ActionChains(page).send_keys("z").perform()
+until("undo of the value", lambda: "SEXS.K" in text("now") and "Trying" not in text("verdict"), 30)
+ActionChains(page).send_keys("z").perform()
+until("undo of both values", lambda: text("now") == "this model: + SEXS", 30)
+
+# a reload keeps the steps, the present one and the held-out event
+page.refresh()
+until("the page again", lambda: page.execute_script("return document.body.dataset.compared"), 60)
+until("the step again", lambda: text("now") == "this model: + SEXS", 20)
+assert "submitted model" in text("steps") and "(unseen)" in text("chips"), text("steps")
+ActionChains(page).send_keys("4").perform()
+until("the held-out event", lambda: one("hold").is_selected(), 20)
+
+# save; the page says what and where
+ActionChains(page).send_keys("s").perform()
+until("saving", lambda: "model.toml" in text("saved"), 60)
+assert "“+ SEXS”" in text("saved") and "in place of" in text("saved"), text("saved")
 
 # a stopped fit leaves the model as it is
 ActionChains(page).send_keys("f").perform()

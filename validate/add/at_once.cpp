@@ -54,8 +54,7 @@ std::optional<Addition> add_at_once(const plant::PlantModel& model, const hypoth
   std::rotate(a.parameters.begin(), a.parameters.end() - a.own, a.parameters.end());
   a.adequate = true;
   a.sentence = fmt::format(
-      "{} added: one fit from its default values gives the reduced chi-square {:.3g}; the residual is noise. The "
-      "command below also computes the evidence.",
+      "{} added: one fit from its default values gives the reduced chi-square {:.3g}; the residual is noise.",
       hypothesis.name, a.with.reduced_chi2());
   return a;
 }

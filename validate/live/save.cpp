@@ -19,10 +19,10 @@ constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kDyd = "model
 
 using nlohmann::json;
 
-/// Returns the steps from the submitted model to this one.
-std::vector<std::shared_ptr<const Step>> path_to(const Session& session, int step) {
-  std::vector<std::shared_ptr<const Step>> path;
-  for (int k = step; k >= 0; k = path.back()->parent) path.push_back(session.step(k));
+/// Returns the numbers of the steps from the submitted model to this one.
+std::vector<int> path_to(const Session& session, int step) {
+  std::vector<int> path;
+  for (int k = step; k >= 0; k = session.step(k)->parent) path.push_back(k);
   std::ranges::reverse(path);
   return path;
 }
@@ -54,15 +54,19 @@ std::vector<std::string> saved_files() { return {kModel, kDyr, kDyd, kPage}; }
 nlohmann::json save(const Session& session, int step, OutputFolder& folder,
                     const report::Provenance& provenance) {
   const auto path = path_to(session, step);
-  const Step& last = *path.back();
+  const auto kept = session.step(step);
+  const Step& last = *kept;
   const Setup& setup = session.setup();
   plant::PlantModel model = event::whole_model(last.model);
   model.submitted.reset();
   std::vector<std::string> head;
   compare::CommandPage page;
-  for (const auto& s : path) {
+  for (const int k : path) {
+    const auto s = session.step(k);
     head.push_back(s->label + (s->command.empty() ? "" : ": " + s->command));
     page.tried.push_back(s->label + (s->sentence.empty() ? "" : ": " + s->sentence));
+    if (const std::string diagnosis = session.diagnosis_of(k); !diagnosis.empty())
+      page.tried.push_back("Diagnosis of the " + s->label + ": " + diagnosis);
   }
   const auto file = folder.file(kModel);
   plant::write_plant_file(file, model, head);
@@ -82,7 +86,7 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
                   plant::subject(setup.model), setup.model.plant.mva);
   page.complete = last.complete;
   page.sentence = last.sentence.empty() ? last.label : last.sentence;
-  page.played = {*path.front()->played};
+  page.played = {*session.step(0)->played};
   page.played.front().name = "submitted";
   if (path.size() > 1) {
     page.played.push_back(*last.played);

@@ -99,6 +99,25 @@ int Session::steps() const {
   return static_cast<int>(steps_.size());
 }
 
+std::vector<int> Session::kept() const {
+  const std::lock_guard guard(lock_);
+  std::vector<int> numbers;
+  for (std::size_t k = 0; k < steps_.size(); ++k)
+    if (steps_[k]) numbers.push_back(static_cast<int>(k));
+  return numbers;
+}
+
+void Session::diagnosed(int step, std::string result) {
+  const std::lock_guard guard(lock_);
+  diagnoses_[step] = std::move(result);
+}
+
+std::string Session::diagnosis_of(int step) const {
+  const std::lock_guard guard(lock_);
+  const auto found = diagnoses_.find(step);
+  return found == diagnoses_.end() ? std::string() : found->second;
+}
+
 int Session::put(std::shared_ptr<const Step> added) {
   const std::lock_guard guard(lock_);
   std::size_t held = 0;

@@ -1,6 +1,7 @@
 #pragma once
 // Session of the live page: the steps from the submitted model to the completed one, each compared with all
 // records, and playback of changed parameter values while a slider moves.
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -79,6 +80,8 @@ class Session {
   [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
   /// Returns the number of steps.
   [[nodiscard]] int steps() const;
+  /// Returns the numbers of the steps that are kept, in order.
+  [[nodiscard]] std::vector<int> kept() const;
   /// Replaces the first step, which was provisional.
   void compared(std::shared_ptr<const Step> submitted);
   /// Compares a step's model with other values with all records, and appends it as a step. Returns the number
@@ -86,6 +89,10 @@ class Session {
   int change(int from, const Values& values);
   /// Appends the model of a fit, compared with all records. Returns the number of the step.
   int append(Step step);
+  /// Stores the result of the diagnosis of a step, in words.
+  void diagnosed(int step, std::string result);
+  /// Returns the result of the last diagnosis of a step; empty: there was none.
+  [[nodiscard]] std::string diagnosis_of(int step) const;
 
  private:
   int put(std::shared_ptr<const Step> step);
@@ -94,6 +101,7 @@ class Session {
   std::size_t most_;
   mutable std::mutex lock_;
   std::vector<std::shared_ptr<const Step>> steps_;
+  std::map<int, std::string> diagnoses_;  ///< by step
 };
 
 /// Curves of one event during a drag.
