@@ -94,9 +94,9 @@ std::string nearest_text(const Fitness& f) {
   if (const auto m = std::ranges::max_element(f.movements, {}, beyond);
       m != f.movements.end() && !(beyond(*m) <= ratio(row)))
     return fmt::format(
-        "RMS error of {} after the last switching of {}, {:.3g} % of its movement of {:.3g} {}, "
-        "of which the model reproduces {:.0f} %; the limit is {:g} %.",
-        m->channel, m->event, m->error, m->measured, m->unit, m->share, m->limit);
+        "RMS error of {} after the last switching of {}: {:.3g} % of the measured movement of {:.3g} {} (limit {:g} %); "
+        "the modelled movement is {:.0f} % of the measured one.",
+        m->channel, m->event, m->error, m->measured, m->unit, m->limit, m->share);
   const thresholds::Nearest at = thresholds::nearest(row.errors, row.limits);
   return fmt::format("{} of {} in the {} window of {}, {:.3g} % of {:g} MVA; the limit is {:g} %.", at.name,
                      row.channel, row.window(), row.event, at.error, f.mva, at.limit);
@@ -104,9 +104,9 @@ std::string nearest_text(const Fitness& f) {
 
 std::string verdict(const Fitness& f, int exceed) {
   const auto all = 3 * f.rows.size() + f.movements.size();
-  return fmt::format("Fit for purpose: {} the limits {}. {}: {}",
-                     f.fit ? fmt::format("yes. All {} errors of P and Q are within", all)
-                           : fmt::format("no. {} of {} errors of P and Q exceed", exceed, all),
+  return fmt::format("Fit for purpose: {} the limits {}). {}: {}",
+                     f.fit ? fmt::format("yes (all {} errors of P and Q are within", all)
+                           : fmt::format("no ({} of {} errors of P and Q exceed", exceed, all),
                      f.by.name, f.fit ? "Nearest to its limit" : "Largest violation", nearest_text(f));
 }
 

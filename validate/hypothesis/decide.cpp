@@ -260,7 +260,7 @@ std::string decide_sentence(const Decision& decision) {
     return fmt::format(
         "No simulated measurement separates the candidates: after {}, {:.1f} of {:.0f} remain on average.",
         best.what, best.expected, decision.now);
-  return fmt::format("Next measurement: {} (candidates: {:.0f} -> {:.1f} on average).", best.what,
+  return fmt::format("Next measurement: {} (of {:.0f} candidates, {:.1f} remain on average).", best.what,
                      decision.now, best.expected);
 }
 

@@ -210,7 +210,7 @@ std::string first_sentence(const Diagnosis& d, double adequate) {
                        d.base.reduced_chi2());
   return fmt::format(
       "So far: something is missing; reduced chi-square {:.2f} with refitted parameters, slow "
-      "drift {:.1f} standard deviations above noise.{}",
+      "drift {:.3g} standard deviations above noise.{}",
       d.base.reduced_chi2(), slow, line_sentence(d));
 }
 
