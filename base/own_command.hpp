@@ -45,6 +45,18 @@ inline int run_own(const std::filesystem::path& program, const std::vector<std::
   return run_program(program, words, {shown ? Output::shown : Output::dropped, silent, 0.0}).code();
 }
 
+/// Replaces this process by a program with these arguments. Throws InputError if it cannot be started.
+[[noreturn]] inline void replace_by(const std::filesystem::path& program,
+                                    std::vector<std::string> arguments) {
+  std::string name = program.string();
+  std::vector<char*> words = {name.data()};
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  ::execv(name.c_str(), words.data());
+  throw InputError(
+      {"a command that cannot be started", name, ::strerror(errno), "build or install it again"});
+}
+
 /// Temporary folder, removed with its content by the destructor.
 class Scratch {
  public:

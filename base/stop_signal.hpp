@@ -5,7 +5,8 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
+
+#include "base/launcher.hpp"
 
 namespace swingbank {
 
@@ -13,12 +14,6 @@ constexpr int kSubmitAgain = 2;  ///< exit code: state saved, run the command ag
 
 namespace detail {
 inline volatile std::sig_atomic_t stop_asked = 0, interruptible = 0, first_rank = 1;
-/// Returns true for rank 0 of an MPI run and for a process without MPI.
-inline bool is_first_rank() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
-    if (const char* rank = std::getenv(name); rank && std::strcmp(rank, "0") != 0) return false;
-  return true;
-}
 /// Prints "stopping" at once to confirm the signal. Async-signal-safe.
 inline void say_stopping() {
   constexpr char text[] = "\nstopping\n";
@@ -30,7 +25,7 @@ inline void say_stopping() {
 /// process.
 inline void catch_stop_signals() {
   detail::interruptible = 0;
-  detail::first_rank = detail::is_first_rank() ? 1 : 0;
+  detail::first_rank = is_first_rank() ? 1 : 0;
   for (int s : {SIGTERM, SIGINT, SIGUSR1})
     std::signal(s, [](int number) {
       if (detail::stop_asked != 0 && number == SIGINT) std::_Exit(130);  // second Ctrl-C: exit at once

@@ -1,6 +1,6 @@
 # find_package(swingbank): the targets are those of export.cmake.
 if(NOT CMAKE_C_COMPILER_LOADED)
-  enable_language(C) # for the searches of MPI and HDF5
+  enable_language(C) # for the search of HDF5
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/swingbankTargets.cmake)

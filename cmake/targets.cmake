@@ -57,6 +57,11 @@ add_library(swingbank_train INTERFACE)
 target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
 target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
+# swingbank_parallel_hdf5(targets...): these use mpi/ranks and link its parallel HDF5, others the serial one.
+function(swingbank_parallel_hdf5)
+  set_target_properties(${ARGN} PROPERTIES SWINGBANK_PARALLEL_HDF5 ON)
+endfunction()
+
 # swingbank_own_headers(folder): an include root modules/<folder>/own with the headers of a folder of commands.
 function(swingbank_own_headers folder)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${folder}/own)

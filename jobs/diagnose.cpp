@@ -1,14 +1,21 @@
 // swingbank diagnose: names the physical effect that a plant model lacks.
 #include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <csignal>
 
 #include "base/json.hpp"
+#include "base/launcher.hpp"
+#include "base/own_command.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
 #include "jobs/commands.hpp"
 #include "jobs/fleet_run.hpp"
+#include "mpi/items/one_process.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/diagnose/text.hpp"
+#include "validate/fleet_plant/fleet_plant.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace {
@@ -86,6 +93,40 @@ int run(Command& c) {
   return played.back().fitness.exit_code(adequate);
 }
 
+/// Diagnoses one plant of the fleet in this process and prints {"was_there", "row"} to standard output.
+int diagnose_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it cannot write during the next run
+  catch_stop_signals();                // switches interruption points off
+  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // finishes in a graceful stop
+  const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
+  const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);
+  if (plant == fleet.plants.end())
+    throw InputError(
+        {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
+  diagnose::DiagnoseOptions options;
+  options.threads = std::max(c.threads, 0);
+  options.progress = [line = jobs::progress_line(), &name](jobs::Phase phase, const std::string& item,
+                                                           int done, int total) {
+    line(phase, item.empty() ? name : name + ": " + item, done, total);
+  };
+  const fleet_plant::FleetOutcome o = fleet_plant::diagnose_plant(fleet, *plant, c.out, options);
+  fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", fleet::row_json(o.row)}}.dump());
+  return 0;
+}
+
+/// Diagnoses the fleet: in this process or, under a launcher, by the program with MPI, which replaces it.
+int diagnose_fleet(const jobs::FleetCommand& c) {
+  if (!launched()) return jobs::run_fleet(c, mpi::items::OneProcess());
+  try {
+    const auto program = jobs::own_command(
+        "diagnose-fleet", "install swingbank-train, or start the command without mpirun or srun");
+    jobs::replace_by(program, jobs::fleet_words(c));
+  } catch (const InputError& error) {  // the same on all ranks
+    if (is_first_rank()) fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
 int print_thresholds(bool json) {
   if (json)
     fmt::print("{}\n", json_text(thresholds::thresholds_json(), 1));
@@ -140,8 +181,8 @@ int swingbank::jobs::diagnose_command(CommandLine& line, int argc, char** argv) 
     c.fleet.out = c.of.out;
     c.fleet.json = c.of.json;
     c.fleet.threads = c.of.threads;
-    if (!c.plant.empty()) return jobs::run_fleet_plant(c.fleet, c.plant);
-    if (!c.fleet.fleet.empty()) return jobs::run_fleet(c.fleet, &argc, &argv);
+    if (!c.plant.empty()) return diagnose_fleet_plant(c.fleet, c.plant);
+    if (!c.fleet.fleet.empty()) return diagnose_fleet(c.fleet);
     c.of.limit_threads();
     return run(c);
   });

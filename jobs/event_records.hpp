@@ -1,6 +1,6 @@
 #pragma once
 // Shared code of commands that work on several records: options for reading them, checks of all records
-// together, progress and error messages.
+// together, and progress.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,6 +17,7 @@
 #include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
+#include "jobs/guarded.hpp"
 #include "jobs/progress_plan.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"
@@ -215,40 +216,6 @@ inline std::string command_line(const std::string& command, int argc, char** arg
   std::string line = "swingbank " + command;
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
   return line;
-}
-
-/// Returns the problems of an input, one a line; problems that differ only in their place share a line.
-inline std::string problems_text(const InputError& error) {
-  std::vector<Problem> lines;
-  for (const Problem& p : error.problems()) {
-    const auto same = std::ranges::find_if(
-        lines, [&](const Problem& q) { return q.what == p.what && q.why == p.why && q.remedy == p.remedy; });
-    if (same == lines.end())
-      lines.push_back(p);
-    else
-      same->where += ", " + p.where;
-  }
-  std::string text;
-  for (const Problem& p : lines) text += p.sentence() + "\n";
-  return text;
-}
-
-/// Runs `action` and returns its exit code. Prints exceptions as messages: code 1 for invalid input and
-/// failures, code 2 for a stop signal before any result.
-template <class F>
-int guarded(const std::string& command, F action) {
-  try {
-    return action();
-  } catch (const Interrupted&) {
-    fmt::print(stderr, "swingbank {}: stopped by a signal before the first result; nothing was written\n",
-               command);
-    return kSubmitAgain;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}", problems_text(error));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
-  }
-  return 1;
 }
 
 }  // namespace swingbank::jobs

@@ -1,24 +1,20 @@
 #include "jobs/fleet_run.hpp"
 
-#include <sys/prctl.h>
 #include <sys/wait.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <memory>
-#include <optional>
 
 #include "base/child.hpp"
 #include "base/durable.hpp"
 #include "base/json.hpp"
+#include "base/own_command.hpp"
 #include "base/run_lock.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
-#include "jobs/event_records.hpp"
+#include "jobs/guarded.hpp"
 #include "jobs/item_progress.hpp"
-#include "mpi/ranks/item_queue.hpp"
-#include "mpi/ranks/session.hpp"
 #include "validate/fleet/report.hpp"
 
 namespace swingbank::jobs {
@@ -36,16 +32,18 @@ std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
       std::chrono::milliseconds(0));
 }
 
-/// Runs run_fleet_plant in a child process. Returns its output, or a failed row if it has none.
-std::string plant_result(const jobs::FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
+/// Diagnoses a plant in a child process (swingbank diagnose --plant). Returns its output, or a failed row if
+/// it has none.
+std::string plant_result(const FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
   const auto failed = [&](const std::string& why) {
     return nlohmann::json{{"was_there", false}, {"row", fleet::row_json(fleet::failed_row(plant.name, why))}}
         .dump();
   };
   try {
-    const ProgramEnd e = run_program("/proc/self/exe",
-                                     {"swingbank-diagnose", "--fleet", c.fleet, "--plant", plant.name,
-                                      "--out", c.out, "--threads", std::to_string(threads)},
+    const std::string program = own_command("diagnose", "install swingbank whole").string();
+    const ProgramEnd e = run_program(program,
+                                     {program, "--fleet", c.fleet, "--plant", plant.name, "--out", c.out,
+                                      "--threads", std::to_string(threads)},
                                      {.output = ProgramRun::Output::taken, .limit = c.limit});
     if (e.late)
       return failed(
@@ -67,7 +65,7 @@ std::string describe(const fleet::FleetRow& row, bool was_there) {
   return text + (was_there ? " (existed already)" : "");
 }
 
-int write_reports(const jobs::FleetCommand& c, const fleet::Fleet& fleet,
+int write_reports(const FleetCommand& c, const fleet::Fleet& fleet,
                   const std::vector<fleet::FleetRow>& rows) {
   const fs::path folder = c.out;
   const std::string json = fleet::fleet_json(fleet, rows);
@@ -83,37 +81,33 @@ int write_reports(const jobs::FleetCommand& c, const fleet::Fleet& fleet,
 
 }  // namespace
 
-int run_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it cannot write during the next run
-  catch_stop_signals();                // switches interruption points off
-  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // finishes in a graceful stop
-  const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
-  const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);
-  if (plant == fleet.plants.end())
-    throw InputError(
-        {"no plant " + name, c.fleet, "the fleet has no [plant." + name + "]", "name one of its plants"});
-  diagnose::DiagnoseOptions options;
-  options.threads = std::max(c.threads, 0);
-  options.progress = [line = jobs::progress_line(), &name](jobs::Phase phase, const std::string& item,
-                                                           int done, int total) {
-    line(phase, item.empty() ? name : name + ": " + item, done, total);
-  };
-  const fleet::FleetOutcome o = fleet::diagnose_plant(fleet, *plant, c.out, options);
-  fmt::print("{}\n", nlohmann::json{{"was_there", o.was_there}, {"row", fleet::row_json(o.row)}}.dump());
-  return 0;
+void declare_fleet(CommandLine& line, FleetCommand& c) {
+  line.add("--fleet", c.fleet, "fleet file (configs/fleet/README.md)").required();
+  line.add("--out", c.out, "folder for the table and a folder per plant").required();
+  line.add("--threads", c.threads,
+           "threads for one plant; 0: one per core (default: that, or 1 where "
+           "several ranks share the machine)")
+      .between(0, 4096);
+  line.add("--plant-timeout", c.limit, "time limit per plant [s]; 0: none").not_negative();
+  line.add_flag("--json", c.json, "print the result as JSON instead of text");
 }
 
-int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
-  std::optional<mpi::ranks::MpiSession> session;
-  if (mpi::ranks::MpiSession::launched()) session.emplace(argc, argv);
-  const mpi::ranks::Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+std::vector<std::string> fleet_words(const FleetCommand& c) {
+  std::vector<std::string> words = {"--fleet", c.fleet,           "--out",
+                                    c.out,     "--plant-timeout", fmt::format("{}", c.limit)};
+  if (c.threads >= 0) words.insert(words.end(), {"--threads", std::to_string(c.threads)});
+  if (c.json) words.emplace_back("--json");
+  return words;
+}
+
+int run_fleet(const FleetCommand& c, const mpi::items::Ranks& ranks) {
   const bool first = ranks.rank() == 0;
   catch_stop_signals();
   const int threads = c.threads >= 0 ? c.threads : ranks.on_this_machine() > 1 ? 1 : 0;
   fleet::Fleet fleet;
   std::unique_ptr<RunLock> lock;
   try {
-    mpi::ranks::agree(ranks, c.fleet, [&] {
+    ranks.agree(c.fleet, [&] {
       fleet = fleet::load_fleet(c.fleet);
       if (first) lock = lock_folder(c.out);
     });
@@ -123,8 +117,8 @@ int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
   }
 
   std::vector<fleet::FleetRow> rows(fleet.plants.size());
-  jobs::ItemProgress progress("plants", rows.size());
-  mpi::ranks::SharedItems shared;
+  ItemProgress progress("plants", rows.size());
+  mpi::items::SharedItems shared;
   for (std::size_t i = 0; i < rows.size(); ++i) shared.items.push_back(i);
   shared.work = [&](std::size_t i) { return plant_result(c, fleet.plants[i], threads); };
   shared.done = [&](std::size_t i, const std::string& result) {
@@ -134,13 +128,13 @@ int run_fleet(const jobs::FleetCommand& c, int* argc, char*** argv) {
   };
   shared.name = [&](std::size_t i) { return "plant " + fleet.plants[i].name; };
   shared.limit = c.limit > 0.0 ? c.limit + kLongerThanItsProgram : 0.0;
-  if (!mpi::ranks::share_items(ranks, shared)) {
+  if (!ranks.share_items(shared)) {
     if (first)
       fmt::print("stopped on a signal; finished plants are safe: run the same command again to continue\n");
     return kSubmitAgain;
   }
   int code = 0;
-  if (first) code = jobs::guarded("diagnose", [&] { return write_reports(c, fleet, rows); });
+  if (first) code = guarded("diagnose", [&] { return write_reports(c, fleet, rows); });
   return ranks.from_first(code);
 }
 

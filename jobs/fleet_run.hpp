@@ -1,9 +1,11 @@
 #pragma once
 // Diagnosis of a fleet (swingbank diagnose --fleet): plants distributed over ranks, each diagnosed in a
-// separate process.
+// separate process, so that a crash or a lack of memory affects one plant only.
 #include <string>
+#include <vector>
 
-#include "validate/fleet/fleet.hpp"
+#include "jobs/command_line.hpp"
+#include "mpi/items/ranks.hpp"
 
 namespace swingbank::jobs {
 
@@ -16,13 +18,14 @@ struct FleetCommand {
   double limit = 3600.0;  ///< time limit for one plant [s]; 0: none
 };
 
-/// Diagnoses every plant, on the ranks that mpirun or srun started or on this process alone, and prints the
-/// table. Returns the exit code, the same on all ranks: 0 all plants adequate, 3 some plant is not, 1 some
-/// plant failed or invalid input, 2 stopped by a signal.
-int run_fleet(const FleetCommand& command, int* argc, char*** argv);
+/// Declares the options of `swingbank diagnose-fleet`, which runs a fleet under a launcher.
+void declare_fleet(CommandLine& line, FleetCommand& command);
+/// Returns the command as arguments of these options.
+std::vector<std::string> fleet_words(const FleetCommand& command);
 
-/// Diagnoses one plant of the fleet in this process and prints {"was_there", "row"} to standard output.
-/// run_fleet starts it as a separate process, so that a crash or a lack of memory affects one plant only.
-int run_fleet_plant(const FleetCommand& command, const std::string& plant);
+/// Diagnoses every plant on the ranks and prints the table. A plant's process is `swingbank-diagnose --plant`
+/// in this program's folder; it prints {"was_there", "row"}. Returns the exit code, the same on all ranks: 0
+/// all plants adequate, 3 some plant is not, 1 some plant failed or invalid input, 2 stopped by a signal.
+int run_fleet(const FleetCommand& command, const mpi::items::Ranks& ranks);
 
 }  // namespace swingbank::jobs

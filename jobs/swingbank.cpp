@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/launcher.hpp"
 #include "base/nearest_word.hpp"
 #include "base/own_command.hpp"
 
@@ -66,16 +67,8 @@ void print_help(const std::vector<Command>& commands) {
   }
 }
 
-/// Returns whether this process prints messages: under mpirun or srun, only rank 0 does.
-bool speaks() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
-    if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;
-  }
-  return true;
-}
-
 int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Command>& commands) {
-  if (!speaks()) return 1;
+  if (!swingbank::is_first_rank()) return 1;
   std::vector<std::string> names;
   for (const auto& command : commands)
     if (!command.group.empty()) names.push_back(command.name);
@@ -119,7 +112,7 @@ fs::path program_for_this_processor(const fs::path& folder, const std::string& n
 int run(const fs::path& folder, const std::string& name, char** arguments) {
   std::string program = program_for_this_processor(folder, name).string();
   if (program.empty()) {
-    if (speaks())
+    if (swingbank::is_first_rank())
       fmt::print(
           stderr,
           "instruction set {} at SWINGBANK_LEVEL (this processor or this build does not have it): take "
@@ -142,15 +135,15 @@ int main(int argc, char** argv) {
   const auto commands = found_commands(folder);
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty()) {
-    if (speaks()) print_help(commands);
+    if (swingbank::is_first_rank()) print_help(commands);
     return 1;
   }
   if (first == "--version") {
-    if (speaks()) fmt::print("swingbank {}\n", SWINGBANK_VERSION);
+    if (swingbank::is_first_rank()) fmt::print("swingbank {}\n", SWINGBANK_VERSION);
     return 0;
   }
   if (first == "--help" || first == "-h" || (first == "help" && argc == 2)) {
-    if (speaks()) print_help(commands);
+    if (swingbank::is_first_rank()) print_help(commands);
     return 0;
   }
   const bool help_on = first == "help";

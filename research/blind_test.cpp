@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 
+#include "base/launcher.hpp"
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/item_progress.hpp"
-#include "mpi/ranks/item_queue.hpp"
+#include "mpi/items/one_process.hpp"
+#include "mpi/ranks/item_ranks.hpp"
 #include "mpi/ranks/session.hpp"
 #include "research/blind/cases/case.hpp"
 #include "research/blind/cases/plan.hpp"
@@ -50,10 +53,10 @@ struct Counts {
 };
 
 /// Distributes the cases of this part over the ranks. Returns the exit code, the same on all ranks.
-int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
+int share_cases(const mpi::items::Ranks& ranks, const Options& o, std::size_t count, const std::string& unit,
                 const std::function<std::string(std::size_t)>& work, Counts& counts) {
   const auto [part, parts] = blind::cases::read_part(o.part);
-  mpi::ranks::SharedItems shared;
+  mpi::items::SharedItems shared;
   for (std::size_t k = 0; k < count; ++k)
     if (static_cast<int>(k % static_cast<std::size_t>(parts)) == part - 1) shared.items.push_back(k);
   jobs::ItemProgress progress(unit, shared.items.size());
@@ -65,7 +68,7 @@ int share_cases(const mpi::ranks::Ranks& ranks, const Options& o, std::size_t co
     (fate == Fate::done ? counts.done : fate == Fate::failed ? counts.failed : counts.there) += 1;
     progress.line(result.substr(1), fate == Fate::was_there);
   };
-  if (!mpi::ranks::share_items(ranks, shared)) {
+  if (!ranks.share_items(shared)) {
     if (ranks.rank() == 0)
       fmt::print("stopped on a signal; finished cases are safe: run the same command again to continue\n");
     return kSubmitAgain;
@@ -89,14 +92,14 @@ std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
   }
 }
 
-int make(const mpi::ranks::Ranks& ranks, const Options& o) {
+int make(const mpi::items::Ranks& ranks, const Options& o) {
   blind::cases::BlindConfig config;
   blind::cases::BlindPlan plan;
-  mpi::ranks::agree(ranks, o.config, [&] {
+  ranks.agree(o.config, [&] {
     config = blind::cases::load_blind_config(o.config);
     plan = blind::cases::plan_blind(config, o.kinds, o.make, o.seed, o.size);
   });
-  mpi::ranks::agree(ranks, o.out, [&] {
+  ranks.agree(o.out, [&] {
     if (ranks.rank() == 0) blind::cases::settle_plan(plan, config, o.out);
   });
   const auto begin = std::chrono::steady_clock::now();
@@ -135,10 +138,10 @@ std::string judge_one(const fs::path& run, const blind::score::BlindJudge& asked
   return said.empty() ? packed(Fate::was_there, "has a verdict already") : packed(Fate::done, said);
 }
 
-int judge(const mpi::ranks::Ranks& ranks, const Options& o) {
+int judge(const mpi::items::Ranks& ranks, const Options& o) {
   const fs::path run = o.out;
   std::size_t count = 0;
-  mpi::ranks::agree(ranks, o.out, [&] {
+  ranks.agree(o.out, [&] {
     if (fs::is_directory(run / "cases"))
       count = count_cases(run);
     else
@@ -180,7 +183,7 @@ void check(const Options& o) {
                       "give configs/blind/cases.toml"});
 }
 
-int blind_test(const mpi::ranks::Ranks& ranks, const Options& o) {
+int blind_test(const mpi::items::Ranks& ranks, const Options& o) {
   check(o);
   if (o.make > 0)
     if (const int code = make(ranks, o); code != 0) return code;
@@ -193,8 +196,12 @@ int blind_test(const mpi::ranks::Ranks& ranks, const Options& o) {
 /// rank 0 prints them.
 int on_ranks(int argc, char** argv, const Options& o) {
   std::optional<mpi::ranks::MpiSession> session;
-  if (mpi::ranks::MpiSession::launched()) session.emplace(&argc, &argv);
-  const mpi::ranks::Ranks ranks{session ? MPI_COMM_WORLD : MPI_COMM_NULL};
+  std::unique_ptr<mpi::items::Ranks> of_run = std::make_unique<mpi::items::OneProcess>();
+  if (launched()) {
+    session.emplace(&argc, &argv);
+    of_run = std::make_unique<mpi::ranks::ItemRanks>(MPI_COMM_WORLD);
+  }
+  const mpi::items::Ranks& ranks = *of_run;
   catch_stop_signals();
   try {
     return blind_test(ranks, o);

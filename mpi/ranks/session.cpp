@@ -7,16 +7,11 @@
 #include <cstdlib>
 #include <string>
 
+#include "base/launcher.hpp"
 #include "mpi/ranks/shard_group.hpp"
 #include "mpi/store/hdf5_file.hpp"
 
 namespace swingbank::mpi::ranks {
-
-bool MpiSession::launched() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "SLURM_STEP_ID"})
-    if (std::getenv(name) != nullptr) return true;
-  return false;
-}
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include "python/src/native.hpp"
 #include "validate/diagnose/report.hpp"
 #include "validate/diagnose/text.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::python {
 namespace {
@@ -59,7 +60,7 @@ std::string html_of(const Diagnosis& d) {
   report::Table table{"", {"explanation", "probability", "evidence"}, {}};
   for (const auto& e : d.result.probabilities)
     table.rows.push_back(
-        {e.name, hypothesis::probability_text(e.probability), fmt::format("{:.1f}", e.evidence)});
+        {e.name, report::probability_text(e.probability), fmt::format("{:.1f}", e.evidence)});
   return "<div>" + verdict_html(d.result.sentence, d.result.verdict == diagnose::Verdict::adequate) +
          table_html(table) + "</div>";
 }

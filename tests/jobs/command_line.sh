@@ -52,4 +52,7 @@ printf '%s\n' 'Validate a plant:' 'Simulate and generate:' 'Train:' 'Benchmarks:
 grep -vx 'Train:' "$work/groups" | diff <(grep -vx 'Train:' "$work/expected") - || fail "groups of swingbank --help"
 first=$(sed -n '/^Validate a plant:/,/^$/p' "$work/help" | awk '/^  / {print $1}' | xargs)
 [[ $first == 'inventory plant compare diagnose add calibrate serve export' ]] || fail "validation lists $first"
-! grep -q 'read-hdf5' "$work/help" || fail "an internal command is listed"
+[[ -n $(internal_commands) ]] || fail "no internal command is found"
+for command in $(internal_commands); do
+  ! grep -q "^  $command " "$work/help" || fail "the internal command $command is listed"
+done

@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 for program in "$SWINGBANK_BIN"/swingbank-*; do
   command=$(basename "$program")
   command=${command#swingbank-}
-  [[ $command == read-hdf5 ]] || grep -qE "^  $command +[a-z].{20,}" "$work/help" || fail "--help says nothing of $command"
+  internal_commands | grep -qx -e "$command" || grep -qE "^  $command +[a-z].{20,}" "$work/help" || fail "--help says nothing of $command"
   "$swingbank" "$command" --help >"$work/one" 2>&1 || fail "$command --help exits with $?"
   grep -q -- --help "$work/one" || fail "$command --help does not list its options"
   grep -q "^Usage: swingbank $command" "$work/one" || fail "$command --help has another usage line"
@@ -36,3 +36,18 @@ if [[ $flags == *' avx512f '* && $flags == *' avx512vl '* && $flags == *' avx512
 rm "$work/bin/$widest/swingbank-probe" && [[ $widest != . ]] &&
   refuses "no such level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL="$widest" "$work/bin/swingbank" probe
 refuses "unknown level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL=x86-64-v9 "$work/bin/swingbank" probe
+
+# Each program loads at its start only what its commands need: MPI the programs of datasets, LibTorch those of networks.
+# loads PROGRAM: which of these libraries it loads, those of its libraries included
+loads() {
+  local said
+  said=$(ldd "$SWINGBANK_BIN/$1") || fail "ldd $1"
+  grep -oE '^\s*lib(mpi|hdf5_openmpi|hdf5_serial|torch)\.so' <<<"$said" | sed 's/^\s*lib//; s/\.so//' | sort | xargs
+}
+# shellcheck disable=SC2310 # a failure ends the test in any case
+needs() { [[ $(loads "$1") == "$2" ]] || fail "$1 loads '$(loads "$1")', expected '$2'"; }
+needs swingbank ''
+needs swingbank_commands hdf5_serial
+needs swingbank-read-hdf5 hdf5_serial
+needs swingbank_datasets 'hdf5_openmpi mpi'
+if [[ -e $SWINGBANK_BIN/swingbank_learning ]]; then needs swingbank_learning 'hdf5_serial torch'; fi

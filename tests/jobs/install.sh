@@ -57,9 +57,9 @@ swingbank compare ${example[@]} --out report >"$work/compare" 2>&1 || status=$?
 ((status == 3)) || fail "compare: exit code $status: $(tail -n 5 "$work/compare")"
 [[ -s report/report.html ]] || fail "compare wrote no report"
 
-# A man page of every command that --help lists, with every option. read-hdf5 is internal.
+# A man page of every command that --help lists, with every option.
 man1=$prefix/share/man/man1
-for program in $(programs "$SWINGBANK_BIN" | grep -v -e -read-hdf5 -e swingbank_); do
+for program in $(programs "$SWINGBANK_BIN" | grep -vx -f <(internal_commands | sed 's/^/swingbank-/') | grep -v swingbank_); do
   [[ -s $man1/$program.1 ]] || fail "no man page of $program"
 done
 for command in compare effects; do
@@ -84,7 +84,7 @@ complete_fish() {
   HOME=$work XDG_CONFIG_HOME=$work/fish XDG_DATA_HOME=$work/fish XDG_DATA_DIRS=$prefix/share \
     fish -c 'complete --do-complete "$argv"' "$*" | cut -f1
 }
-programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx read-hdf5 | sort >"$work/commands"
+programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx -f <(internal_commands) | sort >"$work/commands"
 swingbank compare --help | grep -oE '^  -[^ {]+' | tr ',' '\n' | tr -d ' ' | grep -e '^--' | sort >"$work/options"
 for shell in bash zsh fish; do
   completed() { "complete_$shell" "$@" | sort; }

@@ -40,7 +40,7 @@ sys.modules["spack.package"] = stub
 space = {}
 exec(compile(open(f"{root}/packaging/spack/swingbank/package.py").read(), "package.py", "exec"), space)
 names = {re.split(r"[@ +~]", d)[0] for d in said["depends_on"]}
-text = open(f"{root}/cmake/dependencies.cmake").read() + open(f"{root}/train/CMakeLists.txt").read()
+text = "".join(open(f"{root}/{f}").read() for f in ("cmake/dependencies.cmake", "mpi/CMakeLists.txt", "train/CMakeLists.txt"))
 asked = set(re.findall(r"find_package\((\w+)", text)) | set(re.findall(r"IMPORTED_TARGET (\S+?)\)", text))
 spack = {"Eigen3": "eigen", "SUNDIALS": "sundials", "spdlog": "spdlog", "fmt": "fmt", "tomlplusplus": "tomlplusplus",
          "CLI11": "cli11", "nlohmann_json": "nlohmann-json", "Boost": "boost", "Ceres": "ceres-solver", "PkgConfig": "pkgconfig", "matio": "matio",

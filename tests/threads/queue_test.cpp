@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "mpi/ranks/item_queue.hpp"
+#include "mpi/items/one_process.hpp"
 
-namespace swingbank::mpi::ranks {
+namespace swingbank::mpi::items {
 namespace {
 
 TEST(ItemQueue, ReturnsCompleteResults) {
@@ -21,7 +21,7 @@ TEST(ItemQueue, ReturnsCompleteResults) {
   std::map<std::size_t, std::string> results;  // used by the caller only: needs no lock
   shared.work = [](std::size_t item) { return std::string(2000, static_cast<char>('a' + item % 26)); };
   shared.done = [&](std::size_t item, const std::string& result) { results[item] = result; };
-  EXPECT_TRUE(share_items(Ranks{}, shared));
+  EXPECT_TRUE(OneProcess().share_items(shared));
   ASSERT_EQ(results.size(), 50U);
   for (const auto& [item, result] : results)
     EXPECT_EQ(result, std::string(2000, static_cast<char>('a' + item % 26)));
@@ -36,9 +36,9 @@ TEST(ItemQueue, EndsOnAnExceptionOfAWorker) {
     return "made";
   };
   shared.done = [&](std::size_t, const std::string&) { ++done; };
-  EXPECT_THROW(share_items(Ranks{}, shared), std::runtime_error);
+  EXPECT_THROW((void)OneProcess().share_items(shared), std::runtime_error);
   EXPECT_EQ(done, 1);
 }
 
 }  // namespace
-}  // namespace swingbank::mpi::ranks
+}  // namespace swingbank::mpi::items

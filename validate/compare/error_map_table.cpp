@@ -8,6 +8,7 @@
 
 #include "base/json.hpp"
 #include "validate/compare/compare.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -24,13 +25,14 @@ double shade(const TimeFrequencyBin& bin) {
 report::Cell map_cell(const LabelledMap& m, const std::string& window, std::string_view band,
                       const TimeFrequencyBin& bin) {
   if (bin.empty()) return {"–"};
-  report::Cell cell(times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin));
+  report::Cell cell(report::times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin));
   const double error = bin.rms * m.scale;
   cell.hint = fmt::format("{} of {}, {}, {}: RMS {:.3g} {}", m.channel, m.event, window, band, error, m.unit);
   if (m.size > 0)
     cell.hint += fmt::format(", {:.2g} % of {:.4g} {}", 100 * bin.rms / m.size, m.size * m.scale,
                              m.unit == "MW" || m.unit == "Mvar" ? "MVA" : m.unit);
-  cell.hint += fmt::format("; {} noise, bound {}", times_noise(bin.normalised), times_noise(bin.bound));
+  cell.hint += fmt::format("; {} noise, bound {}", report::times_noise(bin.normalised),
+                           report::times_noise(bin.bound));
   return cell;
 }
 
@@ -106,11 +108,6 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
   return maps;
 }
 
-std::string times_noise(double ratio) {
-  if (!std::isfinite(ratio)) return "–";
-  return ratio < 9.95 ? fmt::format("{:.1f} ×", ratio) : fmt::format("{:.0f} ×", ratio);
-}
-
 report::Table map_table(const std::vector<LabelledMap>& maps) {
   std::set<std::string> events;
   for (const auto& m : maps) events.insert(m.event);
@@ -170,7 +167,7 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
     text += worst.empty()
                 ? channel + " is within its noise everywhere."
                 : fmt::format("{} has its largest error in the window “{}” at {}: {} noise{}.", channel,
-                              window, error_bands()[band].name, times_noise(worst.normalised),
+                              window, error_bands()[band].name, report::times_noise(worst.normalised),
                               events_beyond(maps, channel, window, band));
   }
   return text;

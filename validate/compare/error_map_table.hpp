@@ -37,7 +37,4 @@ std::string map_sentence(const std::vector<LabelledMap>& maps);
 /// normalised_bound.
 nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map);
 
-/// "0.9 ×" or "85 ×"; "–" if not finite.
-std::string times_noise(double ratio);
-
 }  // namespace swingbank::validate::compare

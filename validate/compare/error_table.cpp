@@ -7,6 +7,7 @@
 
 #include "base/json.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -35,7 +36,7 @@ void add_cells(std::vector<report::Cell>& row, const ChannelComparison* c) {
   }
   row.emplace_back(quantity(c->whole.rms, *c));
   row.emplace_back(c->noise > 0 ? quantity(c->noise, *c) : "none");
-  row.emplace_back(times_noise(c->whole.in_noise) + (c->map.whole.exceeds() ? " *" : ""));
+  row.emplace_back(report::times_noise(c->whole.in_noise) + (c->map.whole.exceeds() ? " *" : ""));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/event_title.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -27,10 +28,10 @@ std::vector<double> scaled(std::vector<double> values, double scale) {
 
 /// Returns "86 → 1.0 ×", or "86 ×" for one model.
 std::string fall_text(const ChannelComparison& before, const ChannelComparison* after) {
-  std::string text = times_noise(before.whole.in_noise);
+  std::string text = report::times_noise(before.whole.in_noise);
   if (!after) return text;
   if (text.ends_with(" ×")) text.erase(text.size() - std::string(" ×").size());
-  return text + " → " + times_noise(after->whole.in_noise);
+  return text + " → " + report::times_noise(after->whole.in_noise);
 }
 
 std::string event_label(const FirstScreen& s, std::size_t event) {
@@ -78,8 +79,8 @@ report::Bars fall(const FirstScreen& s) {
     const ChannelComparison* after = worst ? find_channel(s.after, e, worst->name) : nullptr;
     if (!after) continue;
     bars.bars.push_back({event_label(s, e) + " " + worst->name, worst->whole.in_noise, "before",
-                         times_noise(worst->whole.in_noise)});
-    bars.bars.push_back({"", after->whole.in_noise, "after", times_noise(after->whole.in_noise)});
+                         report::times_noise(worst->whole.in_noise)});
+    bars.bars.push_back({"", after->whole.in_noise, "after", report::times_noise(after->whole.in_noise)});
   }
   return bars;
 }

@@ -7,6 +7,7 @@
 
 #include "validate/compare/compare.hpp"
 #include "validate/compare/error_map_table.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -89,11 +90,11 @@ Adequacy judge(std::vector<EventComparison>& events) {
                                  a.exceeding, a.bins);
   a.sentence += fmt::format(" (joint {:g} % level).", 100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
-    a.sentence += fmt::format(" {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
-                              a.adequate ? "Nearest to its bound" : "Largest violation", worst->channel->name,
-                              worst->where, worst->event->record.name,
-                              worst->bin->rms * worst->channel->scale, worst->channel->unit,
-                              times_noise(worst->bin->normalised), times_noise(worst->bin->bound));
+    a.sentence += fmt::format(
+        " {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
+        a.adequate ? "Nearest to its bound" : "Largest violation", worst->channel->name, worst->where,
+        worst->event->record.name, worst->bin->rms * worst->channel->scale, worst->channel->unit,
+        report::times_noise(worst->bin->normalised), report::times_noise(worst->bin->bound));
   return a;
 }
 

@@ -14,6 +14,7 @@
 #include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/diagnose/report.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -48,7 +49,7 @@ std::string headline(const Diagnosis& d) {
     return fmt::format("Undecided: one of {} effects is missing", d.equivalent.size() + 1);
   const bool replaces = d.ranked[static_cast<std::size_t>(named->place)].hypothesis.replaces;
   return fmt::format("{} {} ({})", named->name, replaces ? "explains the records" : "is missing",
-                     hypothesis::probability_text(named->probability));
+                     report::probability_text(named->probability));
 }
 bool as_submitted(const Diagnosis& d) { return d.verdict == Verdict::adequate && !d.wrong; }
 report::Tone tone(const Diagnosis& d) {
@@ -131,7 +132,7 @@ class DiagnosisPage {
     for (std::size_t i = 0; i < d_.probabilities.size() && (i < set || i < kLeastProbable); ++i)
       bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability,
                            i < set ? "good" : "poor",
-                           hypothesis::probability_text(d_.probabilities[i].probability)});
+                           report::probability_text(d_.probabilities[i].probability)});
     page_.text(
         fmt::format("Probability of each explanation, including that none of the tried effects is right. The "
                     "blue bars form the {:.0f} % credible set. Measured reliability of these probabilities: "
@@ -176,11 +177,11 @@ class DiagnosisPage {
       table.header.push_back("held out: with " + figures_.after_name);
     }
     for (const auto& e : figures_.events) {
-      std::vector<report::Cell> row = {e.event->record.name, compare::times_noise(e.before)};
-      if (with_after()) row.emplace_back(compare::times_noise(e.after));
+      std::vector<report::Cell> row = {e.event->record.name, report::times_noise(e.before)};
+      if (with_after()) row.emplace_back(report::times_noise(e.after));
       if (unseen) {
-        row.emplace_back(compare::times_noise(e.unseen_before));
-        row.emplace_back(compare::times_noise(e.unseen_after));
+        row.emplace_back(report::times_noise(e.unseen_before));
+        row.emplace_back(report::times_noise(e.unseen_after));
       }
       table.rows.push_back(std::move(row));
     }
@@ -280,8 +281,8 @@ class DiagnosisPage {
       table.rows.push_back({hypothesis::full_name(h.hypothesis), h.hypothesis.what,
                             std::string(hypothesis::side_name(h.hypothesis.side)),
                             fmt::format("{:.1f}", h.gain),
-                            h.fit.values > 0 ? compare::times_noise(std::sqrt(h.fit.reduced_chi2())) : "–",
-                            h.held_out.empty() ? "–" : "≤ " + compare::times_noise(worst),
+                            h.fit.values > 0 ? report::times_noise(std::sqrt(h.fit.reduced_chi2())) : "–",
+                            h.held_out.empty() ? "–" : "≤ " + report::times_noise(worst),
                             h.accepted ? "accepted" : h.why_not});
     }
     page_.add(table);

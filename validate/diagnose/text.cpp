@@ -6,6 +6,7 @@
 #include "validate/diagnose/detail/report_user_models.hpp"
 #include "validate/diagnose/detail/verdict.hpp"
 #include "validate/report/document.hpp"
+#include "validate/report/figures.hpp"
 #include "validate/thresholds/list.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -29,7 +30,7 @@ void add_probabilities(const Diagnosis& d, std::string& text) {
   for (std::size_t i = 0; i < d.probabilities.size(); ++i)
     if (i < set || d.probabilities[i].probability >= kShownFrom)
       text += fmt::format(
-          "  {:>6}  {}{}\n", hypothesis::probability_text(d.probabilities[i].probability),
+          "  {:>6}  {}{}\n", report::probability_text(d.probabilities[i].probability),
           d.probabilities[i].name,
           i < set ? ""
                   : fmt::format("  (outside the {:.0f} % credible set)", 100 * thresholds::posterior.set));

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/json.hpp"
-#include "validate/compare/error_map_table.hpp"
+#include "validate/report/figures.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::validate::fleet {
@@ -23,7 +23,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 std::string effect_text(const FleetRow& r) {
   const auto with_probability = [&](const std::string& name) {
     const auto p = r.probabilities.find(name);
-    return p == r.probabilities.end() ? name : name + " " + hypothesis::probability_text(p->second);
+    return p == r.probabilities.end() ? name : name + " " + report::probability_text(p->second);
   };
   std::string text = r.effects.empty() ? "" : with_probability(joined(r.effects, " + "));
   for (const auto& other : r.equivalent) text += (text.empty() ? "" : " or ") + with_probability(other);
@@ -47,8 +47,8 @@ std::vector<report::Cell> row_cells(const FleetRow& r) {
           effect_text(r),
           r.side == "none" ? "–" : r.side,
           std::isfinite(r.evidence) ? fmt::format("{:.0f}", r.evidence) : "–",
-          compare::times_noise(r.left),
-          judged ? compare::times_noise(r.unseen_before) + " → " + compare::times_noise(r.unseen_after) : "–",
+          report::times_noise(r.left),
+          judged ? report::times_noise(r.unseen_before) + " → " + report::times_noise(r.unseen_after) : "–",
           chance_text(r.chance)};
 }
 

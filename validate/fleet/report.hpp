@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "validate/fleet/fleet.hpp"
+#include "validate/fleet/fleet_file.hpp"
+#include "validate/fleet/row.hpp"
 #include "validate/report/document.hpp"
 
 namespace swingbank::validate::fleet {

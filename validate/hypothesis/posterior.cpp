@@ -1,7 +1,5 @@
 #include "validate/hypothesis/posterior.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -34,12 +32,5 @@ double out_of_reach() {
 }
 
 double out_of_set() { return -2 * thresholds::posterior.scale * std::log(1 - thresholds::posterior.set); }
-
-std::string probability_text(double probability) {
-  const double percent = 100 * probability;
-  if (percent < 1) return "< 1 %";
-  if (percent > 99) return "> 99 %";
-  return fmt::format("{:.0f} %", percent);
-}
 
 }  // namespace swingbank::validate::hypothesis

@@ -33,7 +33,4 @@ double out_of_reach();
 /// [chi2].
 double out_of_set();
 
-/// Returns for example "97 %"; "< 1 %" and "> 99 %" at the ends, never 0 or 100 %.
-std::string probability_text(double probability);
-
 }  // namespace swingbank::validate::hypothesis

@@ -11,6 +11,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/first_screen.hpp"
 #include "validate/compare/page_parts.hpp"
+#include "validate/report/figures.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/list.hpp"
 
@@ -39,7 +40,7 @@ report::Table summary(const std::vector<compare::EventComparison>& terminals) {
       table.rows.push_back({e.record.name, c.name, in_units(c.whole.rms), in_units(c.whole.worst),
                             fmt::format("{:.3f} s", c.whole.worst_at),
                             c.noise > 0 ? in_units(c.noise) : "none",
-                            compare::times_noise(c.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
+                            report::times_noise(c.whole.in_noise) + (c.map.whole.exceeds() ? " *" : "")});
     }
   return table;
 }
@@ -144,7 +145,7 @@ report::Chips chips(const SystemCase& s, const SystemComparison& c) {
     for (const auto& channel : c.terminals[r.terminal].channels) {
       const compare::ChannelError error = compare::channel_error({}, c.terminals[r.terminal], channel);
       group.chips.push_back(
-          {channel.name, compare::times_noise(channel.whole.in_noise), error.tone,
+          {channel.name, report::times_noise(channel.whole.in_noise), error.tone,
            compare::chart_id(r.terminal, channel.name),
            fmt::format("RMS error {:.3g} {}", channel.whole.rms * channel.scale, channel.unit)});
     }

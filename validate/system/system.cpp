@@ -12,10 +12,10 @@
 
 #include "base/constants.hpp"
 #include "sim/plant/measure.hpp"
-#include "validate/compare/error_map_table.hpp"
 #include "validate/event/event.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/playin/instruments.hpp"
+#include "validate/report/figures.hpp"
 #include "validate/switching/voltage_steps.hpp"
 #include "validate/system/detail/run.hpp"
 
@@ -190,7 +190,7 @@ std::pair<double, std::string> worst_bin(const compare::EventComparison& e) {
                         const compare::TimeFrequencyBin& bin) {
     if (bin.empty() || !(bin.normalised / bin.bound > worst)) return;
     worst = bin.normalised / bin.bound;
-    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, compare::times_noise(bin.normalised),
+    where = fmt::format("{} {}, {} noise ({:.3g} {})", c.name, place, report::times_noise(bin.normalised),
                         bin.rms * c.scale, c.unit);
   };
   for (const auto& c : e.channels) {

@@ -11,7 +11,7 @@
 
 #include "base/durable.hpp"
 #include "mpi/ranks/detail/message.hpp"
-#include "mpi/ranks/item_queue.hpp"
+#include "mpi/ranks/item_ranks.hpp"
 #include "mpi/ranks/session.hpp"
 #include "mpi/ranks/shard_group.hpp"
 #include "mpi/store/hdf5_file.hpp"
@@ -77,10 +77,10 @@ TEST_F(Ranks, RanksWithoutRowsTakePart) {
 }
 
 TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
-  const swingbank::mpi::ranks::Ranks ranks{MPI_COMM_WORLD};
+  const ItemRanks ranks(MPI_COMM_WORLD);
   std::vector<int> reported(20, 0);
   int own = 0;
-  SharedItems shared;
+  items::SharedItems shared;
   for (std::size_t i = 0; i < reported.size(); i += 2)
     shared.items.push_back(i);  // an arbitrary set of numbers
   shared.work = [&](std::size_t i) {
@@ -94,7 +94,7 @@ TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
     EXPECT_THAT(result, ::testing::StartsWith(fmt::format("item {}\nby ", i)));
     ++reported[i];
   };
-  EXPECT_TRUE(share_items(ranks, shared));
+  EXPECT_TRUE(ranks.share_items(shared));
   for (std::size_t i = 0; i < reported.size(); ++i)
     EXPECT_EQ(reported[i], rank == 0 && i % 2 == 0 ? 1 : 0) << i;
   int sum = 0, most = 0;
@@ -104,20 +104,6 @@ TEST_F(Ranks, EveryItemIsDoneOnceByAnyFreeRank) {
   if (size > 1 && rank == size - 1) {
     EXPECT_LT(own, most);
   }
-}
-
-TEST(ItemLimit, SlowItemEndsTheRunWithItsName) {
-  SharedItems shared;
-  shared.items = {0, 1};
-  shared.work = [](std::size_t i) {
-    std::this_thread::sleep_for(std::chrono::seconds(i == 1 ? 60 : 0));
-    return std::string();
-  };
-  shared.done = [](std::size_t, const std::string&) {};
-  shared.limit = 0.05;
-  shared.name = [](std::size_t i) { return "plant " + std::to_string(i); };
-  EXPECT_EXIT(share_items({}, shared), ::testing::ExitedWithCode(1),
-              "plant 1 takes longer than 0.05 s at rank 0");
 }
 
 TEST_F(Ranks, AllRanksReportTheFailureOfOne) {

@@ -9,6 +9,7 @@
 #include "validate/compare/error_table.hpp"
 #include "validate/compare/first_screen.hpp"
 #include "validate/report/assets.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::compare {
 namespace {
@@ -93,7 +94,7 @@ TEST(CompareReportTest, FirstScreenLinksEachChannelToItsChart) {
     const std::string id = chart_id(0, c.name);
     const auto chip = html.find("href=\"#" + id + "\"");
     ASSERT_NE(chip, std::string::npos) << c.name;
-    EXPECT_THAT(html.substr(chip, 600), HasSubstr("</b> " + times_noise(c.whole.in_noise))) << c.name;
+    EXPECT_THAT(html.substr(chip, 600), HasSubstr("</b> " + report::times_noise(c.whole.in_noise))) << c.name;
     EXPECT_NE(html.find("<figure id=\"" + id + "\">"), std::string::npos) << c.name;
   }
   const ChannelError q = channel_error(fitness, events[0], events[0].channels[1]);
@@ -118,9 +119,10 @@ TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
   const report::Table map = error_map(events);
   const ChannelComparison& q = events[0].channels[1];
   const TimeFrequencyBin& bin = q.map.rows[2].all;
-  const std::string expected = fmt::format("RMS {:.3g} Mvar, {:.2g} % of {:.4g} MVA; {} noise, bound {}",
-                                           bin.rms * q.scale, 100 * bin.rms / q.size, q.size * q.scale,
-                                           times_noise(bin.normalised), times_noise(bin.bound));
+  const std::string expected =
+      fmt::format("RMS {:.3g} Mvar, {:.2g} % of {:.4g} MVA; {} noise, bound {}", bin.rms * q.scale,
+                  100 * bin.rms / q.size, q.size * q.scale, report::times_noise(bin.normalised),
+                  report::times_noise(bin.bound));
   EXPECT_EQ(std::ranges::count_if(map.rows, [&](const auto& row) { return row[3].hint.ends_with(expected); }),
             1);
 }

@@ -10,8 +10,8 @@
 #include "sim/library/library.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "tests/validate/report/browser.hpp"
-#include "validate/compare/error_map_table.hpp"
 #include "validate/noise/pre_event.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -101,7 +101,7 @@ std::string symbol(const std::string& block, const std::string& name) {
 std::string cell_text(const nlohmann::json& cell) {
   if (cell["normalised_rms"].is_null()) return "–";
   const double ratio = cell["normalised_rms"];
-  return compare::times_noise(ratio) + (ratio > cell["normalised_bound"].get<double>() ? " *" : "");
+  return report::times_noise(ratio) + (ratio > cell["normalised_bound"].get<double>() ? " *" : "");
 }
 
 /// An inferred input has a time series with limits, and no fitted parameters.
@@ -144,8 +144,8 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   for (std::size_t e = 0; e < 2; ++e) {
     const auto& event = j["events"][e];
     EXPECT_THAT(at_a_glance[e], ElementsAreArray({event["record"].get<std::string>(),
-                                                  compare::times_noise(event["normalised_rms_before"]),
-                                                  compare::times_noise(event["normalised_rms_after"]),
+                                                  report::times_noise(event["normalised_rms_before"]),
+                                                  report::times_noise(event["normalised_rms_after"]),
                                                   std::string("20 ×"), std::string("1.5 ×")}));
   }
   const auto parameters = table_after(page(), "95 % intervals.");

@@ -1,13 +1,11 @@
 // Fleets: input files, rows of finished plants, result tables.
-#include "validate/fleet/fleet.hpp"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "base/json.hpp"
+#include "base/problem.hpp"
 #include "validate/fleet/report.hpp"
 
 namespace swingbank::validate::fleet {
@@ -41,12 +39,6 @@ class FleetFiles : public ::testing::Test {
   }
   fs::path folder;
 };
-
-std::string slurp(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 FleetRow row(const std::string& plant, const std::string& verdict) {
   FleetRow r;
@@ -116,33 +108,6 @@ colour = "red"
   EXPECT_THROW(load_fleet(folder / "nowhere.toml"), InputError);
 }
 
-TEST_F(FleetFiles, UnreadablePlantIsARowWithAllItsProblems) {
-  const Fleet fleet = load_fleet(write("fleet.toml", R"(
-[plant.a]
-model = "no-model.toml"
-records = ["no-record.csv", "none*.csv"]
-)"));
-  const FleetOutcome o = diagnose_plant(fleet, fleet.plants[0], folder / "out", {});
-  EXPECT_TRUE(o.row.failed());
-  for (const char* words : {"no-model.toml", "no-record.csv", "none*.csv"})
-    EXPECT_THAT(o.row.sentence, HasSubstr(words));
-  const FleetRow read = read_row(slurp(folder / "out/a/plant.json"), "plant.json");
-  EXPECT_EQ(read.sentence, o.row.sentence);
-  EXPECT_FALSE(fs::exists(folder / "out/.a.part"));
-}
-
-TEST_F(FleetFiles, KeepsForeignFiles) {
-  const Fleet fleet =
-      load_fleet(write("fleet.toml", "[plant.a]\nmodel = \"m.toml\"\nrecords = [\"e.csv\"]\n"));
-  fs::create_directories(folder / "out/a");
-  write("out/a/thesis.txt", "years of work");
-  const FleetOutcome o = diagnose_plant(fleet, fleet.plants[0], folder / "out", {});
-  EXPECT_TRUE(o.row.failed());
-  EXPECT_THAT(o.row.sentence, HasSubstr("no fleet run has written"));
-  EXPECT_EQ(slurp(folder / "out/a/thesis.txt"), "years of work");
-  EXPECT_FALSE(fs::exists(folder / "out/a/plant.json"));
-}
-
 TEST(FleetRows, ReadBackAsWritten) {
   const FleetRow a = named(), b = read_row(row_json(a).dump(), "here");
   EXPECT_EQ(row_json(a), row_json(b));
@@ -178,15 +143,6 @@ TEST(FleetTables, ReportFindingsAndExitCodes) {
   EXPECT_EQ(j["plants"].size(), 3);
   EXPECT_EQ(j["plants"][1]["evidence"], 412.25);
   EXPECT_TRUE(j["plants"][2]["evidence"].is_null());
-}
-
-TEST(FleetChance, FollowsTheChiSquareDistribution) {
-  // Quantiles from tables: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4 digits).
-  const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
-  for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
-  EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));
-  EXPECT_EQ(chance_of(-50, 1, 30), 1);
-  EXPECT_DOUBLE_EQ(chance_of(10, 0, 1), std::exp(-5.0));
 }
 
 }  // namespace

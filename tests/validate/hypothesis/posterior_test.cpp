@@ -58,12 +58,6 @@ TEST(Posterior, SetSumsToNinetyFivePerCent) {
   EXPECT_EQ(with({0.4, 0.3, 0.2, 0.1}), 4U);
   EXPECT_EQ(with({}), 0U);
 }
-TEST(Posterior, TextNeverStatesCertainty) {
-  EXPECT_EQ(probability_text(1.0), "> 99 %");
-  EXPECT_EQ(probability_text(0.0), "< 1 %");
-  EXPECT_EQ(probability_text(0.97), "97 %");
-  EXPECT_EQ(probability_text(0.9951), "> 99 %");
-}
 
 }  // namespace
 }  // namespace swingbank::validate::hypothesis

@@ -11,6 +11,7 @@
 #include "validate/hypothesis/decide.hpp"
 #include "validate/noise/level.hpp"
 #include "validate/noise/lines.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::diagnose {
 namespace {
@@ -98,7 +99,7 @@ double probability_of_nothing_missing(const Diagnosis& d) {
 
 /// Returns that nothing is missing, and the wrong parameters if they are few.
 std::string adequate_sentence(const Diagnosis& d) {
-  const std::string probable = hypothesis::probability_text(probability_of_nothing_missing(d));
+  const std::string probable = report::probability_text(probability_of_nothing_missing(d));
   if (d.wrong)
     return fmt::format(
         "No component is missing ({}), but {} parameter {} wrong: {}. With {} changed the "
@@ -115,8 +116,8 @@ std::string adequate_sentence(const Diagnosis& d) {
 std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
   std::string text;
   for (const auto& e : some)
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name,
-                        hypothesis::probability_text(e.probability));
+    text +=
+        fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name, report::probability_text(e.probability));
   return text;
 }
 /// Returns the same for a set; of many pairs, only the first ones.
@@ -189,7 +190,7 @@ void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
                     capitalised(best.hypothesis.with.empty()
                                     ? best.hypothesis.what
                                     : best.hypothesis.with + ", together with " + best.hypothesis.what),
-                    does, hypothesis::probability_text(first->probability),
+                    does, report::probability_text(first->probability),
                     others.empty() ? "" : ", or " + set_text(others, pairs));
   else
     d.sentence = fmt::format("Undecided, one of these {}: {}", does, set_text(set, pairs));

@@ -1,5 +1,4 @@
-// Diagnosis of one plant of a fleet and its result files.
-#include "validate/fleet/fleet.hpp"
+#include "validate/fleet_plant/fleet_plant.hpp"
 
 #include <fmt/format.h>
 #include <glob.h>
@@ -16,14 +15,16 @@
 #include "validate/diagnose/report.hpp"
 #include "validate/record/formats.hpp"
 
-namespace swingbank::validate::fleet {
+namespace swingbank::validate::fleet_plant {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using fleet::Fleet;
+using fleet::FleetPlant;
+using fleet::FleetRow;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kFormat = "swingbank-fleet-plant-3";
 
 /// Returns the sorted files of a name or glob; "RUN.h5#TERMINAL" keeps its terminal.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
@@ -80,7 +81,7 @@ json block_json(const sim::plant::Block& b) {
 /// models, a grid); their values and the bytes of the user-defined models are included.
 std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   const plant::PlantModel& m = l.model;
-  json j = {kFormat, SWINGBANK_VERSION, plant.name, m.sha256};
+  json j = {fleet::kPlantFormat, SWINGBANK_VERSION, plant.name, m.sha256};
   j.push_back({plant.prior_sd, plant.power_only});
   j.push_back({m.plant.mva, m.conventions.speed_voltage, m.conventions.mechanical_power,
                m.conventions.frequency, m.record_base.mva, m.record_base.frequency, m.record_base.kv});
@@ -128,7 +129,7 @@ FleetRow row_of(const diagnose::Diagnosis& d) {
 bool finished(const fs::path& folder, const std::string& inputs, FleetRow& row) {
   if (!fs::exists(folder / "diagnosis.json") || !fs::exists(folder / "report.html")) return false;
   try {
-    row = read_row(record::read_bytes(folder / "plant.json"), (folder / "plant.json").string());
+    row = fleet::read_row(record::read_bytes(folder / "plant.json"), (folder / "plant.json").string());
   } catch (const InputError&) {
     return false;
   }
@@ -151,7 +152,7 @@ void check_ours(const fs::path& folder) {
                     "move it away, or give another --out"});
 }
 
-std::string plant_json(const FleetRow& row) { return json_text(row_json(row), 1) + "\n"; }
+std::string plant_json(const FleetRow& row) { return json_text(fleet::row_json(row), 1) + "\n"; }
 
 std::string command_of(const FleetPlant& plant, const std::vector<std::string>& files) {
   std::string text = fmt::format("swingbank diagnose --model {} --records", plant.model.string());
@@ -173,7 +174,7 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
                             const diagnose::DiagnoseOptions& given) {
   const fs::path folder = out / plant.name, temporary = out / ("." + plant.name + ".part");
   const auto failed = [&](const std::string& why) {
-    const FleetRow row = failed_row(plant.name, why);
+    const FleetRow row = fleet::failed_row(plant.name, why);
     try {  // results of an earlier run with other inputs must not remain
       check_ours(folder);
       fs::remove_all(temporary);
@@ -216,62 +217,4 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
   }
 }
 
-namespace {
-double number_of(const json& j, const char* key) {
-  return j.at(key).is_null() ? kNaN : j.at(key).get<double>();
-}
-}  // namespace
-
-FleetRow failed_row(const std::string& plant, const std::string& why) {
-  FleetRow row;
-  row.plant = plant;
-  row.verdict = "failed";
-  row.side = "none";
-  row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance = kNaN;
-  row.sentence = why;
-  return row;
-}
-
-json row_json(const FleetRow& r) {
-  return {{"format", kFormat},
-          {"plant", r.plant},
-          {"verdict", r.verdict},
-          {"effects", r.effects},
-          {"equivalent", r.equivalent},
-          {"probabilities", r.probabilities},
-          {"side", r.side},
-          {"evidence", r.evidence},
-          {"normalised_rms_refitted", r.left},
-          {"unseen_normalised_rms_before", r.unseen_before},
-          {"unseen_normalised_rms_after", r.unseen_after},
-          {"probability_by_noise_alone_at_most", r.chance},
-          {"events", r.events},
-          {"sentence", r.sentence},
-          {"inputs_sha256", r.inputs}};
-}
-
-FleetRow read_row(const std::string& text, const std::string& where) {
-  try {
-    const json j = json::parse(text);
-    if (j.at("format") != kFormat) throw std::invalid_argument("its format is not " + std::string(kFormat));
-    return {j.at("plant"),
-            j.at("verdict"),
-            j.at("effects"),
-            j.at("equivalent"),
-            j.at("probabilities"),
-            j.at("side"),
-            number_of(j, "evidence"),
-            number_of(j, "normalised_rms_refitted"),
-            number_of(j, "unseen_normalised_rms_before"),
-            number_of(j, "unseen_normalised_rms_after"),
-            number_of(j, "probability_by_noise_alone_at_most"),
-            j.at("events"),
-            j.at("sentence"),
-            j.at("inputs_sha256")};
-  } catch (const std::exception& error) {
-    throw InputError(
-        {"no result of a plant", where, error.what(), "remove its folder and run the command again"});
-  }
-}
-
-}  // namespace swingbank::validate::fleet
+}  // namespace swingbank::validate::fleet_plant

@@ -1,0 +1,49 @@
+#pragma once
+// Error messages and exit code of a command that throws.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "base/problem.hpp"
+#include "base/stop_signal.hpp"
+
+namespace swingbank::jobs {
+
+/// Returns the problems of an input, one a line; problems that differ only in their place share a line.
+inline std::string problems_text(const InputError& error) {
+  std::vector<Problem> lines;
+  for (const Problem& p : error.problems()) {
+    const auto same = std::ranges::find_if(
+        lines, [&](const Problem& q) { return q.what == p.what && q.why == p.why && q.remedy == p.remedy; });
+    if (same == lines.end())
+      lines.push_back(p);
+    else
+      same->where += ", " + p.where;
+  }
+  std::string text;
+  for (const Problem& p : lines) text += p.sentence() + "\n";
+  return text;
+}
+
+/// Runs `action` and returns its exit code. Prints exceptions as messages: code 1 for invalid input and
+/// failures, code 2 for a stop signal before any result.
+template <class F>
+int guarded(const std::string& command, F action) {
+  try {
+    return action();
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "swingbank {}: stopped by a signal before the first result; nothing was written\n",
+               command);
+    return kSubmitAgain;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "{}", problems_text(error));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
+  }
+  return 1;
+}
+
+}  // namespace swingbank::jobs

@@ -1,0 +1,46 @@
+#pragma once
+// Ranks that share independent items of work, as an interface: this process alone (one_process.hpp) or the
+// ranks of a launcher (mpi/ranks/item_ranks.hpp), so that the same command runs with and without MPI.
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace swingbank::mpi::items {
+
+/// Items and their work.
+struct SharedItems {
+  std::vector<std::size_t> items;  ///< the same on all ranks
+  /// Processes an item on any rank; must not call MPI, because on rank 0 it runs in a separate thread. Its
+  /// result is sent to rank 0.
+  std::function<std::string(std::size_t item)> work;
+  /// Receives each result, on rank 0 in the calling thread, in order of completion.
+  std::function<void(std::size_t item, const std::string& result)> done;
+  /// Longest time for an item [s], after which the run ends with an error; 0: unlimited.
+  double limit = 0.0;
+  /// Returns an item's name for this error.
+  std::function<std::string(std::size_t item)> name = [](std::size_t item) { return std::to_string(item); };
+};
+
+/// Ranks of a run.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  [[nodiscard]] virtual int rank() const = 0;
+  [[nodiscard]] virtual int size() const = 0;
+  /// Returns the number of ranks on this machine. Collective.
+  [[nodiscard]] virtual int on_this_machine() const = 0;
+  /// Returns the value of rank 0 on all ranks. Collective.
+  [[nodiscard]] virtual int from_first(int value) const = 0;
+  /// Runs `prepare` on every rank. If it throws on any rank, all ranks throw the problems of the first such
+  /// rank. Collective.
+  virtual void agree(const std::string& where, const std::function<void()>& prepare) const = 0;
+  /// Processes the items until all are done or a rank receives a stop signal (base/stop_signal.hpp); items in
+  /// progress are then finished and no others are started. Collective; rank 0 distributes the items and also
+  /// works. Returns true on all ranks if every item is done. An item over its time limit ends the program on
+  /// all ranks, because its rank may hang. An exception of `work` or `done` also ends the run on all ranks,
+  /// so neither may throw because of an item's content.
+  [[nodiscard]] virtual bool share_items(const SharedItems& shared) const = 0;
+};
+
+}  // namespace swingbank::mpi::items

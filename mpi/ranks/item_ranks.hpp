@@ -1,0 +1,24 @@
+#pragma once
+// Ranks of a launcher that share items through MPI.
+#include <mpi.h>
+
+#include "mpi/items/ranks.hpp"
+
+namespace swingbank::mpi::ranks {
+
+/// Ranks of a communicator.
+class ItemRanks final : public items::Ranks {
+ public:
+  explicit ItemRanks(MPI_Comm world) : world_(world) {}
+  [[nodiscard]] int rank() const override;
+  [[nodiscard]] int size() const override;
+  [[nodiscard]] int on_this_machine() const override;
+  [[nodiscard]] int from_first(int value) const override;
+  void agree(const std::string& where, const std::function<void()>& prepare) const override;
+  [[nodiscard]] bool share_items(const items::SharedItems& shared) const override;
+
+ private:
+  MPI_Comm world_;
+};
+
+}  // namespace swingbank::mpi::ranks

@@ -1,0 +1,37 @@
+#pragma once
+// Row of a fleet's table: the result of one plant, also as JSON.
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace swingbank::validate::fleet {
+
+/// Format of plant.json; part of the hash of a plant's inputs, so that older results are computed again.
+inline constexpr const char* kPlantFormat = "swingbank-fleet-plant-3";
+
+/// Row of the fleet's table.
+struct FleetRow {
+  std::string plant;
+  std::string verdict;                          ///< diagnose::verdict_name(), or "failed"
+  std::vector<std::string> effects;             ///< as Diagnosis::effects
+  std::vector<std::string> equivalent;          ///< as Diagnosis::equivalent
+  std::map<std::string, double> probabilities;  ///< of the explanations in the credible set
+  std::string side;
+  double evidence = 0;  ///< 2 ln(Bayes factor) of the first effect; NaN: none was named
+  double left = 0;      ///< normalised RMS of the refitted model without an effect
+  double unseen_before = 0, unseen_after = 0;  ///< normalised RMS over held-out events; NaN: not judged
+  double chance = 0;                           ///< bound of chance_of(); NaN: none was named
+  int events = 0;
+  std::string sentence;  ///< verdict, or the problems, one per line
+  std::string inputs;    ///< hash of all inputs of the row
+  [[nodiscard]] bool failed() const { return verdict == "failed"; }
+  [[nodiscard]] bool adequate() const { return verdict == "adequate"; }
+};
+/// Row of a plant that could not be diagnosed, with the reason `why`.
+FleetRow failed_row(const std::string& plant, const std::string& why);
+nlohmann::json row_json(const FleetRow& row);
+/// Reads a row. Throws InputError, naming `where`, if the text is not one.
+FleetRow read_row(const std::string& text, const std::string& where);
+
+}  // namespace swingbank::validate::fleet

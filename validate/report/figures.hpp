@@ -1,0 +1,13 @@
+#pragma once
+// Figures as text, the same in all reports: multiples of the noise, and probabilities.
+#include <string>
+
+namespace swingbank::validate::report {
+
+/// Returns a multiple of the noise, "0.9 ×" or "85 ×"; "–" if not finite.
+std::string times_noise(double ratio);
+
+/// Returns for example "97 %"; "< 1 %" and "> 99 %" at the ends, never 0 or 100 %.
+std::string probability_text(double probability);
+
+}  // namespace swingbank::validate::report
