@@ -57,7 +57,7 @@ fs::path example_configs() {
   if (error) return {};
   if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // instruction-set folder
   // The second path is that of the build folder, for any layout of an installation.
-  for (const char* way : {SWINGBANK_CONFIGS_FROM_BIN, "../share/swingbank/configs"}) {
+  for (const char* way : {SWINGBANK_CONFIGS_FROM_PROGRAMS, "../share/swingbank/configs"}) {
     const fs::path folder = fs::canonical(own / way, error);
     if (!error && fs::is_directory(folder, error)) return folder;
   }

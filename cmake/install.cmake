@@ -1,25 +1,52 @@
 # cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion, and
-# the library (export.cmake).
+# the library (export.cmake). Components: swingbank (all that is not of the others), train (programs of datasets and
+# networks), development and python.
 # Nothing is built. Files generated from --help come first, so that nothing is installed if that fails.
-get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME swingbank)
+# The programs are side by side in a folder of their own, because bin must have no folders (instruction sets).
+set(programs_folder ${CMAKE_INSTALL_LIBEXECDIR}/swingbank)
 set(made ${PROJECT_BINARY_DIR}/from_help)
-install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_help.sh\" \"$<TARGET_FILE_DIR:swingbank>\"
-  ${PROJECT_VERSION} \"${made}\" COMMAND_ERROR_IS_FATAL ANY)")
-install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+
+# swingbank_install_programs(component)
+function(swingbank_install_programs component)
+  get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS_${component})
+  get_property(links GLOBAL PROPERTY SWINGBANK_COMMAND_LINKS_${component})
+  install(CODE "if(NOT from_help)
+  execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/from_help.sh\" \"$<TARGET_FILE_DIR:swingbank>\"
+    ${PROJECT_VERSION} \"${made}\" COMMAND_ERROR_IS_FATAL ANY)
+  set(from_help TRUE)
+endif()" COMPONENT ${component})
+  install(TARGETS ${programs} RUNTIME DESTINATION ${programs_folder} COMPONENT ${component})
+  install(PROGRAMS ${links} DESTINATION ${programs_folder} COMPONENT ${component})
+  set(names ${programs})
+  foreach(link ${links})
+    cmake_path(GET link FILENAME name)
+    list(APPEND names ${name})
+    # Internal commands have none.
+    install(FILES ${made}/man1/${name}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component} OPTIONAL)
+  endforeach()
+  # The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them: swingbank chooses the
+  # one for the processor.
+  install(CODE "foreach(level x86-64-v3 x86-64-v4)
+  foreach(name ${names})
+    if(EXISTS \"$<TARGET_FILE_DIR:swingbank>/\${level}/\${name}\")
+      file(INSTALL \"$<TARGET_FILE_DIR:swingbank>/\${level}/\${name}\"
+        DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${programs_folder}/\${level}\" USE_SOURCE_PERMISSIONS)
+    endif()
+  endforeach()
+endforeach()" COMPONENT ${component})
+endfunction()
+swingbank_install_programs(swingbank)
+swingbank_install_programs(train)
+install(TARGETS swingbank RUNTIME DESTINATION ${programs_folder})
+file(RELATIVE_PATH from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBEXECDIR}/swingbank/swingbank)
+install(CODE "set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
+file(MAKE_DIRECTORY \${bin})
+file(CREATE_LINK ${from_bin} \${bin}/swingbank SYMBOLIC)")
+install(FILES ${made}/man1/swingbank.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${made}/swingbank.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME swingbank)
 install(FILES ${made}/_swingbank DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${made}/swingbank.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-install(TARGETS swingbank ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-get_property(links GLOBAL PROPERTY SWINGBANK_COMMAND_LINKS)
-install(PROGRAMS ${links} DESTINATION ${CMAKE_INSTALL_BINDIR})
-# The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them: swingbank chooses the
-# one for the processor.
-install(CODE "foreach(level x86-64-v3 x86-64-v4)
-  file(GLOB wide \"$<TARGET_FILE_DIR:swingbank>/\${level}/swingbank[-_]*\")
-  if(wide)
-    file(INSTALL \${wide} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/\${level}\" USE_SOURCE_PERMISSIONS)
-  endif()
-endforeach()")
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/swingbank)
 # The environment module names the prefix, which is known only now.
 install(CODE "set(PROJECT_VERSION ${PROJECT_VERSION})

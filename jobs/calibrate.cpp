@@ -168,7 +168,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
   if (a.network.empty()) return std::nullopt;
   const auto predict = jobs::own_command(
       "predict",
-      "run 'swingbank predict --out FILE' where it was built with LibTorch, and give --start FILE");
+      "install swingbank-train, or run 'swingbank predict --out FILE' where it is installed and give --start FILE");
   const jobs::Scratch scratch;
   const auto file = scratch.folder() / "estimate.json";
   std::vector<std::string> words = {"--network", a.network,     "--model",  a.of.model,

@@ -21,7 +21,7 @@ struct RetrainPrograms {
 
 /// Returns the paths of the programs. Throws InputError if this build cannot train.
 inline RetrainPrograms retrain_programs() {
-  const std::string remedy = "build with LibTorch (-DSWINGBANK_TRAIN=ON), or add without --retrain";
+  const std::string remedy = "install swingbank-train, or add without --retrain";
   return {own_command("generate", remedy), own_command("train", remedy), own_command("predict", remedy)};
 }
 

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 struct Command {
   std::string name;
   std::string summary;
-  std::string group;  ///< heading in the help; empty: internal, not listed
+  std::string group;      ///< heading in the help; empty: internal, not listed
+  std::string component;  ///< part of an installation that contains it (cmake/install.cmake); empty: none
 };
 
 // Declared once, by swingbank_command() in jobs/CMakeLists.txt, in the order of the help.
@@ -49,7 +50,7 @@ std::vector<Command> found_commands(const fs::path& folder) {
   for (const auto& command : kDeclared) {
     if (present.erase(command.name) > 0) commands.push_back(command);
   }
-  for (const auto& [name, unused] : present) commands.push_back({name, "", "Others"});
+  for (const auto& [name, unused] : present) commands.push_back({name, "", "Others", ""});
   return commands;
 }
 
@@ -69,6 +70,14 @@ void print_help(const std::vector<Command>& commands) {
 
 int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Command>& commands) {
   if (!swingbank::is_first_rank()) return 1;
+  const auto declared = std::ranges::find(kDeclared, wanted, &Command::name);
+  if (declared != kDeclared.end()) {
+    fmt::print(stderr, "a command that is not installed at '{}' (no {}{} in {}): {}\n", wanted, kPrefix,
+               wanted, folder.string(),
+               declared->component.empty() ? "run it in a build folder"
+                                           : "install " + std::string(kPrefix) + declared->component);
+    return 1;
+  }
   std::vector<std::string> names;
   for (const auto& command : commands)
     if (!command.group.empty()) names.push_back(command.name);

@@ -9,12 +9,14 @@ from .errors import InputError
 
 
 def _candidates() -> list[pathlib.Path]:
-    """Returns the folders that may hold the commands: SWINGBANK_BIN, the build or installation, and the PATH."""
+    """Returns the folders that may hold the commands: SWINGBANK_BIN, the build or installation, and the PATH.
+
+    In an installation bin/swingbank is a link into that folder."""
     found = []
     if os.environ.get("SWINGBANK_BIN"):
         found.append(pathlib.Path(os.environ["SWINGBANK_BIN"]))
     for parent in pathlib.Path(os.path.abspath(__file__)).parents:
-        found.append(parent / "bin")
+        found.append((parent / "bin" / "swingbank").resolve().parent)
     command = shutil.which("swingbank")
     if command:
         found.append(pathlib.Path(command).resolve().parent)

@@ -9,10 +9,13 @@ built >"$work/before"
 cmake --install "$build" --prefix "$prefix" >"$work/log" 2>&1 || fail "cmake --install: $(tail -n 5 "$work/log")"
 built | cmp - "$work/before" || fail "cmake --install built a program again"
 
-# Every command, but no tests and none of research/.
+# Every command, but no tests and none of research/. bin has a link to the dispatcher; the programs are in libexec.
+installed=$prefix/libexec/swingbank
+[[ $(ls "$prefix/bin") == swingbank && $(realpath "$prefix/bin/swingbank") == "$(realpath "$installed")/swingbank" ]] ||
+  fail "bin is not one link: $(ls -l "$prefix/bin")"
 programs() { (cd "$1" && find . -maxdepth 1 -name 'swingbank*' ! -name 'swingbank_research*' ! -lname 'swingbank_research*' -printf '%f\n' | sort); }
-cmp <(programs "$SWINGBANK_BIN") <(programs "$prefix/bin") || fail "the installed programs are not those that were built"
-others=$(find "$prefix/bin" \( -not -name 'swingbank*' -o -name 'swingbank_research*' \) -type f)
+cmp <(programs "$SWINGBANK_BIN") <(programs "$installed") || fail "the installed programs are not those that were built"
+others=$(find "$installed" \( -not -name 'swingbank*' -o -name 'swingbank_research*' \) -type f)
 [[ -z $others ]] || fail "no commands, but installed: $others"
 cmp <(cd "$SWINGBANK_SOURCE/configs" && find . -type f | sort) <(cd "$prefix/share/swingbank/configs" && find . -type f | sort) ||
   fail "the installed configs are not those of the source tree"
@@ -39,6 +42,14 @@ cd "$work/empty"
 swingbank effects >"$work/effects"
 grep -q '^  SEXS ' "$work/effects" || fail "swingbank effects does not list SEXS"
 [[ $(swingbank configs) == "$(realpath "$prefix")/share/swingbank/configs" ]] || fail "configs: $(swingbank configs)"
+
+# Without the programs of the component train (Debian package swingbank-train) their commands name that package.
+mkdir "$work/whole"
+cp -r "$installed" "$work/whole/libexec"
+(cd "$work/whole/libexec" && find . -lname swingbank_datasets -delete && rm swingbank_datasets)
+refuses "command that is not installed" 'install swingbank-train' "$work/whole/libexec/swingbank" generate
+refuses "fleet on ranks without MPI" 'diagnose-fleet.*install swingbank-train' env PMIX_RANK=0 \
+  "$work/whole/libexec/swingbank" diagnose --fleet fleet.toml
 
 # A missing file is reported with the searched folders and with the example; nothing is written.
 model=configs/plants/ieee14_bus2.toml records=configs/records/record-example/avr_ev1.csv
@@ -84,7 +95,7 @@ complete_fish() {
   HOME=$work XDG_CONFIG_HOME=$work/fish XDG_DATA_HOME=$work/fish XDG_DATA_DIRS=$prefix/share \
     fish -c 'complete --do-complete "$argv"' "$*" | cut -f1
 }
-programs "$prefix/bin" | sed -n 's/^swingbank-//p' | grep -vx -f <(internal_commands) | sort >"$work/commands"
+programs "$installed" | sed -n 's/^swingbank-//p' | grep -vx -f <(internal_commands) | sort >"$work/commands"
 swingbank compare --help | grep -oE '^  -[^ {]+' | tr ',' '\n' | tr -d ' ' | grep -e '^--' | sort >"$work/options"
 for shell in bash zsh fish; do
   completed() { "complete_$shell" "$@" | sort; }

@@ -26,8 +26,8 @@ cases_of_others() {
   cases=$folder
 }
 
-# Prints the internal commands: those declared without a heading (swingbank_command, GROUP ""), which --help does not list.
-internal_commands() { sed -n 's/^{"\([^"]*\)", "[^"]*", ""},$/\1/p' "$SWINGBANK_BIN/../commands/commands.inc"; }
+# Prints the internal commands, declared without a heading (swingbank_command, GROUP ""); --help does not list them.
+internal_commands() { sed -n 's/^{"\([^"]*\)", "[^"]*", "", .*/\1/p' "$SWINGBANK_BIN/../commands/commands.inc"; }
 
 # | holds -q PATTERN: grep that reads all input, since a program whose pipe is closed early fails by SIGPIPE
 holds() { grep "$@" <<<"$(cat)"; }
