@@ -32,6 +32,5 @@ if [ -e /usr/libexec/swingbank ]; then echo "left behind:"; find /usr/libexec/sw
 TEXT
 if compgen -G "$work/packages/python3-*.deb" >/dev/null; then touch "$work/packages/python"; fi
 mmdebstrap --variant=minbase --format=null --customize-hook="cp -r '$work/packages' '$work/first.sh' \"\$1\"" \
-  --customize-hook='chroot "$1" sh /first.sh' bookworm >"$work/said" 2>"$work/log" || fail "$(cat "$work/said" "$work/log" | tail -n 30)"
-cat "$work/said"
-grep -q 'first comparison is there' "$work/said" || fail "the first comparison did not run"
+  --customize-hook='chroot "$1" sh /first.sh' bookworm >"$work/said" 2>&1 || fail "$(tail -n 30 "$work/said")"
+grep 'first comparison is there' "$work/said" || fail "the first comparison did not run: $(tail -n 30 "$work/said")"
